@@ -1,0 +1,1 @@
+"""Decide which plants to inspect for pests today, and learn from what is found."""

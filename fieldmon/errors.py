@@ -1,0 +1,46 @@
+"""What can go wrong, one class per thing a caller could do about it.
+
+Every message is a sentence or two: what must hold, what was found, where, and what to do.
+The command line prints it and ends with exit code 2; the app shows it. Nothing is written before.
+"""
+
+from __future__ import annotations
+
+
+class FieldmonError(Exception):
+    """Any problem that a person can put right; its text is meant for that person."""
+
+
+class FileProblem(FieldmonError):  # noqa: N818 - reads as what it is
+    """A file cannot be used as it is: choose or mend another file."""
+
+
+class ChoiceNeeded(FieldmonError):  # noqa: N818
+    """The file holds more than one answer, or lacks one: the caller must choose.
+
+    Parameters
+    ----------
+    message
+        The sentence for the person.
+    option
+        What has to be chosen: ``"layer"``, ``"feature"``, ``"crs"``, ``"member"``, ``"columns"``...
+    choices
+        The possible answers, best first, as they can be handed back.
+    """
+
+    def __init__(self, message: str, option: str, choices: tuple[str, ...] = ()) -> None:
+        super().__init__(message)
+        self.option = option
+        self.choices = choices
+
+
+class SettingError(FieldmonError):
+    """A setting is outside what it may be: change the number."""
+
+
+class PlotError(FieldmonError):
+    """The plot cannot carry what was asked (no room for a plant, no way between rows)."""
+
+
+class ObservationError(FieldmonError):
+    """The observations do not fit the plot or their own columns."""

@@ -1,0 +1,153 @@
+"""What people know about a plot, as plain values in degrees (lon, lat, WGS84)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from shapely import MultiLineString, MultiPolygon
+
+from fieldmon.errors import ObservationError, PlotError
+from fieldmon.frame import Frame
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+UNKNOWN, ABSENT, PRESENT = -1, 0, 1
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """A plot: where it is, where its rows are if that is known, and how one gets in.
+
+    Parameters
+    ----------
+    name
+        As the grower calls it, any script.
+    boundary
+        Parts and holes of the plot, lon/lat. Holes are not driven through.
+    no_go
+        Areas inside the boundary that carry no plants and are not driven through, lon/lat.
+    gate
+        ``(lon, lat)`` where a working day starts and ends, or None: the nearest row end then.
+    paths
+        Paths and roads along which insects enter, lon/lat.
+    plants
+        ``(n, 2)`` lon/lat of plants whose positions were measured, or None.
+    row_lines
+        Rows drawn or measured as lines, lon/lat; empty if unknown.
+    """
+
+    name: str
+    boundary: MultiPolygon
+    no_go: MultiPolygon = field(default_factory=MultiPolygon)
+    gate: tuple[float, float] | None = None
+    paths: MultiLineString = field(default_factory=MultiLineString)
+    plants: NDArray[np.float64] | None = None
+    row_lines: MultiLineString = field(default_factory=MultiLineString)
+
+    def __post_init__(self) -> None:
+        if self.boundary.is_empty or not self.boundary.is_valid:
+            raise PlotError(
+                f"The boundary of plot {self.name!r} must be a valid, non-empty area, but it is "
+                f"{'empty' if self.boundary.is_empty else shapely.is_valid_reason(self.boundary)}. "
+                "Draw it again or let the import repair it."
+            )
+        if self.plants is not None:
+            self.plants.setflags(write=False)
+
+    def frame(self, bearing_deg: float = 90.0) -> Frame:
+        """Return the plane in metres centred on this plot, x along ``bearing_deg``."""
+        west, south, east, north = self.boundary.bounds
+        return Frame((west + east) / 2, (south + north) / 2, bearing_deg)
+
+    def drivable(self) -> MultiPolygon:
+        """Return the boundary without the no-go areas, lon/lat."""
+        if self.no_go.is_empty:
+            return self.boundary
+        left = shapely.difference(self.boundary, self.no_go)
+        areas = [part for part in shapely.get_parts(left) if part.geom_type == "Polygon"]
+        if not areas:
+            raise PlotError(
+                f"Some of plot {self.name!r} must lie outside its no-go areas, but nothing does. "
+                "Remove or shrink a no-go area."
+            )
+        return MultiPolygon(areas)
+
+
+@dataclass(frozen=True, eq=False)
+class Observations:
+    """Dated pest records at positions, one array entry a record, in the file's order.
+
+    Parameters
+    ----------
+    lonlat
+        ``(m, 2)`` degrees.
+    present
+        ``(m,)`` int8: `PRESENT`, `ABSENT` (looked, nothing seen) or `UNKNOWN`.
+    day
+        ``(m,)`` datetime64[D]; NaT where the record has no date.
+    count
+        ``(m,)`` pests counted; NaN where only presence was noted.
+    accuracy_m
+        ``(m,)`` 1-sigma position accuracy, metres; NaN where unknown.
+    species, stage
+        ``(m,)`` text; empty where unknown.
+    leaves_sampled
+        ``(m,)`` leaves looked at; NaN where unknown.
+    """
+
+    lonlat: NDArray[np.float64]
+    present: NDArray[np.int8]
+    day: NDArray[np.datetime64]
+    count: NDArray[np.float64]
+    accuracy_m: NDArray[np.float64]
+    species: NDArray[np.str_]
+    stage: NDArray[np.str_]
+    leaves_sampled: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        m = len(self.lonlat)
+        for name, values in vars(self).items():
+            if len(values) != m:
+                raise ObservationError(
+                    f"All columns of the observations must have {m} entries, "
+                    f"but {name} has {len(values)}."
+                )
+            values.setflags(write=False)
+
+    def __len__(self) -> int:
+        """Return the number of records."""
+        return len(self.lonlat)
+
+    @classmethod
+    def of(
+        cls,
+        lonlat: NDArray[np.float64],
+        present: NDArray[np.int8],
+        day: NDArray[np.datetime64] | None = None,
+        **columns: NDArray[np.generic],
+    ) -> Observations:
+        """Return observations with every column that is not given unknown."""
+        m = len(lonlat)
+        unknown: dict[str, NDArray[np.generic]] = {
+            "count": np.full(m, np.nan),
+            "accuracy_m": np.full(m, np.nan),
+            "species": np.full(m, "", dtype=np.str_),
+            "stage": np.full(m, "", dtype=np.str_),
+            "leaves_sampled": np.full(m, np.nan),
+        }
+        days = np.full(m, "NaT", dtype="datetime64[D]") if day is None else day
+        points = np.asarray(lonlat, dtype=np.float64).reshape(-1, 2)
+        return cls(points, np.asarray(present, np.int8), days, **(unknown | columns))  # type: ignore[arg-type]
+
+    def take(self, which: NDArray[np.generic]) -> Observations:
+        """Return the records at the given indices or mask."""
+        return Observations(**{name: values[which].copy() for name, values in vars(self).items()})
+
+    @classmethod
+    def none(cls) -> Observations:
+        """Return no records at all."""
+        return cls.of(np.empty((0, 2)), np.empty(0, np.int8))

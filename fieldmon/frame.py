@@ -1,0 +1,96 @@
+"""Degrees and metres: the one bridge between the map and the rows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TypeVar
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+from pyproj import Transformer
+from pyproj.enums import TransformDirection
+
+from fieldmon.errors import PlotError, SettingError
+
+Float = NDArray[np.float64]
+G = TypeVar("G", bound=shapely.Geometry)
+_FARTHEST_M = 200_000.0
+
+
+@lru_cache(maxsize=64)
+def _transformer(lon: float, lat: float) -> Transformer:
+    local = f"+proj=aeqd +lon_0={lon!r} +lat_0={lat!r} +datum=WGS84 +units=m +no_defs"
+    return Transformer.from_crs("EPSG:4326", local, always_xy=True)
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A local plane in metres, centred on the plot and turned to its rows.
+
+    Azimuthal equidistant on WGS84 (exact from the centre, within a millimetre per kilometre
+    anywhere on a plot); x runs along the rows, y across them, 90 degrees to the left of x.
+
+    Parameters
+    ----------
+    lon, lat
+        Centre, degrees WGS84.
+    bearing_deg
+        Direction of x, degrees clockwise from true north.
+    """
+
+    lon: float
+    lat: float
+    bearing_deg: float = 90.0
+
+    def __post_init__(self) -> None:
+        if not (-180.0 <= self.lon <= 180.0 and -90.0 <= self.lat <= 90.0):
+            raise SettingError(
+                "A frame's centre must be a longitude in -180..180 and a latitude in -90..90, "
+                f"but it is ({self.lon}, {self.lat}). Are the coordinates in degrees?"
+            )
+        if not np.isfinite(self.bearing_deg):
+            raise SettingError(f"A row bearing must be a number, but it is {self.bearing_deg}.")
+
+    def turned(self, bearing_deg: float) -> Frame:
+        """Return the frame with the same centre and another row bearing."""
+        return Frame(self.lon, self.lat, bearing_deg)
+
+    def xy_m(self, lonlat: ArrayLike) -> Float:
+        """Return metres ``(n, 2)`` for degrees ``(n, 2)``; raise `PlotError` where far off."""
+        degrees = np.asarray(lonlat, dtype=np.float64).reshape(-1, 2)
+        east, north = _transformer(self.lon, self.lat).transform(degrees[:, 0], degrees[:, 1])
+        across, along = self._axes()
+        xy = np.stack([east * along[0] + north * along[1], east * across[0] + north * across[1]], 1)
+        if xy.size and not (np.abs(xy) < _FARTHEST_M).all():
+            raise PlotError(
+                f"Everything on a plot must lie within {_FARTHEST_M / 1000:.0f} km of its centre "
+                f"({self.lon:.5f}, {self.lat:.5f}), but some positions do not. "
+                "Check the coordinate system and the order of longitude and latitude."
+            )
+        return xy
+
+    def lonlat(self, xy_m: ArrayLike) -> Float:
+        """Return degrees ``(n, 2)`` for metres ``(n, 2)``."""
+        xy = np.asarray(xy_m, dtype=np.float64).reshape(-1, 2)
+        across, along = self._axes()
+        east = xy[:, 0] * along[0] + xy[:, 1] * across[0]
+        north = xy[:, 0] * along[1] + xy[:, 1] * across[1]
+        lon, lat = _transformer(self.lon, self.lat).transform(
+            east, north, direction=TransformDirection.INVERSE
+        )
+        return np.stack([lon, lat], axis=1)
+
+    def geometry_m(self, geometry: G) -> G:
+        """Return a lon/lat geometry in metres of this frame."""
+        return shapely.transform(geometry, self.xy_m)
+
+    def geometry_lonlat(self, geometry: G) -> G:
+        """Return a geometry in metres of this frame as lon/lat."""
+        return shapely.transform(geometry, self.lonlat)
+
+    def _axes(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        turn = np.deg2rad(self.bearing_deg)
+        sin, cos = float(np.sin(turn)), float(np.cos(turn))
+        return (-cos, sin), (sin, cos)

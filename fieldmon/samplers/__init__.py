@@ -1,0 +1,1 @@
+"""The samplers: who decides which plants come next."""

@@ -1,0 +1,102 @@
+"""Plants in rows: where each stands, who its neighbours are, and which aisle it is inspected from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from shapely import MultiPolygon
+
+    from fieldmon.frame import Frame
+
+
+@dataclass(frozen=True, eq=False)
+class PlantGrid:
+    """Plants of one plot, row-major and ragged: row by row, along the row.
+
+    A *row* here is an unbroken piece: where a hole or a no-go area cuts a row on the ground, two
+    rows share one *line*. Each row is inspected from one lane, in the aisle beside it; the lane
+    reaches beyond the row's last plants on both ends, out into the headland, where rows can be
+    changed. Everything but `frame` is in metres of that frame (x along the rows, y across).
+
+    Parameters
+    ----------
+    frame
+        Bridge to lon/lat.
+    xy_m
+        ``(n, 2)`` plant positions; x increases along each row.
+    row_start
+        ``(r + 1,)`` offsets: plants of row k are ``row_start[k]:row_start[k + 1]``.
+    row_line
+        ``(r,)`` number of the line on the ground, ascending with y, 0 first.
+    lane_y_m
+        ``(r,)`` y of the lane from which the row is inspected.
+    lane_x_m
+        ``(r, 2)`` x of the lane's two ends in the headland, low and high.
+    corridor
+        ``(r,)`` rows with the same number are inspected from the same stretch of aisle.
+    side
+        ``(r,)`` int8: which side of its lane the row is on (-1: lower y, +1: higher y).
+    drivable_m
+        Where a robot may drive between and around the rows; parts and holes as they are.
+    row_spacing_m, plant_spacing_m
+        Typical distances between rows and between plants in a row.
+    along_start, along_plant
+        CSR lists ``(n + 1,)``, ``(e,)``: neighbours of each plant in its own row.
+    across_start, across_plant
+        CSR lists: neighbours of each plant in the rows on either side.
+    twin
+        ``(n,)`` the other face of the same vine where both faces are inspected, else -1.
+    """
+
+    frame: Frame
+    xy_m: NDArray[np.float64]
+    row_start: NDArray[np.int64]
+    row_line: NDArray[np.int32]
+    lane_y_m: NDArray[np.float64]
+    lane_x_m: NDArray[np.float64]
+    corridor: NDArray[np.int32]
+    side: NDArray[np.int8]
+    drivable_m: MultiPolygon
+    row_spacing_m: float
+    plant_spacing_m: float
+    along_start: NDArray[np.int32]
+    along_plant: NDArray[np.int32]
+    across_start: NDArray[np.int32]
+    across_plant: NDArray[np.int32]
+    twin: NDArray[np.int32]
+
+    def __post_init__(self) -> None:
+        for value in vars(self).values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+    def __len__(self) -> int:
+        """Return the number of plants (of faces, where both faces are inspected)."""
+        return len(self.xy_m)
+
+    @property
+    def n_rows(self) -> int:
+        """Return the number of rows (unbroken pieces)."""
+        return len(self.row_start) - 1
+
+    @cached_property
+    def row(self) -> NDArray[np.int32]:
+        """Row of each plant, ``(n,)``."""
+        rows = np.repeat(np.arange(self.n_rows, dtype=np.int32), np.diff(self.row_start))
+        rows.setflags(write=False)
+        return rows
+
+    @property
+    def along_m(self) -> NDArray[np.float64]:
+        """Position of each plant along its row, ``(n,)``."""
+        return self.xy_m[:, 0]
+
+    def lonlat(self, plants: NDArray[np.integer] | None = None) -> NDArray[np.float64]:
+        """Return degrees ``(k, 2)`` of the given plants, or of all."""
+        return self.frame.lonlat(self.xy_m if plants is None else self.xy_m[plants])

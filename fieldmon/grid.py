@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -13,6 +13,13 @@ if TYPE_CHECKING:
     from shapely import MultiPolygon
 
     from fieldmon.frame import Frame
+
+
+class Csr(NamedTuple):
+    """Lists of plants, one per plant: those of plant i are ``plant[start[i]:start[i + 1]]``."""
+
+    start: NDArray[np.int32]
+    plant: NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +98,20 @@ class PlantGrid:
         rows = np.repeat(np.arange(self.n_rows, dtype=np.int32), np.diff(self.row_start))
         rows.setflags(write=False)
         return rows
+
+    @cached_property
+    def adjacent(self) -> Csr:
+        """Neighbours of each plant, those in its own row first, then those across."""
+        n_along, n_across = np.diff(self.along_start), np.diff(self.across_start)
+        start = self.along_start + self.across_start
+        plant = np.empty(len(self.along_plant) + len(self.across_plant), np.int32)
+        ahead = np.repeat(self.across_start[:-1], n_along)
+        plant[np.arange(len(self.along_plant)) + ahead] = self.along_plant
+        behind = np.repeat(self.along_start[1:], n_across)
+        plant[np.arange(len(self.across_plant)) + behind] = self.across_plant
+        for values in (start, plant):
+            values.setflags(write=False)
+        return Csr(start, plant)
 
     @property
     def along_m(self) -> NDArray[np.float64]:

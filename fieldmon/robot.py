@@ -1,0 +1,128 @@
+"""Who inspects: a robot, or a scout on foot, as the numbers that cost time and find insects."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from fieldmon.errors import SettingError
+
+THESIS_VIEWPOINTS = ((20.0, 0.50), (25.0, 0.60), (30.0, 0.69), (35.0, 0.77), (40.0, 0.84))
+THESIS_LONGER = 0.90
+
+
+@dataclass(frozen=True)
+class Viewpoints:
+    """How likely an infested plant is seen to be infested, by seconds spent looking at it.
+
+    The defaults are the table of A. Yehoshua's thesis (2023, chapter 5): 20 s 50 %, 25 s 60 %,
+    30 s 69 %, 35 s 77 %, 40 s 84 %, longer 90 %; under 20 s nothing is detected.
+
+    Parameters
+    ----------
+    steps
+        ``(seconds, chance)`` pairs, rising in both: from so many seconds on, that chance.
+    longer
+        Chance for any time longer than the last step.
+    """
+
+    steps: tuple[tuple[float, float], ...] = THESIS_VIEWPOINTS
+    longer: float = THESIS_LONGER
+
+    def __post_init__(self) -> None:
+        ladder = (*self.steps, (math.inf, self.longer))
+        rising = all(low[0] < high[0] and low[1] <= high[1] for low, high in pairwise(ladder))
+        if not (self.steps and rising and self.steps[0][0] > 0 and self.steps[0][1] >= 0):
+            raise SettingError(
+                "Viewpoints must be pairs of seconds and chance, both rising, from above 0 s, "
+                f"but they are {self.steps} and {self.longer} for longer."
+            )
+        if self.longer > 1:
+            raise SettingError(f"A chance must be in 0..1, but 'longer' is {self.longer}.")
+
+    def detection(self, seconds: float) -> float:
+        """Return the chance that `seconds` of looking find what is on an infested plant."""
+        if seconds > self.steps[-1][0]:
+            return self.longer
+        return max((chance for least_s, chance in self.steps if seconds >= least_s), default=0.0)
+
+
+@dataclass(frozen=True)
+class Robot:
+    """Speed, turning, looking and working time of whoever inspects.
+
+    The defaults are the thesis's robot (2.5 km/h, 40 s a plant, 12 h a day; turns as in its
+    chapter 4). A scout on foot is a robot with other numbers, see :func:`scout`.
+
+    Parameters
+    ----------
+    speed_m_s
+        Driving speed.
+    row_change_s
+        Added once whenever the robot leaves one aisle for another, beside the driving itself.
+    turn_180_s
+        Added when the next plant is on the other side of the same aisle.
+    stop_s
+        Added at every stop, beside looking: stopping, turning to the plant and back.
+    look_s
+        Seconds spent looking at a plant.
+    hours
+        Working day.
+    viewpoints
+        Seconds of looking -> chance of detection.
+    detection
+        Chance of detection given outright; None takes it from `viewpoints` and `look_s`.
+    returns
+        Whether the day's hours must also cover the way back to the gate.
+    """
+
+    speed_m_s: float = 2.5 / 3.6
+    row_change_s: float = 25.0
+    turn_180_s: float = 23.0
+    stop_s: float = 0.0
+    look_s: float = 40.0
+    hours: float = 12.0
+    viewpoints: Viewpoints = Viewpoints()
+    detection: float | None = None
+    returns: bool = True
+
+    def __post_init__(self) -> None:
+        for name in ("speed_m_s", "look_s", "hours"):
+            _must(name, getattr(self, name), "above 0", getattr(self, name) > 0)
+        for name in ("row_change_s", "turn_180_s", "stop_s"):
+            _must(name, getattr(self, name), "0 or more", getattr(self, name) >= 0)
+        _must("hours", self.hours, "24 at most", self.hours <= 24)
+        if self.detection is not None:
+            _must("detection", self.detection, "in 0..1", 0 <= self.detection <= 1)
+
+    @property
+    def day_s(self) -> float:
+        """Return the seconds of a working day."""
+        return self.hours * 3600.0
+
+    @property
+    def visit_s(self) -> float:
+        """Return the seconds that one stop takes."""
+        return self.stop_s + self.look_s
+
+    @property
+    def detects(self) -> float:
+        """Return the chance that an infested plant is found when it is inspected."""
+        return self.viewpoints.detection(self.look_s) if self.detection is None else self.detection
+
+    def with_hours(self, hours: float) -> Robot:
+        """Return the same robot with another working day."""
+        return replace(self, hours=hours)
+
+
+def scout() -> Robot:
+    """Return a person on foot with a hand lens (our choice: 4 km/h, 30 s a plant, 4 h)."""
+    return Robot(
+        speed_m_s=4.0 / 3.6, row_change_s=3.0, turn_180_s=2.0, stop_s=5.0, look_s=30.0, hours=4.0
+    )
+
+
+def _must(name: str, value: float, rule: str, holds: bool) -> None:  # noqa: FBT001 - one check
+    if not (holds and math.isfinite(value)):
+        raise SettingError(f"The robot's {name} must be {rule}, but it is {value}.")

@@ -8,11 +8,15 @@ from __future__ import annotations
 
 import zlib
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numba as nb
 import numpy as np
 
 from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
@@ -60,3 +64,12 @@ def coin(key: np.uint64, i: int) -> float:
     z = (z ^ (z >> _S27)) * _MIX_2
     z = z ^ (z >> _S31)
     return float(z >> _S11) * (1.0 / 9007199254740992.0)
+
+
+@nb.njit(cache=True, nogil=True)
+def coin_table(key: np.uint64, n: int) -> NDArray[np.float64]:
+    """Return the first `n` entries of the table that `key` names, ``(n,)``."""
+    table = np.empty(n)
+    for i in range(n):
+        table[i] = coin(key, i)
+    return table

@@ -113,6 +113,15 @@ class PlantGrid:
             values.setflags(write=False)
         return Csr(start, plant)
 
+    @cached_property
+    def snake(self) -> NDArray[np.int32]:
+        """All plants, up one row and down the next, ``(n,)``."""
+        place = np.arange(len(self), dtype=np.int32)
+        first, end = self.row_start[:-1][self.row], self.row_start[1:][self.row]
+        plants = np.where(self.row % 2 == 0, place, (first + end - 1 - place).astype(np.int32))
+        plants.setflags(write=False)
+        return plants
+
     @property
     def along_m(self) -> NDArray[np.float64]:
         """Position of each plant along its row, ``(n,)``."""

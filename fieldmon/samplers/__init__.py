@@ -1,1 +1,42 @@
-"""The samplers: who decides which plants come next."""
+"""The samplers: who decides which plants come next.
+
+A new sampler is one file and one line in `SAMPLERS`; the promises test finds it by itself.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fieldmon.errors import SettingError
+from fieldmon.samplers.dynamic import Dynamic
+from fieldmon.samplers.scene import GATE, NEVER, Sampler, Scene, Stops
+from fieldmon.samplers.sweep import Bouncy, Naive
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+SAMPLERS: dict[str, Callable[..., Sampler]] = {
+    "naive": Naive,
+    "bouncy": Bouncy,
+    "dynamic": Dynamic,
+}
+
+__all__ = [
+    "GATE",
+    "NEVER",
+    "SAMPLERS",
+    "Bouncy",
+    "Dynamic",
+    "Naive",
+    "Sampler",
+    "Scene",
+    "Stops",
+    "sampler",
+]
+
+
+def sampler(name: str, **settings: float) -> Sampler:
+    """Return the sampler called `name`; raise `SettingError` if there is none."""
+    if name not in SAMPLERS:
+        raise SettingError(f"A sampler must be one of {', '.join(SAMPLERS)}, but it is {name!r}.")
+    return SAMPLERS[name](**settings)

@@ -1,0 +1,205 @@
+"""Dynamic, the thesis's sampler: the nearest suspicious plant next, more of them after a find."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numba as nb
+import numpy as np
+
+from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.aisles import Ground
+    from fieldmon.grid import Csr
+
+# the upper bits of a positive float64 rise with it, in 8 steps an octave: 9 to 13 % each
+_LEVEL_BITS = 49
+_LEVELS = (1023 << 3) + 1  # the level of a chance of 1, plus one
+
+
+class _Open(NamedTuple):
+    """The open list: a flag per plant, and per row how many are open and between which."""
+
+    flag: NDArray[np.bool_]
+    count: NDArray[np.int64]
+    low: NDArray[np.int64]
+    high: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Dynamic:
+    """Drive to the nearest plant of an open list until the day is over.
+
+    The open list starts with the most suspicious plants, as many as the day could hold. An
+    inspected plant moves to the closed list; after a find the plants next to it, along and across
+    the rows, join the open list unless they are closed. When the open list is empty it is refilled
+    with the most suspicious plants not yet visited today.
+
+    Suspicion is the chance of infestation in steps of about a tenth; among equals the plants are
+    taken in the order of the rows. Both are our choice where the thesis is silent.
+    """
+
+    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+        """Return the stops of the rest of the day."""
+        stops = scene.blank()
+        closed = scene.last_inspected == scene.day
+        k = _walk(
+            scene.aisles.ground,
+            scene.clock,
+            (scene.grid.adjacent, scene.chance.view(np.uint64), would_find),
+            closed,
+            scene.at,
+            stops,
+        )
+        return Stops(stops.plant[:k], stops.arrive_s[:k])
+
+
+@nb.njit(cache=True, nogil=True)
+def _walk(
+    ground: Ground,
+    clock: Clock,
+    plants: tuple[Csr, NDArray[np.uint64], NDArray[np.bool_]],
+    closed: NDArray[np.bool_],
+    at: int,
+    stops: Stops,
+) -> int:
+    adjacent, chance_bits, would_find = plants
+    rows = ground.row_start.size - 1
+    opened = _Open(
+        np.zeros(closed.size, np.bool_),
+        np.zeros(rows, np.int64),
+        ground.row_start[1:].copy(),
+        ground.row_start[:-1] - 1,
+    )
+    now_s, k, left = 0.0, 0, 0
+    while k < stops.plant.size:
+        if left == 0:
+            room = int((clock.seconds_left - now_s) // clock.visit_s)
+            left = _refill(ground, opened, closed, chance_bits, room)
+            if left == 0:
+                break
+        plant = _nearest(ground, clock, opened, at)
+        if not can_visit(ground, clock, at, plant, now_s):
+            break
+        now_s += travel_s(ground, clock, at, plant)
+        stops.plant[k], stops.arrive_s[k] = plant, now_s
+        now_s += clock.visit_s
+        k += 1
+        at = plant
+        closed[plant] = True
+        opened.flag[plant] = False
+        opened.count[ground.row[plant]] -= 1
+        left -= 1
+        if would_find[plant]:
+            for e in range(adjacent.start[plant], adjacent.start[plant + 1]):
+                left += _open(ground, opened, closed, adjacent.plant[e])
+    return k
+
+
+@nb.njit(cache=True)
+def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) -> int:
+    """Put a plant on the open list; return how many joined it (0 or 1)."""
+    if closed[plant] or opened.flag[plant]:
+        return 0
+    row = ground.row[plant]
+    opened.flag[plant] = True
+    opened.count[row] += 1
+    opened.low[row] = min(opened.low[row], plant)
+    opened.high[row] = max(opened.high[row], plant)
+    return 1
+
+
+@nb.njit(cache=True)
+def _refill(
+    ground: Ground,
+    opened: _Open,
+    closed: NDArray[np.bool_],
+    chance_bits: NDArray[np.uint64],
+    room: int,
+) -> int:
+    """Open the `room` most suspicious plants that are not closed; return how many there were."""
+    tally = np.zeros(_LEVELS, np.int64)
+    for plant in range(closed.size):
+        if not closed[plant]:
+            tally[chance_bits[plant] >> np.uint64(_LEVEL_BITS)] += 1
+    level, above = _LEVELS - 1, 0
+    while level > 0 and above + tally[level] < room:
+        above += tally[level]
+        level -= 1
+    even = room - above
+    joined = 0
+    for plant in range(closed.size):
+        if closed[plant]:
+            continue
+        own = np.int64(chance_bits[plant] >> np.uint64(_LEVEL_BITS))
+        if own > level or (own == level and even > 0):
+            even -= own == level
+            joined += _open(ground, opened, closed, plant)
+    return joined
+
+
+@nb.njit(cache=True)
+def _nearest(ground: Ground, clock: Clock, opened: _Open, at: int) -> int:
+    """Return the open plant that is reached first from `at` (a plant or the gate)."""
+    best, best_s = -1, np.inf
+    own = -1
+    if at >= 0:
+        own = ground.row[at]
+        best, best_s = _nearest_in_row(ground, clock, opened, at, own)
+    for row in range(opened.count.size):
+        if row == own or opened.count[row] == 0:
+            continue
+        if at >= 0 and ground.corridor[row] == ground.corridor[own]:
+            plant, plant_s = _nearest_in_row(ground, clock, opened, at, row)
+        else:
+            if best_s <= clock.row_change_s and at >= 0:
+                continue
+            plant, plant_s = _nearest_end(ground, clock, opened, at, row)
+        if plant_s < best_s:
+            best, best_s = plant, plant_s
+    return best
+
+
+@nb.njit(cache=True)
+def _nearest_end(
+    ground: Ground, clock: Clock, opened: _Open, at: int, row: int
+) -> tuple[int, float]:
+    """Return the outermost open plant of another row that is reached first, and the seconds.
+
+    Such a row is entered by one of its ends, so no plant between the two outermost is nearer.
+    """
+    while not opened.flag[opened.low[row]]:
+        opened.low[row] += 1
+    while not opened.flag[opened.high[row]]:
+        opened.high[row] -= 1
+    low, high = opened.low[row], opened.high[row]
+    low_s = travel_s(ground, clock, at, low)
+    high_s = travel_s(ground, clock, at, high)
+    return (low, low_s) if low_s <= high_s else (high, high_s)
+
+
+@nb.njit(cache=True)
+def _nearest_in_row(
+    ground: Ground, clock: Clock, opened: _Open, at: int, row: int
+) -> tuple[int, float]:
+    """Return the open plant of a row in the same aisle that is reached first, and the seconds."""
+    best, best_s = -1, np.inf
+    if opened.count[row] == 0:
+        return best, best_s
+    start, end = ground.row_start[row], ground.row_start[row + 1]
+    middle = start + np.searchsorted(ground.x_m[start:end], ground.x_m[at])
+    for plant in range(middle, end):
+        if opened.flag[plant]:
+            best, best_s = plant, travel_s(ground, clock, at, plant)
+            break
+    for plant in range(middle - 1, start - 1, -1):
+        if opened.flag[plant]:
+            plant_s = travel_s(ground, clock, at, plant)
+            if plant_s < best_s:
+                best, best_s = plant, plant_s
+            break
+    return best, best_s

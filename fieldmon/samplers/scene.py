@@ -1,0 +1,135 @@
+"""All that a sampler may know, what it answers, and what its time costs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numba as nb
+import numpy as np
+
+from fieldmon.aisles import drive_m
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.aisles import Aisles, Ground
+    from fieldmon.grid import PlantGrid
+    from fieldmon.robot import Robot
+
+GATE = -1
+NEVER = -1
+
+
+class Clock(NamedTuple):
+    """A robot's numbers for compiled loops: what driving, turning and looking cost."""
+
+    speed_m_s: float
+    row_change_s: float
+    turn_180_s: float
+    visit_s: float
+    seconds_left: float
+    returns: bool
+
+
+class Stops(NamedTuple):
+    """The plants inspected in order, ``(k,)`` int32, and the seconds at arrival, ``(k,)``."""
+
+    plant: NDArray[np.int32]
+    arrive_s: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A moment of a working day, as whoever plans it can know it; never the truth.
+
+    Parameters
+    ----------
+    aisles
+        The plot: plants and the ways between them.
+    robot
+        Who inspects.
+    chance
+        ``(n,)`` believed chance that each plant is infested.
+    last_inspected
+        ``(n,)`` int32 day on which each plant was inspected last, `NEVER` if it was not.
+    day
+        Today's number. A plant inspected on this day is not visited again.
+    at
+        Where the robot stands: a plant, or `GATE`.
+    seconds_left
+        What is left of the working day.
+    resume
+        The plant inspected last before today, or `NEVER`: where a sweep goes on.
+    key
+        64 random bits for samplers that draw, see `fieldmon.chance.coin`.
+    """
+
+    aisles: Aisles
+    robot: Robot
+    chance: NDArray[np.float64]
+    last_inspected: NDArray[np.int32]
+    day: int = 0
+    at: int = GATE
+    seconds_left: float = 0.0
+    resume: int = NEVER
+    key: np.uint64 = np.uint64(0)  # noqa: RUF009 - a number, not a call with effects
+
+    @property
+    def grid(self) -> PlantGrid:
+        """Return the plants."""
+        return self.aisles.grid
+
+    @property
+    def clock(self) -> Clock:
+        """Return the robot's numbers for the rest of the day."""
+        robot = self.robot
+        return Clock(
+            robot.speed_m_s,
+            robot.row_change_s,
+            robot.turn_180_s,
+            robot.visit_s,
+            float(self.seconds_left),
+            robot.returns,
+        )
+
+    def blank(self) -> Stops:
+        """Return room for as many stops as the time left or the plants allow."""
+        room = min(len(self.chance), int(self.seconds_left // self.robot.visit_s) + 1)
+        return Stops(np.empty(room, np.int32), np.empty(room, np.float64))
+
+
+class Sampler(Protocol):
+    """Decides which plants come next."""
+
+    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+        """Return the stops from here to the end of the day.
+
+        ``would_find`` (n,) says of each plant whether an inspection today would find it infested.
+        A sampler may read an entry only when it has driven to that plant and inspected it: plants
+        before the first find are those of a day on which nothing is found.
+        """
+        ...
+
+
+@nb.njit(cache=True, inline="always")
+def travel_s(ground: Ground, clock: Clock, i: int, j: int) -> float:
+    """Return the seconds from plant (or gate) i to plant (or gate) j, without the stop itself."""
+    seconds = drive_m(ground, i, j) / clock.speed_m_s
+    if i < 0 or j < 0:
+        return seconds
+    a, b = ground.row[i], ground.row[j]
+    if ground.corridor[a] != ground.corridor[b]:
+        return seconds + clock.row_change_s
+    if ground.side[a] != ground.side[b]:
+        return seconds + clock.turn_180_s
+    return seconds
+
+
+@nb.njit(cache=True)
+def can_visit(ground: Ground, clock: Clock, i: int, j: int, now_s: float) -> bool:
+    """Tell whether plant j fits into the day after `now_s` at i, way back to the gate included."""
+    end_s = now_s + travel_s(ground, clock, i, j) + clock.visit_s
+    if clock.returns:
+        end_s += travel_s(ground, clock, j, -1)
+    return end_s <= clock.seconds_left

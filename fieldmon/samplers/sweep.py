@@ -1,0 +1,120 @@
+"""Naive and Bouncy: row after row, every plant or every N-th, wherever the insects are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numba as nb
+import numpy as np
+
+from fieldmon.errors import SettingError
+from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.aisles import Ground
+
+
+@dataclass(frozen=True)
+class Naive:
+    """Inspect plant after plant, up one row and down the next; go on tomorrow where today ended.
+
+    At the end of the plot it starts again at the first row. The chance map is not looked at
+    (our reading of the thesis, whose text does not define the order).
+    """
+
+    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+        """Return the sweep's next stops."""
+        return _sweep(scene, 1)
+
+
+@dataclass(frozen=True)
+class Bouncy:
+    """Inspect every N-th plant of the same sweep; the next pass takes other plants.
+
+    A pass starts at that one of the first N plants which was inspected least recently.
+
+    Parameters
+    ----------
+    every
+        N; the thesis leaves one plant out between two (2).
+    """
+
+    every: int = 2
+
+    def __post_init__(self) -> None:
+        if self.every < 1:
+            raise SettingError(
+                f"Bouncy must inspect every 1st, 2nd, ... plant, but 'every' is {self.every}."
+            )
+
+    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+        """Return the sweep's next stops."""
+        return _sweep(scene, self.every)
+
+
+def _sweep(scene: Scene, every: int) -> Stops:
+    start = scene.at if scene.at >= 0 else scene.resume
+    stops = scene.blank()
+    k = _walk(
+        scene.aisles.ground,
+        scene.clock,
+        (scene.grid.snake, scene.last_inspected),
+        (scene.at, start, scene.day, every),
+        stops,
+    )
+    return Stops(stops.plant[:k], stops.arrive_s[:k])
+
+
+@nb.njit(cache=True, nogil=True)
+def _walk(
+    ground: Ground,
+    clock: Clock,
+    plants: tuple[NDArray[np.int32], NDArray[np.int32]],
+    start: tuple[int, int, int, int],
+    stops: Stops,
+) -> int:
+    snake, last_inspected = plants
+    at, after, today, every = start
+    last = last_inspected.copy()
+    left = np.count_nonzero(last != today)
+    position = _first(snake, last, every) if after < 0 else _place(snake, after) + every
+    now_s, k = 0.0, 0
+    while left > 0 and k < stops.plant.size:
+        if position >= snake.size:
+            position = _first(snake, last, every)
+        plant = snake[position]
+        position += every
+        if last[plant] == today:
+            continue
+        if not can_visit(ground, clock, at, plant, now_s):
+            break
+        now_s += travel_s(ground, clock, at, plant)
+        stops.plant[k], stops.arrive_s[k] = plant, now_s
+        now_s += clock.visit_s
+        last[plant] = today
+        at = plant
+        left -= 1
+        k += 1
+    return k
+
+
+@nb.njit(cache=True)
+def _first(snake: NDArray[np.int32], last: NDArray[np.int32], every: int) -> int:
+    """Return where a new pass starts: at the first plant inspected least recently."""
+    best = 0
+    for position in range(1, min(every, snake.size)):
+        if last[snake[position]] < last[snake[best]]:
+            best = position
+    return best
+
+
+@nb.njit(cache=True)
+def _place(snake: NDArray[np.int32], plant: int) -> int:
+    """Return where in the sweep a plant stands."""
+    for position in range(snake.size):
+        if snake[position] == plant:
+            return position
+    return -1

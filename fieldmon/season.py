@@ -1,0 +1,183 @@
+"""Many working days while the insects spread."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.belief import Learning, learn, overnight
+from fieldmon.errors import PlotError, SettingError
+from fieldmon.samplers.scene import GATE, NEVER, Scene
+from fieldmon.spread import Spread, night
+from fieldmon.workday import outcomes, work_day
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from fieldmon.aisles import Aisles
+    from fieldmon.chance import Chance
+    from fieldmon.robot import Robot
+    from fieldmon.samplers.scene import Sampler
+    from fieldmon.workday import Workday
+
+
+@dataclass(frozen=True)
+class SeasonSettings:
+    """What happens in a simulated season, beside the plot, the robot and the sampler.
+
+    Parameters
+    ----------
+    n_days
+        Working days (thesis: 25).
+    spread
+        What the insects do at night.
+    believed_spread
+        What the chance map takes them to do; None: the same.
+    learning
+        How findings change the chance map; None: with the robot's own detection.
+    """
+
+    n_days: int = 25
+    spread: Spread = field(default_factory=Spread)
+    believed_spread: Spread | None = None
+    learning: Learning | None = None
+
+    def __post_init__(self) -> None:
+        if self.n_days < 1:
+            raise SettingError(f"A season must have 1 day or more, but n_days is {self.n_days}.")
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """The first morning: who is infested, and what is believed about it.
+
+    Parameters
+    ----------
+    infested
+        ``(n,)`` the truth, which no sampler sees.
+    chance
+        ``(n,)`` chance of infestation as believed.
+    """
+
+    infested: NDArray[np.bool_]
+    chance: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Day:
+    """One day of a season.
+
+    Parameters
+    ----------
+    number
+        From 0.
+    work
+        What was inspected, when, with what result.
+    infested
+        ``(n,)`` the truth in the morning.
+    chance
+        ``(n,)`` chance of infestation as believed in the morning.
+    last_inspected
+        ``(n,)`` day of each plant's last inspection after today's work; -1: never.
+    ever_infested
+        Infestations so far, this morning's included (a plant infested again counts again).
+    ever_found
+        Finds so far, today's included.
+    """
+
+    number: int
+    work: Workday
+    infested: NDArray[np.bool_]
+    chance: NDArray[np.float64]
+    last_inspected: NDArray[np.int32]
+    ever_infested: int
+    ever_found: int
+
+    @property
+    def found(self) -> int:
+        """Return the number of plants found infested today."""
+        return int(np.count_nonzero(self.work.found))
+
+    @property
+    def left(self) -> int:
+        """Return the number of infested plants this evening, before the night."""
+        return int(np.count_nonzero(self.infested)) - self.found
+
+    @property
+    def detection_pct(self) -> float:
+        """Return all finds so far in percent of all infestations so far (100 if none)."""
+        return 100.0 * self.ever_found / self.ever_infested if self.ever_infested else 100.0
+
+    @property
+    def visited_pct(self) -> float:
+        """Return the plants inspected today in percent of all plants."""
+        return 100.0 * len(self.work) / len(self.infested)
+
+    @property
+    def ever_visited_pct(self) -> float:
+        """Return the plants inspected so far in percent of all plants."""
+        return 100.0 * float(np.mean(self.last_inspected >= 0))
+
+
+def days(
+    aisles: Aisles,
+    robot: Robot,
+    sampler: Sampler,
+    start: Start,
+    settings: SeasonSettings,
+    chance: Chance,
+) -> Iterator[Day]:
+    """Yield the days of a season, one by one, as they happen.
+
+    Found insects are destroyed at once; missed ones stay and spread at night. Chance streams:
+    ``inspect/day``, ``spread/day`` and ``sampler/day``, so that every sampler meets the same
+    insects and the same luck in looking.
+    """
+    _check(aisles, start)
+    learning = settings.learning or Learning(detection=robot.detects)
+    believed = settings.believed_spread or settings.spread
+    infested, belief = start.infested.copy(), start.chance.copy()
+    last_inspected = np.full(len(infested), NEVER, np.int32)
+    ever_infested, ever_found = int(np.count_nonzero(infested)), 0
+    resume = at = GATE
+    for number in range(settings.n_days):
+        scene = Scene(
+            aisles=aisles,
+            robot=robot,
+            chance=belief,
+            last_inspected=last_inspected,
+            day=number,
+            at=at,
+            seconds_left=robot.day_s,
+            resume=resume,
+            key=chance.key("sampler", number),
+        )
+        luck = outcomes(infested, robot.detects, chance.key("inspect", number))
+        work = work_day(scene, sampler, luck)
+        last_inspected = last_inspected.copy()
+        last_inspected[work.plant] = number
+        ever_found += int(np.count_nonzero(work.found))
+        yield Day(number, work, infested, belief, last_inspected, ever_infested, ever_found)
+        belief = overnight(
+            learn(belief, aisles.grid, work.plant, work.found, learning), aisles.grid, believed
+        )
+        evening = infested.copy()
+        evening[work.plant[work.found]] = False
+        infested = night(aisles.grid, evening, settings.spread, chance.key("spread", number))
+        ever_infested += int(np.count_nonzero(infested & ~evening))
+        resume = int(work.plant[-1]) if len(work) else resume
+        at = GATE if robot.returns else resume
+
+
+def _check(aisles: Aisles, start: Start) -> None:
+    n = len(aisles.grid)
+    for name, values in (("infested", start.infested), ("chance", start.chance)):
+        if len(values) != n:
+            raise PlotError(
+                f"The start of a season must have one entry a plant ({n}), "
+                f"but {name} has {len(values)}."
+            )

@@ -1,0 +1,65 @@
+"""Dynamic as the thesis words it: open list, closed list, nearest next, neighbours after a find."""
+
+import numpy as np
+import pytest
+from scenes import GRIDS, charged_s, scene_on
+
+from fieldmon.samplers import GATE, NEVER, Dynamic, Scene
+from fieldmon.workday import plan_day, work_day
+
+GRID = GRIDS["rectangle"]
+
+
+def scene_with(suspicious, hours=6.0, base=0.001):
+    chance = np.full(len(GRID), base)
+    chance[suspicious] = 0.5
+    plain = scene_on(GRID, hours=hours)
+    return Scene(
+        aisles=plain.aisles,
+        robot=plain.robot,
+        chance=chance,
+        last_inspected=np.full(len(GRID), NEVER, np.int32),
+        seconds_left=hours * 3600,
+    )
+
+
+def nearest(scene, at, open_plants):
+    return min(open_plants, key=lambda plant: (charged_s(scene, at, plant), plant))
+
+
+def test_the_nearest_open_plant_is_always_next():
+    scene = scene_with([])
+    plants = plan_day(scene, Dynamic()).plant.tolist()
+    room = int(scene.seconds_left // scene.robot.visit_s)
+    open_plants, at = set(range(min(room, len(GRID)))), GATE
+    for plant in plants:
+        best_s = charged_s(scene, at, nearest(scene, at, open_plants))
+        assert charged_s(scene, at, plant) == pytest.approx(best_s)
+        open_plants.remove(plant)
+        at = plant
+
+
+def test_the_most_suspicious_plants_come_first_when_hours_are_short():
+    suspicious = [20, 21, 22, 90, 150]
+    scene = scene_with(suspicious, hours=5.9 * 40 / 3600 + 0.12)
+    plants = plan_day(scene, Dynamic()).plant
+    assert set(plants.tolist()) >= set(suspicious) or len(plants) < 5
+    assert set(plants[:4].tolist()) <= {*suspicious, *range(30)}
+
+
+def test_after_a_find_the_plants_beside_it_are_inspected_while_near():
+    scene = scene_with(list(range(17 * 5, 17 * 6)), hours=1.0)
+    calm = plan_day(scene, Dynamic())
+    found = np.zeros(len(GRID), bool)
+    find = int(calm.plant[3])
+    found[find] = True
+    work = work_day(scene, Dynamic(), found)
+    start, plant = GRID.adjacent
+    beside = set(plant[start[find] : start[find + 1]].tolist())
+    assert beside & set(work.plant.tolist()) > beside & set(calm.plant.tolist())
+
+
+def test_a_closed_plant_is_never_opened_again():
+    scene = scene_with([])
+    work = work_day(scene, Dynamic(), np.ones(len(GRID), bool))
+    assert len(set(work.plant.tolist())) == len(work)

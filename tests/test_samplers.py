@@ -1,0 +1,107 @@
+"""The promises that every sampler keeps, on any plot; a new one is found here by itself."""
+
+import numpy as np
+import pytest
+from crooked import crooked_fields
+from fieldmon.planting import Planting, lay
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scenes import GRIDS, charged_s, scene_on
+
+from fieldmon.errors import PlotError, SettingError
+from fieldmon.samplers import GATE, NEVER, SAMPLERS, sampler
+from fieldmon.workday import plan_day, work_day
+
+NAMES = sorted(SAMPLERS)
+
+
+def promises_hold(scene, work):
+    """Check one day against what every sampler promises."""
+    n = len(scene.chance)
+    assert ((work.plant >= 0) & (work.plant < n)).all()
+    assert len(set(work.plant.tolist())) == len(work), "a plant was visited twice in a day"
+    assert not (scene.last_inspected[work.plant] == scene.day).any()
+    assert work.end_s <= scene.seconds_left + 1e-6, "the day is longer than its hours"
+    now, at = 0.0, scene.at
+    for plant, arrive_s in zip(work.plant.tolist(), work.arrive_s.tolist(), strict=True):
+        now += charged_s(scene, at, plant)
+        assert arrive_s == pytest.approx(now, abs=1e-6), "time charged is not time driven"
+        now += scene.robot.look_s + scene.robot.stop_s
+        at = plant
+    if scene.robot.returns and len(work):
+        now += charged_s(scene, at, GATE)
+    assert work.end_s == pytest.approx(now, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("grid", GRIDS.values(), ids=GRIDS)
+@pytest.mark.parametrize("seed", range(4))
+def test_a_day_keeps_its_hours_and_visits_no_plant_twice(name, grid, seed):
+    scene = scene_on(grid, hours=0.5 + seed, seed=seed)
+    found = np.random.default_rng(seed).random(len(grid)) < 0.2
+    work = work_day(scene, sampler(name), found)
+    promises_hold(scene, work)
+    assert len(work) > 0
+
+
+@pytest.mark.parametrize("name", NAMES)
+@given(field=crooked_fields(), seed=st.integers(0, 1000))
+@settings(max_examples=25)
+def test_the_promises_hold_on_crooked_fields(name, field, seed):
+    try:
+        grid = lay(field, Planting())
+        scene = scene_on(grid, hours=2.0, seed=seed)
+    except PlotError:
+        return
+    found = np.random.default_rng(seed).random(len(grid)) < 0.1
+    promises_hold(scene, work_day(scene, sampler(name), found))
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("seed", range(10))
+def test_no_sampler_peeks_at_plants_it_has_not_inspected(name, seed):
+    scene = scene_on(GRIDS["rectangle"], seed=seed)
+    rng = np.random.default_rng(seed)
+    found = rng.random(len(scene.chance)) < 0.3
+    work = work_day(scene, sampler(name), found)
+    for k in (0, 1, len(work) // 2):
+        elsewhere = found.copy()
+        later = np.setdiff1d(np.arange(len(found)), work.plant[:k])
+        elsewhere[later] = rng.random(len(later)) < 0.5
+        again = work_day(scene, sampler(name), elsewhere)
+        assert (again.plant[: k + 1] == work.plant[: k + 1]).all()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_same_scene_gives_the_same_day(name):
+    one, other = (plan_day(scene_on(GRIDS["rectangle"], seed=5), sampler(name)) for _ in "ab")
+    assert (one.plant == other.plant).all()
+    assert (one.arrive_s == other.arrive_s).all()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_with_time_for_all_every_plant_is_inspected(name):
+    scene = scene_on(GRIDS["rectangle"], hours=24.0)
+    assert sorted(plan_day(scene, sampler(name)).plant) == list(range(len(scene.chance)))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_day_without_time_has_no_stops(name):
+    scene = scene_on(GRIDS["rectangle"], hours=0.005)
+    work = plan_day(scene, sampler(name))
+    assert (len(work), work.end_s) == (0, 0.0)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_plant_inspected_earlier_today_is_left_out_when_planning_again(name):
+    last = np.full(187, NEVER, np.int32)
+    last[40:120] = 0
+    scene = scene_on(GRIDS["rectangle"], last_inspected=last, at=119)
+    work = plan_day(scene, sampler(name))
+    assert len(work) > 0
+    promises_hold(scene, work)
+
+
+def test_an_unknown_sampler_is_refused_with_the_known_ones():
+    with pytest.raises(SettingError, match=r"one of .*dynamic.* but it is 'best'"):
+        sampler("best")

@@ -1,4 +1,4 @@
-"""Plants in rows: where each stands, who its neighbours are, and which aisle it is inspected from."""
+"""Plants in rows: where each stands, who stands next to it, and from which aisle it is inspected."""
 
 from __future__ import annotations
 
@@ -7,12 +7,22 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
+
+from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
     from fieldmon.frame import Frame
+
+
+class RowLabel(NamedTuple):
+    """Where plants stand, as people count: from 1, ``(k,)`` each."""
+
+    line: NDArray[np.int64]
+    number: NDArray[np.int64]
 
 
 class Csr(NamedTuple):
@@ -130,3 +140,52 @@ class PlantGrid:
     def lonlat(self, plants: NDArray[np.integer] | None = None) -> NDArray[np.float64]:
         """Return degrees ``(k, 2)`` of the given plants, or of all."""
         return self.frame.lonlat(self.xy_m if plants is None else self.xy_m[plants])
+
+
+def row_label(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> RowLabel:
+    """Return line and number within the line, both from 1, of the given plants, or of all.
+
+    Numbers run on along a line that is cut into pieces. Both faces of a plant share a label.
+    """
+    chosen = np.arange(len(grid)) if plants is None else np.asarray(plants)
+    group_start = _line_faces(grid)[1][grid.row[chosen]]
+    return RowLabel(grid.row_line[grid.row[chosen]].astype(np.int64) + 1, chosen - group_start + 1)
+
+
+def plant_at(grid: PlantGrid, line: int, number: int) -> int:
+    """Return the plant with that label (its first face); raise `PlotError` if there is none."""
+    first_of_line, _ = _line_faces(grid)
+    n_lines = len(first_of_line)
+    if not 1 <= line <= n_lines:
+        raise PlotError(f"A row must be one of 1 to {n_lines} on this plot, but it is {line}.")
+    plant = int(first_of_line[line - 1]) + number - 1
+    last = int(row_label(grid).number[grid.row_line[grid.row] == line - 1].max())
+    if not 1 <= number <= last:
+        raise PlotError(
+            f"A plant in row {line} must be one of 1 to {last} on this plot, but it is {number}."
+        )
+    return plant
+
+
+def nearest_plants(
+    grid: PlantGrid, lonlat: NDArray[np.float64], max_m: float
+) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+    """Return the nearest plant of each position ``(m, 2)`` and its distance in metres, ``(m,)``.
+
+    Positions further than `max_m` from every plant get plant -1 and an infinite distance. Where
+    both faces of a plant are inspected, the one with the lower index is returned.
+    """
+    tree = cKDTree(grid.xy_m)
+    within_m = np.nextafter(max_m, np.inf)
+    distance_m, plant = tree.query(grid.frame.xy_m(lonlat), distance_upper_bound=within_m)
+    plant = np.where(plant == len(grid), -1, plant)
+    first_face = (plant >= 0) & (grid.twin[plant] >= 0) & (grid.twin[plant] < plant)
+    return np.where(first_face, grid.twin[plant], plant), distance_m
+
+
+def _line_faces(grid: PlantGrid) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the first plant of each line, and for each row that of its line and face."""
+    first = grid.row_start[:-1]
+    new_line = np.diff(grid.row_line, prepend=-1) != 0
+    new_face = new_line | (np.diff(grid.side, prepend=0) != 0)
+    return first[new_line], first[new_face][np.cumsum(new_face) - 1]

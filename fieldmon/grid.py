@@ -1,4 +1,4 @@
-"""Plants in rows: where each stands, who stands next to it, and from which aisle it is inspected."""
+"""Plants in rows: where each stands, who stands beside it, from which aisle it is inspected."""
 
 from __future__ import annotations
 
@@ -125,10 +125,11 @@ class PlantGrid:
 
     @cached_property
     def snake(self) -> NDArray[np.int32]:
-        """All plants, up one row and down the next, ``(n,)``."""
-        place = np.arange(len(self), dtype=np.int32)
-        first, end = self.row_start[:-1][self.row], self.row_start[1:][self.row]
-        plants = np.where(self.row % 2 == 0, place, (first + end - 1 - place).astype(np.int32))
+        """All plants, up one line and down the next, ``(n,)``; each face is a line of its own."""
+        new_pass = (np.diff(self.row_line) != 0) | (np.diff(self.side) != 0)
+        turn = np.concatenate([[0], np.cumsum(new_pass)])[self.row]
+        place = np.arange(len(self))
+        plants = np.lexsort((np.where(turn % 2 == 0, place, -place), turn)).astype(np.int32)
         plants.setflags(write=False)
         return plants
 

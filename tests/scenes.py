@@ -1,9 +1,9 @@
 """Small plots and scenes for tests of samplers, routes and seasons."""
 
 import numpy as np
+
 from fieldmon.aisles import Aisles
 from fieldmon.planting import rectangle
-
 from fieldmon.robot import Robot
 from fieldmon.samplers import GATE, NEVER, Scene
 
@@ -24,10 +24,10 @@ def scene_on(grid, hours=3.0, seed=0, **changes):
 
 
 def grids():
-    yield "one plant", rectangle(1, 1, row_spacing_m=4.0, plant_spacing_m=3.0)
-    yield "one row", rectangle(1, 30, row_spacing_m=4.0, plant_spacing_m=3.0)
-    yield "one plant a row", rectangle(12, 1, row_spacing_m=4.0, plant_spacing_m=3.0)
-    yield "rectangle", rectangle(11, 17, row_spacing_m=4.0, plant_spacing_m=3.0)
+    yield "one plant", rectangle(1, 1)
+    yield "one row", rectangle(1, 30)
+    yield "one plant a row", rectangle(12, 1)
+    yield "rectangle", rectangle(11, 17)
 
 
 GRIDS = dict(grids())

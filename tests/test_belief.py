@@ -2,16 +2,16 @@
 
 import numpy as np
 import pytest
-from fieldmon.planting import rectangle
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.belief import Learning, learn, overnight
 from fieldmon.chance import Chance
 from fieldmon.errors import SettingError
+from fieldmon.planting import rectangle
 from fieldmon.spread import Spread, night
 
-GRID = rectangle(6, 7, row_spacing_m=4.0, plant_spacing_m=3.0)
+GRID = rectangle(6, 7)
 NO, YES = np.array([False]), np.array([True])
 
 

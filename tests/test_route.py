@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from crooked import crooked_fields
-from fieldmon.aisles import crosses_rows
-from fieldmon.planting import Planting, lay
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scenes import GRIDS, scene_on
 
+from fieldmon.aisles import crosses_rows
 from fieldmon.errors import PlotError
+from fieldmon.planting import Planting, lay
 from fieldmon.route import route_of
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.workday import plan_day

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from crooked import crooked_fields
-from fieldmon.planting import Planting, lay
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scenes import GRIDS, charged_s, scene_on
 
 from fieldmon.errors import PlotError, SettingError
+from fieldmon.planting import Planting, lay
 from fieldmon.samplers import GATE, NEVER, SAMPLERS, sampler
 from fieldmon.workday import plan_day, work_day
 

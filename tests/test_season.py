@@ -2,17 +2,17 @@
 
 import numpy as np
 import pytest
-from fieldmon.aisles import Aisles
-from fieldmon.planting import rectangle
 
+from fieldmon.aisles import Aisles
 from fieldmon.chance import Chance
 from fieldmon.errors import PlotError, SettingError
+from fieldmon.planting import rectangle
 from fieldmon.robot import Robot
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.season import SeasonSettings, Start, days
 from fieldmon.spread import Spread
 
-AISLES = Aisles.of(rectangle(20, 20, row_spacing_m=4.0, plant_spacing_m=3.0))
+AISLES = Aisles.of(rectangle(20, 20))
 N = 400
 NAMES = sorted(SAMPLERS)
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from fieldmon.planting import Planting, lay, rectangle
 from scipy import stats
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.chance import Chance
 from fieldmon.errors import SettingError
 from fieldmon.field import Field
+from fieldmon.planting import Planting, lay, rectangle
 from fieldmon.spread import Spread, night
 
 
@@ -94,7 +94,7 @@ def test_three_nights_agree_in_distribution_with_a_plain_simulation(ragged):
     ("to", "mean", "together"), [("each", 1.2, False), ("one", 0.3, False), ("all", 1.2, True)]
 )
 def test_who_infects_whom_is_a_choice(to, mean, together):
-    grid = rectangle(5, 5, row_spacing_m=4.0, plant_spacing_m=3.0)
+    grid = rectangle(5, 5)
     start = infested_at(grid, 12)
     new = [night(grid, start, Spread(0.3, to), key(s)).sum() - 1 for s in range(3000)]
     assert np.mean(new) == pytest.approx(mean, abs=0.12)
@@ -103,14 +103,14 @@ def test_who_infects_whom_is_a_choice(to, mean, together):
 
 
 def test_arrivals_come_anywhere_without_neighbours():
-    grid = rectangle(40, 40, row_spacing_m=4.0, plant_spacing_m=3.0)
+    grid = rectangle(40, 40)
     none = np.zeros(len(grid), bool)
     arrived = [night(grid, none, Spread(0.5, arrivals_per_day=0.02), key(s)) for s in range(60)]
     assert np.mean(arrived) == pytest.approx(0.02, rel=0.06)
 
 
 def test_a_plant_more_changes_nothing_far_away():
-    grid = rectangle(9, 60, row_spacing_m=4.0, plant_spacing_m=3.0)
+    grid = rectangle(9, 60)
     one = night(grid, infested_at(grid, 5), Spread(0.5), key(4))
     two = night(grid, infested_at(grid, 5, 500), Spread(0.5), key(4))
     assert (one[:300] == two[:300]).all()

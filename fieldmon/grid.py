@@ -1,4 +1,4 @@
-"""Plants in rows: where each stands, who stands beside it, from which aisle it is inspected."""
+"""Plants in rows: where each stands, who is next to it, and from which aisle it is inspected."""
 
 from __future__ import annotations
 

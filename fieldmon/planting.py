@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
-from shapely import MultiPolygon
+from shapely import MultiPolygon, Polygon
 
 from fieldmon import neighbours
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.frame import Frame
 from fieldmon.grid import PlantGrid
-from fieldmon.rows import rows_from_boundary, rows_from_lines
+from fieldmon.rows import (
+    distinct,
+    frame_around,
+    rows_from_boundary,
+    rows_from_lines,
+    rows_from_plants,
+    split_lines,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -113,6 +121,74 @@ def lay(field: Field, planting: Planting) -> PlantGrid:
     if not len(free.strip):
         raise _no_room(field.name, area, planting)
     return assemble(frame, _fill(y, free, planting), area, planting)
+
+
+def found_planting(lonlat: Float, planting: Planting | None = None) -> Planting:
+    """Return a planting with the bearing and the spacings in which measured plants stand.
+
+    Spacings that the plants do not show (of a single row, say) stay as in the given planting;
+    its row bearing, if any, says about where to look.
+    """
+    planting = planting or Planting()
+    found = rows_from_plants(lonlat, planting.row_bearing_deg)
+    return replace(
+        planting,
+        row_bearing_deg=found.bearing_deg,
+        row_spacing_m=found.row_spacing_m or planting.row_spacing_m,
+        plant_spacing_m=found.plant_spacing_m or planting.plant_spacing_m,
+    )
+
+
+def grid_from_plants(
+    lonlat: Float, planting: Planting | None = None, field: Field | None = None
+) -> PlantGrid:
+    """Return plants as they were measured, sorted into rows.
+
+    A gap in a row is missing plants; only holes and no-go areas of the field cut a row. Aisles
+    run midway between the plants of neighbouring rows, lanes end half a headland beyond the last
+    plants. A robot may drive where the field's boundary says if that holds all lanes; otherwise,
+    or without a field, also wherever the rows with their aisles and headlands reach.
+
+    Parameters
+    ----------
+    lonlat
+        ``(n, 2)`` degrees, in any order. `nearest_plants` leads back from them to the grid.
+    planting
+        Bearing and spacings as found or given (see `found_planting`); None: found.
+    field
+        Boundary, holes and no-go areas to keep, or None.
+
+    Raises
+    ------
+    PlotError
+        If plants share a position, or none stands on the field.
+    """
+    lonlat = np.asarray(lonlat, dtype=np.float64).reshape(-1, 2)
+    _check_apart(lonlat)
+    if planting is None or planting.row_bearing_deg is None:
+        planting = found_planting(lonlat, planting)
+    frame = (field.frame() if field else frame_around(lonlat)).turned(
+        planting.row_bearing_deg or 0.0
+    )
+    xy_m = frame.xy_m(lonlat)
+    line = split_lines(xy_m[:, 1], planting.row_spacing_m)
+    order = np.lexsort((xy_m[:, 0], line))
+    xy_m, line = xy_m[order], line[order]
+    obstacles = _obstacles(field, frame)
+    pieces = _pieces(xy_m, line, _aisles(xy_m[:, 1], line, planting), obstacles, planting)
+    reach = shapely.difference(_reach(pieces, planting), obstacles)
+    if field is None:
+        return assemble(frame, pieces, _polygons(reach), planting)
+    area = frame.geometry_m(field.drivable())
+    if not shapely.contains_xy(area, xy_m).any():
+        raise PlotError(
+            f"Measured plants must stand on plot {field.name!r}, but none of {len(lonlat)} does. "
+            "Choose the plants' own plot, or check the coordinate systems."
+        )
+    lanes = _boxes(pieces.lane_x_m, pieces.aisle_y_m)
+    if not shapely.covers(shapely.buffer(area, 100 * _SLACK_M), lanes).all():
+        area = _polygons(shapely.union(area, reach))
+    return assemble(frame, pieces, area, planting)
 
 
 def rectangle(
@@ -331,3 +407,92 @@ def _edges(area: shapely.Geometry) -> tuple[Float, Float, Float, Float]:
     falls = (start[:, 1] > end[:, 1])[:, None]
     low, high = np.where(falls, end, start), np.where(falls, start, end)
     return low[:, 0], low[:, 1], high[:, 0], high[:, 1]
+
+
+def _check_apart(lonlat: Float) -> None:
+    alone = distinct(lonlat)
+    if len(alone) < len(lonlat):
+        first = int(np.setdiff1d(np.arange(len(lonlat)), alone)[0])
+        raise PlotError(
+            f"No two plants may stand in one place, but {len(lonlat) - len(alone)} of "
+            f"{len(lonlat)} are within 5 cm of an earlier one, the first of them plant "
+            f"{first + 1} at ({lonlat[first, 0]:.7f}, {lonlat[first, 1]:.7f}). Leave doubles out."
+        )
+
+
+def _obstacles(field: Field | None, frame: Frame) -> shapely.Geometry:
+    """Return holes and no-go areas in metres of the frame."""
+    if field is None:
+        return MultiPolygon()
+    holes = [Polygon(ring) for part in field.boundary.geoms for ring in part.interiors]
+    return frame.geometry_m(shapely.union_all([*holes, field.no_go]))
+
+
+def _aisles(y_m: Float, line: NDArray[np.intp], planting: Planting) -> Float:
+    """Return y of the aisles below and above each line, ``(lines, 2)``.
+
+    Midway between the plants on both sides, or half a row spacing off where no row follows.
+    """
+    first = np.searchsorted(line, np.arange(line[-1] + 1))
+    lowest, highest = np.minimum.reduceat(y_m, first), np.maximum.reduceat(y_m, first)
+    room = np.concatenate([[np.inf], lowest[1:] - highest[:-1], [np.inf]])
+    half = np.minimum(room, planting.row_spacing_m) / 2
+    return np.stack([lowest - half[:-1], highest + half[1:]], axis=1)
+
+
+def _pieces(
+    xy_m: Float,
+    line: NDArray[np.intp],
+    aisle_y_m: Float,
+    obstacles: shapely.Geometry,
+    planting: Planting,
+) -> Pieces:
+    """Return the lines of plants, cut where an obstacle stands in a row or its aisles."""
+    x, half = xy_m[:, 0], planting.headland_m / 2
+    # beyond plants and obstacles (an empty one's bounds are NaN) every strip is free
+    low_x = float(np.fmin(x.min(), obstacles.bounds[0])) - planting.headland_m - 1.0
+    high_x = float(np.fmax(x.max(), obstacles.bounds[2])) + planting.headland_m + 1.0
+    around = shapely.box(low_x, aisle_y_m[0, 0] - 1, high_x, aisle_y_m[-1, 1] + 1)
+    # one face needs the way from its plants to the aisle above, two need both aisles
+    lowest_y = aisle_y_m[:, 0] if planting.faces == 2 else aisle_y_m.mean(axis=1)
+    free = free_intervals(shapely.difference(around, obstacles), lowest_y, aisle_y_m[:, 1])
+    # a plant beside an obstacle belongs to the nearer end of it
+    stretch = high_x - low_x + 1.0
+    parting = (free.high_x[:-1] + free.low_x[1:]) / 2
+    same = free.strip[:-1] == free.strip[1:]
+    place = np.where(same, parting, low_x) + free.strip[1:] * stretch
+    piece = np.searchsorted(place, x + line * stretch, side="right")
+    planted, row_start = np.unique(piece, return_index=True)
+    row_start = np.append(row_start, len(x))
+    first, last = x[row_start[:-1]], x[row_start[1:] - 1]
+    # lanes end before the obstacle, but always clear of the last plant
+    clear = [
+        np.clip(room / 2, planting.plant_spacing_m / 4, half)
+        for room in (first - free.low_x[planted], free.high_x[planted] - last)
+    ]
+    row_line = line[row_start[:-1]]
+    return Pieces(
+        xy_m,
+        row_start.astype(np.int64),
+        row_line.astype(np.int32),
+        aisle_y_m[row_line],
+        np.stack([first - clear[0], last + clear[1]], axis=1),
+    )
+
+
+def _reach(pieces: Pieces, planting: Planting) -> shapely.Geometry:
+    """Return what rows, their aisles and headlands cover, bridged from each line to the next."""
+    beyond = planting.headland_m / 2 * np.array([-1.0, 1.0])
+    boxes = _boxes(pieces.lane_x_m + beyond, pieces.aisle_y_m)
+    first = np.flatnonzero(np.diff(pieces.row_line, prepend=-1))
+    lines = [shapely.union_all(boxes[a:b]) for a, b in pairwise([*first.tolist(), len(boxes)])]
+    bridged = [shapely.convex_hull(shapely.union(a, b)) for a, b in pairwise(lines)]
+    return shapely.union_all([*lines, *bridged])
+
+
+def _boxes(x_m: Float, y_m: Float) -> NDArray[np.object_]:
+    return shapely.box(x_m[:, 0], y_m[:, 0], x_m[:, 1], y_m[:, 1])
+
+
+def _polygons(area: shapely.Geometry) -> MultiPolygon:
+    return MultiPolygon([part for part in shapely.get_parts(area) if part.geom_type == "Polygon"])

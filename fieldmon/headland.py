@@ -1,0 +1,397 @@
+"""The ways between row ends: through headlands, around holes, never across a row of plants."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import shapely
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+from shapely import MultiPolygon, Polygon
+
+from fieldmon.errors import PlotError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.grid import PlantGrid
+
+    Float = NDArray[np.float64]
+    Index = NDArray[np.intp]
+    Mask = NDArray[np.bool_]
+
+_SAME_M = 1e-6
+# a lane may lie exactly on the boundary
+_EDGE_M = 0.01
+_CLEARANCE_M = 0.3
+_NEAREST = 10
+_GATE_NEAREST = 64
+_BRIDGE_NEAREST = (8, 64, 512, 4096)
+_MOST_CORNERS = 200
+
+
+class Where(Enum):
+    """Where a way may run, from preferred to last resort; never across a row."""
+
+    INSIDE = "in the drivable area"
+    OUTSIDE = "outside the boundary too, but not over holes"
+    ANYWHERE = "over holes too, but not over no-go areas"
+
+
+class Ways(NamedTuple):
+    """A network of straight ways: m nodes, sorted by y, then x.
+
+    Parameters
+    ----------
+    xy_m
+        ``(m, 2)`` where the nodes are.
+    start, to, length_m
+        CSR lists: from node v one can drive to ``to[start[v]:start[v + 1]]``. Both directions.
+    end
+        ``(r, 2)`` nodes of the low-x and the high-x end of each row's lane.
+    gate
+        Node at which a working day starts and ends.
+    """
+
+    xy_m: Float
+    start: NDArray[np.int64]
+    to: NDArray[np.int32]
+    length_m: Float
+    end: NDArray[np.int32]
+    gate: int
+
+
+@dataclass(frozen=True, eq=False)
+class Obstacles:
+    """What a straight way must not touch.
+
+    Parameters
+    ----------
+    rows
+        Rows from first to last plant, with a little clearance.
+    drivable_m
+        Where driving is fine.
+    holes_m
+        Holes in it.
+    no_go_m
+        Where driving is never fine.
+    """
+
+    rows: shapely.STRtree
+    drivable_m: shapely.Geometry
+    holes_m: shapely.Geometry
+    no_go_m: shapely.Geometry
+
+    @classmethod
+    def of(cls, grid: PlantGrid, no_go_m: shapely.Geometry) -> Obstacles:
+        """Return the obstacles on a plot."""
+        ends_x = grid.xy_m[_end_plants(grid), 0]
+        clearance_m = min(_CLEARANCE_M, 0.4 * float(np.abs(grid.lane_x_m - ends_x).min()))
+        rows = shapely.buffer(row_lines(grid), clearance_m, quad_segs=1, cap_style="square")
+        whole = shapely.union_all(
+            [Polygon(part.exterior) for part in shapely.get_parts(grid.drivable_m)]
+        )
+        holes_m = shapely.difference(whole, grid.drivable_m)
+        areas = (
+            shapely.buffer(grid.drivable_m, _EDGE_M, join_style="mitre"),
+            shapely.buffer(shapely.union(holes_m, no_go_m), -_EDGE_M, join_style="mitre"),
+            shapely.buffer(no_go_m, -_EDGE_M, join_style="mitre"),
+        )
+        for area in areas:
+            shapely.prepare(area)
+        return cls(shapely.STRtree(rows), *areas)
+
+    def clear(self, from_m: Float, to_m: Float, where: Where = Where.INSIDE) -> Mask:
+        """Tell of k straight ways, ``(k, 2)`` to ``(k, 2)``, whether they can be driven."""
+        lines: NDArray[np.object_] = np.array(
+            shapely.linestrings(np.stack([from_m, to_m], axis=1)), dtype=object
+        )
+        good = np.array(self._where_allowed(lines, where), dtype=np.bool_)
+        kept = np.flatnonzero(good)
+        good[kept[self.rows.query(lines[kept], predicate="intersects")[0]]] = False
+        return good
+
+    def _where_allowed(self, lines: NDArray[np.object_], where: Where) -> Mask:
+        if where is Where.INSIDE:
+            return np.asarray(shapely.covers(self.drivable_m, lines))
+        shut_m = self.holes_m if where is Where.OUTSIDE else self.no_go_m
+        return ~np.asarray(shapely.intersects(shut_m, lines))
+
+    def corners(self, where: Where) -> Float:
+        """Return corners that ways may have to go round, ``(k, 2)``; of crowded ones a choice."""
+        areas = {
+            Where.INSIDE: self.drivable_m,
+            Where.OUTSIDE: self.holes_m,
+            Where.ANYWHERE: self.no_go_m,
+        }
+        area, coarse_m = areas[where], _EDGE_M
+        while shapely.get_num_coordinates(area) > _MOST_CORNERS:
+            area, coarse_m = shapely.simplify(areas[where], coarse_m), 2 * coarse_m
+        return np.unique(shapely.get_coordinates(area), axis=0)
+
+
+def row_lines(grid: PlantGrid) -> NDArray[np.object_]:
+    """Return each row as a line through its plants, first to last, ``(r,)``.
+
+    Plants on the straight line between the first and the last are left out. A row of one plant
+    is a line of no length.
+    """
+    ends = _end_plants(grid)
+    bent = np.zeros(len(grid), np.bool_)
+    bent[_off_line(grid, ends)] = True
+    bent[ends] = False
+    inner = np.flatnonzero(bent)
+    plant = np.concatenate([ends[:, 0], inner, ends[:, 1]])
+    row = grid.row[plant]
+    order = np.argsort(row, kind="stable")
+    lines: NDArray[np.object_] = shapely.linestrings(grid.xy_m[plant[order]], indices=row[order])
+    return lines
+
+
+def _off_line(grid: PlantGrid, ends: Index) -> Index:
+    """Return the rows' plants that are off the line between the first and the last."""
+    first, last = grid.xy_m[ends[:, 0]], grid.xy_m[ends[:, 1]]
+    slope = (last[:, 1] - first[:, 1]) / np.where(
+        last[:, 0] > first[:, 0], last[:, 0] - first[:, 0], 1.0
+    )
+    on_line = first[grid.row, 1] + slope[grid.row] * (grid.xy_m[:, 0] - first[grid.row, 0])
+    return np.flatnonzero(np.abs(grid.xy_m[:, 1] - on_line) > _SAME_M)
+
+
+def _end_plants(grid: PlantGrid) -> Index:
+    """Return the first and the last plant of each row, ``(r, 2)``."""
+    return np.stack([grid.row_start[:-1], grid.row_start[1:] - 1], axis=1)
+
+
+def ways(
+    grid: PlantGrid,
+    gate_xy_m: tuple[float, float] | None = None,
+    no_go_m: MultiPolygon | None = None,
+) -> Ways:
+    """Return the network of ways between the lane ends of a plot and its gate.
+
+    Nodes are the lane ends, the points beside them where one may cross the line of a row clear of
+    its plants, and their likes on the row's other side. Ways run along aisles and, wherever a
+    straight line touches no row and stays in the drivable area, from node to node. Where that
+    leaves parts of the plot apart, they are joined by the shortest ways outside; never over
+    `no_go_m`. Without a gate, work starts at the low-x lane end of the first row.
+    Raise `PlotError` if some row cannot be reached.
+    """
+    obstacles = Obstacles.of(grid, MultiPolygon() if no_go_m is None else no_go_m)
+    xy_m, place = _merged(_row_end_places(grid))
+    beside = np.where(grid.side[:, None] < 0, place[:, :, 2], place[:, :, 0])
+    trusted = np.concatenate([beside, np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)])
+    tried = np.concatenate([_along_aisles(grid, xy_m, place), _nearest(xy_m)])
+    tried = _each_once(tried)
+    good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]])
+    net = _Net(xy_m, np.concatenate([trusted, tried[good]]))
+    gate = int(beside[0, 0])
+    if gate_xy_m is not None:
+        gate = len(net.xy_m)
+        net = _with_gate(net, np.array([gate_xy_m]), obstacles, grid)
+    net = _joined(net, np.append(beside.ravel(), gate), obstacles)
+    return _sorted(net, beside, gate)
+
+
+class _Net(NamedTuple):
+    """Nodes and the pairs of them between which one can drive."""
+
+    xy_m: Float
+    pair: Index
+
+    def plus(self, xy_m: Float, pair: Index) -> _Net:
+        """Return the network with more nodes, numbered on, and more ways."""
+        return _Net(np.concatenate([self.xy_m, xy_m]), np.concatenate([self.pair, pair]))
+
+    def length_m(self) -> Float:
+        """Return the length of each way."""
+        way = self.xy_m[self.pair[:, 0]] - self.xy_m[self.pair[:, 1]]
+        return np.hypot(way[:, 0], way[:, 1])
+
+    def component(self) -> Index:
+        """Return a number for each node: the same where one can drive from one to the other."""
+        n = len(self.xy_m)
+        links = coo_array((np.ones(len(self.pair), np.int8), self.pair.T), shape=(n, n))
+        parts: Index = connected_components(links, directed=False)[1]
+        return parts
+
+    def apart(self, nodes: Index) -> bool:
+        """Tell whether some of the nodes cannot be reached from others."""
+        return bool(np.ptp(self.component()[nodes]))
+
+
+def _row_end_places(grid: PlantGrid) -> Float:
+    """Return ``(r, 2, 3, 2)``: at each row end, below the row, on its line and above it."""
+    half = grid.row_spacing_m / 2
+    y = grid.xy_m[_end_plants(grid), 1]
+    lane = np.broadcast_to(grid.lane_y_m[:, None], y.shape)
+    above = np.where(grid.side[:, None] < 0, lane, y + half)
+    below = np.where(grid.side[:, None] < 0, y - half, lane)
+    x = np.broadcast_to(grid.lane_x_m[:, :, None], (*y.shape, 3))
+    return np.stack([x, np.stack([below, y, above], axis=2)], axis=3)
+
+
+def _merged(places: Float) -> tuple[Float, Index]:
+    """Return the different points ``(m, 2)`` and, of each place, which it is."""
+    points = places.reshape(-1, 2)
+    _, first, which = np.unique(
+        np.round(points / _SAME_M).astype(np.int64), axis=0, return_index=True, return_inverse=True
+    )
+    return points[first], which.reshape(places.shape[:-1])
+
+
+def _each_once(pairs: Index) -> Index:
+    """Return the pairs without repetitions and without pairs of a node with itself."""
+    pairs = np.sort(pairs, axis=1)
+    pairs = pairs[pairs[:, 0] < pairs[:, 1]]
+    _, first = np.unique(pairs[:, 0] * (pairs.max(initial=0) + 1) + pairs[:, 1], return_index=True)
+    return pairs[first]
+
+
+def _along_aisles(grid: PlantGrid, xy_m: Float, place: Index) -> Index:
+    """Return pairs of nodes next to each other on one aisle, and those across half an aisle."""
+    aisle = place[:, :, [0, 2]].transpose(0, 2, 1).reshape(-1, 2)
+    node = np.unique(aisle)
+    node = node[np.argsort(xy_m[node, 1], kind="stable")]
+    y = xy_m[node, 1]
+    reach = grid.row_spacing_m / 4
+    aisle_y = xy_m[aisle, 1]
+    low = np.searchsorted(y, aisle_y.min(axis=1) - reach)
+    n_near = np.searchsorted(y, aisle_y.max(axis=1) + reach, side="right") - low
+    owner = np.repeat(np.arange(len(aisle)), n_near)
+    near = node[np.arange(len(owner)) + np.repeat(low - np.cumsum(n_near) + n_near, n_near)]
+    x, ends_x = xy_m[near, 0], xy_m[aisle, 0][owner]
+    on_it = (ends_x[:, 0] - _SAME_M <= x) & (x <= ends_x[:, 1] + _SAME_M)
+    owner, near = owner[on_it], near[on_it]
+    order = np.lexsort((xy_m[near, 0], owner))
+    owner, near = owner[order], near[order]
+    same = owner[1:] == owner[:-1]
+    chained = np.stack([near[:-1][same], near[1:][same]], axis=1)
+    across = place.reshape(-1, 3)
+    return np.concatenate([chained, across[:, :2], across[:, 1:]])
+
+
+def _nearest(xy_m: Float) -> Index:
+    """Return the pairs of each node and those nearest to it."""
+    k = min(_NEAREST, len(xy_m))
+    near = cKDTree(xy_m).query(xy_m, k=k)[1].reshape(len(xy_m), k)
+    return np.stack([np.repeat(np.arange(len(xy_m)), k), near.ravel()], axis=1)
+
+
+def _with_gate(net: _Net, gate_m: Float, obstacles: Obstacles, grid: PlantGrid) -> _Net:
+    """Return the network with the gate as next node, linked to what is visible from it.
+
+    A gate outside the drivable area is first linked to the nearest point of that area; a gate
+    among the plants of a row is moved to that row's lane.
+    """
+    among = obstacles.rows.query(shapely.points(gate_m[0]), predicate="intersects")
+    if len(among):
+        row = among[0]
+        gate_m = np.array([[np.clip(gate_m[0, 0], *grid.lane_x_m[row]), grid.lane_y_m[row]]])
+    n, k = len(net.xy_m), min(_GATE_NEAREST, len(net.xy_m))
+    entry_m = gate_m
+    if not shapely.intersects_xy(obstacles.drivable_m, *gate_m[0]):
+        line = shapely.shortest_line(shapely.points(gate_m[0]), grid.drivable_m)
+        entry_m = shapely.get_coordinates(line)[1:]
+    near = cKDTree(net.xy_m).query(entry_m[0], k=k)[1].reshape(-1)
+    seen = near[obstacles.clear(np.repeat(entry_m, k, axis=0), net.xy_m[near])]
+    if entry_m is gate_m:
+        return net.plus(gate_m, np.stack([np.full(len(seen), n), seen], axis=1))
+    pair = np.stack([np.full(len(seen), n + 1), seen], axis=1)
+    pair = np.concatenate([np.array([[n, n + 1]]), pair])
+    return net.plus(np.concatenate([gate_m, entry_m]), pair)
+
+
+def _joined(net: _Net, needed: Index, obstacles: Obstacles) -> _Net:
+    """Return the network with all needed nodes connected, by bridges inside if that is possible.
+
+    Raise `PlotError` if it is not possible at all.
+    """
+    for where in Where:
+        if not net.apart(needed):
+            return net
+        net = _bridged(_with_corners(net, obstacles, where), needed, obstacles, where)
+    part = net.component()[needed]
+    if net.apart(needed):
+        cut_off = int(np.count_nonzero(part[:-1] != part[-1]) + 1) // 2
+        raise PlotError(
+            "Every row must be reachable from the gate without crossing rows or no-go areas, but "
+            f"{cut_off} of {len(part) // 2} rows are not. Move the gate, or open the no-go areas "
+            "or holes that shut them in."
+        )
+    return net
+
+
+def _with_corners(net: _Net, obstacles: Obstacles, where: Where) -> _Net:
+    """Return the network with the corners one may have to drive around, linked to what they see."""
+    corners = obstacles.corners(where)
+    n, m = len(net.xy_m), len(corners)
+    if not m:
+        return net
+    near = cKDTree(net.xy_m).query(corners, k=min(_NEAREST, n))[1].reshape(m, -1)
+    to_near = np.stack([np.repeat(np.arange(n, n + m), near.shape[1]), near.ravel()], axis=1)
+    tried = np.concatenate([np.stack(np.triu_indices(m, 1), axis=1) + n, to_near])
+    xy_m = np.concatenate([net.xy_m, corners])
+    good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]], where)
+    return net.plus(corners, tried[good])
+
+
+def _bridged(net: _Net, needed: Index, obstacles: Obstacles, where: Where) -> _Net:
+    """Return the network with bridges from each component to those nearest to it."""
+    for k in _BRIDGE_NEAREST:
+        while net.apart(needed):
+            tried = _foreign(net, k)
+            good = obstacles.clear(net.xy_m[tried[:, 0]], net.xy_m[tried[:, 1]], where)
+            if not good.any():
+                break
+            net = net.plus(net.xy_m[:0], _short_ones(net, tried[good]))
+    return net
+
+
+def _foreign(net: _Net, k: int) -> Index:
+    """Return each node with the k nearest nodes of other components, nearest first."""
+    part = net.component()
+    found = []
+    for own in range(part.max() + 1):
+        ours, others = np.flatnonzero(part == own), np.flatnonzero(part != own)
+        near = cKDTree(net.xy_m[others]).query(net.xy_m[ours], k=min(k, len(others)))[1]
+        near = near.reshape(len(ours), -1)
+        found.append(np.stack([np.repeat(ours, near.shape[1]), others[near.ravel()]], axis=1))
+    return np.concatenate(found)
+
+
+def _short_ones(net: _Net, bridges: Index) -> Index:
+    """Return of each node the first bridge, unless its component has one of half the length."""
+    bridges = bridges[np.unique(bridges[:, 0], return_index=True)[1]]
+    length_m = _Net(net.xy_m, bridges).length_m()
+    part = net.component()[bridges[:, 0]]
+    shortest = np.full(part.max() + 1, np.inf)
+    np.minimum.at(shortest, part, length_m)
+    return bridges[length_m <= 2 * shortest[part]]
+
+
+def _sorted(net: _Net, end: Index, gate: int) -> Ways:
+    """Return the network as sorted lists, without what cannot be reached from the gate."""
+    part = net.component()
+    kept = np.flatnonzero(part == part[gate])
+    kept = kept[np.lexsort(net.xy_m[kept].T)]
+    place = np.full(len(net.xy_m), -1)
+    place[kept] = np.arange(len(kept))
+    pair = _each_once(place[net.pair[part[net.pair[:, 0]] == part[gate]]])
+    from_to = np.concatenate([pair, pair[:, ::-1]])
+    from_to = from_to[np.lexsort(from_to.T[::-1])]
+    xy_m = net.xy_m[kept]
+    start = np.searchsorted(from_to[:, 0], np.arange(len(kept) + 1))
+    length_m = _Net(xy_m, from_to).length_m()
+    return Ways(
+        xy_m,
+        start,
+        from_to[:, 1].astype(np.int32),
+        length_m,
+        place[end].astype(np.int32),
+        int(place[gate]),
+    )

@@ -62,7 +62,9 @@ class Frame:
         degrees = np.asarray(lonlat, dtype=np.float64).reshape(-1, 2)
         east, north = _transformer(self.lon, self.lat).transform(degrees[:, 0], degrees[:, 1])
         across, along = self._axes()
-        xy = np.stack([east * along[0] + north * along[1], east * across[0] + north * across[1]], 1)
+        with np.errstate(invalid="ignore"):  # PROJ says inf for what is not on Earth
+            x, y = (east * axis[0] + north * axis[1] for axis in (along, across))
+        xy = np.stack([x, y], axis=1)
         if xy.size and not (np.abs(xy) < _FARTHEST_M).all():
             raise PlotError(
                 f"Everything on a plot must lie within {_FARTHEST_M / 1000:.0f} km of its centre "

@@ -450,8 +450,9 @@ def _pieces(
     """Return the lines of plants, cut where an obstacle stands in a row or its aisles."""
     x, half = xy_m[:, 0], planting.headland_m / 2
     # beyond plants and obstacles (an empty one's bounds are NaN) every strip is free
-    low_x = float(np.fmin(x.min(), obstacles.bounds[0])) - planting.headland_m - 1.0
-    high_x = float(np.fmax(x.max(), obstacles.bounds[2])) + planting.headland_m + 1.0
+    bounds = shapely.bounds(obstacles)
+    low_x = float(np.fmin(x.min(), bounds[0])) - planting.headland_m - 1.0
+    high_x = float(np.fmax(x.max(), bounds[2])) + planting.headland_m + 1.0
     around = shapely.box(low_x, aisle_y_m[0, 0] - 1, high_x, aisle_y_m[-1, 1] + 1)
     # one face needs the way from its plants to the aisle above, two need both aisles
     lowest_y = aisle_y_m[:, 0] if planting.faces == 2 else aisle_y_m.mean(axis=1)

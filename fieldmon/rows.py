@@ -26,6 +26,8 @@ _BINS_PER_DEG = 4
 _EDGE_SMOOTH_DEG = 2.0
 # plants this part of the usual distance beside a line are on it
 _IN_LINE = 0.3
+# plants scattered anyhow stray by about 0.3 row spacings from any lines seen in them
+_NO_ROWS = 0.2
 _MOST_PAIRS = 200_000
 # rows are found from this many plants in the middle of the plot; others only repeat them
 _MOST_PLANTS = 10_000
@@ -103,11 +105,12 @@ def rows_from_plants(lonlat: Float, near_bearing_deg: float | None = None) -> Ro
     best = min((_lines(east_north_m, pairs, b) for b in bearings), key=lambda lines: lines.blur)
     rows = f"{best.n_lines} row" + "s" * (best.n_lines != 1)
     stray = f", {best.off_m:.2f} m beside their line" if np.isfinite(best.off_m) else ""
+    doubt = "; they hardly stand in rows, so check the bearing" if best.blur > _NO_ROWS else ""
     return Rows(
         best.bearing_deg % 180.0,
         best.row_spacing_m,
         best.plant_spacing_m,
-        f"from {len(east_north_m)} plants in {rows}{stray}",
+        f"from {len(east_north_m)} plants in {rows}{stray}{doubt}",
     )
 
 
@@ -188,6 +191,7 @@ class _Lines(NamedTuple):
     """Plants seen as lines in one direction."""
 
     bearing_deg: float
+    n_plants: int
     n_lines: int
     row_spacing_m: float | None
     plant_spacing_m: float | None
@@ -195,8 +199,12 @@ class _Lines(NamedTuple):
 
     @property
     def blur(self) -> float:
-        """Return how far plants stray, in row spacings: 0 in line, about 0.3 anywhere."""
-        return self.off_m / self.row_spacing_m if self.row_spacing_m else self.off_m
+        """Return how far plants stray, in row spacings: 0 in line, about 0.3 anywhere.
+
+        Lines of one plant are straight without meaning anything; they count against a direction.
+        """
+        off = self.off_m / self.row_spacing_m if self.row_spacing_m else self.off_m
+        return off / (1 - self.n_lines / self.n_plants) if self.n_lines < self.n_plants else np.inf
 
 
 def _promising_bearings(pairs: _Pairs) -> list[float]:
@@ -248,6 +256,7 @@ def _lines(east_north_m: Float, pairs: _Pairs, bearing_deg: float) -> _Lines:
         row_spacing_m = float(np.median(np.diff(np.bincount(line, y) / n_on)))
     return _Lines(
         bearing_deg,
+        len(line),
         len(n_on),
         row_spacing_m if len(n_on) > 1 else None,
         _plant_spacing(x, line, pairs.near_m),
@@ -278,7 +287,8 @@ def _row_spacing(pairs: _Pairs, bearing_deg: float) -> float | None:
     falling = np.flatnonzero(np.diff(often) > 0)
     if not len(falling):
         return None
-    own_row = falling[0]
+    # rows do not stand closer than half the distance to the nearest plant
+    own_row = max(falling[0], bins // 2)
     peaks, _ = find_peaks(often[own_row:], height=often[own_row:].max() / 2)
     return float((own_row + peaks[0] + 0.5) / bins * pairs.near_m) if len(peaks) else None
 

@@ -60,16 +60,36 @@ def learn(
     d; a find settles the plant and raises its neighbours to at least `beside_find`.
     """
     after = chance.copy()
-    clean = plants[~found]
-    p, d = after[clean], learning.detection
-    after[clean] = p * (1.0 - d) / (1.0 - p * d)
-    finds = plants[found]
-    start, plant = grid.adjacent
-    beside = np.concatenate([plant[start[i] : start[i + 1]] for i in finds] or [plants[:0]])
-    unseen = np.setdiff1d(beside, plants)
-    after[unseen] = np.maximum(after[unseen], learning.beside_find)
-    after[finds] = 0.0 if learning.treated else 1.0
-    return np.clip(after, _LEAST, _MOST)
+    rule = (learning.detection, learning.beside_find, learning.treated)
+    _learn(after, grid.adjacent, plants, found, rule)
+    return after
+
+
+@nb.njit(cache=True, nogil=True)
+def _learn(
+    after: NDArray[np.float64],
+    adjacent: Csr,
+    plants: NDArray[np.int32],
+    found: NDArray[np.bool_],
+    rule: tuple[float, float, bool],
+) -> None:
+    d, beside_find, treated = rule
+    inspected = np.zeros(after.size, np.bool_)
+    for k in range(plants.size):
+        i = plants[k]
+        inspected[i] = True
+        if found[k]:
+            after[i] = _LEAST if treated else _MOST
+        else:
+            p = after[i]
+            after[i] = min(max(p * (1.0 - d) / (1.0 - p * d), _LEAST), _MOST)
+    for k in range(plants.size):
+        if not found[k]:
+            continue
+        for e in range(adjacent.start[plants[k]], adjacent.start[plants[k] + 1]):
+            j = adjacent.plant[e]
+            if not inspected[j]:
+                after[j] = min(max(after[j], beside_find), _MOST)
 
 
 def overnight(chance: NDArray[np.float64], grid: PlantGrid, spread: Spread) -> NDArray[np.float64]:

@@ -53,7 +53,7 @@ class Dynamic:
         k = _walk(
             scene.aisles.ground,
             scene.clock,
-            (scene.grid.adjacent, scene.chance.view(np.uint64), would_find),
+            (scene.grid.adjacent, scene.grid.lane_y_m, scene.chance.view(np.uint64), would_find),
             closed,
             scene.at,
             stops,
@@ -65,12 +65,12 @@ class Dynamic:
 def _walk(
     ground: Ground,
     clock: Clock,
-    plants: tuple[Csr, NDArray[np.uint64], NDArray[np.bool_]],
+    plants: tuple[Csr, NDArray[np.float64], NDArray[np.uint64], NDArray[np.bool_]],
     closed: NDArray[np.bool_],
     at: int,
     stops: Stops,
 ) -> int:
-    adjacent, chance_bits, would_find = plants
+    adjacent, lane_y_m, chance_bits, would_find = plants
     rows = ground.row_start.size - 1
     opened = _Open(
         np.zeros(closed.size, np.bool_),
@@ -85,7 +85,7 @@ def _walk(
             left = _refill(ground, opened, closed, chance_bits, room)
             if left == 0:
                 break
-        plant = _nearest(ground, clock, opened, at)
+        plant = _nearest(ground, clock, opened, lane_y_m, at)
         if not can_visit(ground, clock, at, plant, now_s):
             break
         now_s += travel_s(ground, clock, at, plant)
@@ -149,25 +149,41 @@ def _refill(
 
 
 @nb.njit(cache=True)
-def _nearest(ground: Ground, clock: Clock, opened: _Open, at: int) -> int:
-    """Return the open plant that is reached first from `at` (a plant or the gate)."""
+def _nearest(
+    ground: Ground, clock: Clock, opened: _Open, lane_y_m: NDArray[np.float64], at: int
+) -> int:
+    """Return the open plant that is reached first from `at` (a plant or the gate).
+
+    Rows are looked at outward from the robot's own, as their lanes ascend with y, until driving
+    straight across to the next one would already take longer than to the best plant so far.
+    """
     best, best_s = -1, np.inf
-    own = -1
-    if at >= 0:
-        own = ground.row[at]
-        best, best_s = _nearest_in_row(ground, clock, opened, at, own)
-    for row in range(opened.count.size):
-        if row == own or opened.count[row] == 0:
-            continue
-        if at >= 0 and ground.corridor[row] == ground.corridor[own]:
-            plant, plant_s = _nearest_in_row(ground, clock, opened, at, row)
-        else:
-            if best_s <= clock.row_change_s and at >= 0:
-                continue
-            plant, plant_s = _nearest_end(ground, clock, opened, at, row)
-        if plant_s < best_s:
-            best, best_s = plant, plant_s
+    own = 0 if at < 0 else ground.row[at]
+    for step in (1, -1):
+        row = own if step == 1 else own - 1
+        while 0 <= row < opened.count.size:
+            if at >= 0:
+                across_s = abs(lane_y_m[row] - lane_y_m[own]) / clock.speed_m_s
+                if ground.corridor[row] != ground.corridor[own]:
+                    across_s += clock.row_change_s
+                if across_s > best_s:
+                    break
+            if opened.count[row] > 0:
+                plant, plant_s = _nearest_in(ground, clock, opened, at, row)
+                if plant_s < best_s:
+                    best, best_s = plant, plant_s
+            row += step
     return best
+
+
+@nb.njit(cache=True)
+def _nearest_in(
+    ground: Ground, clock: Clock, opened: _Open, at: int, row: int
+) -> tuple[int, float]:
+    """Return the open plant of a row that is reached first, and the seconds."""
+    if at >= 0 and ground.corridor[row] == ground.corridor[ground.row[at]]:
+        return _nearest_along(ground, clock, opened, at, row)
+    return _nearest_end(ground, clock, opened, at, row)
 
 
 @nb.njit(cache=True)
@@ -189,13 +205,11 @@ def _nearest_end(
 
 
 @nb.njit(cache=True)
-def _nearest_in_row(
+def _nearest_along(
     ground: Ground, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
     """Return the open plant of a row in the same aisle that is reached first, and the seconds."""
     best, best_s = -1, np.inf
-    if opened.count[row] == 0:
-        return best, best_s
     start, end = ground.row_start[row], ground.row_start[row + 1]
     middle = start + np.searchsorted(ground.x_m[start:end], ground.x_m[at])
     for plant in range(middle, end):

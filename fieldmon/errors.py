@@ -33,6 +33,9 @@ class ChoiceNeeded(FieldmonError):  # noqa: N818
         self.option = option
         self.choices = choices
 
+    def __reduce__(self) -> tuple[type[ChoiceNeeded], tuple[str, str, tuple[str, ...]]]:
+        return type(self), (str(self), self.option, self.choices)
+
 
 class SettingError(FieldmonError):
     """A setting is outside what it may be: change the number."""

@@ -1,0 +1,90 @@
+"""Which column holds what, by the names people give them in many languages."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+# Darwin Core terms, English, Spanish, French, German, Italian, Portuguese, Hebrew, Arabic, Dutch
+_NAMES = {
+    "lon": "lon long longitude lng londd longdd lond decimallongitude longitud longitudine "
+    "laengengrad laenge längengrad länge geolänge geolaenge lengtegraad xlon longwgs84 gpslon "
+    "gpslong gpslongitude verbatimlongitude קואורך קואורדינטתאורך אורך קורדאורך "
+    "lengdegrad longitudedecimal longitudegps",
+    "lat": "lat latitude latdd latd decimallatitude latitud latitudine breitengrad breite "
+    "geobreite breedtegraad ylat latwgs84 gpslat gpslatitude verbatimlatitude קורוחב "
+    "קואורדינטתרוחב רוחב קורדרוחב breddegrad latitudedecimal latitudegps",
+    "position": "position coordinates coordinate coords latlon latlong latlng gps gpsposition "
+    "gpscoordinates coordenadas koordinaten koordinate coordonnees location verbatimcoordinates "
+    "נצ קואורדינטות נקודתציון נקודתגפס",
+    "x": "x easting east e xcoord xcoordinate coordx xutm utmx utme utmeasting pointx rechtswert "
+    "ostwert este xitm itmx xm gpsx xetrs coordenadax hochrechts coordinatax מזרח קואורדינטתx",
+    "y": "y northing north n ycoord ycoordinate coordy yutm utmy utmn utmnorthing pointy hochwert "
+    "nordwert norte yitm itmy ym gpsy yetrs coordenaday coordinatay צפון קואורדינטתy",
+    "crs": "geodeticdatum crs srs epsg datum coordsys coordinatesystem",
+    "accuracy": "coordinateuncertaintyinmeters accuracy accuracym hacc horizontalaccuracy "
+    "gpsaccuracy precision genauigkeit precisao precisione précision דיוק epe hdopm "
+    "positionalaccuracy horizontalaccuracym accuracymeters",
+    "date": "date eventdate day datum fecha data datetime timestamp time dateobserved obsdate "
+    "observationdate samplingdate sampledate surveydate visitdate startdate collectiondate "
+    "dateofobservation recorddate fechamuestreo fechademuestreo datederelevé datereleve "
+    "erfassungsdatum aufnahmedatum תאריך תאריךבדיקה תאריךניטור תאריךדיגום creationdate when",
+    "year": "year jahr año ano annee année anno שנה yr yyyy",
+    "month": "month monat mes mês mois mese חודש mon mm",
+    "day": "day tag dia día jour giorno יום dd dayofmonth",
+    "count": "individualcount count counts total abundance organismquantity amount "
+    "quantity mites nmites mitecount numberofmites pests npests pestcount insects adults females "
+    "anzahl zahl menge stück stueck conteo cantidad recuento "
+    "effectif comptage conteggio contagem quantidade מספר כמות ספירה כמותאקריות מספראקריות "
+    "aantal mitesperleaf tetranychus mitesleaf",
+    "present": "occurrencestatus presence present presenceabsence pa detected detection infested "
+    "infected positive severity befall result found status infestation presencia presente "
+    "presenza présence vorhanden befallen nachweis presença "
+    "נוכחות נגוע נמצא ממצא disease diseased symptom symptoms",
+    "species": "scientificname species taxon taxonname pest pestname art schädling schaedling "
+    "especie espécie espèce specie plaga praga ravageur parassita מין מזיק vernacularname organism",
+    "stage": "lifestage stage stadium developmentstage estadio estádio stade stadio שלב דרגה",
+    "leaves": "leaves leavessampled nleaves leaf sampledleaves samplesize samplesizevalue "
+    "blätter blaetter anzahlblätter hojas hojasmuestreadas feuilles foglie folhas עלים מספרעלים "
+    "leavesexamined leavesinspected nleavessampled",
+    "plot": "plot plotname plotid plotno fieldid field fieldname parcel parcelname block blockname "
+    "parcela lote parcelle schlag feld flurstück flurstueck appezzamento campo locality site "
+    "חלקה שםחלקה מגרש שדה orchard vineyard talhao talhão perceel",
+    "row": "row rowno rownumber rownr rowid reihe zeile fila hilera rang rangée rangee fileira "
+    "filare linha שורה מספרשורה vinerow line rij",
+    "plant": "plant plantno plantnumber plantid tree treeno treeid treenumber vine vineno vineid "
+    "pflanze rebe baum planta arbol árbol cepa plante arbre cep pianta albero עץ שתיל צמח "
+    "מספרעץ מספרצמח col column quadrat position_in_row positioninrow",
+    "name": "name plotname fieldname parcelname plot field parcel block title label nombre nom "
+    "nome bezeichnung schlagname flurname lage naam parcela lote parcelle schlag שם שםחלקה שםשטח "
+    "שםהחלקה חלקה uniqueid idparcel parcelid fieldid plotid",
+}
+_SYNONYMS = {role: tuple(names.split()) for role, names in _NAMES.items()}
+
+
+def plain(name: str) -> str:
+    """Return a column name without capitals, accents, units in brackets and punctuation."""
+    bare = re.sub(r"[(\[].*?[)\]]", "", name)
+    letters = unicodedata.normalize("NFKD", (bare or name).casefold())
+    return "".join(c for c in letters if c.isalnum())
+
+
+_PLAIN = {role: tuple(plain(name) for name in names) for role, names in _SYNONYMS.items()}
+
+
+def find(role: str, names: Iterable[str], taken: frozenset[str] = frozenset()) -> str | None:
+    """Return the column that most likely plays a role, or None."""
+    known = {plain(name): name for name in reversed(list(names)) if name not in taken}
+    return next((known[name] for name in _PLAIN[role] if name in known), None)
+
+
+def recognised(names: Iterable[str]) -> frozenset[str]:
+    """Return the names that could play some role."""
+    return frozenset(name for name in names if plain(name) in _ALL)
+
+
+_ALL = frozenset(name for names in _PLAIN.values() for name in names)

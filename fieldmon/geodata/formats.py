@@ -1,0 +1,154 @@
+"""What kind of file it is, by its first bytes rather than by its name."""
+
+from __future__ import annotations
+
+import re
+from enum import StrEnum
+from pathlib import PurePosixPath
+
+from fieldmon.errors import FileProblem
+
+#: how much of a file `kind_of` wants to see
+HEAD_BYTES = 4096
+
+
+class Kind(StrEnum):
+    """The kinds of files that can be read; the value is the ending a staged copy gets."""
+
+    SHAPEFILE = ".shp"
+    GEOPACKAGE = ".gpkg"
+    GEODATABASE = ".gdb"
+    GEOJSON = ".geojson"
+    FLATGEOBUF = ".fgb"
+    PARQUET = ".parquet"
+    KML = ".kml"
+    GML = ".gml"
+    GPX = ".gpx"
+    WORKBOOK = ".xlsx"
+    TABLE = ".csv"
+    RASTER = ".tif"
+    ARCHIVE = ".zip"
+
+
+VECTOR = frozenset(
+    {
+        Kind.SHAPEFILE,
+        Kind.GEOPACKAGE,
+        Kind.GEODATABASE,
+        Kind.GEOJSON,
+        Kind.FLATGEOBUF,
+        Kind.PARQUET,
+        Kind.KML,
+        Kind.GML,
+        Kind.GPX,
+    }
+)
+TABULAR = frozenset({Kind.WORKBOOK, Kind.TABLE})
+READABLE = (
+    "a shapefile (zipped or with its .dbf, .shx and .prj), GeoPackage, GeoJSON, KML or KMZ, GML, "
+    "GPX, FlatGeobuf, GeoParquet, a zipped file geodatabase, CSV or an Excel workbook (.xlsx)"
+)
+
+_MAGIC = (
+    (b"SQLite format 3\x00", Kind.GEOPACKAGE),
+    (b"PK\x03\x04", Kind.ARCHIVE),
+    (b"PK\x05\x06", Kind.ARCHIVE),
+    (b"fgb", Kind.FLATGEOBUF),
+    (b"PAR1", Kind.PARQUET),
+    (b"\x00\x00\x27\x0a", Kind.SHAPEFILE),
+    (b"II*\x00", Kind.RASTER),
+    (b"MM\x00*", Kind.RASTER),
+    (b"II+\x00", Kind.RASTER),
+    (b"MM\x00+", Kind.RASTER),
+)
+_REFUSED_MAGIC = (
+    (b"\x1f\x8b", "is packed with gzip. Unpack it and choose the file inside"),
+    (b"7z\xbc\xaf", "is a 7z archive. Unpack it, or pack it as .zip"),
+    (b"Rar!", "is a RAR archive. Unpack it, or pack it as .zip"),
+    (b"\xd0\xcf\x11\xe0", "is an old Excel workbook (.xls). Save it as .xlsx or CSV"),
+    (b"%PDF", "is a PDF, which holds no positions. Ask for the map as GeoPackage or shapefile"),
+    (b"\x89PNG", "is a picture without a position on the earth. Choose a GeoTIFF"),
+    (b"\xff\xd8\xff", "is a picture without a position on the earth. Choose a GeoTIFF"),
+    (b"AC10", "is a CAD drawing (DWG). Export it as GeoPackage, shapefile or GeoJSON"),
+)
+_BOMS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
+_TAG = re.compile(rb"<\s*(?:[\w.-]+:)?([A-Za-z][\w.-]*)")
+_XML_ROOTS = {
+    b"kml": Kind.KML,
+    b"gpx": Kind.GPX,
+    b"featurecollection": Kind.GML,
+}
+_REFUSED_ROOTS = {
+    b"ogrvrtdatasource": "only points at other files (VRT). Choose the files themselves",
+    b"vrtdataset": "only points at other files (VRT). Choose the files themselves",
+    b"html": "is a web page, perhaps a log-in page saved instead of the file. Download it again",
+    b"wfs_capabilities": "describes a web service. Download the data themselves",
+    b"ogcwfsdatasource": "only points at a web service. Download the data themselves",
+    b"gdal_wms": "only points at a web service. Download the data themselves",
+    b"svg": "is a drawing without positions on the earth. Export it as GeoPackage or GeoJSON",
+}
+_REFUSED_ENDINGS = {
+    ".dbf": "holds only the table of a shapefile. Choose the .shp with it, or all of them zipped",
+    ".shx": "is only the index of a shapefile. Choose the .shp with it, or all of them zipped",
+    ".prj": "holds only a coordinate system. Choose the .shp with it, or all of them zipped",
+    ".vrt": "only points at other files (VRT). Choose the files themselves",
+    ".dxf": "is a CAD drawing (DXF). Export it as GeoPackage, shapefile or GeoJSON",
+}
+
+
+def kind_of(head: bytes, name: str) -> Kind:
+    """Return the kind of a file from its first bytes; raise `FileProblem` for what is unreadable.
+
+    Only for plain text does the ending of the name count.
+    """
+    if not head:
+        raise FileProblem(
+            f"{name} must hold something, but it is empty. Save or download it again."
+        )
+    for magic, kind in _MAGIC:
+        if head.startswith(magic):
+            return kind
+    for magic, why in _REFUSED_MAGIC:
+        if head.startswith(magic):
+            raise FileProblem(f"{name} {why}.")
+    ending = PurePosixPath(name.lower()).suffix
+    if ending in _REFUSED_ENDINGS:
+        raise FileProblem(f"{name} {_REFUSED_ENDINGS[ending]}.")
+    return _text_kind(head, name)
+
+
+def _text_kind(head: bytes, name: str) -> Kind:
+    text = head
+    for bom in _BOMS:
+        text = text.removeprefix(bom)
+    if head.startswith(_BOMS[1:]):
+        text = text.replace(b"\x00", b"")
+    start = text.lstrip()
+    if start.startswith((b"{", b"[", b"\x1e{")):
+        return Kind.GEOJSON
+    if start.startswith(b"<"):
+        return _xml_kind(start, name)
+    if b"\x00" in text:
+        raise FileProblem(f"{name} must be {READABLE}, but it is none of them.")
+    return Kind.TABLE
+
+
+def _xml_kind(start: bytes, name: str) -> Kind:
+    bare = re.sub(rb"<!--.*?(-->|$)|<\?.*?(\?>|$)", b"", start, flags=re.DOTALL)
+    if b"<!ENTITY" in bare:
+        raise FileProblem(
+            f"{name} must not define XML entities, but it does; that is how such files are made to "
+            "read others or to fill the memory. Export it again."
+        )
+    tag = _TAG.search(re.sub(rb"<!DOCTYPE[^>]*>", b"", bare))
+    root = tag.group(1).lower() if tag else b""
+    if root in _XML_ROOTS:
+        return _XML_ROOTS[root]
+    if root in _REFUSED_ROOTS:
+        raise FileProblem(f"{name} {_REFUSED_ROOTS[root]}.")
+    if b"opengis.net/gml" in start:
+        return Kind.GML
+    raise FileProblem(
+        f"{name} must be KML, GML or GPX where it is XML, but its first element is "
+        f"<{root.decode('ascii', 'replace')}>. Export it as GeoPackage or GeoJSON."
+    )

@@ -1,0 +1,35 @@
+"""How big a file may be: an upload is opened as if an enemy had made it."""
+
+from __future__ import annotations
+
+MB = 1_000_000
+
+#: one file as it comes, and everything together that an archive unpacks to
+FILE_BYTES = 500 * MB
+UNPACKED_BYTES = 1_000 * MB
+#: entries of an archive, and archives inside archives
+ARCHIVE_ENTRIES = 2_000
+ARCHIVE_DEPTH = 2
+#: above `RATIO_FROM_BYTES`, an archive may not unpack to more than so many times its size
+COMPRESSION_RATIO = 100
+RATIO_FROM_BYTES = 100 * MB
+#: what a layer or a table may hold
+FEATURES = 1_000_000
+VERTICES = 5_000_000
+RECORDS = 1_000_000
+COLUMNS = 1_000
+#: text in one cell or attribute
+CELL_CHARACTERS = 1_000_000
+#: what the reading process may take
+READ_SECONDS = 10.0
+MEMORY_BYTES = 1_000 * MB
+#: pixels read at once from a raster, per band
+PIXELS = 50_000_000
+
+
+def size(n_bytes: float) -> str:
+    """Return a number of bytes as people write it."""
+    for unit, scale in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if n_bytes >= scale:
+            return f"{n_bytes / scale:.3g} {unit}"
+    return f"{n_bytes:.0f} bytes"

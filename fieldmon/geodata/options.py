@@ -1,0 +1,197 @@
+"""What a file is read from, and what people may choose about how it is read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Literal, Self, TypeAlias
+
+from fieldmon.errors import SettingError
+
+DateOrder: TypeAlias = Literal["dmy", "mdy", "ymd"]
+
+#: what a column can hold, with the words that explain it
+ROLES = {
+    "lon": "longitude, degrees",
+    "lat": "latitude, degrees",
+    "position": "latitude and longitude in one column",
+    "x": "easting, in the unit of the coordinate system",
+    "y": "northing, in the unit of the coordinate system",
+    "crs": "coordinate system of each record (Darwin Core geodeticDatum)",
+    "accuracy": "accuracy of the position, metres",
+    "date": "date",
+    "year": "year",
+    "month": "month",
+    "day": "day of the month",
+    "count": "pests counted",
+    "present": "presence or absence",
+    "species": "species",
+    "stage": "stage of life",
+    "leaves": "leaves looked at",
+    "plot": "name of the plot",
+    "row": "number of the row",
+    "plant": "number of the plant",
+    "name": "name of the feature",
+}
+
+
+@dataclass(frozen=True)
+class Upload:
+    """A file that came as bytes, with the name it had.
+
+    Parameters
+    ----------
+    name
+        File name as the person knows it; only its ending is ever used.
+    data
+        The bytes.
+    """
+
+    name: str
+    data: bytes
+
+
+#: a path (file or folder), an uploaded file, or several uploaded files that belong together
+Source: TypeAlias = str | Path | Upload | tuple[Upload, ...]
+
+
+def source_name(source: Source) -> str:
+    """Return what to call a source in a sentence."""
+    if isinstance(source, Upload):
+        return source.name
+    if isinstance(source, tuple):
+        return ", ".join(part.name for part in source[:3]) + (", ..." if len(source) > 3 else "")
+    return Path(source).name or str(source)
+
+
+@dataclass(frozen=True)
+class ReadOptions:
+    """What can be chosen for any file.
+
+    Parameters
+    ----------
+    member
+        Which file of an archive or folder, as `list_layers` names it.
+    layer
+        Which layer of a file, or sheet of a workbook.
+    where
+        ``"column=value"``: take only these features or records.
+    crs
+        Coordinate system of the file where it states none or a wrong one: ``"EPSG:2039"``.
+    swap_axes
+        Read the first coordinate as the second: for latitude and longitude in the wrong order.
+    encoding
+        How the text is written: ``"cp1255"``, ``"utf-8"``...
+    country
+        English name of the country; ranks the coordinate systems that are offered.
+    near
+        ``(lon, lat)`` of a place close by; ranks them too, and shows swapped coordinates.
+    columns
+        Pairs of a role (see `ROLES`) and the column that holds it.
+    decimal
+        ``"."`` or ``","`` in a text table.
+    delimiter
+        What separates the cells of a text table.
+    """
+
+    member: str | None = None
+    layer: str | None = None
+    where: str | None = None
+    crs: str | None = None
+    swap_axes: bool = False
+    encoding: str | None = None
+    country: str | None = None
+    near: tuple[float, float] | None = None
+    columns: tuple[tuple[str, str], ...] = ()
+    decimal: str | None = None
+    delimiter: str | None = None
+
+    def __post_init__(self) -> None:
+        for role, _ in self.columns:
+            if role not in ROLES:
+                raise SettingError(
+                    f"A column can be named for one of {', '.join(ROLES)}, but not for {role!r}."
+                )
+        if self.where is not None and "=" not in self.where:
+            raise SettingError(
+                f"The choice of features must read column=value, but it is {self.where!r}."
+            )
+        if self.decimal not in {None, ".", ","}:
+            raise SettingError(f"The decimal mark must be . or , but it is {self.decimal!r}.")
+        if self.delimiter is not None and len(self.delimiter) != 1:
+            raise SettingError(f"A delimiter must be one character, but it is {self.delimiter!r}.")
+        if self.near is not None:
+            lon, lat = self.near
+            if not (-180.0 <= lon <= 180.0 and -90.0 <= lat <= 90.0):
+                raise SettingError(
+                    "A place nearby must be a longitude in -180..180 and a latitude in -90..90, "
+                    f"but it is ({lon}, {lat})."
+                )
+
+    def column(self, role: str) -> str | None:
+        """Return the column named by hand for a role, or None."""
+        return dict(self.columns).get(role)
+
+    def naming(self, **columns: str) -> Self:
+        """Return these options with columns named by hand: ``naming(date="Datum")``."""
+        return replace(self, columns=tuple((dict(self.columns) | columns).items()))
+
+    def choose(self, option: str, value: str) -> Self:
+        """Return these options with one of them set from text, as a `Remedy` or choice holds it."""
+        if option == "columns":
+            role, _, column = value.partition("=")
+            return self.naming(**{role: column})
+        if option not in {field.name for field in fields(self)}:
+            raise SettingError(f"There is no option {option!r} for this file.")
+        now = getattr(self, option)
+        if isinstance(now, bool):
+            return replace(self, **{option: value.lower() in {"yes", "true", "1"}})  # type: ignore[arg-type]
+        if option == "near":
+            return replace(self, near=_lonlat(value))
+        return replace(self, **{option: value})  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class PlotOptions(ReadOptions):
+    """What can be chosen when plots are read.
+
+    Parameters
+    ----------
+    feature
+        Only this plot: its name, or its number counted from 1. None: all of them.
+    name_column
+        Column that names the plots.
+    """
+
+    feature: str | int | None = None
+    name_column: str | None = None
+
+
+@dataclass(frozen=True)
+class RecordOptions(ReadOptions):
+    """What can be chosen when pest records are read.
+
+    Parameters
+    ----------
+    date_order
+        ``"dmy"``, ``"mdy"`` or ``"ymd"``: what 03/04/2026 means.
+    """
+
+    date_order: DateOrder | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.date_order not in {None, "dmy", "mdy", "ymd"}:
+            raise SettingError(
+                f"The order of a date must be dmy, mdy or ymd, but it is {self.date_order!r}."
+            )
+
+
+def _lonlat(text: str) -> tuple[float, float]:
+    try:
+        lon, lat = (float(part) for part in text.split(","))
+    except ValueError:
+        raise SettingError(
+            f"A place nearby must be written lon,lat (35.1,30.2), but it is {text!r}."
+        ) from None
+    return lon, lat

@@ -1,0 +1,64 @@
+"""The doors in: everything that is read from a file comes through one of these.
+
+A source is a path, an `Upload`, or several of them that belong together. What a file leaves open
+is asked by `ChoiceNeeded`; what is unusable is a `FileProblem`; all else that there is to say
+stands in the findings. The file itself is opened in a process of its own (`guard`).
+"""
+
+from __future__ import annotations
+
+import tempfile
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.geodata import guard
+from fieldmon.geodata.nearby import of_plot
+from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
+
+if TYPE_CHECKING:
+    from shapely import MultiLineString
+
+    from fieldmon.field import Field, Observations
+    from fieldmon.geodata.findings import Imported
+    from fieldmon.geodata.layers import LayerInfo
+    from fieldmon.geodata.positions import Plants
+
+
+def _read(task: str, *arguments: Any) -> Any:  # noqa: ANN401 - each door says what comes back
+    # the folder is made and removed here: a reading process that was stopped cannot tidy up
+    with tempfile.TemporaryDirectory(prefix="fieldmon-", ignore_cleanup_errors=True) as folder:
+        return guard.call(f"tasks:{task}", folder, *arguments)
+
+
+def list_layers(source: Source) -> tuple[LayerInfo, ...]:
+    """Return the layers of a source: what can be chosen as `member` and `layer`."""
+    layers: tuple[LayerInfo, ...] = _read("layers", source)
+    return layers
+
+
+def read_plots(source: Source, options: PlotOptions | None = None) -> Imported[tuple[Field, ...]]:
+    """Return the plots of a source in degrees WGS84, all of them unless one is chosen."""
+    plots: Imported[tuple[Field, ...]] = _read("plots", source, options or PlotOptions())
+    return plots
+
+
+def read_records(
+    source: Source, options: RecordOptions | None = None, near: Field | None = None
+) -> Imported[Observations]:
+    """Return the pest records of a source; with a plot, only those on it or close by."""
+    records: Imported[Observations] = _read("records", source, options or RecordOptions())
+    if near is None:
+        return records
+    kept, more = of_plot(records.value, near)
+    return records.having(kept, more)
+
+
+def read_plants(source: Source, options: ReadOptions | None = None) -> Imported[Plants]:
+    """Return measured positions of plants, with their labels if the file has any."""
+    plants: Imported[Plants] = _read("plants", source, options or ReadOptions())
+    return plants
+
+
+def read_lines(source: Source, options: ReadOptions | None = None) -> Imported[MultiLineString]:
+    """Return lines (rows, paths, roads) in degrees WGS84."""
+    lines: Imported[MultiLineString] = _read("lines", source, options or ReadOptions())
+    return lines

@@ -1,0 +1,46 @@
+"""What the reading process does: one function for each door of `reading`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fieldmon.geodata.containers import Workroom
+from fieldmon.geodata.opening import layers_of, open_layer
+from fieldmon.geodata.plots import plots_of
+from fieldmon.geodata.positions import lines_of, plants_of
+from fieldmon.geodata.records import records_of
+
+if TYPE_CHECKING:
+    from shapely import MultiLineString
+
+    from fieldmon.field import Field, Observations
+    from fieldmon.geodata.findings import Imported
+    from fieldmon.geodata.layers import LayerInfo
+    from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
+    from fieldmon.geodata.positions import Plants
+
+
+def layers(folder: str, source: Source) -> tuple[LayerInfo, ...]:
+    """Return the layers of a source."""
+    return layers_of(source, Workroom(Path(folder)))
+
+
+def plots(folder: str, source: Source, options: PlotOptions) -> Imported[tuple[Field, ...]]:
+    """Return the plots of a source."""
+    return plots_of(open_layer(source, options, Workroom(Path(folder))), options)
+
+
+def records(folder: str, source: Source, options: RecordOptions) -> Imported[Observations]:
+    """Return the records of a source."""
+    return records_of(open_layer(source, options, Workroom(Path(folder))), options)
+
+
+def plants(folder: str, source: Source, options: ReadOptions) -> Imported[Plants]:
+    """Return the plants of a source."""
+    return plants_of(open_layer(source, options, Workroom(Path(folder))), options)
+
+
+def lines(folder: str, source: Source, options: ReadOptions) -> Imported[MultiLineString]:
+    """Return the lines of a source."""
+    return lines_of(open_layer(source, options, Workroom(Path(folder))), options)

@@ -73,4 +73,4 @@ def figures(season: Iterable[Day]) -> SeasonFigures:
     ]
     columns = np.array(rows, dtype=np.float64).reshape(-1, 6).T
     found, ever, left = columns[3:].astype(np.int64)
-    return SeasonFigures(*columns[:3], found=found, new=np.diff(ever, prepend=0), left=left)
+    return SeasonFigures(columns[0], columns[1], columns[2], found, np.diff(ever, prepend=0), left)

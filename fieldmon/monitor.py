@@ -1,15 +1,15 @@
-"""From a plot and its records to today's route: the chain that the command line and the app share."""
+"""From a plot and its records to today's route: the chain behind the commands and the app."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fieldmon.aisles import Aisles
-from fieldmon.field import Observations
-from fieldmon.planting import Planting, lay
+from fieldmon.field import Field
+from fieldmon.planting import Planting, found_planting, grid_from_plants, lay
 from fieldmon.prior import PriorSettings, prior_chance
 from fieldmon.robot import Robot
 from fieldmon.route import route_of
@@ -19,7 +19,7 @@ from fieldmon.workday import plan_day
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.field import Field
+    from fieldmon.field import Observations
     from fieldmon.grid import PlantGrid
     from fieldmon.route import Route
     from fieldmon.workday import Workday
@@ -39,10 +39,31 @@ class Plot:
 
     @classmethod
     def of(cls, field: Field, planting: Planting | None = None) -> Plot:
-        """Lay the plants of a field, or take its measured ones, and find the ways between them."""
-        grid = lay(field, planting or Planting())
-        gate = None if field.gate is None else tuple(grid.frame.xy_m([field.gate])[0].tolist())
-        return cls(field, Aisles.of(grid, gate))
+        """Take a field's measured plants, or lay some, and find the ways between them."""
+        if field.plants is not None:
+            found = None if planting is None else found_planting(field.plants, planting)
+            return cls._with(field, grid_from_plants(field.plants, found, field))
+        return cls._with(field, lay(field, planting or Planting()))
+
+    @classmethod
+    def around(
+        cls,
+        name: str,
+        plants: NDArray[np.float64],
+        planting: Planting | None = None,
+        gate: tuple[float, float] | None = None,
+    ) -> Plot:
+        """Return the plot of measured plants ``(n, 2)`` lon/lat whose boundary nobody drew."""
+        found = None if planting is None else found_planting(plants, planting)
+        grid = grid_from_plants(plants, found)
+        boundary = grid.frame.geometry_lonlat(grid.drivable_m)
+        return cls._with(Field(name, boundary, gate=gate, plants=plants), grid)
+
+    @classmethod
+    def _with(cls, field: Field, grid: PlantGrid) -> Plot:
+        gate = None if field.gate is None else grid.frame.xy_m(field.gate)[0]
+        gate_xy_m = None if gate is None else (float(gate[0]), float(gate[1]))
+        return cls(field, Aisles.of(grid, gate_xy_m, grid.frame.geometry_m(field.no_go)))
 
 
 @dataclass(frozen=True)
@@ -78,9 +99,7 @@ class Today:
         return self.scene.chance
 
 
-def first_day(
-    plot: Plot, observations: Observations, on_day: np.datetime64, plans: Plans
-) -> Today:
+def first_day(plot: Plot, observations: Observations, on_day: np.datetime64, plans: Plans) -> Today:
     """Plan a day on a plot of which nothing but records is known."""
     chance = prior_chance(plot.grid, plot.field, observations, on_day, plans.prior)
     return plan_from(plot, chance, plans)

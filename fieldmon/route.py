@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -83,7 +84,7 @@ def route_of(scene: Scene, work: Workday) -> Route:
     arrive_s = np.append(work.arrive_s, work.end_s)[: len(places) - 1]
     leave_s = np.append(0.0, work.arrive_s + scene.robot.visit_s)
     lines, seconds, stops, vertices = [], [], [], 0
-    for leg, (a, b) in enumerate(zip(places, places[1:], strict=False)):
+    for leg, (a, b) in enumerate(pairwise(places)):
         line = scene.aisles.path(a, b)
         lines.append(line)
         seconds.append(_spread_over(line, float(leave_s[leg]), float(arrive_s[leg])))

@@ -129,9 +129,9 @@ def _refill(
     top = 0
     for plant in range(closed.size):
         if not closed[plant]:
-            level = np.int64(chance_bits[plant] >> np.uint64(_LEVEL_BITS))
-            tally[level] += 1
-            top = max(top, level)
+            own = int(chance_bits[plant] >> np.uint64(_LEVEL_BITS))
+            tally[own] += 1
+            top = max(top, own)
     level, above = top, 0
     while level > max(top - _HALF, 0) and above + tally[level] < room:
         above += tally[level]
@@ -141,7 +141,7 @@ def _refill(
     for plant in range(closed.size):
         if closed[plant]:
             continue
-        own = np.int64(chance_bits[plant] >> np.uint64(_LEVEL_BITS))
+        own = int(chance_bits[plant] >> np.uint64(_LEVEL_BITS))
         if own > level or (own == level and even > 0):
             even -= own == level
             joined += _open(ground, opened, closed, plant)

@@ -366,7 +366,7 @@ def _speech(grid: PlantGrid, observations: Observations, settings: PriorSettings
     own = np.where(find, settings.at_record, 1.0) * plant_m2 / own_m2
     near = _beside(observations, settings) * settings.reach_m**2 / near_m2
     strength = np.where(find, 1.0, _detection(observations, settings))
-    radius_m = np.maximum(_radius_m(strength * own, own_m2), _radius_m(strength * near, near_m2))
+    radius_m = np.maximum(_radius_m(own, own_m2), _radius_m(near, near_m2))
     return _Speech(own, own_m2, near, near_m2, strength, radius_m)
 
 

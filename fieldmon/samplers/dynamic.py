@@ -26,7 +26,7 @@ class _Open(NamedTuple):
     """The open list: a flag per plant, and per row how many are open and between which."""
 
     flag: NDArray[np.bool_]
-    count: NDArray[np.int64]
+    n_open: NDArray[np.int64]
     low: NDArray[np.int64]
     high: NDArray[np.int64]
 
@@ -53,7 +53,7 @@ class Dynamic:
         k = _walk(
             scene.aisles.ground,
             scene.clock,
-            (scene.grid.adjacent, scene.grid.lane_y_m, scene.chance.view(np.uint64), would_find),
+            (scene.grid.adjacent, scene.grid.lane_y_m, scene.chance.view(np.int64), would_find),
             closed,
             scene.at,
             stops,
@@ -65,7 +65,7 @@ class Dynamic:
 def _walk(
     ground: Ground,
     clock: Clock,
-    plants: tuple[Csr, NDArray[np.float64], NDArray[np.uint64], NDArray[np.bool_]],
+    plants: tuple[Csr, NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]],
     closed: NDArray[np.bool_],
     at: int,
     stops: Stops,
@@ -95,7 +95,7 @@ def _walk(
         at = plant
         closed[plant] = True
         opened.flag[plant] = False
-        opened.count[ground.row[plant]] -= 1
+        opened.n_open[ground.row[plant]] -= 1
         left -= 1
         if would_find[plant]:
             for e in range(adjacent.start[plant], adjacent.start[plant + 1]):
@@ -110,7 +110,7 @@ def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) 
         return 0
     row = ground.row[plant]
     opened.flag[plant] = True
-    opened.count[row] += 1
+    opened.n_open[row] += 1
     opened.low[row] = min(opened.low[row], plant)
     opened.high[row] = max(opened.high[row], plant)
     return 1
@@ -121,19 +121,19 @@ def _refill(
     ground: Ground,
     opened: _Open,
     closed: NDArray[np.bool_],
-    chance_bits: NDArray[np.uint64],
+    chance_bits: NDArray[np.int64],
     room: int,
 ) -> int:
     """Open the suspicious plants that are not closed, `room` at most; return how many."""
     tally = np.zeros(_LEVELS, np.int64)
-    top = 0
+    top = np.int64(0)
     for plant in range(closed.size):
         if not closed[plant]:
-            own = int(chance_bits[plant] >> np.uint64(_LEVEL_BITS))
+            own = chance_bits[plant] >> _LEVEL_BITS
             tally[own] += 1
             top = max(top, own)
     level, above = top, 0
-    while level > max(top - _HALF, 0) and above + tally[level] < room:
+    while level > max(top - _HALF, np.int64(0)) and above + tally[level] < room:
         above += tally[level]
         level -= 1
     even = room - above
@@ -141,7 +141,7 @@ def _refill(
     for plant in range(closed.size):
         if closed[plant]:
             continue
-        own = int(chance_bits[plant] >> np.uint64(_LEVEL_BITS))
+        own = chance_bits[plant] >> _LEVEL_BITS
         if own > level or (own == level and even > 0):
             even -= own == level
             joined += _open(ground, opened, closed, plant)
@@ -161,14 +161,14 @@ def _nearest(
     own = 0 if at < 0 else ground.row[at]
     for step in (1, -1):
         row = own if step == 1 else own - 1
-        while 0 <= row < opened.count.size:
+        while 0 <= row < opened.n_open.size:
             if at >= 0:
                 across_s = abs(lane_y_m[row] - lane_y_m[own]) / clock.speed_m_s
                 if ground.corridor[row] != ground.corridor[own]:
                     across_s += clock.row_change_s
                 if across_s > best_s:
                     break
-            if opened.count[row] > 0:
+            if opened.n_open[row] > 0:
                 plant, plant_s = _nearest_in(ground, clock, opened, at, row)
                 if plant_s < best_s:
                     best, best_s = plant, plant_s

@@ -1,0 +1,48 @@
+"""Seasons and plans on the thesis's scenario C: 91 x 91 plants, 25 days of 12 h."""
+
+import numpy as np
+import pytest
+
+from fieldmon.aisles import Aisles
+from fieldmon.chance import Chance
+from fieldmon.planting import rectangle
+from fieldmon.robot import Robot
+from fieldmon.route import route_of
+from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
+from fieldmon.season import SeasonSettings, Start, days
+from fieldmon.spread import Spread, night
+from fieldmon.workday import plan_day
+
+AISLES = Aisles.of(rectangle(91, 91))
+N = len(AISLES.grid)
+
+
+@pytest.mark.parametrize("name", sorted(SAMPLERS))
+def test_season_of_scenario_c(benchmark, name):
+    start = Start(Chance(1).of("start").random(N) < 0.02, np.full(N, 0.02))
+    settings = SeasonSettings(n_days=25, spread=Spread(0.1))
+
+    def season():
+        walk = days(AISLES, Robot(), sampler(name), start, settings, Chance(2))
+        return [day.detection_pct for day in walk]
+
+    assert len(benchmark(season)) == 25
+
+
+@pytest.mark.parametrize("name", sorted(SAMPLERS))
+def test_plan_and_route_of_a_day_on_scenario_c(benchmark, name):
+    scene = Scene(
+        aisles=AISLES,
+        robot=Robot(),
+        chance=Chance(1).of("prior").beta(0.3, 3.0, N).clip(1e-6, 1 - 1e-6),
+        last_inspected=np.full(N, NEVER, np.int32),
+        seconds_left=Robot().day_s,
+    )
+    route = benchmark(lambda: route_of(scene, plan_day(scene, sampler(name))))
+    assert len(route) > 500
+
+
+def test_night_on_scenario_c(benchmark):
+    infested = Chance(1).of("start").random(N) < 0.1
+    after = benchmark(night, AISLES.grid, infested, Spread(0.5), Chance(1).key("spread"))
+    assert after.sum() > infested.sum()

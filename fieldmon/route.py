@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from fieldmon.samplers.scene import GATE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -80,31 +81,52 @@ def route_of(scene: Scene, work: Workday) -> Route:
     Its seconds are those the workday charged; its line is the one whose length they were charged
     for, leg by leg: from where the robot stands to each stop, and back to the gate if it returns.
     """
-    places = [scene.at, *work.plant.tolist()] + ([-1] if scene.robot.returns and len(work) else [])
-    arrive_s = np.append(work.arrive_s, work.end_s)[: len(places) - 1]
-    leave_s = np.append(0.0, work.arrive_s + scene.robot.visit_s)
-    lines, seconds, stops, vertices = [], [], [], 0
-    for leg, (a, b) in enumerate(pairwise(places)):
-        line = scene.aisles.path(a, b)
-        lines.append(line)
-        seconds.append(_spread_over(line, float(leave_s[leg]), float(arrive_s[leg])))
-        vertices += len(line)
-        stops.append(vertices - 1)
+    leave_s = work.arrive_s + scene.robot.visit_s
+    line_m, leg_end = _line(scene, work)
+    arrivals = np.append(work.arrive_s, work.end_s)[: len(leg_end)]
     return Route(
         aisles=scene.aisles,
         plant=work.plant,
         arrive_s=work.arrive_s,
-        leave_s=leave_s[1:],
+        leave_s=leave_s,
         chance=scene.chance[work.plant],
-        line_m=np.concatenate(lines) if lines else np.empty((0, 2)),
-        line_stop=np.array(stops[: len(work)], np.int64),
-        line_s=np.concatenate(seconds) if seconds else np.empty(0),
+        line_m=line_m,
+        line_stop=leg_end[: len(work)],
+        line_s=_seconds(line_m, leg_end, np.append(0.0, leave_s)[: len(leg_end)], arrivals),
         end_s=work.end_s,
     )
 
 
-def _spread_over(line: NDArray[np.float64], start_s: float, end_s: float) -> NDArray[np.float64]:
-    """Return the seconds at each vertex of a leg, at even speed from start to end."""
-    way = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
-    share = way / way[-1] if way[-1] > 0 else np.linspace(0.0, 1.0, len(way))
-    return np.asarray(start_s + share * (end_s - start_s))
+def _line(scene: Scene, work: Workday) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return the driven line ``(m, 2)`` and the vertex at which each of its l legs ends."""
+    if not len(work):
+        return np.empty((0, 2)), np.empty(0, np.int64)
+    back = [GATE] if scene.robot.returns else []
+    places = np.concatenate([[scene.at], work.plant, back]).astype(np.int64)
+    stop_m, corridor = scene.aisles.stop_m, scene.grid.corridor[scene.grid.row]
+    known = (places[:-1] >= 0) & (places[1:] >= 0)
+    straight = known & (corridor[places[:-1]] == corridor[places[1:]])
+    # within an aisle a leg ends at its stop, straight ahead; only other legs have corners
+    legs = list(stop_m[places[1:]][:, None])
+    for leg in np.flatnonzero(~straight):
+        legs[leg] = scene.aisles.path(int(places[leg]), int(places[leg + 1]))[1:]
+    start = scene.aisles.gate_m if scene.at < 0 else stop_m[scene.at]
+    return np.concatenate([start[None], *legs]), np.cumsum([len(leg) for leg in legs])
+
+
+def _seconds(
+    line_m: NDArray[np.float64],
+    leg_end: NDArray[np.int64],
+    depart_s: NDArray[np.float64],
+    arrive_s: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return the seconds on arrival at each vertex, at even speed within each leg."""
+    if not len(leg_end):
+        return np.empty(0)
+    way = np.append(0.0, np.cumsum(np.hypot(*np.diff(line_m, axis=0).T)))
+    leg_start = np.append(0, leg_end[:-1])
+    leg = np.repeat(np.arange(len(leg_end)), leg_end - leg_start)
+    length = (way[leg_end] - way[leg_start])[leg]
+    gone = way[1:] - way[leg_start][leg]
+    share = np.divide(gone, length, out=np.ones_like(gone), where=length > 0)
+    return np.append(depart_s[0], depart_s[leg] + share * (arrive_s - depart_s)[leg])

@@ -93,6 +93,9 @@ class PlantGrid:
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
 
+    def __repr__(self) -> str:
+        return f"PlantGrid({len(self)} plants in {self.n_rows} rows)"
+
     def __len__(self) -> int:
         """Return the number of plants (of faces, where both faces are inspected)."""
         return len(self.xy_m)

@@ -63,6 +63,7 @@ _NAMES = {
     "nome bezeichnung schlagname flurname lage naam parcela lote parcelle schlag שם שםחלקה שםשטח "
     "שםהחלקה חלקה uniqueid idparcel parcelid fieldid plotid",
 }
+_CUT = 10
 _SYNONYMS = {role: tuple(names.split()) for role, names in _NAMES.items()}
 
 
@@ -79,7 +80,12 @@ _PLAIN = {role: tuple(plain(name) for name in names) for role, names in _SYNONYM
 def find(role: str, names: Iterable[str], taken: frozenset[str] = frozenset()) -> str | None:
     """Return the column that most likely plays a role, or None."""
     known = {plain(name): name for name in reversed(list(names)) if name not in taken}
-    return next((known[name] for name in _PLAIN[role] if name in known), None)
+    exact = next((known[name] for name in _PLAIN[role] if name in known), None)
+    if exact is not None:
+        return exact
+    # a shapefile cuts names to ten characters: decimalLon, individual, coordinate
+    cut = {name for name, own in known.items() if len(own) == _CUT}
+    return next((known[name[:_CUT]] for name in _PLAIN[role] if name[:_CUT] in cut), None)
 
 
 def recognised(names: Iterable[str]) -> frozenset[str]:

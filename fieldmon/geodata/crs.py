@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from dataclasses import dataclass
 from functools import lru_cache
@@ -38,8 +39,9 @@ _COMMON = (
     *("EPSG:22175", "EPSG:31982", "EPSG:31983", "EPSG:5880", "EPSG:6372", "EPSG:2326"),
     *("EPSG:3310", "EPSG:26910", "EPSG:26911", "EPSG:28354", "EPSG:28355", "EPSG:2193"),
 )
-_MOST_TRIED = 400
+_MOST_TRIED = 1000
 _MOST_OFFERED = 8
+_NEAR_KM = 300.0
 
 
 class Candidate(NamedTuple):
@@ -147,12 +149,10 @@ def code_of(crs: pyproj.CRS) -> str:
     return ":".join(authority) if authority else crs.name
 
 
-def ask_for_crs(
-    xy: NDArray[np.float64], options: ReadOptions, why: str, also: tuple[str, ...] = ()
-) -> ChoiceNeeded:
+def ask_for_crs(xy: NDArray[np.float64], options: ReadOptions, why: str) -> ChoiceNeeded:
     """Return the question for the coordinate system, with candidates by where they lead."""
     centre = (float(np.median(xy[:, 0])), float(np.median(xy[:, 1])))
-    offered = candidates(centre, options.country, options.near, also)
+    offered = candidates(centre, options.country, options.near)
     lines = [
         f"{c.code} ({c.name}) would put it at {c.lon:.4f}, {c.lat:.4f}"
         + (f", {c.km_away:.1f} km from the place nearby" if np.isfinite(c.km_away) else "")
@@ -171,28 +171,40 @@ def candidates(
     centre: tuple[float, float],
     country: str | None = None,
     near: tuple[float, float] | None = None,
-    also: tuple[str, ...] = (),
 ) -> list[Candidate]:
     """Return the systems in which coordinates would land where the system is used, best first."""
     found: list[Candidate] = []
     if abs(centre[0]) <= 180 and abs(centre[1]) <= 90:
         found.append(Candidate("EPSG:4326", "WGS 84", *centre, _km(near, *centre)))
-    for info in _possible(country, near, also):
+    for info in _possible(centre, country, near):
         landed = _landing(info, centre)
         if landed is not None:
             code = f"{info.auth_name}:{info.code}"
             found.append(Candidate(code, info.name, *landed, _km(near, *landed)))
     if near is not None:
         found.sort(key=lambda c: round(c.km_away))
-    return _distinct(found)[:_MOST_OFFERED]
+        found = [c for c in found if c.km_away < _NEAR_KM] or found
+    return [_exactly(c, centre, near) for c in _distinct(found)[:_MOST_OFFERED]]
+
+
+def _exactly(
+    rough: Candidate, centre: tuple[float, float], near: tuple[float, float] | None
+) -> Candidate:
+    """Return a candidate with its datum taken into account, which takes a hundred times longer."""
+    way = pyproj.Transformer.from_crs(rough.code, WGS84, always_xy=True)
+    bare = centre if rough.code == "EPSG:4326" else _without_zone(_projected()[rough.code], centre)
+    lon, lat = (float(v) for v in way.transform(*bare))
+    return rough._replace(lon=lon, lat=lat, km_away=_km(near, lon, lat))
 
 
 def _possible(
-    country: str | None, near: tuple[float, float] | None, also: tuple[str, ...]
+    centre: tuple[float, float], country: str | None, near: tuple[float, float] | None
 ) -> list[CRSInfo]:
     """Return the systems worth a try, likeliest first."""
     known = _projected()
-    usual = [known[code] for code in (*also, *_COMMON) if code in known]
+    zone = int(centre[0] // 1e6)
+    prefixed = (f"EPSG:258{zone:02d}", f"EPSG:326{zone:02d}", f"EPSG:327{zone:02d}")
+    usual = [known[code] for code in (*prefixed, *_COMMON) if code in known]
     if near is not None:
         local = [info for info in known.values() if _covers(info, *near)]
         usual = [info for info in usual if _covers(info, *near)]
@@ -231,9 +243,11 @@ def _extent(info: CRSInfo) -> float:
 
 
 def _landing(info: CRSInfo, centre: tuple[float, float]) -> tuple[float, float] | None:
+    """Return about where coordinates land, the datum aside; None where the system is not used."""
     try:
-        way = pyproj.Transformer.from_crs(f"{info.auth_name}:{info.code}", WGS84, always_xy=True)
-        lon, lat = way.transform(*centre)
+        lon, lat = pyproj.Proj(f"{info.auth_name}:{info.code}")(
+            *_without_zone(info, centre), inverse=True
+        )
     except (CRSError, ProjError):
         return None
     if not (np.isfinite(lon) and np.isfinite(lat) and _covers(info, lon, lat)):
@@ -241,17 +255,36 @@ def _landing(info: CRSInfo, centre: tuple[float, float]) -> tuple[float, float] 
     return float(lon), float(lat)
 
 
+def _without_zone(info: CRSInfo, centre: tuple[float, float]) -> tuple[float, float]:
+    """Return coordinates without the zone number that may stand before a UTM easting."""
+    zone = int(centre[0] // 1e6)
+    if zone > 0 and re.search(rf"UTM zone {zone}[NS]$", info.name):
+        return centre[0] - zone * 1e6, centre[1]
+    return centre
+
+
 def _distinct(found: list[Candidate]) -> list[Candidate]:
-    """Return the candidates without those that land within 10 m of a likelier one."""
+    """Return the candidates without those that land within 300 m of a likelier one."""
     kept: list[Candidate] = []
     for one in found:
-        if all(_km((other.lon, other.lat), one.lon, one.lat) > 0.01 for other in kept):
+        if all(_km((other.lon, other.lat), one.lon, one.lat) > 0.3 for other in kept):
             kept.append(one)
     return kept
 
 
+def km_between(one: tuple[float, float], other: tuple[float, float]) -> float:
+    """Return how far two places (lon, lat) are from each other."""
+    return float(_GEOD.inv(*one, *other)[2]) / 1000
+
+
+def utm_zone(crs: pyproj.CRS) -> int | None:
+    """Return the number of the UTM zone of a system, or None."""
+    zone = re.match(r"\d+", crs.utm_zone or "")
+    return int(zone.group()) if zone else None
+
+
 def _km(near: tuple[float, float] | None, lon: float, lat: float) -> float:
-    return np.inf if near is None else float(_GEOD.inv(*near, lon, lat)[2]) / 1000
+    return np.inf if near is None else km_between(near, (lon, lat))
 
 
 def _around(lon: float, lat: float) -> Any:  # noqa: ANN401 - pyproj types it twice

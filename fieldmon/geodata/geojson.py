@@ -40,14 +40,10 @@ def read_geojson(path: Path, name: str, encoding: str | None) -> Layer:
     content, findings = decode(path.read_bytes(), encoding)
     root = _parsed(content, name)
     features = _features(root, name)
-    if len(features) > limits.FEATURES:
-        raise FileProblem(
-            f"A file may hold {limits.FEATURES} features at most, but {name} holds "
-            f"{len(features)}. Cut it to the plots that matter."
-        )
-    geometry, more = _geometries(features)
+    limits.check("features", len(features), limits.FEATURES, name)
+    geometry, more = _geometries(features, name)
     properties = [_properties(feature) for feature in features]
-    columns = _columns(properties)
+    columns = _columns(properties, name)
     crs, crs_findings = _crs(root)
     return Layer(name, columns, geometry, crs, (*findings, *more, *crs_findings))
 
@@ -128,12 +124,9 @@ def _properties(feature: dict[str, Any]) -> dict[str, Any]:
     return own
 
 
-def _columns(properties: list[dict[str, Any]]) -> dict[str, NDArray[np.object_]]:
+def _columns(properties: list[dict[str, Any]], file: str) -> dict[str, NDArray[np.object_]]:
     names = dict.fromkeys(name for row in properties for name in row)
-    if len(names) > limits.COLUMNS:
-        raise FileProblem(
-            f"Features may have {limits.COLUMNS} properties at most, but there are {len(names)}."
-        )
+    limits.check("columns", len(names), limits.COLUMNS, file)
     columns = {}
     for name in names:
         values = np.empty(len(properties), dtype=object)
@@ -148,7 +141,9 @@ def _cell(value: object) -> object:
     return json.dumps(value, ensure_ascii=False)
 
 
-def _geometries(features: list[dict[str, Any]]) -> tuple[NDArray[np.object_], list[Finding]]:
+def _geometries(
+    features: list[dict[str, Any]], name: str
+) -> tuple[NDArray[np.object_], list[Finding]]:
     geometry = np.full(len(features), None, dtype=object)
     broken = []
     n_vertices = 0
@@ -162,11 +157,7 @@ def _geometries(features: list[dict[str, Any]]) -> tuple[NDArray[np.object_], li
             broken.append(i)
             continue
         n_vertices += int(shapely.get_num_coordinates(geometry[i]))
-        if n_vertices > limits.VERTICES:
-            raise FileProblem(
-                f"A file may hold {limits.VERTICES} vertices at most, but there are more. "
-                "Simplify the shapes or cut the file to the plots that matter."
-            )
+        limits.check("vertices", n_vertices, limits.VERTICES, name)
     findings = [
         dropped("The geometry cannot be understood and is left out.", f"feature {i + 1}")
         for i in broken
@@ -182,7 +173,7 @@ def _geometry(stated: dict[str, Any]) -> shapely.Geometry:
 
 
 def _points(stated: list[Any]) -> NDArray[np.float64]:
-    """Return ``(n, 2)`` coordinates; height and measure are left behind."""
+    """Return ``(n, 2)`` or ``(n, 3)`` coordinates."""
     try:
         coordinates = np.array(stated, dtype=np.float64)
     except ValueError:  # some with height, some without
@@ -191,7 +182,7 @@ def _points(stated: list[Any]) -> NDArray[np.float64]:
         return np.empty((0, 2))
     if coordinates.ndim != 2 or coordinates.shape[1] < 2:
         raise ValueError("a position must have two coordinates")
-    return coordinates[:, :2]
+    return coordinates[:, :3]
 
 
 def _polygon(stated: list[Any]) -> shapely.Polygon:

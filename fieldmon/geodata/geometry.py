@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyproj
 import shapely
-from shapely import MultiPolygon
+from shapely import MultiPolygon, Polygon
+from shapely.errors import GEOSException
 
 from fieldmon.geodata.findings import Finding, doubtful, dropped, repaired
 
@@ -15,11 +16,21 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _GEOD = pyproj.Geod(ellps="WGS84")
-_AREAL = frozenset({"Polygon", "MultiPolygon", "GeometryCollection"})
 #: a plot smaller or larger than this is questioned
 SMALLEST_M2, LARGEST_M2 = 10.0, 100_000_000.0
 #: a part smaller or narrower than this carries no plant
 _SLIVER_M2, _SLIVER_WIDTH_M = 1.0, 0.1
+_REASONS = {
+    "Self-intersection": "its outline crosses itself",
+    "Ring Self-intersection": "its outline touches itself",
+    "Hole lies outside shell": "a hole lies outside it",
+    "Holes are nested": "a hole lies in a hole",
+    "Nested holes": "a hole lies in a hole",
+    "Nested shells": "a part lies inside another",
+    "Duplicate Rings": "a ring is there twice",
+    "Interior is disconnected": "holes cut it into pieces",
+    "Too few points in geometry component": "a ring has too few corners",
+}
 
 
 def area_m2(geometry: shapely.Geometry) -> float:
@@ -27,26 +38,50 @@ def area_m2(geometry: shapely.Geometry) -> float:
     return abs(float(_GEOD.geometry_area_perimeter(shapely.orient_polygons(geometry))[0]))
 
 
+class Sorted(NamedTuple):
+    """Masks ``(n,)`` of features by what they are; none of them for a missing geometry."""
+
+    areas: NDArray[np.bool_]
+    lines: NDArray[np.bool_]
+    points: NDArray[np.bool_]
+
+
+def sort_out(geometry: NDArray[np.object_]) -> Sorted:
+    """Return which features are areas, lines or points; a collection is the most it holds."""
+    there = ~shapely.is_missing(geometry) & ~shapely.is_empty(geometry)
+    dimensions = np.where(there, shapely.get_dimensions(geometry), -1)
+    return Sorted(dimensions == 2, dimensions == 1, dimensions == 0)
+
+
+def closed_lines(geometry: NDArray[np.object_]) -> NDArray[np.bool_]:
+    """Return which features are lines that end where they begin: outlines drawn as lines."""
+    parts_closed = [
+        g is not None
+        and g.geom_type in {"LineString", "MultiLineString"}
+        and not g.is_empty
+        and all(p.is_closed and len(p.coords) >= 4 for p in shapely.get_parts(g))
+        for g in geometry
+    ]
+    return np.array(parts_closed, dtype=bool)
+
+
+def filled(line: shapely.Geometry) -> MultiPolygon:
+    """Return the area inside lines that end where they begin."""
+    return MultiPolygon([Polygon(part.coords) for part in shapely.get_parts(line)])
+
+
 def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Finding]]:
     """Return one feature's lon/lat area as a valid MultiPolygon (empty where nothing is left)."""
     findings: list[Finding] = []
-    before = area_m2(_areas(area))
-    if not shapely.is_valid(area):
-        why = shapely.is_valid_reason(area)
-        area = shapely.make_valid(area, method="structure", keep_collapsed=False)
-        after = area_m2(_areas(area))
-        findings.append(
-            repaired(
-                f"The shape was not valid ({_plain(why)}) and was repaired: "
-                f"{_amount(before)} before, {_amount(after)} now.",
-                name,
-            )
-        )
-    kept, slivers = _without_slivers(_areas(area))
-    if slivers:
+    whole = _polygons(area)
+    if not shapely.is_valid(whole):
+        whole, said = _repaired(whole, name)
+        findings.append(said)
+    kept, n_slivers = _without_slivers(whole)
+    if n_slivers:
         findings.append(
             dropped(
-                f"{slivers} part(s) too small or narrow for a plant were left out "
+                f"{n_slivers} part(s) too small or narrow for a plant were left out "
                 f"(under {_SLIVER_M2:g} m2 or {_SLIVER_WIDTH_M:g} m wide).",
                 name,
             )
@@ -56,20 +91,36 @@ def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Find
     return kept, findings
 
 
-def _areas(geometry: shapely.Geometry) -> MultiPolygon:
+def _repaired(area: MultiPolygon, name: str) -> tuple[MultiPolygon, Finding]:
+    """Return a valid area: parts that overlap become one, holes stay holes, lines vanish."""
+    why, before = _plain(shapely.is_valid_reason(area)), area_m2(area)
+    try:
+        valid = shapely.make_valid(area, method="structure", keep_collapsed=False)
+    except GEOSException as bad:
+        return MultiPolygon(), dropped(f"The shape is broken ({why}) beyond repair: {bad}.", name)
+    whole = _polygons(valid)
+    parts = "" if len(whole.geoms) == len(area.geoms) else f" in {len(whole.geoms)} part(s)"
+    change = f"{_amount(before)} as drawn, {_amount(area_m2(whole))}{parts} now"
+    return whole, repaired(f"The shape was not valid ({why}) and was repaired: {change}.", name)
+
+
+def _polygons(geometry: shapely.Geometry) -> MultiPolygon:
     """Return the polygons of any geometry."""
     parts = shapely.get_parts(geometry)
-    while any(shapely.get_type_id(parts) >= 4):
+    while (shapely.get_type_id(parts) >= 4).any():
         parts = shapely.get_parts(parts)
-    return MultiPolygon([p for p in parts if p.geom_type == "Polygon" and not p.is_empty])
+    kept = parts[(shapely.get_type_id(parts) == 3) & ~shapely.is_empty(parts)]
+    return MultiPolygon(list(kept))
 
 
 def _without_slivers(areas: MultiPolygon) -> tuple[MultiPolygon, int]:
     kept = []
     for part in areas.geoms:
-        area, perimeter = _GEOD.geometry_area_perimeter(part)
+        area, perimeter = _GEOD.geometry_area_perimeter(shapely.orient_polygons(part))
         if abs(area) >= _SLIVER_M2 and 2 * abs(area) / max(perimeter, 1e-9) >= _SLIVER_WIDTH_M:
             kept.append(part)
+    if len(kept) == len(areas.geoms):
+        return areas, 0
     return MultiPolygon(kept), len(areas.geoms) - len(kept)
 
 
@@ -79,8 +130,8 @@ def _questions(areas: MultiPolygon, name: str) -> list[Finding]:
         return []
     return [
         doubtful(
-            f"A plot has {SMALLEST_M2:g} m2 to {_amount(LARGEST_M2)} as a rule, but this one has "
-            f"{_amount(area)}. Check the coordinate system and the choice of feature.",
+            f"A plot has {_amount(SMALLEST_M2)} to {_amount(LARGEST_M2)} as a rule, but this one "
+            f"has {_amount(area)}. Check the coordinate system and the choice of feature.",
             name,
         )
     ]
@@ -91,38 +142,10 @@ def _amount(area: float) -> str:
 
 
 def _plain(reason: str) -> str:
-    """Return GEOS's reason with its coordinates as people write them."""
+    """Return GEOS's reason in words, with its place as people write it."""
     what, _, where = reason.partition("[")
-    words = {
-        "Self-intersection": "its outline crosses itself",
-        "Ring Self-intersection": "its outline touches itself",
-        "Hole lies outside shell": "a hole lies outside it",
-        "Holes are nested": "a hole lies in a hole",
-        "Nested shells": "a part lies inside another",
-        "Duplicate Rings": "a ring is there twice",
-        "Interior is disconnected": "holes cut it into pieces",
-        "Too few points in geometry component": "a ring has too few corners",
-        "Invalid Coordinate": "a coordinate is not a number",
-    }
-    text = words.get(what.strip(), what.strip())
-    if not where:
-        return text
-    try:
-        lon, lat = (float(v) for v in where.rstrip("]").split()[:2])
-    except ValueError:
-        return text
-    return f"{text} at {lon:.6f}, {lat:.6f}"
-
-
-def sort_out(
-    geometry: NDArray[np.object_],
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return masks ``(n,)`` of areas, of lines and of points; none of them for missing ones."""
-    types = shapely.get_type_id(geometry)
-    there = (types >= 0) & ~shapely.is_empty(geometry)
-    collections = there & (types == 7)
-    has_area = there & np.isin(types, (3, 6))
-    has_area[collections] = shapely.get_dimensions(geometry[collections]) == 2
-    has_line = there & np.isin(types, (1, 2, 5))
-    has_line[collections] = shapely.get_dimensions(geometry[collections]) == 1
-    return has_area, has_line, there & ~has_area & ~has_line
+    words = _REASONS.get(what.strip(), what.strip())
+    numbers = where.rstrip("]").split()
+    if len(numbers) < 2:
+        return words
+    return f"{words} at {float(numbers[0]):.6f}, {float(numbers[1]):.6f}"

@@ -24,7 +24,6 @@ from fieldmon.geodata import limits
 if sys.platform != "win32":
     import resource
 
-_PACKAGE = "fieldmon.geodata."
 #: files read before a process is replaced, so that nothing adds up in it
 _USES = 200
 # GDAL reads these when it is loaded. Drivers that lead to other files or to the network are not
@@ -167,7 +166,7 @@ _IDLE = _Idle()
 
 
 def call(task: str, *arguments: Any, seconds: float = limits.READ_SECONDS) -> Any:  # noqa: ANN401
-    """Return what ``module:function`` of this package returns in a reading process.
+    """Return what ``module:function`` returns in a reading process.
 
     Raises
     ------
@@ -205,7 +204,7 @@ def _serve() -> None:
 def _answer(task: str, arguments: tuple[Any, ...]) -> tuple[bool, Any]:
     module, _, function = task.partition(":")
     try:
-        return True, getattr(importlib.import_module(_PACKAGE + module), function)(*arguments)
+        return True, getattr(importlib.import_module(module), function)(*arguments)
     except MemoryError:
         return False, FileProblem(
             f"Reading a file may take {limits.size(limits.MEMORY_BYTES)} of memory at most, but "

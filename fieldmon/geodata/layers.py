@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import shapely
 
 from fieldmon.errors import ChoiceNeeded
+from fieldmon.geodata.findings import dropped, seen
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -58,6 +60,22 @@ class Layer:
     def saying(self, *more: Finding) -> Layer:
         """Return the same layer with more findings."""
         return replace(self, findings=(*self.findings, *more))
+
+    def checked(self) -> Layer:
+        """Return the layer flat, without geometries whose coordinates are no numbers."""
+        if self.geometry is None:
+            return self
+        findings = []
+        if shapely.has_z(self.geometry).any() or shapely.has_m(self.geometry).any():
+            findings.append(seen("Heights and measures (Z, M) are not used."))
+        flat = shapely.force_2d(self.geometry)
+        coordinates, feature = shapely.get_coordinates(flat, return_index=True)
+        broken = np.unique(feature[~np.isfinite(coordinates).all(axis=1)])
+        flat[broken] = None
+        if len(broken):
+            said = f"{len(broken)} feature(s) have coordinates that are no numbers; left out."
+            findings.append(dropped(said, f"feature {broken[0] + 1}"))
+        return replace(self, geometry=flat, findings=(*self.findings, *findings))
 
     def where(self, condition: str | None) -> Layer:
         """Return the features that fulfil ``column=value``; all of them for None."""

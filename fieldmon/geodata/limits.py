@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fieldmon.errors import FileProblem
+
 MB = 1_000_000
 
 #: one file as it comes, and everything together that an archive unpacks to
@@ -33,3 +35,12 @@ def size(n_bytes: float) -> str:
         if n_bytes >= scale:
             return f"{n_bytes / scale:.3g} {unit}"
     return f"{n_bytes:.0f} bytes"
+
+
+def check(what: str, n: int, most: int, name: str) -> None:
+    """Raise `FileProblem` where a file holds more of something than it may."""
+    if n > most:
+        raise FileProblem(
+            f"A file may hold {most} {what} at most, but {name} holds more. "
+            "Cut it to the plots and the season that matter."
+        )

@@ -9,7 +9,7 @@ from fieldmon.geodata.containers import Member, Workroom, choose_member, members
 from fieldmon.geodata.findings import seen
 from fieldmon.geodata.formats import TABULAR, VECTOR, Kind
 from fieldmon.geodata.gdal import list_layers as gdal_layers
-from fieldmon.geodata.gdal import read_layer
+from fieldmon.geodata.gdal import read_layer, read_shapefile
 from fieldmon.geodata.geojson import read_geojson
 from fieldmon.geodata.layers import Layer, LayerInfo
 from fieldmon.geodata.options import ReadOptions, Source, source_name
@@ -44,7 +44,7 @@ def open_layer(source: Source, options: ReadOptions, workroom: Workroom) -> Laye
     found = _data_sets(members(source, workroom))
     member = choose_member(found, options.member, source_name(source))
     choice = Choice(member, workroom.stage(member), member.name)
-    return _read(choice, options).where(options.where)
+    return _read(choice, options).where(options.where).checked()
 
 
 def _data_sets(found: tuple[Member, ...]) -> tuple[Member, ...]:
@@ -84,7 +84,7 @@ def _read(choice: Choice, options: ReadOptions) -> Layer:
     if kind is Kind.TABLE:
         return read_text_table(choice.path, choice.member.stem, options)
     if kind is Kind.SHAPEFILE:
-        return read_layer(choice.path, choice.member.stem, None, options.encoding)
+        return read_shapefile(choice.path, choice.member.stem, options.encoding)
     if kind is Kind.WORKBOOK:
         return _only_layer(choice, options, sheet_names(choice.path, choice.name))
     listed = gdal_layers(choice.path, choice.name)
@@ -96,9 +96,9 @@ def _only_layer(choice: Choice, options: ReadOptions, names: tuple[str, ...]) ->
     """Return the layer named, or the only one that holds anything."""
     if options.layer is not None:
         if options.layer in names:
-            return _layer(choice, options, options.layer)
+            return _layer(choice, options.layer)
         raise _which_layer(choice, names, f", but none is called {options.layer!r}")
-    full = _full_layers(choice, options, names)
+    full = _full_layers(choice, names)
     if len(full) > 1:
         raise _which_layer(choice, tuple(layer.name for layer in full), " with something in them")
     if not full:
@@ -112,11 +112,11 @@ def _only_layer(choice: Choice, options: ReadOptions, names: tuple[str, ...]) ->
     )
 
 
-def _full_layers(choice: Choice, options: ReadOptions, names: tuple[str, ...]) -> list[Layer]:
+def _full_layers(choice: Choice, names: tuple[str, ...]) -> list[Layer]:
     full = []
     for name in names:
         try:
-            layer = _layer(choice, options, name)
+            layer = _layer(choice, name)
         except FileProblem:
             if len(names) == 1:
                 raise
@@ -126,10 +126,10 @@ def _full_layers(choice: Choice, options: ReadOptions, names: tuple[str, ...]) -
     return full
 
 
-def _layer(choice: Choice, options: ReadOptions, layer: str) -> Layer:
+def _layer(choice: Choice, layer: str) -> Layer:
     if choice.member.kind is Kind.WORKBOOK:
         return read_sheet(choice.path, choice.name, layer)
-    return read_layer(choice.path, choice.name, layer, options.encoding)
+    return read_layer(choice.path, choice.name, layer)
 
 
 def _which_layer(choice: Choice, names: tuple[str, ...], more: str) -> ChoiceNeeded:

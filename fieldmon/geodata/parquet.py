@@ -23,11 +23,7 @@ def read_parquet(path: Path, name: str) -> Layer:
     try:
         file = pq.ParquetFile(path, memory_map=False)
         metadata = file.schema_arrow.metadata or {}
-        if file.metadata.num_rows > limits.FEATURES:
-            raise FileProblem(
-                f"A file may hold {limits.FEATURES} features at most, but {name} holds "
-                f"{file.metadata.num_rows}. Cut it to the plots that matter."
-            )
+        limits.check("features", file.metadata.num_rows, limits.FEATURES, name)
         geo = json.loads(metadata.get(b"geo", b"{}"))
         table = file.read(use_threads=False) if geo else None
     except (pa.ArrowException, OSError, ValueError, RecursionError) as bad:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,10 +14,11 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.field import Field
 from fieldmon.geodata.columns import find
 from fieldmon.geodata.findings import Finding, Imported, doubtful, dropped, guessed, seen
-from fieldmon.geodata.geometry import boundary, sort_out
+from fieldmon.geodata.geometry import boundary, closed_lines, filled, sort_out
+from fieldmon.geodata.known_rows import with_known_rows
 from fieldmon.geodata.layers import Layer, text
 from fieldmon.geodata.placing import place_geometry
-from fieldmon.geodata.positions import table_points
+from fieldmon.geodata.positions import located
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,14 +30,20 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     """Return the plots of a layer, each valid and in degrees WGS84."""
     if layer.geometry is None:
         return _plot_of_corners(layer, options)
-    kept, findings = _areas(layer)
-    names, more = plot_names(layer.take(kept), options.name_column)
+    areas, findings = _areas(layer)
+    names, name_findings = plot_names(areas, options.name_column)
     chosen = _chosen(names, options.feature)
-    geometry = layer.geometry[kept][chosen]
-    placed, place_findings = place_geometry(geometry, layer.crs, options)
+    placed, place_findings = place_geometry(_shapes(areas)[chosen], layer.crs, options)
     fields, shape_findings = _fields(placed, [names[i] for i in chosen])
-    found = (*layer.findings, *findings, *more, *place_findings, *shape_findings)
-    return Imported(fields, found)
+    fields, row_findings = with_known_rows(fields, areas, names)
+    found = (*layer.findings, *findings, *name_findings, *place_findings, *shape_findings)
+    return Imported(fields, (*found, *row_findings))
+
+
+def _shapes(layer: Layer) -> NDArray[np.object_]:
+    if layer.geometry is None:
+        raise FileProblem(f"{layer.name} must hold shapes, but it is a plain table.")
+    return layer.geometry
 
 
 def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[Finding]]:
@@ -49,7 +57,7 @@ def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[Findin
                 guessed("No column was recognised as the plots' names; they are numbered.")
             )
     else:
-        base = [text(v) or f"{layer.name}" for v in layer.column(named)]
+        base = [text(v) or layer.name for v in layer.column(named)]
         if len(layer) > 1 or column is None:
             findings.append(seen(f"Plots are named by column {named!r}."))
     return _told_apart(base), findings
@@ -65,28 +73,37 @@ def _told_apart(names: list[str]) -> list[str]:
     return apart
 
 
-def _areas(layer: Layer) -> tuple[NDArray[np.int64], list[Finding]]:
+def _areas(layer: Layer) -> tuple[Layer, list[Finding]]:
     """Return the features that have an area; offer lines and points for what they can be."""
-    geometry = layer.geometry
-    assert geometry is not None  # noqa: S101 - plots_of looked
-    areas, lines, points = sort_out(geometry)
+    findings: list[Finding] = []
+    areas, lines, points = sort_out(_shapes(layer))
+    if not areas.any() and lines.any():
+        layer, findings = _outlines(layer)
+        areas, lines, points = sort_out(_shapes(layer))
     if not areas.any():
         _refuse_without_areas(layer, int(lines.sum()), int(points.sum()))
-    findings = []
-    missing = len(geometry) - int((areas | lines | points).sum())
+    missing = len(layer) - int((areas | lines | points).sum())
     if missing:
         findings.append(dropped(f"{missing} feature(s) without a geometry were left out."))
     if lines.any():
-        findings.append(
-            dropped(f"{int(lines.sum())} line(s) were left out: import them as rows or paths.")
-        )
+        said = f"{int(lines.sum())} line(s) were left out: import them as rows or paths."
+        findings.append(dropped(said))
     if points.any():
-        findings.append(
-            dropped(
-                f"{int(points.sum())} point(s) were left out: import them as plants or records."
-            )
-        )
-    return np.flatnonzero(areas), findings
+        said = f"{int(points.sum())} point(s) were left out: import them as plants or records."
+        findings.append(dropped(said))
+    return layer.take(np.flatnonzero(areas)), findings
+
+
+def _outlines(layer: Layer) -> tuple[Layer, list[Finding]]:
+    """Return the layer with closed lines as the areas inside them."""
+    shapes = _shapes(layer)
+    closed = closed_lines(shapes)
+    if not closed.any():
+        return layer, []
+    as_areas = shapes.copy()
+    as_areas[closed] = [filled(line) for line in shapes[closed]]
+    said = f"{int(closed.sum())} closed line(s) were taken as the outlines of plots."
+    return replace(layer, geometry=as_areas), [guessed(said)]
 
 
 def _refuse_without_areas(layer: Layer, n_lines: int, n_points: int) -> None:
@@ -142,7 +159,26 @@ def _fields(
     if not fields:
         said = "; ".join(f.sentence for f in findings[:5])
         raise FileProblem(f"At least one plot must have an area, but none has. {said}")
-    return tuple(fields), [*findings, *_duplicates(fields)]
+    return tuple(fields), [*findings, *_parts(fields), *_duplicates(fields)]
+
+
+def _parts(fields: list[Field]) -> list[Finding]:
+    several = [f.name for f in fields if len(f.boundary.geoms) > 1]
+    holed = [f.name for f in fields if any(len(p.interiors) for p in f.boundary.geoms)]
+    findings = []
+    if several:
+        findings.append(
+            seen(f"{len(several)} plot(s) have several parts, which were kept: {_some(several)}.")
+        )
+    if holed:
+        findings.append(
+            seen(f"{len(holed)} plot(s) have holes, kept as places without plants: {_some(holed)}.")
+        )
+    return findings
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:5]) + (", ..." if len(names) > 5 else "")
 
 
 def _duplicates(fields: list[Field]) -> list[Finding]:
@@ -158,7 +194,8 @@ def _duplicates(fields: list[Field]) -> list[Finding]:
 
 def _plot_of_corners(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     """Return the one plot whose corners a table lists in order."""
-    points, findings = table_points(layer, options)
+    found = located(layer, options)
+    points, findings = found.lonlat, found.findings
     if not 3 <= len(points) <= 1000:
         raise _which_are_corners(layer, len(points))
     ring = MultiPolygon([shapely.Polygon(points)])

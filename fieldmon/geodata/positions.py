@@ -1,107 +1,71 @@
-"""Positions of plants, lines of rows and paths, and positions out of the columns of a table."""
+"""Where the features or records of a layer are, in whichever way it says so."""
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyproj
 import shapely
-from shapely import MultiLineString
+from pyproj.exceptions import CRSError
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.geodata.columns import find
-from fieldmon.geodata.findings import Finding, Imported, dropped, seen
+from fieldmon.geodata.findings import Finding, Remedy, doubtful, dropped, guessed, repaired, seen
 from fieldmon.geodata.geometry import sort_out
 from fieldmon.geodata.layers import Layer, text
-from fieldmon.geodata.placing import place, place_geometry
-from fieldmon.geodata.values import all_degrees, numbers
+from fieldmon.geodata.places import Named, Places, by_plant, by_plot
+from fieldmon.geodata.placing import place
+from fieldmon.geodata.values import all_degrees, hemispheres, is_missing, numbers, pairs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.geodata.options import ReadOptions
 
+_WGS84 = "OGC:CRS84"
+#: coordinates rounded to more than this cannot tell neighbouring plants apart
+_COARSE_M = 1.0
+
 
 @dataclass(frozen=True, eq=False)
-class Plants:
-    """Measured positions of plants, with what the file calls them.
+class Located:
+    """The features of a layer that have a position.
 
     Parameters
     ----------
+    layer
+        Those features.
     lonlat
         ``(n, 2)`` degrees.
-    row, plant
-        ``(n,)`` labels of the row and of the plant; empty where the file has none.
+    accuracy_m
+        ``(n,)`` what the way of writing positions leaves open; NaN where that is nothing.
+    findings
+        What was found on the way.
     """
 
+    layer: Layer
     lonlat: NDArray[np.float64]
-    row: NDArray[np.str_]
-    plant: NDArray[np.str_]
-
-    def __post_init__(self) -> None:
-        for values in (self.lonlat, self.row, self.plant):
-            values.setflags(write=False)
-
-    def __len__(self) -> int:
-        """Return the number of plants."""
-        return len(self.lonlat)
+    accuracy_m: NDArray[np.float64]
+    findings: tuple[Finding, ...]
 
 
-def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
-    """Return the plants of a layer of points, or of a table with positions."""
-    layer, lonlat, findings = located(layer, options)
-    if len(layer) == 0:
-        raise FileProblem(f"{layer.name} must hold positions of plants, but holds none.")
-    taken: set[str] = set()
-    labels = []
-    for role in ("row", "plant"):
-        named = options.column(role) or find(role, layer.columns, frozenset(taken))
-        if named is None:
-            labels.append(np.full(len(layer), "", dtype=np.str_))
-            continue
-        taken.add(named)
-        findings.append(seen(f"Column {named!r} names the {role}s."))
-        labels.append(np.array([text(v) for v in layer.column(named)], dtype=np.str_))
-    return Imported(Plants(lonlat, *labels), (*layer.findings, *findings))
+def located(layer: Layer, options: ReadOptions, places: Places | None = None) -> Located:
+    """Return the features of a layer that have a position, or name a place that has one."""
+    if layer.geometry is not None:
+        return _points(layer, options)
+    way = _way(layer, options)
+    if way is not None:
+        return _by_coordinates(layer, options, *way)
+    return _by_name(layer, options, places or Places())
 
 
-def lines_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:
-    """Return the lines of a layer (outlines of areas too), lon/lat."""
-    if layer.geometry is None:
-        raise FileProblem(f"{layer.name} must hold lines, but it is a plain table.")
-    areas, lines, points = sort_out(layer.geometry)
-    if not lines.any():
-        raise FileProblem(
-            f"{layer.name} must hold lines, but it holds {int(areas.sum())} area(s) and "
-            f"{int(points.sum())} point(s). Choose another file or layer."
-        )
-    findings = []
-    others = len(layer) - int(lines.sum())
-    if others:
-        findings.append(dropped(f"{others} feature(s) that are no lines were left out."))
-    placed, more = place_geometry(layer.geometry[lines], layer.crs, options)
-    parts = shapely.get_parts(shapely.get_parts(placed))
-    is_line = np.isin(shapely.get_type_id(parts), (1, 2))
-    has_length = is_line & (shapely.length(parts) > 0)
-    if has_length.sum() < is_line.sum():
-        n_points = int(is_line.sum() - has_length.sum())
-        more.append(dropped(f"{n_points} line(s) that do not lead anywhere were left out."))
-    whole = MultiLineString(list(parts[has_length]))
-    return Imported(whole, (*layer.findings, *findings, *more))
-
-
-def located(layer: Layer, options: ReadOptions) -> tuple[Layer, NDArray[np.float64], list[Finding]]:
-    """Return the features that have a position, and that position ``(n, 2)``, lon/lat."""
-    if layer.geometry is None:
-        lonlat, findings = table_positions(layer, options)
-        there = np.isfinite(lonlat).all(axis=1)
-        if not there.all():
-            lost = int((~there).sum())
-            findings.append(dropped(f"{lost} record(s) without a usable position were left out."))
-        return layer.take(np.flatnonzero(there)), lonlat[there], findings
-    areas, lines, points = sort_out(layer.geometry)
-    if not points.any():
+def _points(layer: Layer, options: ReadOptions) -> Located:
+    geometry = layer.geometry
+    areas, lines, points = sort_out(np.asarray(geometry))
+    if geometry is None or not points.any():
         raise FileProblem(
             f"{layer.name} must hold points, but it holds {int(areas.sum())} area(s) and "
             f"{int(lines.sum())} line(s). Choose another file or layer."
@@ -110,50 +74,191 @@ def located(layer: Layer, options: ReadOptions) -> tuple[Layer, NDArray[np.float
     others = len(layer) - int(points.sum())
     if others:
         findings.append(dropped(f"{others} feature(s) that are no points were left out."))
-    single, index = shapely.get_parts(layer.geometry[points], return_index=True)
+    single, index = shapely.get_parts(geometry[points], return_index=True)
     kept = layer.take(np.flatnonzero(points)[index])
-    lonlat, more = place(shapely.get_coordinates(single), layer.crs, options)
-    return kept, lonlat, [*findings, *more]
+    placed = place(shapely.get_coordinates(single), layer.crs, options)
+    accuracy, coarse = _rounding(placed.step_m, len(kept))
+    return Located(kept, placed.lonlat, accuracy, (*findings, *placed.findings, *coarse))
 
 
-def table_points(layer: Layer, options: ReadOptions) -> tuple[NDArray[np.float64], list[Finding]]:
-    """Return the positions in a table's columns ``(k, 2)``, lon/lat, those without left out."""
-    lonlat, findings = table_positions(layer, options)
-    return lonlat[np.isfinite(lonlat).all(axis=1)], findings
-
-
-def table_positions(
-    layer: Layer, options: ReadOptions
-) -> tuple[NDArray[np.float64], list[Finding]]:
-    """Return the position of every record of a table ``(n, 2)``, lon/lat; NaN where it has none."""
-    lon, lat = (options.column(r) or find(r, layer.columns) for r in ("lon", "lat"))
-    x, y = (options.column(r) or find(r, layer.columns) for r in ("x", "y"))
+def _way(layer: Layer, options: ReadOptions) -> tuple[str, tuple[str, ...]] | None:
+    """Return how a table gives positions, and in which columns; None where it gives none."""
     by_hand = {role for role, _ in options.columns}
-    if x and y and (not (lon and lat) or by_hand & {"x", "y"}):
-        return _placed(layer, options, (x, y), None)
-    if lon and lat:
-        return _placed(layer, options, (lon, lat), "OGC:CRS84")
-    raise ChoiceNeeded(
-        f"{layer.name} must have a column of longitudes and one of latitudes (or eastings and "
-        f"northings), but none were recognised among: {', '.join(layer.columns)}. Name them.",
-        "columns",
-        tuple(layer.columns),
-    )
+
+    def named(*roles: str) -> tuple[str, ...]:
+        return tuple(n for r in roles if (n := options.column(r) or find(r, layer.columns)))
+
+    degrees, metres, together = named("lon", "lat"), named("x", "y"), named("position")
+    if len(metres) == 2 and by_hand & {"x", "y"}:
+        return "metres", metres
+    if len(degrees) == 2 and "position" not in by_hand:
+        return "degrees", degrees
+    if together and ("position" in by_hand or _holds_pairs(layer, together[0])):
+        return "together", together
+    if len(metres) == 2 and not _are_numbers_of_plants(layer, metres):
+        return "metres", metres
+    return None
 
 
-def _placed(
-    layer: Layer, options: ReadOptions, names: tuple[str, str], crs: str | None
-) -> tuple[NDArray[np.float64], list[Finding]]:
-    parse = numbers if crs is None else all_degrees
-    xy: NDArray[np.float64] = np.stack(
-        [parse(layer.column(name), options.decimal) for name in names], axis=1
-    )
-    there = np.isfinite(xy).all(axis=1)
+def _holds_pairs(layer: Layer, name: str) -> bool:
+    some = [text(v) for v in layer.column(name)[:50] if not is_missing(v)]
+    return bool(some) and bool(np.isfinite(pairs(some).values).any())
+
+
+def _are_numbers_of_plants(layer: Layer, names: tuple[str, ...]) -> bool:
+    """Return whether x and y are small whole numbers: places in a grid, not on the earth."""
+    xy = np.stack([numbers(layer.column(name)) for name in names], axis=1)
+    xy = xy[np.isfinite(xy).all(axis=1)]
+    return len(xy) > 0 and bool(((xy == np.round(xy)) & (xy >= 0) & (xy < 2000)).all())
+
+
+def _by_coordinates(
+    layer: Layer, options: ReadOptions, how: str, names: tuple[str, ...]
+) -> Located:
+    shown = " and ".join(repr(name) for name in names)
+    xy, crs, findings = _coordinates(layer, options, how, names)
+    stated, more = _stated_crs(layer, options)
+    there = _finite(xy)
     if not there.any():
         raise FileProblem(
-            f"Columns {names[0]!r} and {names[1]!r} of {layer.name} must hold positions, "
-            "but not one record has any. Name other columns."
+            f"Column(s) {shown} of {layer.name} must hold positions, but not one record has any"
+            f"{_for_instance(layer, names, there)}. Correct them or name other columns."
         )
-    lonlat = np.full_like(xy, np.nan)
-    lonlat[there], findings = place(xy[there], crs, options)
-    return lonlat, [seen(f"Positions are in columns {names[0]!r} and {names[1]!r}."), *findings]
+    if not there.all():
+        findings.append(
+            dropped(
+                f"{int((~there).sum())} record(s) without a usable position were left out"
+                f"{_for_instance(layer, names, there)}."
+            )
+        )
+    placed = place(xy[there], stated or crs, options)
+    accuracy, coarse = _rounding(placed.step_m, int(there.sum()))
+    found = (seen(f"Positions are in column(s) {shown}."), *findings, *more)
+    return Located(
+        layer.take(np.flatnonzero(there)),
+        placed.lonlat,
+        accuracy,
+        (*found, *placed.findings, *coarse),
+    )
+
+
+def _finite(xy: NDArray[np.float64]) -> NDArray[np.bool_]:
+    return np.asarray(np.isfinite(xy).all(axis=1), dtype=bool)
+
+
+def _coordinates(
+    layer: Layer, options: ReadOptions, how: str, names: tuple[str, ...]
+) -> tuple[NDArray[np.float64], str | None, list[Finding]]:
+    """Return what the columns hold ``(n, 2)``, its coordinate system if that is sure, findings."""
+    columns = [layer.column(name) for name in names]
+    if how == "metres":
+        return np.stack([numbers(c, options.decimal) for c in columns], axis=1), None, []
+    if how == "together":
+        read = pairs([text(v) for v in columns[0]])
+        return read.values, _WGS84, _order_of(read.is_certain, names[0])
+    xy = np.stack([all_degrees(c, options.decimal) for c in columns], axis=1)
+    if _letters_are_crossed(layer, names):
+        said = "Longitudes stood in the column of latitudes; exchanged."
+        return xy[:, ::-1], _WGS84, [repaired(said)]
+    return xy, _WGS84, []
+
+
+def _letters_are_crossed(layer: Layer, names: tuple[str, ...]) -> bool:
+    lon, lat = (hemispheres(text(v) for v in layer.column(name)) for name in names)
+    return bool(lon | lat) and lon <= set("NS") and lat <= set("EW")
+
+
+def _order_of(is_certain: bool, name: str) -> list[Finding]:  # noqa: FBT001 - one caller
+    if is_certain:
+        return []
+    return [
+        guessed(
+            "Both coordinates stand in one column; they were read as latitude, longitude.",
+            name,
+            Remedy("swap_axes", "yes", "Read as longitude, latitude"),
+        )
+    ]
+
+
+def _for_instance(layer: Layer, names: tuple[str, ...], there: NDArray[np.bool_]) -> str:
+    for i in np.flatnonzero(~there):
+        cells = [text(layer.column(name)[i]) for name in names]
+        if any(not is_missing(cell) for cell in cells):
+            return f", for instance {' / '.join(cells)!r} in record {i + 1}"
+    return ""
+
+
+def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Finding]]:
+    """Return the coordinate system that a column of the table states for all of its records."""
+    name = options.column("crs") or find("crs", layer.columns)
+    if name is None or options.crs is not None:
+        return None, []
+    stated = {text(v) for v in layer.column(name) if not is_missing(v)}
+    if len(stated) > 1:
+        raise ChoiceNeeded(
+            f"All records must be in one coordinate system, but column {name!r} names "
+            f"{len(stated)}: {', '.join(sorted(stated)[:5])}. Choose the records of one of them.",
+            "where",
+            tuple(f"{name}={value}" for value in sorted(stated)),
+        )
+    for value in stated:
+        known = f"EPSG:{value}" if re.fullmatch(r"\d{4,6}", value) else value
+        try:
+            pyproj.CRS.from_user_input(known)
+        except CRSError:
+            return None, [
+                doubtful(f"It names the coordinate system {value!r}, which is not known.", name)
+            ]
+        return known, [seen(f"Column {name!r} names the coordinate system {value}.")]
+    return None, []
+
+
+def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
+    """Return the records that name a plant or a plot, at the place they name."""
+    row = options.column("row") or find("row", layer.columns)
+    taken = frozenset({row} if row else ())
+    plant = options.column("plant") or find("plant", layer.columns, taken)
+    plot = options.column("plot") or find("plot", layer.columns)
+    if plant and (row or not plot) and (places.plants or not plot):
+        rows = None if row is None else layer.column(row)
+        named = by_plant(rows, layer.column(plant), places)
+    elif plot and places.plants is not None and not places.plots:
+        named = by_plant(None, layer.column(plot), places)
+    elif plot:
+        named = by_plot(layer.column(plot), places)
+    else:
+        raise ChoiceNeeded(
+            f"{layer.name} must have a column of longitudes and one of latitudes (or eastings and "
+            "northings, or rows and plants), but none were recognised among: "
+            f"{', '.join(layer.columns)}. Name them.",
+            "columns",
+            tuple(layer.columns),
+        )
+    return _kept(layer, named)
+
+
+def _kept(layer: Layer, named: Named) -> Located:
+    there = _finite(named.lonlat)
+    if not there.any():
+        said = " ".join(finding.sentence for finding in named.findings)
+        raise FileProblem(
+            f"Records of {layer.name} must name places that are known, but none does. {said}"
+        )
+    return Located(
+        layer.take(np.flatnonzero(there)),
+        named.lonlat[there],
+        named.accuracy_m[there],
+        named.findings,
+    )
+
+
+def _rounding(step_m: float, n: int) -> tuple[NDArray[np.float64], list[Finding]]:
+    """Return the accuracy that rounding leaves ``(n,)``, and a doubt where that is too little."""
+    if step_m <= _COARSE_M:
+        return np.full(n, np.nan), []
+    return np.full(n, step_m / np.sqrt(6)), [  # both axes, each even over the step
+        doubtful(
+            f"Coordinates are rounded to about {step_m:.3g} m: too coarse to name a plant. "
+            "They are used with that accuracy."
+        )
+    ]

@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from fieldmon.field import Field, Observations
     from fieldmon.geodata.findings import Imported
     from fieldmon.geodata.layers import LayerInfo
-    from fieldmon.geodata.positions import Plants
+    from fieldmon.geodata.places import Places, Plants
 
 
 def _read(task: str, *arguments: Any) -> Any:  # noqa: ANN401 - each door says what comes back
     # the folder is made and removed here: a reading process that was stopped cannot tidy up
     with tempfile.TemporaryDirectory(prefix="fieldmon-", ignore_cleanup_errors=True) as folder:
-        return guard.call(f"tasks:{task}", folder, *arguments)
+        return guard.call(f"fieldmon.geodata.tasks:{task}", folder, *arguments)
 
 
 def list_layers(source: Source) -> tuple[LayerInfo, ...]:
@@ -42,10 +42,25 @@ def read_plots(source: Source, options: PlotOptions | None = None) -> Imported[t
 
 
 def read_records(
-    source: Source, options: RecordOptions | None = None, near: Field | None = None
+    source: Source,
+    options: RecordOptions | None = None,
+    near: Field | None = None,
+    places: Places | None = None,
 ) -> Imported[Observations]:
-    """Return the pest records of a source; with a plot, only those on it or close by."""
-    records: Imported[Observations] = _read("records", source, options or RecordOptions())
+    """Return the pest records of a source.
+
+    Parameters
+    ----------
+    source
+        Path or upload.
+    options
+        What was chosen about how to read it.
+    near
+        Only records on this plot or close by; the others are counted in the findings.
+    places
+        Plots or plants that records may name instead of giving a position.
+    """
+    records: Imported[Observations] = _read("records", source, options or RecordOptions(), places)
     if near is None:
         return records
     kept, more = of_plot(records.value, near)

@@ -2,133 +2,245 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fieldmon.errors import ObservationError
 from fieldmon.field import PRESENT, UNKNOWN, Observations
 from fieldmon.geodata.columns import find
-from fieldmon.geodata.findings import (
-    Finding,
-    Imported,
-    Remedy,
-    doubtful,
-    guessed,
-    seen,
-)
+from fieldmon.geodata.findings import Finding, Imported, Remedy, doubtful, dropped, guessed, seen
 from fieldmon.geodata.layers import Layer, text
 from fieldmon.geodata.positions import located
-from fieldmon.geodata.values import counted, dates, dates_of_parts, decimal_mark, numbers, presence
+from fieldmon.geodata.values import (
+    counted,
+    dates,
+    dates_of_parts,
+    decimal_mark,
+    is_missing,
+    numbers,
+    presence,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.geodata.options import RecordOptions
+    from fieldmon.geodata.places import Places
+    from fieldmon.geodata.values import Dated
 
 
-def records_of(layer: Layer, options: RecordOptions) -> Imported[Observations]:
+def records_of(
+    layer: Layer, options: RecordOptions, places: Places | None = None
+) -> Imported[Observations]:
     """Return the records of a layer, each with a position."""
-    total = len(layer)
-    layer, lonlat, findings = located(layer, options)
     if len(layer) == 0:
-        raise ObservationError(
-            f"{layer.name} must hold records with a position, but none of its {total} has one."
-        )
-    day, more = _days(layer, options)
-    findings += more
-    count, present, more = _counts(layer, options)
-    findings += more
+        raise ObservationError(f"{layer.name} must hold records, but it holds none.")
+    layer, repeated = _once_each(layer)
+    found = located(layer, options, places)
+    table = _Table(found.layer, options)
+    day, day_findings = _days(table)
+    counts = _counts(table)
+    stated_m = table.numbers("accuracy")
     observations = Observations.of(
-        lonlat,
-        present,
+        found.lonlat,
+        counts.present,
         day,
-        count=count,
-        accuracy_m=_numbers(layer, options, "accuracy"),
-        species=_texts(layer, options, "species"),
-        stage=_texts(layer, options, "stage"),
-        leaves_sampled=_numbers(layer, options, "leaves"),
+        count=counts.number,
+        accuracy_m=np.fmax(np.where(stated_m > 0, stated_m, np.nan), found.accuracy_m),
+        species=table.texts("species"),
+        stage=table.texts("stage"),
+        leaves_sampled=table.numbers("leaves"),
     )
-    return Imported(observations, (*layer.findings, *findings))
+    findings = (*layer.findings, *repeated, *found.findings, *day_findings, *counts.findings)
+    return Imported(observations, (*findings, *_species(table), *_same_visit(observations)))
 
 
-def _named(layer: Layer, options: RecordOptions, role: str) -> str | None:
-    return options.column(role) or find(role, layer.columns)
+@dataclass(frozen=True, eq=False)
+class _Table:
+    """Columns by what they hold."""
+
+    layer: Layer
+    options: RecordOptions
+
+    def __len__(self) -> int:
+        return len(self.layer)
+
+    def named(self, role: str, taken: frozenset[str] = frozenset()) -> str | None:
+        return self.options.column(role) or find(role, self.layer.columns, taken)
+
+    def cells(self, name: str) -> list[str]:
+        return [text(v) for v in self.layer.column(name)]
+
+    def numbers(self, role: str) -> NDArray[np.float64]:
+        name = self.named(role)
+        if name is None:
+            return np.full(len(self), np.nan)
+        return numbers(self.layer.column(name), self.options.decimal)
+
+    def texts(self, role: str) -> NDArray[np.str_]:
+        name = self.named(role)
+        if name is None:
+            return np.full(len(self), "", dtype=np.str_)
+        return np.array(["" if is_missing(c) else c for c in self.cells(name)], dtype=np.str_)
 
 
-def _numbers(layer: Layer, options: RecordOptions, role: str) -> NDArray[np.float64]:
-    name = _named(layer, options, role)
-    if name is None:
-        return np.full(len(layer), np.nan)
-    return numbers(layer.column(name), options.decimal)
+class _Counts(NamedTuple):
+    number: NDArray[np.float64]
+    present: NDArray[np.int8]
+    findings: list[Finding]
 
 
-def _texts(layer: Layer, options: RecordOptions, role: str) -> NDArray[np.str_]:
-    name = _named(layer, options, role)
-    if name is None:
-        return np.full(len(layer), "", dtype=np.str_)
-    return np.array([text(v) for v in layer.column(name)], dtype=np.str_)
+def _once_each(layer: Layer) -> tuple[Layer, list[Finding]]:
+    """Return the layer without records that repeat another in every column."""
+    columns = [list(values) for values in layer.columns.values()]
+    if layer.geometry is not None:
+        columns.append([None if g is None else g.wkb for g in layer.geometry])
+    first: dict[tuple[object, ...], int] = {}
+    for i, row in enumerate(zip(*columns, strict=True)):
+        first.setdefault(row, i)
+    kept = np.fromiter(first.values(), dtype=np.int64)
+    n_again = len(layer) - len(kept)
+    if n_again == 0 or len(columns) < 3:
+        return layer, []
+    said = f"{n_again} record(s) repeat another in every column and were left out."
+    return layer.take(kept), [dropped(said)]
 
 
-def _days(layer: Layer, options: RecordOptions) -> tuple[NDArray[np.datetime64], list[Finding]]:
-    parts = [_named(layer, options, role) for role in ("year", "month", "day")]
-    name = options.column("date") or find("date", layer.columns, frozenset(p for p in parts if p))
-    if name is None and all(parts):
-        columns = [numbers(layer.column(str(part))) for part in parts]
-        read = dates_of_parts(*columns)
-        findings = [seen(f"Dates are in columns {', '.join(str(p) for p in parts)}.")]
-    elif name is not None:
-        read = dates(layer.column(name), options.date_order)
-        findings = [seen(f"Dates are in column {name!r}.")]
+def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[Finding]]:
+    parts = tuple(name for role in ("year", "month", "day") if (name := table.named(role)))
+    by_hand = table.options.column("date")
+    if len(set(parts)) == 3 and by_hand is None:
+        read = dates_of_parts(*(numbers(table.layer.column(part)) for part in parts))
+        where = ", ".join(parts)
     else:
-        unknown = np.full(len(layer), "NaT", dtype="datetime64[D]")
-        return unknown, [doubtful("No column was recognised as the date of the records.")]
+        name = table.named("date", frozenset(parts) if len(parts) > 1 else frozenset())
+        if name is None:
+            unknown = np.full(len(table), "NaT", dtype="datetime64[D]")
+            return unknown, [doubtful("No column was recognised as the date of the records.")]
+        read = dates(table.layer.column(name), table.options.date_order)
+        where = name
+    return read.day, [seen(f"Dates are in column(s) {where}."), *_about_dates(read, where)]
+
+
+def _about_dates(read: Dated, where: str) -> list[Finding]:
+    findings = []
     if read.is_ambiguous:
         findings.append(
             guessed(
                 "Every date could be day first or month first; they were read day first.",
-                name,
+                where,
                 Remedy("date_order", "mdy", "Read month first"),
             )
         )
-    if read.n_broken:
+    if read.n_serial:
         findings.append(
-            doubtful(f"{read.n_broken} record(s) have a date that is none; it is left open.", name)
+            guessed(f"{read.n_serial} number(s) were read as days counted by Excel.", where)
         )
-    return read.day, findings
-
-
-def _counts(
-    layer: Layer, options: RecordOptions
-) -> tuple[NDArray[np.float64], NDArray[np.int8], list[Finding]]:
-    """Return how many ``(n,)``, whether ``(n,)``, and what was found."""
-    n = len(layer)
-    count_name = _named(layer, options, "count")
-    present_name = options.column("present") or find(
-        "present", layer.columns, frozenset({count_name} if count_name else ())
-    )
-    count, present = np.full(n, np.nan), np.full(n, UNKNOWN, dtype=np.int8)
-    findings: list[Finding] = []
-    if count_name is not None:
-        cells = [text(v) for v in layer.column(count_name)]
-        mark = options.decimal or decimal_mark(cells)
-        known = {c: counted(c, mark) for c in set(cells)}
-        count = np.array([known[c].number for c in cells])
-        present = np.array([known[c].present for c in cells], dtype=np.int8)
-        findings.append(seen(f"Counts are in column {count_name!r}."))
-        rough = sum(known[c].is_rough for c in cells)
-        if rough:
-            findings.append(
-                doubtful(f"{rough} count(s) are no plain number and were read roughly.", count_name)
-            )
-    if present_name is not None:
-        said = {c: presence(c) for c in {text(v) for v in layer.column(present_name)}}
-        stated = np.array([said[text(v)] for v in layer.column(present_name)], dtype=np.int8)
-        present = np.where(stated == UNKNOWN, present, stated).astype(np.int8)
-        findings.append(seen(f"Presence is in column {present_name!r}."))
-    if count_name is None and present_name is None:
-        present[:] = PRESENT
+    if read.broken:
+        shown = ", ".join(repr(cell) for cell in read.broken[:3])
         findings.append(
+            doubtful(
+                f"{read.n_broken} record(s) have a date that is none ({shown}); it is left open.",
+                where,
+            )
+        )
+    today = np.datetime64(datetime.now(UTC).date(), "D") + 1  # it may be tomorrow elsewhere
+    n_future = int((read.day > today).sum())
+    if n_future:
+        latest = np.nanmax(read.day)
+        findings.append(
+            doubtful(f"{n_future} record(s) lie in the future, the last on {latest}.", where)
+        )
+    return findings
+
+
+def _counts(table: _Table) -> _Counts:
+    """Return how many, whether, and what was found."""
+    count_name = table.named("count")
+    present_name = table.named("present", frozenset({count_name} if count_name else ()))
+    counts = _Counts(np.full(len(table), np.nan), np.full(len(table), UNKNOWN, np.int8), [])
+    if count_name is not None:
+        counts = _numbers_of(table, count_name)
+    if present_name is not None:
+        counts = _with_presence(table, present_name, counts)
+    if count_name is None and present_name is None:
+        counts.present[:] = PRESENT
+        counts.findings.append(
             guessed("No column says how many or whether: every record was taken as a find.")
         )
-    return count, present, findings
+    return counts
+
+
+def _numbers_of(table: _Table, name: str) -> _Counts:
+    cells = table.cells(name)
+    mark = table.options.decimal or decimal_mark(cells)
+    known = {cell: counted(cell, mark) for cell in set(cells)}
+    count = np.array([known[cell].number for cell in cells])
+    present = np.array([known[cell].present for cell in cells], dtype=np.int8)
+    findings = [seen(f"Counts are in column {name!r}.")]
+    rough = [cell for cell in cells if known[cell].is_rough]
+    if rough:
+        shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(rough))[:3])
+        findings.append(
+            doubtful(f"{len(rough)} count(s) are no plain number ({shown}); read roughly.", name)
+        )
+    n_missing = int(np.count_nonzero(present == UNKNOWN)) - sum(
+        known[cell].present == UNKNOWN for cell in rough
+    )
+    if n_missing:
+        findings.append(seen(f"{n_missing} record(s) have no count: not known, not zero.", name))
+    return _Counts(count, present, findings)
+
+
+def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
+    cells = table.cells(name)
+    known = {cell: presence(cell) for cell in set(cells)}
+    stated = np.array([known[cell] for cell in cells], dtype=np.int8)
+    at_odds = (stated != UNKNOWN) & (counts.present != UNKNOWN) & (stated != counts.present)
+    findings = [*counts.findings, seen(f"Presence is in column {name!r}.")]
+    if at_odds.any():
+        findings.append(
+            doubtful(f"{int(at_odds.sum())} record(s) say another thing than their count.", name)
+        )
+    unread = {cell for cell in known if known[cell] == UNKNOWN and not is_missing(cell)}
+    if unread:
+        shown = ", ".join(repr(cell) for cell in sorted(unread)[:3])
+        findings.append(doubtful(f"These words say neither yes nor no: {shown}.", name))
+    present = np.where(stated == UNKNOWN, counts.present, stated).astype(np.int8)
+    return _Counts(counts.number, present, findings)
+
+
+def _species(table: _Table) -> list[Finding]:
+    """Return what to say where a file mixes species."""
+    name = table.named("species")
+    if name is None:
+        return []
+    kinds = sorted({cell for cell in table.cells(name) if not is_missing(cell)})
+    if len(kinds) < 2:
+        return []
+    shown = ", ".join(kinds[:5]) + (", ..." if len(kinds) > 5 else "")
+    remedy = Remedy("where", f"{name}={kinds[0]}", f"Only {kinds[0]}")
+    return [doubtful(f"{len(kinds)} species are mixed: {shown}.", name, remedy)]
+
+
+def _same_visit(observations: Observations) -> list[Finding]:
+    """Return a doubt about records of one place and day that disagree."""
+    if len(observations) < 2:
+        return []
+    place = np.round(observations.lonlat, 8)
+    day = observations.day.astype(np.int64).astype(np.float64)
+    kinds = np.unique(np.char.add(observations.species, observations.stage), return_inverse=True)[1]
+    visit = np.column_stack([place, day, kinds])
+    both = np.column_stack([visit, np.nan_to_num(observations.count, nan=-1), observations.present])
+    n_visits, n_stated = len(np.unique(visit, axis=0)), len(np.unique(both, axis=0))
+    if n_stated == n_visits:
+        return []
+    return [
+        doubtful(
+            f"{n_stated - n_visits} record(s) give another count for a place and day that "
+            "another record already has."
+        )
+    ]

@@ -127,11 +127,7 @@ def _delimiter(content: str) -> str:
 
 
 def _table(rows: list[list[Any]], name: str) -> Layer:
-    if len(rows) > limits.RECORDS:
-        raise FileProblem(
-            f"A table may hold {limits.RECORDS} records at most, but {name} holds more. "
-            "Cut it to the season that matters."
-        )
+    limits.check("records", len(rows), limits.RECORDS, name)
     head = _head_row(rows)
     if head is None:
         raise FileProblem(f"{name} must hold a table with a line of column names, but holds none.")

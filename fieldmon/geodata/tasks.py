@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fieldmon.geodata.containers import Workroom
 from fieldmon.geodata.opening import layers_of, open_layer
 from fieldmon.geodata.plots import plots_of
-from fieldmon.geodata.positions import lines_of, plants_of
+from fieldmon.geodata.points_and_lines import lines_of, plants_of
 from fieldmon.geodata.records import records_of
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from fieldmon.geodata.findings import Imported
     from fieldmon.geodata.layers import LayerInfo
     from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
-    from fieldmon.geodata.positions import Plants
+    from fieldmon.geodata.places import Places, Plants
 
 
 def layers(folder: str, source: Source) -> tuple[LayerInfo, ...]:
@@ -31,9 +31,11 @@ def plots(folder: str, source: Source, options: PlotOptions) -> Imported[tuple[F
     return plots_of(open_layer(source, options, Workroom(Path(folder))), options)
 
 
-def records(folder: str, source: Source, options: RecordOptions) -> Imported[Observations]:
+def records(
+    folder: str, source: Source, options: RecordOptions, places: Places | None
+) -> Imported[Observations]:
     """Return the records of a source."""
-    return records_of(open_layer(source, options, Workroom(Path(folder))), options)
+    return records_of(open_layer(source, options, Workroom(Path(folder))), options, places)
 
 
 def plants(folder: str, source: Source, options: ReadOptions) -> Imported[Plants]:

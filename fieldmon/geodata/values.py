@@ -12,7 +12,7 @@ from fieldmon.field import ABSENT, PRESENT, UNKNOWN
 from fieldmon.geodata.layers import text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import NDArray
 
@@ -134,7 +134,7 @@ def presence(cell: str) -> int:
 
 # --- positions ---------------------------------------------------------------------------------
 
-_HEMISPHERE = re.compile(r"^([NSEWO])\s*(.*)$|^(.*?)\s*([NSEWO])$", re.IGNORECASE)
+_HEMISPHERE = re.compile(r"^([NSEW])\s*(.*)$|^(.*?)\s*([NSEW])$", re.IGNORECASE)
 _DMS = re.compile(
     r"^([-+]?\d{1,3})\s*(?:°|º|d|deg|:|\s)\s*"
     r"(\d{1,2}(?:[.,]\d+)?)\s*(?:'|′|’|m|min|:|\s|$)\s*"
@@ -146,7 +146,8 @@ _DMS = re.compile(
 def degrees(cell: str, decimal: str = ".") -> float:
     """Return degrees from decimal degrees, degrees-minutes-seconds or ``N 31.2``; NaN for neither.
 
-    Minutes and seconds must be below 60: ``07.16.5046`` is not a coordinate to guess.
+    Minutes and seconds must be below 60: ``07.16.5046`` is not a coordinate to guess, and neither
+    is the letter O, which is east in German and west in Spanish.
     """
     bare = cell.strip()
     sign, bare = _signed(bare)
@@ -170,7 +171,7 @@ def _signed(cell: str) -> tuple[float, str]:
         return 1.0, cell
     letter = (found.group(1) or found.group(4)).upper()
     rest = found.group(2) if found.group(1) else found.group(3)
-    return (-1.0 if letter in "SWO" else 1.0), rest.strip()
+    return (-1.0 if letter in "SW" else 1.0), rest.strip()
 
 
 def all_degrees(column: NDArray[np.object_], decimal: str | None = None) -> Float:
@@ -182,6 +183,68 @@ def all_degrees(column: NDArray[np.object_], decimal: str | None = None) -> Floa
     cells = [text(v) for v in column]
     mark = decimal or decimal_mark(cells)
     return np.array([degrees(c, mark) for c in cells])
+
+
+def hemispheres(cells: Iterable[str]) -> set[str]:
+    """Return the letters N, S, E, W with which cells say where they lie."""
+    found = (_HEMISPHERE.match(cell.strip()) for cell in cells)
+    return {(m.group(1) or m.group(4)).upper() for m in found if m}
+
+
+class Pairs(NamedTuple):
+    """Positions that stand in one cell: ``(n, 2)`` lon, lat; NaN for none; is their order sure."""
+
+    values: NDArray[np.float64]
+    is_certain: bool
+
+
+_WKT_POINT = re.compile(r"^POINT\s*Z?M?\s*\(\s*(\S+)\s+([^\s)]+).*\)$", re.IGNORECASE)
+
+
+def pairs(cells: list[str]) -> Pairs:
+    """Return positions from cells that hold both coordinates.
+
+    WKT is longitude, latitude; letters say which is which; else latitude comes first, as people
+    write it, unless a first number is beyond 90.
+    """
+    values = np.full((len(cells), 2), np.nan)
+    sure = np.zeros(len(cells), dtype=bool)
+    for i, cell in enumerate(cells):
+        values[i], sure[i] = _pair(cell.strip())
+    read = np.isfinite(values).all(axis=1)
+    if (np.abs(values[read & ~sure, 1]) > 90).any():
+        values[~sure] = values[~sure][:, ::-1]
+        sure[:] = True
+    return Pairs(values, bool(sure[read].all()))
+
+
+def _pair(cell: str) -> tuple[tuple[float, float], bool]:
+    nothing = (np.nan, np.nan)
+    wkt = _WKT_POINT.match(cell)
+    if wkt:
+        return (number(wkt.group(1)), number(wkt.group(2))), True
+    parts = _halves(cell)
+    if parts is None:
+        return nothing, False
+    first, second = (degrees(part, "," if ";" in cell else ".") for part in parts)
+    letters = [hemispheres([part]) for part in parts]
+    if letters[0] <= set("EW") and letters[1] <= set("NS") and all(letters):
+        return (first, second), True
+    if letters[0] <= set("NS") and letters[1] <= set("EW"):
+        return (second, first), all(letters)
+    return nothing, False
+
+
+def _halves(cell: str) -> list[str] | None:
+    for mark in (";", ",", "/"):
+        parts = [part.strip() for part in cell.split(mark)]
+        if len(parts) == 2 and all(parts):
+            return parts
+    lettered = re.match(r"^(.*?[NS])\s*(.*[EW])$|^([NS].*?)\s*([EW].*)$", cell, re.IGNORECASE)
+    if lettered:
+        return [part for part in lettered.groups() if part]
+    parts = cell.split()
+    return parts if len(parts) == 2 else None
 
 
 # --- dates -------------------------------------------------------------------------------------
@@ -225,6 +288,7 @@ class Dated(NamedTuple):
     order: DateOrder | None
     is_ambiguous: bool
     n_broken: int
+    broken: tuple[str, ...]
     n_serial: int
 
 
@@ -244,21 +308,23 @@ def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> Dated:
     used: DateOrder = order or ("mdy" if month_first and not day_first else "dmy")
     known = {c: _day(c, used) for c in distinct}
     days = np.array([known[c] or "NaT" for c in cells], dtype="datetime64[D]")
-    broken = sum(known[c] is None and c.casefold() not in MISSING for c in cells)
+    broken = [c for c in cells if known[c] is None and c.casefold() not in MISSING]
     serial = sum(known[c] is not None and _is_serial(c) for c in cells)
-    return Dated(days, used if numeric else None, ambiguous, broken, serial)
+    some = tuple(dict.fromkeys(broken))[:5]
+    return Dated(days, used if numeric else None, ambiguous, len(broken), some, serial)
 
 
 def dates_of_parts(year: Float, month: Float, day: Float) -> Dated:
     """Return days from three columns of numbers; NaT where they name none."""
-    days = []
-    broken = 0
+    days, broken = [], []
     for parts in np.stack([year, month, day], axis=1).tolist():
         whole = all(np.isfinite(parts))
         found = _valid(*(int(part) for part in parts)) if whole else None
-        broken += whole and found is None
+        if whole and found is None:
+            broken.append("-".join(f"{part:g}" for part in parts))
         days.append(found or "NaT")
-    return Dated(np.array(days, dtype="datetime64[D]"), None, False, broken, 0)
+    named = np.array(days, dtype="datetime64[D]")
+    return Dated(named, None, False, len(broken), tuple(dict.fromkeys(broken))[:5], 0)
 
 
 def _is_serial(cell: str) -> bool:

@@ -124,10 +124,10 @@ def test_darwin_core_names_are_known():
     text = (
         "scientificName,decimalLatitude,decimalLongitude,coordinateUncertaintyInMeters,eventDate,"
         "individualCount,occurrenceStatus,lifeStage\n"
-        "Tetranychus urticae,30.3601,35.1501,4,2026-03-01T08:00:00Z,,absent,adult\n"
+        "Tetranychus urticae,30.360123,35.150123,4,2026-03-01T08:00:00Z,,absent,adult\n"
     )
     records = read_records(Upload("dwc.csv", text.encode())).value
-    np.testing.assert_allclose(records.lonlat[0], (35.1501, 30.3601))
+    np.testing.assert_allclose(records.lonlat[0], (35.150123, 30.360123))
     assert records.present.tolist() == [ABSENT]
     assert (records.accuracy_m[0], records.stage[0]) == (4.0, "adult")
 

@@ -51,6 +51,12 @@ def test_a_tail_is_the_hypergeometric_one(data):
     assert _tail(x, drawn, special, total) == pytest.approx(expected, rel=1e-8, abs=1e-290)
 
 
+@pytest.mark.parametrize("x", [1, 2_000, 2_500, 3_000])
+def test_a_tail_keeps_its_digits_in_a_window_of_thousands_of_plants(x):
+    expected = hypergeom.sf(x - 1, 20_000, 10_000, 5_000)
+    assert _tail(x, 5_000, 10_000, 20_000) == pytest.approx(expected, rel=1e-8)
+
+
 def test_a_window_counts_every_way_to_lay_the_finds():
     """Enumerate all 6 188 ways to lay 5 finds on 17 plants; the find at the centre is given."""
     positions = np.random.default_rng(2).uniform(0, 4, (17, 2))
@@ -67,7 +73,7 @@ def test_a_window_counts_every_way_to_lay_the_finds():
 @pytest.mark.parametrize("share", [0.01, 0.05, 0.2, 0.5])
 @pytest.mark.parametrize("inspected", [1.0, 0.4])
 def test_finds_strewn_at_random_seldom_make_a_hot_spot(share, inspected):
-    trials, level = 400, 0.05
+    trials, level = 200, 0.05
     loud = HotSpotSettings(false_share=level, least_finds=2)
     fields = (strewn(np.random.default_rng(s), len(GRID), share, inspected) for s in range(trials))
     false = sum(len(hot_spots(GRID, state, loud)) > 0 for state in fields)
@@ -97,6 +103,17 @@ def test_two_clusters_are_two_hot_spots_the_more_certain_first():
     assert spots.p[0] < spots.p[1]
     assert (spots.q >= spots.p).all()
     assert (spots.q <= 0.05).all()
+
+
+@pytest.mark.parametrize(("plants_apart", "n_spots"), [(4, 1), (9, 2)])
+def test_clusters_whose_windows_overlap_are_one_hot_spot(plants_apart, n_spots):
+    state = np.full(len(GRID), ABSENT, np.int8)
+    for first in (MIDDLE, MIDDLE + 2 + plants_apart):
+        for row in range(3):
+            state[first + 40 * row + np.arange(3)] = PRESENT
+    spots = hot_spots(GRID, state, HotSpotSettings(radius_m=6.5))
+    assert spots.found.sum() == 18
+    assert len(spots) == n_spots
 
 
 # --- what is not a hot spot

@@ -316,6 +316,29 @@ def test_newer_evidence_outweighs_older_at_the_same_place():
     assert lately_found > 0.9
 
 
+@given(some_records, some_records)
+def test_of_one_day_the_finds_are_heard_before_the_clean_looks(first, second):
+    finds = replace(
+        first, present=np.full(len(first), PRESENT, np.int8), day=TODAY.repeat(len(first))
+    )
+    looks = replace(
+        second, present=np.full(len(second), ABSENT, np.int8), day=TODAY.repeat(len(second))
+    )
+    after_finds = heard(finds, base=0.1)
+    np.testing.assert_allclose(
+        heard(together(looks, finds), base=0.1),
+        record_chance(GRID, after_finds, looks, TODAY, USUAL),
+        rtol=1e-9,
+    )
+
+
+def test_even_a_risk_of_one_can_be_undone_by_clean_looks():
+    looks = together(*[at_middle(ABSENT, accuracy_m=0.0, leaves_sampled=20.0)] * 10)
+    chance = prior_chance(GRID, field_of(GRID), looks, TODAY, USUAL, np.ones(len(GRID)))
+    assert chance[MIDDLE] < 0.05
+    assert chance[-1] > 0.99
+
+
 @settings(max_examples=40, deadline=None)
 @given(crooked_grids(40.0, max_plants=3000), st.data())
 def test_every_chance_is_a_chance_on_any_plot(grid, data):

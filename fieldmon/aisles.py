@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import heapq
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -122,10 +123,11 @@ class Aisles:
 
     def distance_m(self, i: ArrayLike, j: ArrayLike) -> Float:
         """Return the metres from plants i to plants j, -1 for the gate; shapes broadcast."""
-        a, b = np.broadcast_arrays(np.asarray(i, np.int64), np.asarray(j, np.int64))
+        shape = np.broadcast_shapes(np.shape(i), np.shape(j))
+        a, b = (np.array(np.broadcast_to(k, shape), np.int64).ravel() for k in (i, j))
         metres = np.empty(a.size)
-        _drive_all(self.ground, a.ravel(), b.ravel(), metres)
-        return metres.reshape(a.shape)
+        _drive_all(self.ground, a, b, metres)
+        return metres.reshape(shape)
 
     def path(self, i: int, j: int) -> Float:
         """Return the line ``(k, 2)`` driven from plant i to plant j, -1 for the gate.
@@ -133,16 +135,29 @@ class Aisles:
         It is as long as `distance_m` says, and has two points or more.
         """
         a, b = self._at(i), self._at(j)
-        if (
-            i >= 0
-            and j >= 0
-            and self.grid.corridor[self.grid.row[i]] == (self.grid.corridor[self.grid.row[j]])
-        ):
+        rows = self.grid.row[[i, j]]
+        if min(i, j) >= 0 and self.grid.corridor[rows[0]] == self.grid.corridor[rows[1]]:
             return np.stack([a, b])
-        out, back = _exits(self.ground, i, j)
-        node = np.append(self.ways.end.ravel(), self.ways.gate)
-        nodes = _trace(self.ways, node[out], node[back])
-        return _plain(np.concatenate([[a], self.ways.xy_m[nodes], [b]]))
+        out, out_m = self._exits(i)
+        back, back_m = self._exits(j)
+        way_m = out_m[:, None] + self.ground.between_m[out[:, None], back] + back_m
+        best = int(np.argmin(way_m))
+        first, last = out[best // len(back)], back[best % len(back)]
+        nodes = _trace(self.ways, self._stop_node[first], self._stop_node[last])
+        line: Float = _plain(np.concatenate([a[None], self.ways.xy_m[nodes], b[None]]))
+        return line
+
+    @cached_property
+    def _stop_node(self) -> NDArray[np.int64]:
+        """Node of each lane end, and of the gate, as numbered in `Ground.between_m`."""
+        return np.append(self.ways.end.ravel(), self.ways.gate).astype(np.int64)
+
+    def _exits(self, i: int) -> tuple[NDArray[np.int64], Float]:
+        """Return the ends of the lane of plant i as in `Ground.between_m`, and the metres there."""
+        if i < 0:
+            return np.array([2 * self.grid.n_rows]), np.zeros(1)
+        row = int(self.grid.row[i])
+        return 2 * row + np.arange(2), np.abs(self.grid.xy_m[i, 0] - self.grid.lane_x_m[row])
 
     def _at(self, i: int) -> Float:
         here: Float = self.gate_m if i < 0 else self.stop_m[i]
@@ -162,37 +177,25 @@ def crosses_rows(grid: PlantGrid, line_xy_m: Float) -> bool:
 @nb.njit(cache=True, inline="always")
 def drive_m(ground: Ground, i: int, j: int) -> float:
     """Return the metres from plant i to plant j; -1 is the gate."""
-    if i >= 0 and j >= 0 and ground.corridor[ground.row[i]] == ground.corridor[ground.row[j]]:
-        return abs(float(ground.x_m[i] - ground.x_m[j]))
-    best_m = np.inf
-    for out in range(2):
-        a, out_m = _exit(ground, i, out)
-        for back in range(2):
-            b, back_m = _exit(ground, j, back)
-            best_m = min(best_m, out_m + ground.between_m[a, b] + back_m)
-    return best_m
-
-
-@nb.njit(cache=True, inline="always")
-def _exit(ground: Ground, i: int, end: int) -> tuple[int, float]:
-    """Return one of the two lane ends of plant i, as a node, and the metres to it."""
+    # written out: loops over the ends cost ten times as much
+    x_m, end_m, between_m = ground.x_m, ground.end_x_m, ground.between_m
+    gate = between_m.shape[0] - 1
     if i < 0:
-        return ground.between_m.shape[0] - 1, 0.0
-    row = ground.row[i]
-    return 2 * row + end, abs(ground.x_m[i] - ground.end_x_m[row, end])
-
-
-@nb.njit(cache=True)
-def _exits(ground: Ground, i: int, j: int) -> tuple[int, int]:
-    """Return the lane ends by which one drives from plant i to plant j."""
-    best_m, exits = np.inf, (-1, -1)
-    for out in range(2):
-        a, out_m = _exit(ground, i, out)
-        for back in range(2):
-            b, back_m = _exit(ground, j, back)
-            if out_m + ground.between_m[a, b] + back_m < best_m:
-                best_m, exits = out_m + ground.between_m[a, b] + back_m, (a, b)
-    return exits
+        i, j = j, i
+    if i < 0:
+        return 0.0
+    a = ground.row[i]
+    low_m, high_m = abs(x_m[i] - end_m[a, 0]), abs(end_m[a, 1] - x_m[i])
+    if j < 0:
+        return float(min(low_m + between_m[2 * a, gate], high_m + between_m[2 * a + 1, gate]))
+    b = ground.row[j]
+    if ground.corridor[a] == ground.corridor[b]:
+        return float(abs(x_m[i] - x_m[j]))
+    to_low_m = min(low_m + between_m[2 * a, 2 * b], high_m + between_m[2 * a + 1, 2 * b])
+    to_high_m = min(low_m + between_m[2 * a, 2 * b + 1], high_m + between_m[2 * a + 1, 2 * b + 1])
+    to_low_m += abs(x_m[j] - end_m[b, 0])
+    to_high_m += abs(end_m[b, 1] - x_m[j])
+    return float(min(to_low_m, to_high_m))
 
 
 @nb.njit(cache=True)
@@ -240,34 +243,38 @@ def _sweep(ways: Ways, near: Float, first: int, end: int, step: int) -> bool:
 
 @nb.njit(cache=True)
 def _trace(ways: Ways, a: int, b: int) -> NDArray[np.int64]:
-    """Return the nodes on the shortest way from node a to node b."""
-    n = ways.xy_m.shape[0]
-    near, onward = np.full(n, np.inf), np.full(n, -1)
+    """Return the nodes on the shortest way from node a to node b (Dijkstra's, from b)."""
+    near = np.full(ways.xy_m.shape[0], np.inf)
+    onward = np.full(near.size, -1)
     near[b] = 0.0
-    shorter = True
-    while shorter:
-        shorter = False
-        for step in (1, -1):
-            for place in range(n):
-                node = place if step == 1 else n - 1 - place
-                for e in range(ways.start[node], ways.start[node + 1]):
-                    way_m = near[ways.to[e]] + ways.length_m[e]
-                    if way_m < near[node]:
-                        near[node], onward[node] = way_m, ways.to[e]
-                        shorter = True
+    queue = [(0.0, b)]
+    while queue[0][1] != a:
+        node_m, node = heapq.heappop(queue)
+        if node_m > near[node]:
+            continue
+        for e in range(ways.start[node], ways.start[node + 1]):
+            other, way_m = int(ways.to[e]), node_m + float(ways.length_m[e])
+            if way_m < near[other]:
+                near[other], onward[other] = way_m, node
+                heapq.heappush(queue, (way_m, other))
     nodes = [a]
     while nodes[-1] != b:
         nodes.append(onward[nodes[-1]])
     return np.array(nodes)
 
 
+@nb.njit(cache=True)
 def _plain(line: Float) -> Float:
     """Return a line without points that are passed straight on; its ends stay."""
-    step = np.diff(line, axis=0)
-    moved = np.append(True, np.hypot(step[:, 0], step[:, 1]) > 0)
-    line = line[moved] if moved.sum() > 1 else line[[0, -1]]
-    step = np.diff(line, axis=0)
-    ahead = step / np.maximum(np.hypot(step[:, 0], step[:, 1]), np.finfo(float).tiny)[:, None]
-    turn = np.hypot(*(ahead[1:] - ahead[:-1]).T)
-    turns: Float = line[np.concatenate([[True], turn > _STRAIGHT, [True]])]
-    return turns
+    k = 1
+    plain = line.copy()
+    for point in range(1, len(line) - 1):
+        back_x, back_y = line[point] - plain[k - 1]
+        on_x, on_y = line[point + 1] - line[point]
+        turn = abs(back_x * on_y - back_y * on_x)
+        reach = np.hypot(back_x, back_y) * np.hypot(on_x, on_y)
+        if turn > _STRAIGHT * reach or back_x * on_x + back_y * on_y < 0:
+            plain[k] = line[point]
+            k += 1
+    plain[k] = line[-1]
+    return plain[: k + 1]

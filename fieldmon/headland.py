@@ -25,13 +25,15 @@ if TYPE_CHECKING:
     Mask = NDArray[np.bool_]
 
 _SAME_M = 1e-6
+_SAME_BEARING = 1e-9
 # a lane may lie exactly on the boundary
 _EDGE_M = 0.01
 _CLEARANCE_M = 0.3
 _NEAREST = 10
+_JUMPS = (2, 3, 4, 6, 8, 12)
 _GATE_NEAREST = 64
-_BRIDGE_NEAREST = (8, 64, 512, 4096)
-_MOST_CORNERS = 200
+_BRIDGE_NEAREST = (8, 64, 512)
+_MOST_CORNERS = 100
 
 
 class Where(Enum):
@@ -59,7 +61,7 @@ class Ways(NamedTuple):
 
     xy_m: Float
     start: NDArray[np.int64]
-    to: NDArray[np.int32]
+    to: NDArray[np.int64]
     length_m: Float
     end: NDArray[np.int32]
     gate: int
@@ -128,10 +130,27 @@ class Obstacles:
             Where.OUTSIDE: self.holes_m,
             Where.ANYWHERE: self.no_go_m,
         }
-        area, coarse_m = areas[where], _EDGE_M
-        while shapely.get_num_coordinates(area) > _MOST_CORNERS:
-            area, coarse_m = shapely.simplify(areas[where], coarse_m), 2 * coarse_m
-        return np.unique(shapely.get_coordinates(area), axis=0)
+        sign = -1.0 if where is Where.INSIDE else 1.0
+        coarse_m, corners = _EDGE_M, _turning_left(areas[where], _EDGE_M, sign)
+        while len(corners) > _MOST_CORNERS:
+            coarse_m *= 2
+            corners = _turning_left(areas[where], coarse_m, sign)
+        return corners
+
+
+def _turning_left(area: shapely.Geometry, coarse_m: float, sign: float) -> Float:
+    """Return corners at which an area bulges (sign 1) or something bulges into it (sign -1)."""
+    rings = shapely.get_rings(
+        shapely.get_parts(shapely.orient_polygons(shapely.simplify(area, coarse_m)))
+    )
+    found = [np.empty((0, 2))]
+    for ring in rings:
+        corner = shapely.get_coordinates(ring)[:-1]
+        ahead = np.roll(corner, -1, axis=0) - corner
+        behind = np.roll(ahead, 1, axis=0)
+        turn = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
+        found.append(corner[sign * turn > 0])
+    return np.concatenate(found)
 
 
 def row_lines(grid: PlantGrid) -> NDArray[np.object_]:
@@ -185,8 +204,9 @@ def ways(
     xy_m, place = _merged(_row_end_places(grid))
     beside = np.where(grid.side[:, None] < 0, place[:, :, 2], place[:, :, 0])
     trusted = np.concatenate([beside, np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)])
-    tried = np.concatenate([_along_aisles(grid, xy_m, place), _nearest(xy_m)])
-    tried = _each_once(tried)
+    tried = _each_once(
+        np.concatenate([_along_aisles(grid, xy_m, place), _nearest(xy_m), _jumps(grid, place)])
+    )
     good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]])
     net = _Net(xy_m, np.concatenate([trusted, tried[good]]))
     gate = int(beside[0, 0])
@@ -194,7 +214,7 @@ def ways(
         gate = len(net.xy_m)
         net = _with_gate(net, np.array([gate_xy_m]), obstacles, grid)
     net = _joined(net, np.append(beside.ravel(), gate), obstacles)
-    return _sorted(net, beside, gate)
+    return _sorted(_chained(net), beside, gate)
 
 
 class _Net(NamedTuple):
@@ -282,6 +302,44 @@ def _nearest(xy_m: Float) -> Index:
     return np.stack([np.repeat(np.arange(len(xy_m)), k), near.ravel()], axis=1)
 
 
+def _jumps(grid: PlantGrid, place: Index) -> Index:
+    """Return pairs of row ends on the same headland several lines apart.
+
+    From line to line one goes to the row whose end is nearest in x.
+    """
+    r, wide = grid.n_rows, 2 * float(np.ptp(grid.lane_x_m)) + 1.0
+    pairs = []
+    for end in range(2):
+        x = grid.lane_x_m[:, end] - grid.lane_x_m[:, end].min()
+        key = grid.row_line * wide + x
+        order = np.argsort(key)
+        after = np.searchsorted(key[order], key + wide)
+        near = order[np.clip(np.stack([after - 1, after]), 0, r - 1)]
+        off_m = np.where(grid.row_line[near] == grid.row_line + 1, np.abs(x[near] - x), np.inf)
+        best = near[np.argmin(off_m, axis=0), np.arange(r)]
+        onward = np.append(np.where(np.isfinite(off_m.min(axis=0)), best, r), r)
+        row = np.arange(r)
+        for jump in range(1, max(_JUMPS) + 1):
+            row = onward[row]
+            if jump in _JUMPS:
+                there = row < r
+                pairs.append(np.stack([place[there, end, 1], place[row[there], end, 1]], axis=1))
+    return np.concatenate(pairs)
+
+
+def _chained(net: _Net) -> _Net:
+    """Return the network without ways that only repeat shorter ones lying on them end to end."""
+    pair = np.concatenate([net.pair, net.pair[:, ::-1]])
+    way = net.xy_m[pair[:, 1]] - net.xy_m[pair[:, 0]]
+    bearing = np.round(np.arctan2(way[:, 1], way[:, 0]) / _SAME_BEARING)
+    order = np.lexsort((np.hypot(way[:, 0], way[:, 1]), bearing, pair[:, 0]))
+    pair, bearing = pair[order], bearing[order]
+    beyond = (pair[1:, 0] == pair[:-1, 0]) & (bearing[1:] == bearing[:-1])
+    # what lies beyond a nearer node is reached from that node: part of the same clear way
+    start = np.append(pair[0, 0], np.where(beyond, pair[:-1, 1], pair[1:, 0]))
+    return _Net(net.xy_m, _each_once(np.stack([start, pair[:, 1]], axis=1)))
+
+
 def _with_gate(net: _Net, gate_m: Float, obstacles: Obstacles, grid: PlantGrid) -> _Net:
     """Return the network with the gate as next node, linked to what is visible from it.
 
@@ -314,14 +372,14 @@ def _joined(net: _Net, needed: Index, obstacles: Obstacles) -> _Net:
     for where in Where:
         if not net.apart(needed):
             return net
-        net = _bridged(_with_corners(net, obstacles, where), needed, obstacles, where)
-    part = net.component()[needed]
+        net = _bridged(_with_corners(net, obstacles, where), obstacles, where)
     if net.apart(needed):
-        cut_off = int(np.count_nonzero(part[:-1] != part[-1]) + 1) // 2
+        part = net.component()[needed]
+        stranded = (part[:-1] != part[-1]).reshape(-1, 2).any(axis=1)
         raise PlotError(
             "Every row must be reachable from the gate without crossing rows or no-go areas, but "
-            f"{cut_off} of {len(part) // 2} rows are not. Move the gate, or open the no-go areas "
-            "or holes that shut them in."
+            f"{np.count_nonzero(stranded)} of {len(stranded)} rows are not. Move the gate, or "
+            "open the no-go areas that shut them in."
         )
     return net
 
@@ -340,11 +398,15 @@ def _with_corners(net: _Net, obstacles: Obstacles, where: Where) -> _Net:
     return net.plus(corners, tried[good])
 
 
-def _bridged(net: _Net, needed: Index, obstacles: Obstacles, where: Where) -> _Net:
+def _bridged(net: _Net, obstacles: Obstacles, where: Where) -> _Net:
     """Return the network with bridges from each component to those nearest to it."""
+    zone = np.zeros(len(net.xy_m), np.intp)
+    if where is Where.INSIDE:  # from one part of the drivable area to another there are none
+        drivable = shapely.STRtree(shapely.get_parts(obstacles.drivable_m))
+        zone = np.asarray(drivable.nearest(shapely.points(net.xy_m)))
     for k in _BRIDGE_NEAREST:
-        while net.apart(needed):
-            tried = _foreign(net, k)
+        while True:
+            tried = _foreign(net, zone, k)
             good = obstacles.clear(net.xy_m[tried[:, 0]], net.xy_m[tried[:, 1]], where)
             if not good.any():
                 break
@@ -352,12 +414,15 @@ def _bridged(net: _Net, needed: Index, obstacles: Obstacles, where: Where) -> _N
     return net
 
 
-def _foreign(net: _Net, k: int) -> Index:
-    """Return each node with the k nearest nodes of other components, nearest first."""
+def _foreign(net: _Net, zone: Index, k: int) -> Index:
+    """Return each node with the k nearest nodes of other components of its zone, nearest first."""
     part = net.component()
-    found = []
+    found = [np.empty((0, 2), np.intp)]
     for own in range(part.max() + 1):
-        ours, others = np.flatnonzero(part == own), np.flatnonzero(part != own)
+        ours = np.flatnonzero(part == own)
+        others = np.flatnonzero((part != own) & (zone == zone[ours[0]]))
+        if not len(others):
+            continue
         near = cKDTree(net.xy_m[others]).query(net.xy_m[ours], k=min(k, len(others)))[1]
         near = near.reshape(len(ours), -1)
         found.append(np.stack([np.repeat(ours, near.shape[1]), others[near.ravel()]], axis=1))
@@ -390,7 +455,7 @@ def _sorted(net: _Net, end: Index, gate: int) -> Ways:
     return Ways(
         xy_m,
         start,
-        from_to[:, 1].astype(np.int32),
+        from_to[:, 1].astype(np.int64),
         length_m,
         place[end].astype(np.int32),
         int(place[gate]),

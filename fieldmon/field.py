@@ -38,6 +38,9 @@ class Field:
         ``(n, 2)`` lon/lat of plants whose positions were measured, or None.
     row_lines
         Rows drawn or measured as lines, lon/lat; empty if unknown.
+    row_bearing_deg, row_spacing_m, plant_spacing_m
+        As stated for this plot, or None: direction of the rows clockwise from true north, and the
+        distances from row to row and from plant to plant.
     """
 
     name: str
@@ -47,6 +50,9 @@ class Field:
     paths: MultiLineString = field(default_factory=MultiLineString)
     plants: NDArray[np.float64] | None = None
     row_lines: MultiLineString = field(default_factory=MultiLineString)
+    row_bearing_deg: float | None = None
+    row_spacing_m: float | None = None
+    plant_spacing_m: float | None = None
 
     def __post_init__(self) -> None:
         if self.boundary.is_empty or not self.boundary.is_valid:

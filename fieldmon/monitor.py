@@ -25,6 +25,25 @@ if TYPE_CHECKING:
     from fieldmon.workday import Workday
 
 
+def planting_of(field: Field, **given: float | None) -> Planting:
+    """Return how a field is planted: as given by hand, else as the field states, else the default.
+
+    Parameters
+    ----------
+    field
+        Its ``row_bearing_deg``, ``row_spacing_m`` and ``plant_spacing_m`` count where not None.
+    given
+        Settings of `Planting`; None: not given.
+    """
+    stated = {
+        name: getattr(field, name)
+        for name in ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
+    }
+    by_hand = {name: value for name, value in given.items() if value is not None}
+    known = {name: value for name, value in stated.items() if value is not None} | by_hand
+    return Planting(**known)
+
+
 @dataclass(frozen=True, eq=False)
 class Plot:
     """A field with its plants and the ways between them."""
@@ -43,7 +62,7 @@ class Plot:
         if field.plants is not None:
             found = None if planting is None else found_planting(field.plants, planting)
             return cls._with(field, grid_from_plants(field.plants, found, field))
-        return cls._with(field, lay(field, planting or Planting()))
+        return cls._with(field, lay(field, planting or planting_of(field)))
 
     @classmethod
     def around(

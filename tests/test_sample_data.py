@@ -42,10 +42,12 @@ def test_the_script_draws_the_same_shapefile_and_picture_again(drawn_again):
         assert ours.namelist() == again.namelist()
         assert ours.read("paran_estate.shp") == again.read("paran_estate.shp")
         assert ours.read("paran_estate.dbf") == again.read("paran_estate.dbf")
-    with rasterio.open(HERE / "backdrop.tif") as ours:
-        with rasterio.open(drawn_again / "backdrop.tif") as again:
-            assert ours.transform == again.transform
-            assert np.abs(ours.read().astype(int) - again.read()).mean() < 1.0
+    with (
+        rasterio.open(HERE / "backdrop.tif") as ours,
+        rasterio.open(drawn_again / "backdrop.tif") as again,
+    ):
+        assert ours.transform == again.transform
+        assert np.abs(ours.read().astype(int) - again.read()).mean() < 1.0
 
 
 def test_plots_are_valid_apart_from_each_other_and_of_likely_sizes(plots):

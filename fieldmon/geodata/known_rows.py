@@ -53,4 +53,12 @@ def with_known_rows(
     if not used:
         return fields, []
     said = seen(f"Direction and spacings of rows and plants are taken from {', '.join(used)}.")
-    return tuple(replace(field, **known[field.name]) for field in fields), [said]
+    return tuple(
+        replace(
+            field,
+            row_bearing_deg=known[field.name].get("row_bearing_deg"),
+            row_spacing_m=known[field.name].get("row_spacing_m"),
+            plant_spacing_m=known[field.name].get("plant_spacing_m"),
+        )
+        for field in fields
+    ), [said]

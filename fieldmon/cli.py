@@ -1,0 +1,528 @@
+"""The `fieldmon` command. Heavy imports wait until a command needs them."""
+
+from __future__ import annotations
+
+import os
+import sys
+from datetime import date, datetime
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+
+from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fieldmon.field import Field, Observations
+    from fieldmon.geodata.findings import Finding
+    from fieldmon.monitor import Plot
+    from fieldmon.robot import Robot
+    from fieldmon.samplers import Sampler
+    from fieldmon.season import Start
+
+PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
+
+app = typer.Typer(
+    name="fieldmon",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
+    help="Which plants to inspect for pests today, and in which order.\n\n"
+    "Start with [bold]fieldmon app[/bold] to see everything on a map, or plan a day at once:\n\n"
+    "    fieldmon plots estate.zip\n\n"
+    "    fieldmon plan estate.zip --feature Gate --observations mites.csv -o route.geojson\n\n"
+    "    fieldmon simulate estate.zip --feature Gate --observations mites.csv",
+)
+
+
+class SamplerName(StrEnum):
+    """Who decides which plants come next."""
+
+    NAIVE = "naive"
+    BOUNCY = "bouncy"
+    DYNAMIC = "dynamic"
+
+
+PlotFile = Annotated[Path, typer.Argument(help=PLOT_HELP, show_default=False)]
+Feature = Annotated[
+    str | None,
+    typer.Option(help="Name or number (from 1) of the plot, where a file holds several."),
+]
+Choices = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--plot-option",
+        help="What else the plot file leaves open, as NAME=VALUE; messages say which. "
+        "E.g. crs=EPSG:2039, layer=parcels, member=plots.shp, swap_axes=yes.",
+    ),
+]
+Crs = Annotated[
+    str | None, typer.Option(help="Coordinate system of the plot file if it has none: EPSG:2039.")
+]
+Layer = Annotated[str | None, typer.Option(help="Layer of the plot file.")]
+Records = Annotated[
+    Path | None,
+    typer.Option("--observations", help="Dated pest records: CSV, Excel, shapefile, GeoJSON, ..."),
+]
+RecordChoices = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--record-option",
+        help="What the records leave open, as NAME=VALUE: crs=EPSG:2039, date_order=dmy, "
+        "columns=date=Datum, columns=count=Milben.",
+    ),
+]
+Plants = Annotated[
+    Path | None, typer.Option(help="Positions of plants measured on the plot (points).")
+]
+Paths = Annotated[
+    Path | None, typer.Option(help="Paths and roads from which insects enter (lines).")
+]
+Bearing = Annotated[
+    float | None,
+    typer.Option(help="Direction of the rows, degrees from north; found if not given."),
+]
+RowSpacing = Annotated[float | None, typer.Option(help="Metres from row to row.")]
+PlantSpacing = Annotated[float | None, typer.Option(help="Metres from plant to plant in a row.")]
+Headland = Annotated[float | None, typer.Option(help="Metres free of plants at both row ends.")]
+Gate = Annotated[str | None, typer.Option(help="Where the day starts and ends: LON,LAT.")]
+Scout = Annotated[bool, typer.Option("--scout", help="A person on foot instead of the robot.")]
+Hours = Annotated[float | None, typer.Option(help="Working hours a day.")]
+Look = Annotated[float | None, typer.Option("--look", help="Seconds spent looking at a plant.")]
+Speed = Annotated[float | None, typer.Option(help="Driving speed, km/h.")]
+Every = Annotated[int, typer.Option(help="Bouncy inspects every N-th plant.")]
+On = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; today.")]
+
+
+def main() -> None:
+    """Run the command; a problem is a sentence and exit code 2, never a traceback."""
+    try:
+        app(standalone_mode=False)
+    except FieldmonError as error:
+        _end(str(error), 2)
+    except typer.Exit as stop:
+        sys.exit(stop.exit_code)
+    except (KeyboardInterrupt, typer.Abort):
+        _end("Stopped; nothing was written that is not complete.", 130)
+    except BrokenPipeError:
+        sys.exit(0)
+    except Exception as error:  # noqa: BLE001 - no traceback ever reaches a person
+        _unexpected(error)
+
+
+def _unexpected(error: Exception) -> NoReturn:
+    from click import ClickException  # noqa: PLC0415 - only when something went wrong
+
+    if isinstance(error, ClickException):
+        error.show()
+        sys.exit(error.exit_code)
+    if os.environ.get("FIELDMON_DEBUG"):
+        raise error
+    _end(
+        f"Sorry: fieldmon made a mistake of its own ({type(error).__name__}: {error}). "
+        "Run the command again with FIELDMON_DEBUG=1 to see where, and report it.",
+        1,
+    )
+
+
+def _end(sentence: str, code: int) -> NoReturn:
+    typer.echo(sentence, err=True)
+    sys.exit(code)
+
+
+@app.command()
+def plots(
+    plot: PlotFile, crs: Crs = None, layer: Layer = None, plot_option: Choices = None
+) -> None:
+    """List the plots of a file, with their areas."""
+    for number, field in enumerate(_read_plots(plot, None, crs, layer, plot_option), 1):
+        area = field.frame().geometry_m(field.boundary).area
+        typer.echo(f"{number:4d}  {area / 1e4:9.2f} ha  {field.name}")
+
+
+@app.command()
+def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
+    plot: PlotFile,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Route file to write (GeoJSON).")
+    ] = Path("route.geojson"),
+    observations: Records = None,
+    feature: Feature = None,
+    sampler: Annotated[SamplerName, typer.Option(help="Who chooses.")] = SamplerName.DYNAMIC,
+    every: Every = 2,
+    on: On = None,
+    start: Annotated[str, typer.Option(help="Local time the work starts, HH:MM.")] = "06:00",
+    hours: Hours = None,
+    look: Look = None,
+    speed: Speed = None,
+    scout: Scout = False,  # noqa: FBT002 - a flag
+    bearing: Bearing = None,
+    row_spacing: RowSpacing = None,
+    plant_spacing: PlantSpacing = None,
+    headland: Headland = None,
+    gate: Gate = None,
+    plants: Plants = None,
+    paths: Paths = None,
+    crs: Crs = None,
+    layer: Layer = None,
+    plot_option: Choices = None,
+    record_option: RecordChoices = None,
+) -> None:
+    """Plan today's route on a plot, and write it as GeoJSON.
+
+    The file holds the line to drive, which crosses no row of plants, and the stops in order with
+    arrival time, row, plant and chance of infestation. Without observations every plant has the
+    same chance but for the plot's edge, from which insects come.
+
+    Example: fieldmon plan vines.zip --feature 3 --observations mites.csv --hours 6 -o route.geojson
+    """
+    from fieldmon.geodata.routes import RouteNotes, write_route  # noqa: PLC0415
+    from fieldmon.monitor import Plans, first_day  # noqa: PLC0415
+
+    day, begins = _day(on), _clock(start)
+    plans = Plans(_robot(scout, hours, look, speed), _sampler(sampler, every))
+    laid = _lay(
+        _place(_read_plots(plot, feature, crs, layer, plot_option), plants, paths, gate, feature),
+        {
+            "row_bearing_deg": bearing,
+            "row_spacing_m": row_spacing,
+            "plant_spacing_m": plant_spacing,
+            "headland_m": headland,
+        },
+    )
+    records = _read_records(observations, laid, record_option)
+    _hear(records, day)
+    today = first_day(laid, records, day, plans)
+    route = today.route
+    if not len(route):
+        raise SettingError(
+            f"The working day must be long enough to reach a plant and come back, but "
+            f"{plans.robot.hours:g} h are not. Give more --hours."
+        )
+    began = datetime.combine(day.astype(date), begins)
+    write_route(output, route, RouteNotes(laid.field.name, sampler.value, began))
+    typer.echo(
+        f"{len(route)} of {len(laid.grid)} plants in {route.end_s / 3600:.1f} h, "
+        f"{route.drive_m / 1000:.2f} km; about {route.expected_finds:.1f} of them infested, "
+        f"about {route.expected_finds * plans.robot.detects:.1f} of these would be found."
+    )
+    typer.echo(f"Route written to {output}")
+
+
+@app.command()
+def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
+    plot: PlotFile,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Table to write (CSV).")
+    ] = None,
+    observations: Records = None,
+    feature: Feature = None,
+    sampler: Annotated[
+        list[SamplerName] | None, typer.Option(help="Who chooses; repeat to compare. All if none.")
+    ] = None,
+    every: Every = 2,
+    days: Annotated[int, typer.Option(help="Working days.")] = 25,
+    seed: Annotated[int, typer.Option(help="Seed: the same seed, the same season.")] = 1,
+    infested: Annotated[float, typer.Option(help="Share of plants infested at the start.")] = 0.02,
+    spread: Annotated[float, typer.Option(help="Chance a night to infest each neighbour.")] = 0.1,
+    on: On = None,
+    hours: Hours = None,
+    look: Look = None,
+    speed: Speed = None,
+    scout: Scout = False,  # noqa: FBT002 - a flag
+    bearing: Bearing = None,
+    row_spacing: RowSpacing = None,
+    plant_spacing: PlantSpacing = None,
+    headland: Headland = None,
+    gate: Gate = None,
+    plants: Plants = None,
+    paths: Paths = None,
+    crs: Crs = None,
+    layer: Layer = None,
+    plot_option: Choices = None,
+    record_option: RecordChoices = None,
+) -> None:
+    """Simulate a season on a plot: insects spread at night, samplers look for them by day.
+
+    The start is drawn from the chance map of the records; all samplers meet the same insects.
+    Detection is all finds so far in percent of all infestations so far.
+
+    Example: fieldmon simulate vines.zip --feature 3 --sampler naive --sampler dynamic --days 10
+    """
+    from fieldmon.monitor import Plans, first_day  # noqa: PLC0415
+
+    day = _day(on)
+    robot = _robot(scout, hours, look, speed)
+    laid = _lay(
+        _place(_read_plots(plot, feature, crs, layer, plot_option), plants, paths, gate, feature),
+        {
+            "row_bearing_deg": bearing,
+            "row_spacing_m": row_spacing,
+            "plant_spacing_m": plant_spacing,
+            "headland_m": headland,
+        },
+    )
+    records = _read_records(observations, laid, record_option)
+    _hear(records, day)
+    begin = _start(first_day(laid, records, day, Plans(robot)).chance, infested, seed)
+    rows = []
+    for name in sampler or list(SamplerName):
+        rows += _season(laid, robot, (name, _sampler(name, every)), begin, (days, spread, seed))
+    header = "sampler,day,detection_pct,visited_pct,ever_visited_pct,found,infested_left"
+    if output is not None:
+        from fieldmon.geodata.writing import write_whole  # noqa: PLC0415
+
+        write_whole(output, "\n".join([header, *rows, ""]).encode())
+        typer.echo(f"Table written to {output}")
+
+
+@app.command(name="app")
+def open_app(
+    port: Annotated[int, typer.Option(help="Port on this machine.", min=1, max=65535)] = 8501,
+    address: Annotated[
+        str, typer.Option(help="Address to listen on; others may only see it beyond 127.0.0.1.")
+    ] = "127.0.0.1",
+    browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,  # noqa: FBT002
+) -> None:
+    """Open the app in the browser. It needs no internet; stop it with Ctrl-C."""
+    import importlib.util  # noqa: PLC0415
+    import socket  # noqa: PLC0415
+    import subprocess  # noqa: PLC0415
+
+    found = importlib.util.find_spec("app")
+    if found is None or found.origin is None:
+        raise SettingError("The app must be installed beside fieldmon, but it was not found.")
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((address, port))
+        except OSError as error:
+            raise SettingError(
+                f"Port {port} at {address} must be free, but it is not ({error.strerror}). "
+                "Close what uses it, or choose another with --port."
+            ) from error
+    typer.echo(f"fieldmon is at http://{address}:{port} (stop it with Ctrl-C)")
+    page = Path(found.origin).with_name("streamlit_app.py")
+    settings = {
+        "server.port": port,
+        "server.address": address,
+        "server.headless": not browser,
+        "browser.gatherUsageStats": False,
+        "client.showErrorDetails": "none",
+        "client.toolbarMode": "minimal",
+    }
+    flags = [f"--{name}={str(value).lower()}" for name, value in settings.items()]
+    command = [sys.executable, "-m", "streamlit", "run", str(page), *flags]
+    raise typer.Exit(subprocess.run(command, check=False).returncode)  # noqa: S603
+
+
+def _read_plots(
+    path: Path,
+    feature: str | None,
+    crs: str | None,
+    layer: str | None,
+    more: list[str] | None,
+) -> tuple[Field, ...]:
+    from fieldmon.geodata.options import PlotOptions  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_plots  # noqa: PLC0415
+
+    options = PlotOptions()
+    for name, value in (("crs", crs), ("layer", layer), ("feature", feature)):
+        if value is not None:
+            options = options.choose(name, value)
+    read = read_plots(path, _chosen(options, more))
+    _tell(read.findings)
+    return read.value
+
+
+def _read_records(path: Path | None, plot: Plot, more: list[str] | None) -> Observations:
+    from fieldmon.field import Observations  # noqa: PLC0415
+
+    if path is None:
+        return Observations.none()
+    from fieldmon.geodata.options import RecordOptions  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_records  # noqa: PLC0415
+
+    read = read_records(path, _chosen(RecordOptions(), more), near=plot.field)
+    _tell(read.findings)
+    return read.value
+
+
+def _place(
+    fields: tuple[Field, ...],
+    plants: Path | None,
+    paths: Path | None,
+    gate: str | None,
+    feature: str | None,
+) -> Field:
+    """Return the one plot that is meant, with its plants, paths and gate."""
+    from dataclasses import replace  # noqa: PLC0415
+
+    from fieldmon.geodata.options import ReadOptions  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_lines, read_plants  # noqa: PLC0415
+
+    if len(fields) > 1 and feature is None:
+        names = tuple(field.name for field in fields)
+        listed = ", ".join(names[:12]) + (", ..." if len(names) > 12 else "")
+        raise ChoiceNeeded(
+            f"One plot must be chosen, but the file holds {len(names)}: {listed}. "
+            f'Choose one by name or number: --feature "{names[0]}" or --feature 1.',
+            "feature",
+            names,
+        )
+    field = fields[0]
+    if plants is not None:
+        measured = read_plants(plants, ReadOptions())
+        _tell(measured.findings)
+        field = replace(field, plants=measured.value.lonlat.copy())
+    if paths is not None:
+        lines = read_lines(paths, ReadOptions())
+        _tell(lines.findings)
+        field = replace(field, paths=lines.value)
+    return field if gate is None else replace(field, gate=_lonlat(gate))
+
+
+def _lay(field: Field, given: dict[str, float | None]) -> Plot:
+    from fieldmon.monitor import Plot, planting_of  # noqa: PLC0415
+
+    planting = planting_of(field, **given)
+    plot = Plot.of(field, planting)
+    grid = plot.grid
+    typer.echo(
+        f"{field.name}: {len(grid)} plants in {grid.n_rows} rows, bearing "
+        f"{grid.frame.bearing_deg % 180:.1f} degrees, rows {grid.row_spacing_m:.2f} m and plants "
+        f"{grid.plant_spacing_m:.2f} m apart."
+    )
+    if field.plants is None:
+        for name in ("row_spacing_m", "plant_spacing_m"):
+            if given[name] is None and getattr(field, name) is None:
+                option = name.removesuffix("_m").replace("_", "-")
+                typer.echo(
+                    f"guessed: {option.replace('-', ' ')} {getattr(planting, name):g} m "
+                    f"[--{option}]",
+                    err=True,
+                )
+    return plot
+
+
+def _start(chance: Any, infested: float, seed: int) -> Start:  # noqa: ANN401 - an array
+    from fieldmon.chance import Chance  # noqa: PLC0415
+    from fieldmon.prior import start_infested  # noqa: PLC0415
+    from fieldmon.season import Start  # noqa: PLC0415
+
+    if not 0.0 < infested < 1.0:
+        raise SettingError(
+            f"The share infested at the start must be between 0 and 1, but it is {infested}."
+        )
+    return Start(start_infested(chance, infested, Chance(seed).of("start")), chance)
+
+
+def _season(
+    plot: Plot,
+    robot: Robot,
+    sampler: tuple[SamplerName, Sampler],
+    begin: Start,
+    numbers: tuple[int, float, int],
+) -> list[str]:
+    from fieldmon.chance import Chance  # noqa: PLC0415
+    from fieldmon.season import SeasonSettings  # noqa: PLC0415
+    from fieldmon.season import days as season_days  # noqa: PLC0415
+    from fieldmon.spread import Spread  # noqa: PLC0415
+
+    n_days, rate, seed = numbers
+    settings = SeasonSettings(n_days=n_days, spread=Spread(rate))
+    name, decides = sampler
+    walk = season_days(plot.aisles, robot, decides, begin, settings, Chance(seed))
+    rows = []
+    typer.echo(f"\n{name}\n day  detection %  visited %  found  infested left")
+    for day in walk:
+        typer.echo(
+            f"{day.number + 1:4d}  {day.detection_pct:11.1f}  {day.visited_pct:9.1f}  "
+            f"{day.found:5d}  {day.left:13d}"
+        )
+        rows.append(
+            f"{name},{day.number + 1},{day.detection_pct:.4f},{day.visited_pct:.4f},"
+            f"{day.ever_visited_pct:.4f},{day.found},{day.left}"
+        )
+    return rows
+
+
+def _chosen(options: Any, more: list[str] | None) -> Any:  # noqa: ANN401 - any of three options
+    for item in more or []:
+        name, equals, value = item.partition("=")
+        if not equals:
+            raise SettingError(f"An option must be NAME=VALUE, but it is {item!r}.")
+        options = options.choose(name.strip(), value.strip())
+    return options
+
+
+def _tell(findings: Iterable[Finding]) -> None:
+    for finding in findings:
+        typer.echo(str(finding), err=True)
+
+
+def _hear(records: Observations, day: Any) -> None:  # noqa: ANN401 - a numpy day
+    from fieldmon.prior import usable  # noqa: PLC0415
+
+    for remark in usable(records, day).remarks():
+        typer.echo(remark, err=True)
+
+
+def _robot(
+    scout: bool,  # noqa: FBT001 - a flag handed on
+    hours: float | None,
+    look: float | None,
+    speed: float | None,
+) -> Robot:
+    from dataclasses import replace  # noqa: PLC0415
+
+    from fieldmon import robot  # noqa: PLC0415
+
+    base = robot.scout() if scout else robot.Robot()
+    return replace(
+        base,
+        hours=base.hours if hours is None else hours,
+        look_s=base.look_s if look is None else look,
+        speed_m_s=base.speed_m_s if speed is None else speed / 3.6,
+    )
+
+
+def _sampler(name: SamplerName, every: int) -> Sampler:
+    from fieldmon.samplers import sampler  # noqa: PLC0415
+
+    return sampler(name.value, **({"every": every} if name is SamplerName.BOUNCY else {}))
+
+
+def _day(text: str | None) -> Any:  # noqa: ANN401 - a numpy day, imported late
+    import numpy as np  # noqa: PLC0415
+
+    try:
+        day = date.today() if text is None else date.fromisoformat(text)  # noqa: DTZ011 - local day
+    except ValueError as error:
+        raise SettingError(f"--date must be a day as YYYY-MM-DD, but it is {text!r}.") from error
+    return np.datetime64(day, "D")
+
+
+def _clock(text: str) -> Any:  # noqa: ANN401 - a time
+    try:
+        return datetime.strptime(text, "%H:%M").time()  # noqa: DTZ007 - local time
+    except ValueError as error:
+        raise SettingError(f"--start must be a time as HH:MM, but it is {text!r}.") from error
+
+
+def _lonlat(text: str) -> tuple[float, float]:
+    try:
+        lon, lat = (float(part) for part in text.split(","))
+    except ValueError as error:
+        raise SettingError(
+            f"--gate must be LON,LAT in degrees, such as 35.15,30.36, but it is {text!r}."
+        ) from error
+    return lon, lat
+
+
+if __name__ == "__main__":
+    main()

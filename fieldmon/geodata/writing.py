@@ -1,0 +1,50 @@
+"""Files appear whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+from fieldmon.errors import FileProblem
+
+
+def write_whole(path: str | Path, data: bytes) -> None:
+    """Write a file so that nobody ever sees half of it; raise `FileProblem` if it cannot be.
+
+    The bytes go into a temporary file in the same folder, which then takes the name: a full disk
+    or a killed process leaves what was there before.
+    """
+    target = Path(path)
+    if target.is_dir():
+        raise FileProblem(f"{target} must be a file to write to, but it is a folder.")
+    if not target.parent.is_dir():
+        raise FileProblem(
+            f"The folder {target.parent} must exist before {target.name} can be written into it. "
+            "Make it, or choose another one."
+        )
+    name = None
+    try:
+        with tempfile.NamedTemporaryFile(
+            dir=target.parent, prefix=f".{target.name}.", delete=False
+        ) as file:
+            name = file.name
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        Path(name).chmod(0o666 & ~_umask())
+        Path(name).replace(target)
+    except OSError as error:
+        raise FileProblem(
+            f"{target} could not be written ({error.strerror or error}); nothing was changed. "
+            "Make room or choose another place."
+        ) from error
+    finally:
+        if name is not None:
+            Path(name).unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

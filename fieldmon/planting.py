@@ -230,9 +230,10 @@ def free_intervals(area: shapely.Geometry, low_y: Float, high_y: Float) -> Inter
     strip = np.arange(len(edge)) + np.repeat(first - np.cumsum(n_met) + n_met, n_met)
     x1, y1, x2, y2 = x1[edge], y1[edge], x2[edge], y2[edge]
     low, high = low_y[strip], high_y[strip]
-    per_y = (x2 - x1) / np.where(y2 > y1, y2 - y1, 1.0)
-    enters = np.where(y1 >= low, x1, x1 + (low - y1) * per_y)
-    leaves = np.where(y2 <= high, x2, x1 + (high - y1) * per_y)
+    # parts of the edge's height, so that the flattest edge cannot overflow
+    height = np.where(y2 > y1, y2 - y1, 1.0)
+    enters = x1 + (np.maximum(low, y1) - y1) / height * (x2 - x1)
+    leaves = np.where(y2 <= high, x2, x1 + (np.minimum(high, y2) - y1) / height * (x2 - x1))
     middle = (low + high) / 2
     crosses = (y1 <= middle) & (middle < y2)
     # sweep each strip from low to high x: an edge opens where it begins and closes where it

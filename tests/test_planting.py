@@ -215,6 +215,7 @@ def test_without_outer_faces_every_face_looks_at_another_row(field, planting):
 @given(areas(30.0), st.floats(1.0, 8.0), st.floats(0.0, 1.0))
 @example(MultiPolygon([shapely.box(-5, -4, 5, 4)]), 4.0, 0.0)
 @example(Polygon([(0, 0), (9, 0), (9, 9), (5, 2), (0, 9)]), 3.0, 0.0)
+@example(Polygon([(6, -6), (-6, -6), (-6, 6), (4.8, 6), (4.8, 1e-320), (6, 2e-320)]), 1.0, 0.0)
 def test_free_stretches_of_a_strip_are_those_that_shapely_finds(area, width_m, phase):
     _, low, _, high = area.bounds
     low_y = np.arange(low - phase * width_m, high, width_m)

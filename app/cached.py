@@ -1,0 +1,138 @@
+"""Everything the app keeps between clicks. Keys are digests and frozen settings, never arrays.
+
+Streamlit hashes large arrays from a sample of their cells; a plot that differs in one plant would
+be taken for the same. So values that cannot be keyed come in as ``_arguments``, which Streamlit
+leaves out, beside a key that stands for them.
+"""
+
+from __future__ import annotations
+
+import threading
+from hashlib import sha256
+from typing import TYPE_CHECKING
+
+import numpy as np
+import streamlit as st
+
+from fieldmon.chance import Chance
+from fieldmon.geodata import guard, reading
+from fieldmon.hotspots import HotSpots, hot_spots, record_states
+from fieldmon.metrics import SeasonFigures, figures
+from fieldmon.monitor import Plans, Plot, Today, first_day
+from fieldmon.planting import rectangle
+from fieldmon.prior import start_infested
+from fieldmon.robot import Robot
+from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.season import Day, SeasonSettings, Start, days
+from fieldmon.spread import Spread
+
+from . import texts
+
+if TYPE_CHECKING:
+    from fieldmon.field import Field, Observations
+    from fieldmon.geodata.findings import Imported
+    from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
+    from fieldmon.planting import Planting
+
+_FEW = 24
+
+
+def digest(data: bytes) -> str:
+    """Return what stands for a file's bytes in keys."""
+    return sha256(data).hexdigest()
+
+
+@st.cache_resource
+def warm() -> threading.Thread:
+    """Start the file reader and compile the samplers while the person is still looking."""
+
+    def work() -> None:
+        guard.warm()
+        grid = rectangle(3, 3)
+        from fieldmon.aisles import Aisles  # noqa: PLC0415 - only this thread needs it by name
+
+        start = Start(np.ones(9, np.bool_), np.full(9, 0.1))
+        for name in SAMPLERS:
+            settings = SeasonSettings(n_days=2)
+            list(days(Aisles.of(grid), Robot(), sampler(name), start, settings, Chance(0)))
+
+    thread = threading.Thread(target=work, daemon=True)
+    thread.start()
+    return thread
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def plots(key: str, options: PlotOptions, _source: Source) -> Imported[tuple[Field, ...]]:  # noqa: ARG001
+    """Return the plots of a file."""
+    return reading.read_plots(_source, options)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def records(
+    key: str,  # noqa: ARG001
+    options: RecordOptions,
+    _source: Source,
+    _near: Field,
+) -> Imported[Observations]:
+    """Return the records on and near a plot; `key` stands for the file and the plot."""
+    return reading.read_records(_source, options, near=_near)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def measured_plants(key: str, options: ReadOptions, _source: Source) -> np.ndarray:  # noqa: ARG001
+    """Return positions of measured plants, ``(n, 2)`` degrees."""
+    lonlat: np.ndarray = reading.read_plants(_source, options).value.lonlat
+    return lonlat
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def plot(key: str, planting: Planting, _field: Field) -> Plot:  # noqa: ARG001
+    """Return a field's plants and aisles."""
+    return Plot.of(_field, planting)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def plot_around(key: str, planting: Planting | None, _plants: np.ndarray) -> Plot:  # noqa: ARG001
+    """Return the plot of measured plants that have no drawn boundary."""
+    return Plot.around("plants", _plants, planting)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def today(
+    key: str,  # noqa: ARG001
+    day: str,
+    robot: Robot,
+    sampler_name: str,
+    _plot: Plot,
+    _records: Observations,
+) -> Today:
+    """Return the planned day; `key` stands for plot and records."""
+    plans = Plans(robot, sampler(sampler_name))
+    return first_day(_plot, _records, np.datetime64(day, "D"), plans)
+
+
+@st.cache_resource(max_entries=_FEW)
+def recorded_hot_spots(key: str, _plot: Plot, _records: Observations) -> HotSpots:  # noqa: ARG001
+    """Return where the records cluster."""
+    return hot_spots(_plot.grid, record_states(_plot.grid, _records))
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def season(
+    key: str,  # noqa: ARG001
+    sampler_name: str,
+    numbers: tuple[int, float, float, int],
+    robot: Robot,
+    _plot: Plot,
+    _chance: np.ndarray,
+) -> tuple[list[Day], SeasonFigures]:
+    """Return a simulated season and its figures; `key` stands for plot, records and day.
+
+    `numbers` are days, share infested at the start, spread a night, and seed.
+    """
+    n_days, share, rate, seed = numbers
+    begin = Start(start_infested(_chance, share, Chance(seed).of("start")), _chance)
+    settings = SeasonSettings(n_days=n_days, spread=Spread(rate))
+    chance = Chance(seed)
+    walk = list(days(_plot.aisles, robot, sampler(sampler_name), begin, settings, chance))
+    return walk, figures(walk)

@@ -91,10 +91,8 @@ class Aisles:
         not be crossed either where parts of a plot can only be joined outside the boundary.
         """
         net = ways(grid, gate_xy_m, no_go_m)
-        stops, which = np.unique(np.append(net.end.ravel(), net.gate), return_inverse=True)
-        reach_m = np.empty((len(stops), len(stops)))
-        _reach(net, stops, reach_m)
-        between_m = np.minimum(reach_m, reach_m.T)[np.ix_(which, which)]
+        between_m = np.empty((2 * grid.n_rows + 1, 2 * grid.n_rows + 1))
+        _reach(net, np.append(net.end.ravel(), net.gate), between_m)
         ground = Ground(
             np.ascontiguousarray(grid.xy_m[:, 0]),
             grid.row,
@@ -150,7 +148,7 @@ class Aisles:
     @cached_property
     def _stop_node(self) -> NDArray[np.int64]:
         """Node of each lane end, and of the gate, as numbered in `Ground.between_m`."""
-        return np.append(self.ways.end.ravel(), self.ways.gate).astype(np.int64)
+        return np.append(self.ways.end.ravel(), self.ways.gate)
 
     def _exits(self, i: int) -> tuple[NDArray[np.int64], Float]:
         """Return the ends of the lane of plant i as in `Ground.between_m`, and the metres there."""
@@ -169,9 +167,10 @@ def crosses_rows(grid: PlantGrid, line_xy_m: Float) -> bool:
 
     A row is the line through its plants, from the first to the last.
     """
-    rows = shapely.STRtree(row_lines(grid))
+    # not by distance: to lines of no length, as a row of one plant is, GEOS finds none
+    rows = shapely.STRtree(shapely.buffer(row_lines(grid), _TOUCH_M))
     steps = shapely.linestrings(np.stack([line_xy_m[:-1], line_xy_m[1:]], axis=1))
-    return bool(rows.query(steps, predicate="dwithin", distance=_TOUCH_M).size)
+    return bool(rows.query(steps, predicate="intersects").size)
 
 
 @nb.njit(cache=True, inline="always")
@@ -205,7 +204,7 @@ def _drive_all(ground: Ground, i: NDArray[np.int64], j: NDArray[np.int64], metre
 
 
 @nb.njit(cache=True)
-def _reach(ways: Ways, stops: NDArray[np.int64], reach_m: Float) -> None:
+def _reach(ways: Ways, stops: NDArray[np.int64], between_m: Float) -> None:
     """Fill in the shortest ways ``(s, s)`` between the given nodes.
 
     Nodes are relaxed up and down the plot in turn, for some dozen sources side by side, until
@@ -223,8 +222,9 @@ def _reach(ways: Ways, stops: NDArray[np.int64], reach_m: Float) -> None:
         while shorter:
             shorter = _sweep(ways, near, 0, n, 1) | _sweep(ways, near, n - 1, -1, -1)
         for s in range(width):
-            for t in range(stops.size):
-                reach_m[first + s, t] = near[stops[t], s]
+            # there and back are the same to the last bit
+            for t in range(first + s + 1):
+                between_m[first + s, t] = between_m[t, first + s] = near[stops[t], s]
 
 
 @nb.njit(cache=True)

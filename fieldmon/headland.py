@@ -63,7 +63,7 @@ class Ways(NamedTuple):
     start: NDArray[np.int64]
     to: NDArray[np.int64]
     length_m: Float
-    end: NDArray[np.int32]
+    end: NDArray[np.int64]
     gate: int
 
 
@@ -77,15 +77,15 @@ class Obstacles:
         Rows from first to last plant, with a little clearance.
     drivable_m
         Where driving is fine.
-    holes_m
-        Holes in it.
+    shut_m
+        Its holes, and where driving is never fine.
     no_go_m
         Where driving is never fine.
     """
 
     rows: shapely.STRtree
     drivable_m: shapely.Geometry
-    holes_m: shapely.Geometry
+    shut_m: shapely.Geometry
     no_go_m: shapely.Geometry
 
     @classmethod
@@ -117,28 +117,29 @@ class Obstacles:
         good[kept[self.rows.query(lines[kept], predicate="intersects")[0]]] = False
         return good
 
+    def corners(self, where: Where) -> Float:
+        """Return corners that ways may have to go round, ``(k, 2)``; of crowded ones a choice."""
+        if where is Where.INSIDE:
+            area, sign = self.drivable_m, -1.0
+        else:  # on the brink of what must not even be touched
+            area, sign = self._shut_to(where), 1.0
+            area = shapely.buffer(area, _EDGE_M, join_style="mitre")
+        coarse_m, corners = _EDGE_M, _bends(area, _EDGE_M, sign)
+        while len(corners) > _MOST_CORNERS:
+            coarse_m *= 2
+            corners = _bends(area, coarse_m, sign)
+        return corners
+
     def _where_allowed(self, lines: NDArray[np.object_], where: Where) -> Mask:
         if where is Where.INSIDE:
             return np.asarray(shapely.covers(self.drivable_m, lines))
-        shut_m = self.holes_m if where is Where.OUTSIDE else self.no_go_m
-        return ~np.asarray(shapely.intersects(shut_m, lines))
+        return ~np.asarray(shapely.intersects(self._shut_to(where), lines))
 
-    def corners(self, where: Where) -> Float:
-        """Return corners that ways may have to go round, ``(k, 2)``; of crowded ones a choice."""
-        areas = {
-            Where.INSIDE: self.drivable_m,
-            Where.OUTSIDE: self.holes_m,
-            Where.ANYWHERE: self.no_go_m,
-        }
-        sign = -1.0 if where is Where.INSIDE else 1.0
-        coarse_m, corners = _EDGE_M, _turning_left(areas[where], _EDGE_M, sign)
-        while len(corners) > _MOST_CORNERS:
-            coarse_m *= 2
-            corners = _turning_left(areas[where], coarse_m, sign)
-        return corners
+    def _shut_to(self, where: Where) -> shapely.Geometry:
+        return self.shut_m if where is Where.OUTSIDE else self.no_go_m
 
 
-def _turning_left(area: shapely.Geometry, coarse_m: float, sign: float) -> Float:
+def _bends(area: shapely.Geometry, coarse_m: float, sign: float) -> Float:
     """Return corners at which an area bulges (sign 1) or something bulges into it (sign -1)."""
     rings = shapely.get_rings(
         shapely.get_parts(shapely.orient_polygons(shapely.simplify(area, coarse_m)))
@@ -273,7 +274,11 @@ def _each_once(pairs: Index) -> Index:
 
 
 def _along_aisles(grid: PlantGrid, xy_m: Float, place: Index) -> Index:
-    """Return pairs of nodes next to each other on one aisle, and those across half an aisle."""
+    """Return pairs of nodes next to each other on one aisle, and those across half an aisle.
+
+    Aisles of neighbouring rows that were measured, not laid, lie at slightly different y: nodes
+    within a quarter of the row spacing count as on the aisle.
+    """
     aisle = place[:, :, [0, 2]].transpose(0, 2, 1).reshape(-1, 2)
     node = np.unique(aisle)
     node = node[np.argsort(xy_m[node, 1], kind="stable")]
@@ -457,6 +462,6 @@ def _sorted(net: _Net, end: Index, gate: int) -> Ways:
         start,
         from_to[:, 1].astype(np.int64),
         length_m,
-        place[end].astype(np.int32),
+        place[end].astype(np.int64),
         int(place[gate]),
     )

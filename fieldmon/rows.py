@@ -83,9 +83,9 @@ def rows_from_lines(field: Field) -> Rows:
 def rows_from_plants(lonlat: Float, near_bearing_deg: float | None = None) -> Rows:
     """Return direction and spacings of the rows in which measured plants stand.
 
-    Rows are the lines from which plants stray least, compared with the distance between lines;
-    so where plants stray alike in all directions, rows are where they stand closest. Missing
-    plants, ragged ends and positions some decimetres off do no harm.
+    Rows are where plants stand closest, unless they stand much straighter in another direction
+    (hops on wires, say). Missing plants, ragged ends and positions some decimetres off do no
+    harm.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def rows_from_plants(lonlat: Float, near_bearing_deg: float | None = None) -> Ro
     east_north_m = _middle_of(frame_around(lonlat).xy_m(lonlat))
     pairs = _Pairs.of(east_north_m)
     bearings = _promising_bearings(pairs) if near_bearing_deg is None else [near_bearing_deg]
-    best = min((_lines(east_north_m, pairs, b) for b in bearings), key=lambda lines: lines.blur)
+    best = min((_lines(east_north_m, pairs, b) for b in bearings), key=_unlikeliness)
     rows = f"{best.n_lines} row" + "s" * (best.n_lines != 1)
     stray = f", {best.off_m:.2f} m beside their line" if np.isfinite(best.off_m) else ""
     doubt = "; they hardly stand in rows, so check the bearing" if best.blur > _NO_ROWS else ""
@@ -205,6 +205,11 @@ class _Lines(NamedTuple):
         """
         off = self.off_m / self.row_spacing_m if self.row_spacing_m else self.off_m
         return off / (1 - self.n_lines / self.n_plants) if self.n_lines < self.n_plants else np.inf
+
+
+def _unlikeliness(lines: _Lines) -> float:
+    """Return a rank for directions: straight lines first, and lines far apart (so: dense ones)."""
+    return lines.blur / (lines.row_spacing_m or 1.0)
 
 
 def _promising_bearings(pairs: _Pairs) -> list[float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import contextmanager
 from datetime import date, datetime
 from enum import StrEnum
 from pathlib import Path
@@ -14,7 +15,7 @@ import typer
 from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from fieldmon.field import Field, Observations
     from fieldmon.geodata.findings import Finding
@@ -48,6 +49,10 @@ class SamplerName(StrEnum):
 
 
 PlotFile = Annotated[Path, typer.Argument(help=PLOT_HELP, show_default=False)]
+MaybePlotFile = Annotated[
+    Path | None,
+    typer.Argument(help=f"{PLOT_HELP} Not needed if --plants are given.", show_default=False),
+]
 Feature = Annotated[
     str | None,
     typer.Option(help="Name or number (from 1) of the plot, where a file holds several."),
@@ -115,11 +120,11 @@ def main() -> None:
 
 
 def _unexpected(error: Exception) -> NoReturn:
-    from click import ClickException  # noqa: PLC0415 - only when something went wrong
-
-    if isinstance(error, ClickException):
-        error.show()
-        sys.exit(error.exit_code)
+    # typer's own base of a wrong option or argument, wherever its version keeps it
+    usage = next(c for c in typer.BadParameter.__mro__ if c.__name__ == "ClickException")
+    if isinstance(error, usage):
+        error.show()  # type: ignore[attr-defined]
+        sys.exit(2)
     if os.environ.get("FIELDMON_DEBUG"):
         raise error
     _end(
@@ -146,7 +151,7 @@ def plots(
 
 @app.command()
 def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
-    plot: PlotFile,
+    plot: MaybePlotFile = None,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Route file to write (GeoJSON).")
     ] = Path("route.geojson"),
@@ -185,15 +190,17 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
 
     day, begins = _day(on), _clock(start)
     plans = Plans(_robot(scout, hours, look, speed), _sampler(sampler, every))
-    laid = _lay(
-        _place(_read_plots(plot, feature, crs, layer, plot_option), plants, paths, gate, feature),
-        {
-            "row_bearing_deg": bearing,
-            "row_spacing_m": row_spacing,
-            "plant_spacing_m": plant_spacing,
-            "headland_m": headland,
-        },
-    )
+    given = {
+        "row_bearing_deg": bearing,
+        "row_spacing_m": row_spacing,
+        "plant_spacing_m": plant_spacing,
+        "headland_m": headland,
+    }
+    if plot is None:
+        laid = _around(plants, gate, given)
+    else:
+        fields = _read_plots(plot, feature, crs, layer, plot_option)
+        laid = _lay(_place(fields, plants, paths, gate, feature), given)
     records = _read_records(observations, laid, record_option)
     _hear(records, day)
     today = first_day(laid, records, day, plans)
@@ -215,7 +222,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
 
 @app.command()
 def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
-    plot: PlotFile,
+    plot: MaybePlotFile = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Table to write (CSV).")
     ] = None,
@@ -257,15 +264,17 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
 
     day = _day(on)
     robot = _robot(scout, hours, look, speed)
-    laid = _lay(
-        _place(_read_plots(plot, feature, crs, layer, plot_option), plants, paths, gate, feature),
-        {
-            "row_bearing_deg": bearing,
-            "row_spacing_m": row_spacing,
-            "plant_spacing_m": plant_spacing,
-            "headland_m": headland,
-        },
-    )
+    given = {
+        "row_bearing_deg": bearing,
+        "row_spacing_m": row_spacing,
+        "plant_spacing_m": plant_spacing,
+        "headland_m": headland,
+    }
+    if plot is None:
+        laid = _around(plants, gate, given)
+    else:
+        fields = _read_plots(plot, feature, crs, layer, plot_option)
+        laid = _lay(_place(fields, plants, paths, gate, feature), given)
     records = _read_records(observations, laid, record_option)
     _hear(records, day)
     begin = _start(first_day(laid, records, day, Plans(robot)).chance, infested, seed)
@@ -334,7 +343,8 @@ def _read_plots(
     for name, value in (("crs", crs), ("layer", layer), ("feature", feature)):
         if value is not None:
             options = options.choose(name, value)
-    read = read_plots(path, _chosen(options, more))
+    with _asking("--plot-option"):
+        read = read_plots(path, _chosen(options, more))
     _tell(read.findings)
     return read.value
 
@@ -347,7 +357,8 @@ def _read_records(path: Path | None, plot: Plot, more: list[str] | None) -> Obse
     from fieldmon.geodata.options import RecordOptions  # noqa: PLC0415
     from fieldmon.geodata.reading import read_records  # noqa: PLC0415
 
-    read = read_records(path, _chosen(RecordOptions(), more), near=plot.field)
+    with _asking("--record-option"):
+        read = read_records(path, _chosen(RecordOptions(), more), near=plot.field)
     _tell(read.findings)
     return read.value
 
@@ -391,12 +402,7 @@ def _lay(field: Field, given: dict[str, float | None]) -> Plot:
 
     planting = planting_of(field, **given)
     plot = Plot.of(field, planting)
-    grid = plot.grid
-    typer.echo(
-        f"{field.name}: {len(grid)} plants in {grid.n_rows} rows, bearing "
-        f"{grid.frame.bearing_deg % 180:.1f} degrees, rows {grid.row_spacing_m:.2f} m and plants "
-        f"{grid.plant_spacing_m:.2f} m apart."
-    )
+    _describe(plot)
     if field.plants is None:
         for name in ("row_spacing_m", "plant_spacing_m"):
             if given[name] is None and getattr(field, name) is None:
@@ -407,6 +413,34 @@ def _lay(field: Field, given: dict[str, float | None]) -> Plot:
                     err=True,
                 )
     return plot
+
+
+def _around(plants: Path | None, gate: str | None, given: dict[str, float | None]) -> Plot:
+    """Return the plot of measured plants without a boundary."""
+    from fieldmon.geodata.options import ReadOptions  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_plants  # noqa: PLC0415
+    from fieldmon.monitor import Plot  # noqa: PLC0415
+    from fieldmon.planting import Planting  # noqa: PLC0415
+
+    if plants is None:
+        raise SettingError("Give a plot file, or the positions of its plants with --plants FILE.")
+    measured = read_plants(plants, ReadOptions())
+    _tell(measured.findings)
+    by_hand = {name: value for name, value in given.items() if value is not None}
+    lonlat = measured.value.lonlat.copy()
+    planting = Planting(**by_hand)  # type: ignore[arg-type]
+    plot = Plot.around(plants.stem, lonlat, planting, None if gate is None else _lonlat(gate))
+    _describe(plot)
+    return plot
+
+
+def _describe(plot: Plot) -> None:
+    grid = plot.grid
+    typer.echo(
+        f"{plot.field.name}: {len(grid)} plants in {grid.n_rows} rows, bearing "
+        f"{grid.frame.bearing_deg % 180:.1f} degrees, rows {grid.row_spacing_m:.2f} m and plants "
+        f"{grid.plant_spacing_m:.2f} m apart."
+    )
 
 
 def _start(chance: Any, infested: float, seed: int) -> Start:  # noqa: ANN401 - an array
@@ -458,6 +492,22 @@ def _chosen(options: Any, more: list[str] | None) -> Any:  # noqa: ANN401 - any 
             raise SettingError(f"An option must be NAME=VALUE, but it is {item!r}.")
         options = options.choose(name.strip(), value.strip())
     return options
+
+
+@contextmanager
+def _asking(flag: str) -> Iterator[None]:
+    """Say with a question how to answer it on the command line."""
+    try:
+        yield
+    except ChoiceNeeded as question:
+        answer = question.choices[0] if question.choices else "..."
+        named = question.option in {"crs", "layer", "feature"} and flag == "--plot-option"
+        how = f"--{question.option} " if named else f"{flag} {question.option}="
+        raise ChoiceNeeded(
+            f'{question} Answer with {how}"{answer}", for instance.',
+            question.option,
+            question.choices,
+        ) from None
 
 
 def _tell(findings: Iterable[Finding]) -> None:

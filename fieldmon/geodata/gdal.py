@@ -43,12 +43,14 @@ def list_layers(path: Path, name: str) -> list[Listed]:
 def read_layer(path: Path, name: str, layer: str | None, encoding: str | None = None) -> Layer:
     """Return one layer of a staged file."""
     try:
+        info = pyogrio.read_info(path, layer=layer, encoding=encoding, force_feature_count=True)
         meta, _, wkb, values = pyogrio.raw.read(
             path,
             layer=layer,
             encoding=encoding,
             datetime_as_string=True,
-            max_features=limits.FEATURES + 1,
+            # room is made for as many as are asked for, whether they exist or not
+            max_features=min(max(int(info["features"]), 1), limits.FEATURES) + 1,
         )
     except _UNREADABLE as bad:
         raise _unreadable(name, bad) from bad

@@ -8,6 +8,7 @@ stands in the findings. The file itself is opened in a process of its own (`guar
 from __future__ import annotations
 
 import tempfile
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.geodata import guard
@@ -23,10 +24,13 @@ if TYPE_CHECKING:
     from fieldmon.geodata.places import Places, Plants
 
 
-def _read(task: str, *arguments: Any) -> Any:  # noqa: ANN401 - each door says what comes back
+def _read(task: str, source: Source, *arguments: Any) -> Any:  # noqa: ANN401 - each door says
+    # the reading process may have been started in another folder than the one we are in by now
+    if isinstance(source, str | Path):
+        source = Path(source).absolute()
     # the folder is made and removed here: a reading process that was stopped cannot tidy up
     with tempfile.TemporaryDirectory(prefix="fieldmon-", ignore_cleanup_errors=True) as folder:
-        return guard.call(f"fieldmon.geodata.tasks:{task}", folder, *arguments)
+        return guard.call(f"fieldmon.geodata.tasks:{task}", folder, source, *arguments)
 
 
 def list_layers(source: Source) -> tuple[LayerInfo, ...]:

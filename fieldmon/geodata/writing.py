@@ -16,8 +16,9 @@ def write_whole(path: str | Path, data: bytes) -> None:
     or a killed process leaves what was there before.
     """
     target = Path(path)
-    if target.is_dir():
-        raise FileProblem(f"{target} must be a file to write to, but it is a folder.")
+    if target.exists() and not target.is_file():
+        what = "a folder" if target.is_dir() else "not a plain file"
+        raise FileProblem(f"{target} must be a file to write to, but it is {what}.")
     if not target.parent.is_dir():
         raise FileProblem(
             f"The folder {target.parent} must exist before {target.name} can be written into it. "

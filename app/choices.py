@@ -49,6 +49,16 @@ class Choices:
     sampler: str
     day: str
 
+    @property
+    def phone(self) -> bool:
+        """Return whether the page is shown on a phone, by what its browser says."""
+        return "Mobi" in (st.context.headers.get("User-Agent") or "")
+
+    @property
+    def map_px(self) -> int:
+        """Return the height of the map: half a phone's screen, more on a laptop."""
+        return 400 if self.phone else 500
+
 
 @dataclass(frozen=True, eq=False)
 class _File:

@@ -45,8 +45,8 @@ OUTLINE: Colour = (70, 80, 70)
 POINTS_AT_MOST = 20_000
 _PICTURE_AT_MOST = 2048
 _ARROWS = 40
-_NUMBERS = 60
-_VIEW_PX = (720, 480)
+_NUMBERS = 24
+_VIEW_PX, _PHONE_PX = (720, 480), (340, 380)
 _TILE_PX = 512
 
 
@@ -78,24 +78,25 @@ def by_state(state: NDArray[np.int8]) -> Shade:
     return Shade(np.array([NEVER, CLEAN, FOUND], np.uint8)[rank], rank)
 
 
-def deck(grid: PlantGrid, layers: list[pdk.Layer]) -> Deck:
-    """Return the map of a plot; its first view depends on the plot alone."""
+def deck(grid: PlantGrid, layers: list[pdk.Layer], *, phone: bool = False) -> Deck:
+    """Return the map of a plot; its first view depends on the plot and the device alone."""
     return Deck(
         layers=layers,
-        initial_view_state=view(grid),
+        initial_view_state=view(grid, phone=phone),
         map_provider=None,
         tooltip={"html": "{t}", "style": {"fontSize": "13px"}},
     )
 
 
-def view(grid: PlantGrid) -> pdk.ViewState:
-    """Return the view that holds the whole plot."""
+def view(grid: PlantGrid, *, phone: bool = False) -> pdk.ViewState:
+    """Return the view that holds the whole plot on a laptop's map, or on a phone's."""
     corners = grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m))
     (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
     low, high = (_mercator(lat) for lat in (south, north))
+    size_px = _PHONE_PX if phone else _VIEW_PX
     room = [
         np.log2(360.0 * px * 0.85 / (_TILE_PX * span))
-        for px, span in zip(_VIEW_PX, (east - west, high - low), strict=True)
+        for px, span in zip(size_px, (east - west, high - low), strict=True)
         if span > 0
     ]
     return pdk.ViewState(
@@ -216,7 +217,8 @@ def _numbers(the_route: Route) -> list[pdk.Layer]:
     return [
         pdk.Layer(
             "TextLayer", rows, id="numbers", get_position="p", get_text="n", get_size=12,
-            get_color=[10, 30, 90], background=True, get_background_color=[255, 255, 255, 200],
+            get_color=[10, 30, 90], background=True, get_background_color=[255, 255, 255, 220],
+            background_padding=[3, 1],
         )
     ]  # fmt: skip
 
@@ -243,20 +245,22 @@ def _arrows(the_route: Route) -> list[dict[str, Any]]:
 
 
 def hot(grid: PlantGrid, spots: HotSpots) -> list[pdk.Layer]:
-    """Return a ring around each hot spot."""
+    """Return the outline of each hot spot's plants."""
     if not len(spots):
         return []
     rows = []
-    for k, place in enumerate(grid.frame.lonlat(spots.centre_m).tolist()):
-        own = grid.xy_m[spots.of_plant == k]
-        reach = np.hypot(*(own - spots.centre_m[k]).T).max() + grid.row_spacing_m
+    margin_m = 0.75 * max(grid.row_spacing_m, grid.plant_spacing_m)
+    for k in range(len(spots)):
+        own = shapely.multipoints(grid.xy_m[spots.of_plant == k])
+        shape = grid.frame.geometry_lonlat(shapely.buffer(shapely.convex_hull(own), margin_m))
+        corners = np.round(shapely.get_coordinates(shape.exterior), 7).tolist()
         text = f"hot spot: {spots.found[k]} found of {spots.inspected[k]} inspected"
-        rows.append({"p": place, "r": float(reach), "t": text})
+        rows.append({"p": corners, "t": text})
     return [
         pdk.Layer(
-            "ScatterplotLayer", rows, id="hot", get_position="p", get_radius="r", filled=True,
-            get_fill_color=[*HOT, 25], stroked=True, get_line_color=list(HOT),
-            line_width_min_pixels=2.5, get_line_width=0.4, pickable=True,
+            "PolygonLayer", rows, id="hot", get_polygon="p", filled=True,
+            get_fill_color=[*HOT, 20], stroked=True, get_line_color=list(HOT),
+            line_width_min_pixels=3, get_line_width=0.4, pickable=True,
         )
     ]  # fmt: skip
 

@@ -15,6 +15,8 @@ from app.choices import choose  # noqa: E402
 from app.pages import season, today  # noqa: E402
 
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
+# Streamlit leaves a hand's breadth above the page, which a phone cannot spare
+st.html("<style>[data-testid=stMainBlockContainer]{padding-top:4rem;padding-bottom:3rem}</style>")
 cached.warm()
 
 

@@ -53,7 +53,7 @@ LAYER_NAMES = {
 }
 LEGEND_CHANCE = "Chance that a plant is infested"
 LEGEND_ROUTE = "Route: blue line, arrows in driving direction; green ring: gate; numbers: stops"
-LEGEND_HOT = "Purple rings: hot spots, where finds cluster more than chance allows"
+LEGEND_HOT = "Purple outlines: hot spots, where finds cluster more than chance allows"
 LEGEND_RECORDS = "Records: filled where pests were seen, empty where not"
 LEGEND_STATES = {"found": "found", "clean": "looked clean", "never": "never inspected"}
 LEGEND_TRUTH = "Black dots: infested and not yet found (only a simulation knows)"

@@ -64,11 +64,11 @@ def _numbers() -> tuple[int, float, float, int]:
 
 
 def _figures(day: Day) -> None:
-    columns = st.columns(4)
-    columns[0].metric(texts.FOUND_SO_FAR, f"{day.detection_pct:.0f} %")
-    columns[1].metric(texts.FOUND_TODAY, day.found)
-    columns[2].metric(texts.LEFT, day.left)
-    columns[3].metric(texts.VISITED_TODAY, f"{day.visited_pct:.0f} %")
+    with st.container(horizontal=True):
+        st.metric(texts.FOUND_SO_FAR, f"{day.detection_pct:.0f} %", width="content")
+        st.metric(texts.FOUND_TODAY, day.found, width="content")
+        st.metric(texts.LEFT, day.left, width="content")
+        st.metric(texts.VISITED_TODAY, f"{day.visited_pct:.0f} %", width="content")
 
 
 def _map(choices: Choices, season: list[Day], number: int) -> None:
@@ -93,7 +93,11 @@ def _map(choices: Choices, season: list[Day], number: int) -> None:
         left[day.work.plant[day.work.found]] = False
         layers += maps.truth(grid, left)
     bar, bar_m = maps.scale(grid)
-    st.pydeck_chart(maps.deck(grid, [*layers, *bar]), height=460, key="season_map")
+    st.pydeck_chart(
+        maps.deck(grid, [*layers, *bar], phone=choices.phone),
+        height=choices.map_px,
+        key="season_map",
+    )
     colours = [(maps.FOUND, names[1]), (maps.CLEAN, names[0]), (maps.NEVER, names[-1])]
     st.markdown(maps.legend(colours), unsafe_allow_html=True)
     st.caption(" · ".join([texts.LEGEND_HOT, texts.LEGEND_TRUTH, texts.NORTH.format(m=bar_m)]))

@@ -41,7 +41,9 @@ def show(choices: Choices) -> None:
         selection_mode="multi", default=["plants", "route", "numbers", "hot"], key="layers",
     )  # fmt: skip
     layers, bar_m = _layers(choices, today, shown)
-    st.pydeck_chart(maps.deck(choices.plot.grid, layers), height=500, key="map")
+    st.pydeck_chart(
+        maps.deck(choices.plot.grid, layers, phone=choices.phone), height=choices.map_px, key="map"
+    )
     st.markdown(f"**{texts.LEGEND_CHANCE}**{maps.chance_legend()}", unsafe_allow_html=True)
     notes = [texts.LEGEND_ROUTE, texts.LEGEND_HOT, texts.LEGEND_RECORDS]
     st.caption(" · ".join([*notes, texts.NORTH.format(m=bar_m)]))
@@ -52,12 +54,11 @@ def show(choices: Choices) -> None:
 def _figures(choices: Choices, today: Today) -> None:
     route, n = today.route, len(choices.plot.grid)
     finds = route.expected_finds * choices.robot.detects
-    columns = st.columns(4)
-    columns[0].metric(texts.PLANTS_TO_INSPECT, f"{len(route):,}", texts.OF.format(n=f"{n:,}"),
-                      delta_color="off", delta_arrow="off")  # fmt: skip
-    columns[1].metric(texts.TIME, f"{route.end_s / 3600:.1f} h")
-    columns[2].metric(texts.DRIVE, f"{route.drive_m / 1000:.2f} km")
-    columns[3].metric(texts.FINDS, f"{finds:.1f}", help=texts.FINDS_HELP)
+    with st.container(horizontal=True):
+        st.metric(texts.PLANTS_TO_INSPECT, f"{len(route):,} / {n:,}", width="content")
+        st.metric(texts.TIME, f"{route.end_s / 3600:.1f} h", width="content")
+        st.metric(texts.DRIVE, f"{route.drive_m / 1000:.2f} km", width="content")
+        st.metric(texts.FINDS, f"{finds:.1f}", help=texts.FINDS_HELP, width="content")
 
 
 def _layers(choices: Choices, today: Today, shown: list[str]) -> tuple[list[pdk.Layer], int]:

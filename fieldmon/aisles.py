@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     Float = NDArray[np.float64]
 
 _TOUCH_M = 0.01
-_BLOCK = 32
+_BLOCK = 64
 _STRAIGHT = 1e-9
 
 
@@ -208,19 +208,23 @@ def _reach(ways: Ways, stops: NDArray[np.int64], between_m: Float) -> None:
     """Fill in the shortest ways ``(s, s)`` between the given nodes.
 
     Nodes are relaxed up and down the plot in turn, for some dozen sources side by side, until
-    nothing gets shorter. As nodes are sorted by y, a way that turns back in y k times takes k + 2
+    nothing gets shorter. As nodes are sorted by y, a way that turns back in y k times takes k + 1
     sweeps or fewer: on most plots that is far less work than a queue of nodes for each source.
     """
     n = ways.xy_m.shape[0]
     near = np.empty((n, _BLOCK))
+    stale = np.empty(n, np.bool_)
     for first in range(0, stops.size, _BLOCK):
         width = min(_BLOCK, stops.size - first)
         near[:] = np.inf
+        stale[:] = False
         for s in range(width):
-            near[stops[first + s], s] = 0.0
-        shorter = True
-        while shorter:
-            shorter = _sweep(ways, near, 0, n, 1) | _sweep(ways, near, n - 1, -1, -1)
+            source = stops[first + s]
+            near[source, s] = 0.0
+            stale[ways.to[ways.start[source] : ways.start[source + 1]]] = True
+        while stale.any():
+            _sweep(ways, near, stale, (0, n, 1))
+            _sweep(ways, near, stale, (n - 1, -1, -1))
         for s in range(width):
             # there and back are the same to the last bit
             for t in range(first + s + 1):
@@ -228,17 +232,26 @@ def _reach(ways: Ways, stops: NDArray[np.int64], between_m: Float) -> None:
 
 
 @nb.njit(cache=True)
-def _sweep(ways: Ways, near: Float, first: int, end: int, step: int) -> bool:
-    """Relax the nodes in order; tell whether any came nearer."""
-    shorter = False
-    for node in range(first, end, step):
+def _sweep(ways: Ways, near: Float, stale: NDArray[np.bool_], order: tuple[int, int, int]) -> None:
+    """Relax the stale nodes in order, for all columns of ``near`` (m, s)."""
+    own = np.empty(_BLOCK)
+    for node in range(order[0], order[1], order[2]):
+        if not stale[node]:
+            continue
+        stale[node] = False
+        own[:] = near[node]
         for e in range(ways.start[node], ways.start[node + 1]):
-            other, length_m = ways.to[e], ways.length_m[e]
-            for s in range(near.shape[1]):
+            other, length_m = np.uint64(ways.to[e]), ways.length_m[e]
+            for s in range(_BLOCK):
                 way_m = near[other, s] + length_m
-                shorter |= way_m < near[node, s]
-                near[node, s] = min(way_m, near[node, s])
-    return shorter
+                own[s] = way_m if way_m < own[s] else own[s]  # noqa: FURB136 - min is slower
+        nearer = False
+        for s in range(_BLOCK):
+            nearer |= own[s] < near[node, s]
+            near[node, s] = own[s]
+        if nearer:
+            for e in range(ways.start[node], ways.start[node + 1]):
+                stale[ways.to[e]] = True
 
 
 @nb.njit(cache=True)

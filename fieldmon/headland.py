@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, NamedTuple
 
+import numba as nb
 import numpy as np
 import shapely
 from scipy.sparse import coo_array
@@ -73,8 +74,9 @@ class Obstacles:
 
     Parameters
     ----------
-    rows
-        Rows from first to last plant, with a little clearance.
+    row_box_m
+        ``(b, 4)`` low x, low y, high x, high y: boxes about the rows with a little clearance,
+        sorted by low y. A straight row has one, a row measured plant by plant one a step.
     drivable_m
         Where driving is fine.
     shut_m
@@ -83,7 +85,7 @@ class Obstacles:
         Where driving is never fine.
     """
 
-    rows: shapely.STRtree
+    row_box_m: Float
     drivable_m: shapely.Geometry
     shut_m: shapely.Geometry
     no_go_m: shapely.Geometry
@@ -93,7 +95,6 @@ class Obstacles:
         """Return the obstacles on a plot."""
         ends_x = grid.xy_m[_end_plants(grid), 0]
         clearance_m = min(_CLEARANCE_M, 0.4 * float(np.abs(grid.lane_x_m - ends_x).min()))
-        rows = shapely.buffer(row_lines(grid), clearance_m, quad_segs=1, cap_style="square")
         whole = shapely.union_all(
             [Polygon(part.exterior) for part in shapely.get_parts(grid.drivable_m)]
         )
@@ -105,16 +106,18 @@ class Obstacles:
         )
         for area in areas:
             shapely.prepare(area)
-        return cls(shapely.STRtree(rows), *areas)
+        return cls(_row_boxes(grid, clearance_m), *areas)
 
     def clear(self, from_m: Float, to_m: Float, where: Where = Where.INSIDE) -> Mask:
         """Tell of k straight ways, ``(k, 2)`` to ``(k, 2)``, whether they can be driven."""
-        lines: NDArray[np.object_] = np.array(
-            shapely.linestrings(np.stack([from_m, to_m], axis=1)), dtype=object
-        )
-        good = np.array(self._where_allowed(lines, where), dtype=np.bool_)
+        good = np.ones(len(from_m), np.bool_)
+        _off_boxes(self.row_box_m, from_m, to_m, good)
         kept = np.flatnonzero(good)
-        good[kept[self.rows.query(lines[kept], predicate="intersects")[0]]] = False
+        lines = shapely.linestrings(np.stack([from_m[kept], to_m[kept]], axis=1))
+        if where is Where.INSIDE:
+            good[kept] = shapely.covers(self.drivable_m, lines)
+        else:
+            good[kept] = ~np.asarray(shapely.intersects(self._shut_to(where), lines))
         return good
 
     def corners(self, where: Where) -> Float:
@@ -129,11 +132,6 @@ class Obstacles:
             coarse_m *= 2
             corners = _bends(area, coarse_m, sign)
         return corners
-
-    def _where_allowed(self, lines: NDArray[np.object_], where: Where) -> Mask:
-        if where is Where.INSIDE:
-            return np.asarray(shapely.covers(self.drivable_m, lines))
-        return ~np.asarray(shapely.intersects(self._shut_to(where), lines))
 
     def _shut_to(self, where: Where) -> shapely.Geometry:
         return self.shut_m if where is Where.OUTSIDE else self.no_go_m
@@ -154,32 +152,66 @@ def _bends(area: shapely.Geometry, coarse_m: float, sign: float) -> Float:
     return np.concatenate(found)
 
 
+@nb.njit(cache=True)
+def _off_boxes(box_m: Float, from_m: Float, to_m: Float, off: Mask) -> None:
+    """Set `off` to False for the straight lines that touch a box; boxes are sorted by low y."""
+    low_y = box_m[:, 1]
+    tallest = (box_m[:, 3] - low_y).max()
+    for k in range(off.size):
+        x, y = from_m[k]
+        way_x, way_y = to_m[k, 0] - x, to_m[k, 1] - y
+        b = np.searchsorted(low_y, min(y, y + way_y) - tallest)
+        while off[k] and b < low_y.size and low_y[b] <= max(y, y + way_y):
+            # the part of the line within the box's x, then of that within its y
+            first, last = _within(x, way_x, box_m[b, 0], box_m[b, 2], (0.0, 1.0))
+            first, last = _within(y, way_y, box_m[b, 1], box_m[b, 3], (first, last))
+            off[k] = first > last
+            b += 1
+
+
+@nb.njit(cache=True, inline="always")
+def _within(
+    at: float, way: float, low: float, high: float, part: tuple[float, float]
+) -> tuple[float, float]:
+    """Return the part of a line, as fractions, at which one coordinate is from low to high."""
+    if way == 0.0:
+        return part if low <= at <= high else (1.0, 0.0)
+    enters, leaves = (low - at) / way, (high - at) / way
+    return max(part[0], min(enters, leaves)), min(part[1], max(enters, leaves))
+
+
+def _row_boxes(grid: PlantGrid, clearance_m: float) -> Float:
+    ends = _end_plants(grid)
+    corner = _corner_plants(grid)
+    step = np.flatnonzero(grid.row[corner[1:]] == grid.row[corner[:-1]])
+    alone = ends[ends[:, 0] == ends[:, 1], 0]
+    start = grid.xy_m[np.append(corner[step], alone)]
+    end = grid.xy_m[np.append(corner[step + 1], alone)]
+    box_m = np.concatenate(
+        [np.minimum(start, end) - clearance_m, np.maximum(start, end) + clearance_m], axis=1
+    )
+    return box_m[np.argsort(box_m[:, 1])]
+
+
 def row_lines(grid: PlantGrid) -> NDArray[np.object_]:
     """Return each row as a line through its plants, first to last, ``(r,)``.
 
-    Plants on the straight line between the first and the last are left out. A row of one plant
-    is a line of no length.
+    Plants in the middle of a row along x are left out. A row of one plant is a line of no length.
     """
     ends = _end_plants(grid)
-    bent = np.zeros(len(grid), np.bool_)
-    bent[_off_line(grid, ends)] = True
-    bent[ends] = False
-    inner = np.flatnonzero(bent)
-    plant = np.concatenate([ends[:, 0], inner, ends[:, 1]])
-    row = grid.row[plant]
-    order = np.argsort(row, kind="stable")
-    lines: NDArray[np.object_] = shapely.linestrings(grid.xy_m[plant[order]], indices=row[order])
+    plant = np.sort(np.append(_corner_plants(grid), ends[ends[:, 0] == ends[:, 1], 0]))
+    lines: NDArray[np.object_] = shapely.linestrings(grid.xy_m[plant], indices=grid.row[plant])
     return lines
 
 
-def _off_line(grid: PlantGrid, ends: Index) -> Index:
-    """Return the rows' plants that are off the line between the first and the last."""
-    first, last = grid.xy_m[ends[:, 0]], grid.xy_m[ends[:, 1]]
-    slope = (last[:, 1] - first[:, 1]) / np.where(
-        last[:, 0] > first[:, 0], last[:, 0] - first[:, 0], 1.0
-    )
-    on_line = first[grid.row, 1] + slope[grid.row] * (grid.xy_m[:, 0] - first[grid.row, 0])
-    return np.flatnonzero(np.abs(grid.xy_m[:, 1] - on_line) > _SAME_M)
+def _corner_plants(grid: PlantGrid) -> Index:
+    """Return the plants at which rows start, end or leave the direction of x, ascending."""
+    y = grid.xy_m[:, 1]
+    level = np.abs(np.diff(y)) < _SAME_M
+    inner = np.zeros(len(grid), np.bool_)
+    inner[1:-1] = level[1:] & level[:-1]
+    inner[_end_plants(grid)] = False
+    return np.flatnonzero(~inner)
 
 
 def _end_plants(grid: PlantGrid) -> Index:
@@ -351,9 +383,8 @@ def _with_gate(net: _Net, gate_m: Float, obstacles: Obstacles, grid: PlantGrid) 
     A gate outside the drivable area is first linked to the nearest point of that area; a gate
     among the plants of a row is moved to that row's lane.
     """
-    among = obstacles.rows.query(shapely.points(gate_m[0]), predicate="intersects")
-    if len(among):
-        row = among[0]
+    if not obstacles.clear(gate_m, gate_m, Where.ANYWHERE)[0]:
+        row = grid.row[np.argmin(np.hypot(*(grid.xy_m - gate_m).T))]
         gate_m = np.array([[np.clip(gate_m[0, 0], *grid.lane_x_m[row]), grid.lane_y_m[row]]])
     n, k = len(net.xy_m), min(_GATE_NEAREST, len(net.xy_m))
     entry_m = gate_m

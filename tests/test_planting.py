@@ -220,6 +220,7 @@ def test_free_stretches_of_a_strip_are_those_that_shapely_finds(area, width_m, p
     _, low, _, high = area.bounds
     low_y = np.arange(low - phase * width_m, high, width_m)
     free = free_intervals(area, low_y, low_y + width_m)
+    assert (free.low_x < free.high_x).all()
     for k, y in enumerate(low_y):
         strip = shapely.box(-500, y, 500, y + width_m)
         taken = shapely.get_parts(shapely.difference(strip, area))
@@ -423,7 +424,12 @@ def test_a_gap_in_a_measured_row_is_missing_plants_but_a_no_go_area_cuts_it():
     assert len(whole.along_plant) == 16
     cut = grid_from_plants(frame.lonlat(xy_m), planting, with_pond)
     assert cut.row_line.tolist() == [0, 0, 1]
-    assert not shapely.intersects(frame.geometry_m(pond), lanes(cut)).any()
+    pond_m = cut.frame.geometry_m(pond)
+    assert not shapely.intersects(pond_m, lanes(cut)).any()
+    tight = MultiPolygon([frame.geometry_lonlat(shapely.box(-1, -1, 28, 5))])
+    widened = grid_from_plants(frame.lonlat(xy_m), planting, Field("tight", tight, no_go=pond))
+    assert shapely.covers(shapely.buffer(widened.drivable_m, EDGE), lanes(widened)).all()
+    assert shapely.intersection(widened.drivable_m, pond_m).area < EDGE
 
 
 def test_a_boundary_too_tight_for_the_aisles_is_widened_by_them():

@@ -208,8 +208,8 @@ def _reach(ways: Ways, stops: NDArray[np.int64], between_m: Float) -> None:
     """Fill in the shortest ways ``(s, s)`` between the given nodes.
 
     Nodes are relaxed up and down the plot in turn, for some dozen sources side by side, until
-    nothing gets shorter. As nodes are sorted by y, a way that turns back in y k times takes k + 1
-    sweeps or fewer: on most plots that is far less work than a queue of nodes for each source.
+    nothing gets shorter. As nodes are sorted by y, one sweep carries a way on until it turns back:
+    on most plots a few sweeps do, far less work than a queue of nodes for each source.
     """
     n = ways.xy_m.shape[0]
     near = np.empty((n, _BLOCK))

@@ -18,7 +18,7 @@ from fieldmon.aisles import Aisles, crosses_rows, drive_m
 from fieldmon.field import Field
 from fieldmon.frame import Frame
 from fieldmon.headland import row_lines
-from fieldmon.planting import Planting, lay, rectangle
+from fieldmon.planting import Planting, grid_from_plants, lay, rectangle
 
 FRAME = Frame(35.15, 30.36)
 EASTWARD = Planting(row_bearing_deg=90.0, row_spacing_m=4.0, plant_spacing_m=2.0)
@@ -178,6 +178,18 @@ def test_paths_between_rows_measured_roughly_cross_none(jitter_m, tilt_m, n_rows
     xy_m[:, 1] += np.array(jitter_m) + tilt_m * xy_m[:, 0] / np.abs(xy_m[:, 0]).max()
     rough = replace(grid, xy_m=xy_m)
     check_paths(Aisles.of(rough), some_plants(rough, 30))
+
+
+@given(seed=st.integers(0, 10_000), row_spacing_m=st.floats(1.8, 5.0), skew=st.floats(-1.5, 1.5))
+@settings(max_examples=30)
+def test_paths_between_plants_taken_from_gps_cross_no_row(seed, row_spacing_m, skew):
+    rng = np.random.default_rng(seed)
+    row, place = np.nonzero(rng.random((12, 30)) < 0.85)
+    x = place * 1.5 + skew * row_spacing_m * row + rng.normal(0.0, 0.05, len(row))
+    y = row * row_spacing_m + rng.normal(0.0, 0.05, len(row))
+    lonlat = Frame(8.0, 47.0, rng.uniform(0.0, 360.0)).lonlat(np.stack([x, y], axis=1))
+    grid = grid_from_plants(lonlat, Planting(None, row_spacing_m, 1.5, headland_m=3.0))
+    check_paths(Aisles.of(grid), some_plants(grid, 15, seed))
 
 
 @given(grid=crooked_grids(), seed=st.integers(0, 100))

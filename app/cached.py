@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
+from fieldmon.aisles import Aisles
 from fieldmon.chance import Chance
 from fieldmon.geodata import guard, reading
 from fieldmon.hotspots import HotSpots, hot_spots, record_states
@@ -29,6 +30,10 @@ from fieldmon.spread import Spread
 from . import texts
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from shapely import MultiLineString
+
     from fieldmon.field import Field, Observations
     from fieldmon.geodata.findings import Imported
     from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
@@ -49,8 +54,6 @@ def warm() -> threading.Thread:
     def work() -> None:
         guard.warm()
         grid = rectangle(3, 3)
-        from fieldmon.aisles import Aisles  # noqa: PLC0415 - only this thread needs it by name
-
         start = Start(np.ones(9, np.bool_), np.full(9, 0.1))
         for name in SAMPLERS:
             settings = SeasonSettings(n_days=2)
@@ -83,6 +86,12 @@ def measured_plants(key: str, options: ReadOptions, _source: Source) -> np.ndarr
     """Return positions of measured plants, ``(n, 2)`` degrees."""
     lonlat: np.ndarray = reading.read_plants(_source, options).value.lonlat
     return lonlat
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def paths(source: Path) -> MultiLineString:
+    """Return the lines of one of the program's own files."""
+    return reading.read_lines(source).value
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)

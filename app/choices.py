@@ -129,6 +129,8 @@ def _field(
     field = read.value[names.index(name)]
     if plants is not None:
         field = replace(field, plants=plants)
+    if plot_file.key.startswith("sample/"):
+        field = replace(field, paths=cached.paths(_sample("tracks.geojson").source))
     return field, f"{key}{plot_file.key}{options}{name}", read.findings
 
 

@@ -12,7 +12,7 @@ if str(Path(__file__).resolve().parents[1]) not in sys.path:
 
 from app import cached, texts  # noqa: E402 - after the path is right
 from app.choices import choose  # noqa: E402
-from app.pages import season, today  # noqa: E402
+from app.views import season, today  # noqa: E402
 
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
 # Streamlit leaves a hand's breadth above the page, which a phone cannot spare

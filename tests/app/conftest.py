@@ -1,0 +1,82 @@
+"""A real server and a real browser, on this machine only."""
+
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from pathlib import Path
+
+import pytest
+
+SHOTS = Path(__file__).with_name("screenshots")
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+# software drawing, and no name in the world but this machine's
+FLAGS = [
+    *["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+    *["--disable-background-networking", "--disable-component-update", "--no-first-run"],
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+]
+
+
+@pytest.fixture(scope="session")
+def browser():
+    if CHROMIUM is None:
+        if os.environ.get("FIELDMON_REQUIRE_BROWSER"):
+            pytest.fail("Chromium must be installed here, but it was not found")
+        pytest.skip("Chromium is not installed (Debian's package chromium)")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture(scope="session")
+def address(browser, tmp_path_factory):  # noqa: ARG001 - no server where there is no browser
+    """Start the app by its command; return where it is."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser", "--port", str(port)]
+    log = tmp_path_factory.mktemp("app") / "log"
+    with log.open("wb") as out:
+        server = subprocess.Popen(command, stdout=out, stderr=out, start_new_session=True)
+    url = f"http://127.0.0.1:{port}"
+    try:
+        wait_for(f"{url}/_stcore/health", server)
+        yield url
+    finally:
+        os.killpg(server.pid, 15)
+        server.wait(20)
+
+
+def wait_for(url, server):
+    for _ in range(300):
+        assert server.poll() is None, "the app ended"
+        try:
+            with urllib.request.urlopen(url, timeout=1) as answer:  # noqa: S310 - our own
+                if answer.read() == b"ok":
+                    return
+        except OSError:
+            time.sleep(0.1)
+    pytest.fail("the app did not answer within 30 s")
+
+
+@pytest.fixture
+def page(browser, request):
+    """Return a new page of the asked size that remembers every request and keeps a picture."""
+    size, agent = getattr(request, "param", ((1400, 1000), None))
+    context = browser.new_context(
+        viewport={"width": size[0], "height": size[1]}, user_agent=agent, accept_downloads=True
+    )
+    page = context.new_page()
+    page.requests = []
+    page.on("request", lambda sent: page.requests.append(sent.url))
+    yield page
+    SHOTS.mkdir(exist_ok=True)
+    page.screenshot(path=SHOTS / f"{request.node.name.replace('/', '_')}.png")
+    context.close()

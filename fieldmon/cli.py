@@ -99,6 +99,10 @@ Scout = Annotated[bool, typer.Option("--scout", help="A person on foot instead o
 Hours = Annotated[float | None, typer.Option(help="Working hours a day.")]
 Look = Annotated[float | None, typer.Option("--look", help="Seconds spent looking at a plant.")]
 Speed = Annotated[float | None, typer.Option(help="Driving speed, km/h.")]
+RowChange = Annotated[float | None, typer.Option(help="Seconds added for changing rows.")]
+Turn = Annotated[
+    float | None, typer.Option(help="Seconds to turn to the other side of the same aisle.")
+]
 Every = Annotated[int, typer.Option(help="Bouncy inspects every N-th plant.")]
 On = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; today.")]
 
@@ -164,6 +168,8 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     hours: Hours = None,
     look: Look = None,
     speed: Speed = None,
+    row_change: RowChange = None,
+    turn: Turn = None,
     scout: Scout = False,  # noqa: FBT002 - a flag
     bearing: Bearing = None,
     row_spacing: RowSpacing = None,
@@ -189,7 +195,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     from fieldmon.monitor import Plans, first_day  # noqa: PLC0415
 
     day, begins = _day(on), _clock(start)
-    plans = Plans(_robot(scout, hours, look, speed), _sampler(sampler, every))
+    plans = Plans(_robot(scout, hours, look, speed, row_change, turn), _sampler(sampler, every))
     given = {
         "row_bearing_deg": bearing,
         "row_spacing_m": row_spacing,
@@ -240,6 +246,8 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     hours: Hours = None,
     look: Look = None,
     speed: Speed = None,
+    row_change: RowChange = None,
+    turn: Turn = None,
     scout: Scout = False,  # noqa: FBT002 - a flag
     bearing: Bearing = None,
     row_spacing: RowSpacing = None,
@@ -263,7 +271,7 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     from fieldmon.monitor import Plans, first_day  # noqa: PLC0415
 
     day = _day(on)
-    robot = _robot(scout, hours, look, speed)
+    robot = _robot(scout, hours, look, speed, row_change, turn)
     given = {
         "row_bearing_deg": bearing,
         "row_spacing_m": row_spacing,
@@ -527,6 +535,8 @@ def _robot(
     hours: float | None,
     look: float | None,
     speed: float | None,
+    row_change: float | None,
+    turn: float | None,
 ) -> Robot:
     from dataclasses import replace  # noqa: PLC0415
 
@@ -538,6 +548,8 @@ def _robot(
         hours=base.hours if hours is None else hours,
         look_s=base.look_s if look is None else look,
         speed_m_s=base.speed_m_s if speed is None else speed / 3.6,
+        row_change_s=base.row_change_s if row_change is None else row_change,
+        turn_180_s=base.turn_180_s if turn is None else turn,
     )
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import stdtrit
 
-from fieldmon.thesis.slips import AS_PUBLISHED, NIGHT_CORRECTED, Slips
+from fieldmon.thesis.slips import ALL_PUT_RIGHT, AS_PUBLISHED, NIGHT_CORRECTED, Slips
 from fieldmon.thesis.trial import Prose
 from fieldmon.thesis.vineyard import SCENARIOS
 
@@ -107,7 +107,7 @@ def rules_name(trial: Trial) -> str:
         return "as published"
     if rules == NIGHT_CORRECTED:
         return "night corrected"
-    if rules == AS_PUBLISHED.without(*(slip.name for slip in fields(Slips))):
+    if rules == ALL_PUT_RIGHT:
         return "all slips put right"
     return f"without {_changed(rules, AS_PUBLISHED)}"
 

@@ -42,7 +42,8 @@ class Slips:
         Snake strategies look from three viewpoints (23.74 s), neighbor strategies from one
         (4.34 s). Off: both from three.
     draw_every_stop
-        Random strategies draw N at every stop. Off: once for each pass along a row.
+        Random strategies draw N at every stop, as the prose says: no slip, but some printed cells
+        look like the other reading. Off: once for each pass along a row.
     draw_one_to_five
         Random strategies draw N from 1 to 5, the prose says 1 to 4. Off: 1 to 4.
     """
@@ -66,4 +67,4 @@ class Slips:
 NAMES = tuple(field.name for field in fields(Slips))
 AS_PUBLISHED = Slips()
 NIGHT_CORRECTED = AS_PUBLISHED.without("night_other_face", "night_row_index")
-ALL_PUT_RIGHT = AS_PUBLISHED.without(*NAMES)
+ALL_PUT_RIGHT = AS_PUBLISHED.without(*(name for name in NAMES if name != "draw_every_stop"))

@@ -1,0 +1,29 @@
+"""The thesis's simulator: one run, and all rows of its tables."""
+
+from fieldmon.chance import Chance
+from fieldmon.thesis import draws, listings
+from fieldmon.thesis.slips import AS_PUBLISHED
+from fieldmon.thesis.studies import run_no_prior
+from fieldmon.thesis.trial import Strategy, Trial, night_of, walk_of
+from fieldmon.thesis.vineyard import SCENARIOS
+
+
+def test_one_published_replicate_of_three_days_in_scenario_c(benchmark):
+    """Under 1 ms once compiled, random numbers included."""
+    trial = Trial(SCENARIOS["C"], Strategy(6), 1)
+    walk, night = walk_of(trial, AS_PUBLISHED), night_of(trial, AS_PUBLISHED)
+    keys = draws.keys(Chance(1), 1, 3)
+    days, _ = benchmark(listings.repeat, walk, night, trial.START, 0, keys)
+    assert days.shape == (1, 3, 8)
+
+
+def test_400_replicates_of_all_rows_of_tables_2_to_4(benchmark):
+    """Under 20 s on two cores, with progress and table 5 from the same runs."""
+    told = []
+
+    def make():
+        return run_no_prior("2-5", 400, 1, lambda done, total: told.append((done, total)))
+
+    study = benchmark.pedantic(make, rounds=3, warmup_rounds=1)
+    assert told[-1] == (30, 30)
+    assert len(study.cells) == 3 * 140 + 120

@@ -140,7 +140,8 @@ def season(
     `numbers` are days, share infested at the start, spread a night, and seed.
     """
     n_days, share, rate, seed = numbers
-    begin = Start(start_infested(_chance, share, Chance(seed).of("start")), _chance)
+    drawn = start_infested(_chance, share, Chance(seed).of("start"))
+    begin = Start(drawn[_plot.grid.vine], _chance)
     settings = SeasonSettings(n_days=n_days, spread=Spread(rate))
     chance = Chance(seed)
     walk = list(days(_plot.aisles, robot, sampler(sampler_name), begin, settings, chance))

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from fieldmon.metrics import SeasonFigures
 
 # Okabe & Ito's colours for the colour-blind
-_COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7"]
+_COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 
 
 def detection(seasons: dict[str, SeasonFigures], day: int, axes: tuple[str, str]) -> alt.LayerChart:

@@ -147,11 +147,13 @@ def _plot(field: Field | None, key: str) -> tuple[Plot, str]:
             texts.PLANT_SPACING, 0.1, 50.0, None, 0.1, help=texts.SPACING_HELP, key="plants_apart"
         )
         headland = st.number_input(texts.HEADLAND, 0.1, 50.0, 4.0, 0.5, key="headland")
+        both_faces = st.toggle(texts.BOTH_FACES, key="both_faces")
     given = {
         "row_bearing_deg": bearing,
         "row_spacing_m": rows,
         "plant_spacing_m": plants,
         "headland_m": headland,
+        "faces": 2 if both_faces else None,
     }
     if field is None:
         by_hand = {name: value for name, value in given.items() if value is not None}

@@ -27,6 +27,11 @@ SAMPLERS = {
     "dynamic": "Dynamic: suspicious plants first",
     "naive": "Naive: every plant, row by row",
     "bouncy": "Bouncy: every second plant",
+    "snake": "Snake: up one side of an aisle, down the other",
+    "snake-random": "Snake, every 1st to 4th plant by chance",
+    "neighbor": "Neighbor: both sides of the aisle at each stop",
+    "neighbor-random": "Neighbor, every 1st to 4th stop by chance",
+    "random": "Random: a third of the plot, drawn every day",
 }
 DATE = "Day"
 PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
@@ -67,6 +72,8 @@ DAYS, INFESTED, SPREAD, SEED = "Days", "Infested at the start (%)", "Spread a ni
 SPREAD_HELP = "Chance a night that an infested plant infests each plant next to it."
 SEED_HELP = "The same seed gives the same season."
 DETECTION_AXIS, DAY_AXIS, FOUND_AXIS = "found so far (%)", "day", "plants found that day"
+COMPARED = "Samplers compared"
+BOTH_FACES = "Inspect both faces of each row"
 SHOW_SAMPLER, SHOW_DAY, SHOW_TRUTH = "On the map", "Day", "Show what is really infested"
 LEFT = "Infested left"
 FOUND_SO_FAR, FOUND_TODAY, VISITED_TODAY = "Found so far", "Found that day", "Inspected that day"

@@ -46,6 +46,11 @@ class SamplerName(StrEnum):
     NAIVE = "naive"
     BOUNCY = "bouncy"
     DYNAMIC = "dynamic"
+    SNAKE = "snake"
+    SNAKE_RANDOM = "snake-random"
+    NEIGHBOR = "neighbor"
+    NEIGHBOR_RANDOM = "neighbor-random"
+    RANDOM = "random"
 
 
 PlotFile = Annotated[Path, typer.Argument(help=PLOT_HELP, show_default=False)]
@@ -103,7 +108,15 @@ RowChange = Annotated[float | None, typer.Option(help="Seconds added for changin
 Turn = Annotated[
     float | None, typer.Option(help="Seconds to turn to the other side of the same aisle.")
 ]
-Every = Annotated[int, typer.Option(help="Bouncy inspects every N-th plant.")]
+Every = Annotated[
+    int | None,
+    typer.Option(
+        help="Every N-th plant or stop (bouncy 2, snake 1, neighbor 1) or 1/N (random 3)."
+    ),
+]
+BothFaces = Annotated[
+    bool, typer.Option("--both-faces", help="Inspect both faces of each row, each from its aisle.")
+]
 On = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; today.")]
 
 
@@ -162,7 +175,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     observations: Records = None,
     feature: Feature = None,
     sampler: Annotated[SamplerName, typer.Option(help="Who chooses.")] = SamplerName.DYNAMIC,
-    every: Every = 2,
+    every: Every = None,
     on: On = None,
     start: Annotated[str, typer.Option(help="Local time the work starts, HH:MM.")] = "06:00",
     hours: Hours = None,
@@ -175,6 +188,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     row_spacing: RowSpacing = None,
     plant_spacing: PlantSpacing = None,
     headland: Headland = None,
+    both_faces: BothFaces = False,  # noqa: FBT002 - a flag
     gate: Gate = None,
     plants: Plants = None,
     paths: Paths = None,
@@ -201,6 +215,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         "row_spacing_m": row_spacing,
         "plant_spacing_m": plant_spacing,
         "headland_m": headland,
+        "faces": 2 if both_faces else None,
     }
     if plot is None:
         laid = _around(plants, gate, given)
@@ -235,9 +250,10 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     observations: Records = None,
     feature: Feature = None,
     sampler: Annotated[
-        list[SamplerName] | None, typer.Option(help="Who chooses; repeat to compare. All if none.")
+        list[SamplerName] | None,
+        typer.Option(help="Who chooses; repeat to compare. Naive, bouncy and dynamic if none."),
     ] = None,
-    every: Every = 2,
+    every: Every = None,
     days: Annotated[int, typer.Option(help="Working days.")] = 25,
     seed: Annotated[int, typer.Option(help="Seed: the same seed, the same season.")] = 1,
     infested: Annotated[float, typer.Option(help="Share of plants infested at the start.")] = 0.02,
@@ -253,6 +269,7 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     row_spacing: RowSpacing = None,
     plant_spacing: PlantSpacing = None,
     headland: Headland = None,
+    both_faces: BothFaces = False,  # noqa: FBT002 - a flag
     gate: Gate = None,
     plants: Plants = None,
     paths: Paths = None,
@@ -277,6 +294,7 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         "row_spacing_m": row_spacing,
         "plant_spacing_m": plant_spacing,
         "headland_m": headland,
+        "faces": 2 if both_faces else None,
     }
     if plot is None:
         laid = _around(plants, gate, given)
@@ -285,9 +303,9 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         laid = _lay(_place(fields, plants, paths, gate, feature), given)
     records = _read_records(observations, laid, record_option)
     _hear(records, day)
-    begin = _start(first_day(laid, records, day, Plans(robot)).chance, infested, seed)
+    begin = _start(laid, first_day(laid, records, day, Plans(robot)).chance, infested, seed)
     rows = []
-    for name in sampler or list(SamplerName):
+    for name in sampler or list(SamplerName)[:3]:
         rows += _season(laid, robot, (name, _sampler(name, every)), begin, (days, spread, seed))
     header = "sampler,day,detection_pct,visited_pct,ever_visited_pct,found,infested_left"
     if output is not None:
@@ -451,7 +469,7 @@ def _describe(plot: Plot) -> None:
     )
 
 
-def _start(chance: Any, infested: float, seed: int) -> Start:  # noqa: ANN401 - an array
+def _start(plot: Plot, chance: Any, infested: float, seed: int) -> Start:  # noqa: ANN401
     from fieldmon.chance import Chance  # noqa: PLC0415
     from fieldmon.prior import start_infested  # noqa: PLC0415
     from fieldmon.season import Start  # noqa: PLC0415
@@ -460,7 +478,8 @@ def _start(chance: Any, infested: float, seed: int) -> Start:  # noqa: ANN401 - 
         raise SettingError(
             f"The share infested at the start must be between 0 and 1, but it is {infested}."
         )
-    return Start(start_infested(chance, infested, Chance(seed).of("start")), chance)
+    begin = start_infested(chance, infested, Chance(seed).of("start"))
+    return Start(begin[plot.grid.vine], chance)
 
 
 def _season(
@@ -553,10 +572,12 @@ def _robot(
     )
 
 
-def _sampler(name: SamplerName, every: int) -> Sampler:
-    from fieldmon.samplers import sampler  # noqa: PLC0415
+def _sampler(name: SamplerName, every: int | None) -> Sampler:
+    from fieldmon.samplers import EVERY, sampler  # noqa: PLC0415
 
-    return sampler(name.value, **({"every": every} if name is SamplerName.BOUNCY else {}))
+    if every is None or name.value not in EVERY:
+        return sampler(name.value)
+    return sampler(name.value, every=every)
 
 
 def _day(text: str | None) -> Any:  # noqa: ANN401 - a numpy day, imported late

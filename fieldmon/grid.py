@@ -127,6 +127,14 @@ class PlantGrid:
         return Csr(start, plant)
 
     @cached_property
+    def vine(self) -> NDArray[np.intp]:
+        """One number for both faces of a vine, ``(n,)``: that of the lower-numbered face."""
+        itself = np.arange(len(self))
+        vines = np.where(self.twin >= 0, np.minimum(self.twin, itself), itself)
+        vines.setflags(write=False)
+        return vines
+
+    @cached_property
     def snake(self) -> NDArray[np.int32]:
         """All plants, up one line and down the next, ``(n,)``; each face is a line of its own."""
         new_pass = (np.diff(self.row_line) != 0) | (np.diff(self.side) != 0)

@@ -168,7 +168,7 @@ def hot_spots(
             f"The states of the plants must have one entry a plant ({len(grid)}), "
             f"but there are {len(state)}."
         )
-    vine = _vine(grid)
+    vine = grid.vine
     either = np.full(len(grid), UNKNOWN, np.int8)
     np.maximum.at(either, vine, state)
     inspected_m, finds_m = grid.xy_m[either != UNKNOWN], grid.xy_m[either == PRESENT]
@@ -195,12 +195,6 @@ def hot_spots(
         centre_m=_centre_m(finds_m, of_find, found),
         radius_m=radius_m,
     )
-
-
-def _vine(grid: PlantGrid) -> NDArray[np.intp]:
-    """Return the first face of each plant's vine, ``(n,)``: itself where there is but one."""
-    itself = np.arange(len(grid))
-    return np.where(grid.twin >= 0, np.minimum(grid.twin, itself), itself)
 
 
 def _learned_radius_m(inspected_m: Floats, at_least_m: float) -> float:

@@ -143,7 +143,7 @@ def days(
     infested, belief = start.infested.copy(), start.chance.copy()
     last_inspected = np.full(len(infested), NEVER, np.int32)
     ever_infested, ever_found = int(np.count_nonzero(infested)), 0
-    resume = at = GATE
+    trail, at = np.empty(0, np.int32), GATE
     for number in range(settings.n_days):
         scene = Scene(
             aisles=aisles,
@@ -153,7 +153,7 @@ def days(
             day=number,
             at=at,
             seconds_left=robot.day_s,
-            resume=resume,
+            trail=trail,
             key=chance.key("sampler", number),
         )
         luck = outcomes(infested, robot.detects, chance.key("inspect", number))
@@ -169,8 +169,8 @@ def days(
         evening[work.plant[work.found]] = False
         infested = night(aisles.grid, evening, settings.spread, chance.key("spread", number))
         ever_infested += int(np.count_nonzero(infested & ~evening))
-        resume = int(work.plant[-1]) if len(work) else resume
-        at = GATE if robot.returns else resume
+        trail = work.plant if len(work) else trail
+        at = GATE if robot.returns or not len(trail) else int(trail[-1])
 
 
 def _check(aisles: Aisles, start: Start) -> None:

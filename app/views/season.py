@@ -11,7 +11,7 @@ from app import cached, charts, maps, texts
 from fieldmon.errors import FieldmonError
 from fieldmon.hotspots import hot_spots
 from fieldmon.route import route_of
-from fieldmon.samplers import NEVER, SAMPLERS, Scene
+from fieldmon.samplers import NEVER, Scene
 
 if TYPE_CHECKING:
     from app.choices import Choices
@@ -22,7 +22,7 @@ def show(choices: Choices) -> None:
     """Simulate, and show any day of any sampler on the map."""
     st.subheader(f"{choices.plot.field.name}: {texts.SEASON}")
     st.caption(texts.SEASON_INTRO)
-    numbers = _numbers()
+    numbers, names = _numbers(), _names(choices)
     try:
         today = cached.today(
             choices.key, choices.day, choices.robot, choices.sampler, choices.plot, choices.records
@@ -32,7 +32,7 @@ def show(choices: Choices) -> None:
                 f"{choices.key}{choices.day}", name, numbers, choices.robot, choices.plot,
                 today.chance,
             )
-            for name in SAMPLERS
+            for name in names
         }  # fmt: skip
     except FieldmonError as error:
         st.error(str(error))
@@ -40,7 +40,7 @@ def show(choices: Choices) -> None:
     left, right = st.columns([2, 3])
     with right:
         name = st.segmented_control(
-            texts.SHOW_SAMPLER, list(SAMPLERS), default=choices.sampler, key="season_sampler"
+            texts.SHOW_SAMPLER, names, default=choices.sampler, key=f"season_sampler {names}"
         )
         name = name or choices.sampler
         number = st.slider(texts.SHOW_DAY, 1, numbers[0], min(5, numbers[0]), key="season_day")
@@ -50,6 +50,15 @@ def show(choices: Choices) -> None:
         st.altair_chart(charts.detection(figures, number, (texts.DAY_AXIS, texts.DETECTION_AXIS)))
         _figures(seasons[name][0][number - 1])
         st.altair_chart(charts.found(figures[name], (texts.DAY_AXIS, texts.FOUND_AXIS)))
+
+
+def _names(choices: Choices) -> list[str]:
+    usual = dict.fromkeys([choices.sampler, "naive", "bouncy", "dynamic"])
+    chosen = st.multiselect(
+        texts.COMPARED, list(texts.SAMPLERS), list(usual), max_selections=6, key="compared",
+        format_func=lambda name: texts.SAMPLERS[name].split(":")[0],
+    )  # fmt: skip
+    return list(dict.fromkeys([choices.sampler, *chosen]))
 
 
 def _numbers() -> tuple[int, float, float, int]:

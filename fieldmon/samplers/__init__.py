@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fieldmon.errors import SettingError
+from fieldmon.samplers.blind import Neighbor, NeighborRandom, RandomShare, Snake, SnakeRandom
 from fieldmon.samplers.dynamic import Dynamic
 from fieldmon.samplers.scene import GATE, NEVER, Sampler, Scene, Stops
 from fieldmon.samplers.sweep import Bouncy, Naive
@@ -19,17 +20,30 @@ SAMPLERS: dict[str, Callable[..., Sampler]] = {
     "naive": Naive,
     "bouncy": Bouncy,
     "dynamic": Dynamic,
+    "snake": Snake,
+    "snake-random": SnakeRandom,
+    "neighbor": Neighbor,
+    "neighbor-random": NeighborRandom,
+    "random": RandomShare,
 }
+# those that take a setting ``every``
+EVERY = frozenset({"bouncy", "snake", "neighbor", "random"})
 
 __all__ = [
+    "EVERY",
     "GATE",
     "NEVER",
     "SAMPLERS",
     "Bouncy",
     "Dynamic",
     "Naive",
+    "Neighbor",
+    "NeighborRandom",
+    "RandomShare",
     "Sampler",
     "Scene",
+    "Snake",
+    "SnakeRandom",
     "Stops",
     "sampler",
 ]

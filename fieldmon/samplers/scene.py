@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numba as nb
@@ -59,8 +59,9 @@ class Scene:
         Where the robot stands: a plant, or `GATE`.
     seconds_left
         What is left of the working day.
-    resume
-        The plant inspected last before today, or `NEVER`: where a sweep goes on.
+    trail
+        ``(k,)`` int32 plants of the last working day before today, in order; empty if there was
+        none. A sweep goes on where it ends, in its direction.
     key
         64 random bits for samplers that draw, see `fieldmon.chance.coin`.
     """
@@ -72,13 +73,20 @@ class Scene:
     day: int = 0
     at: int = GATE
     seconds_left: float = 0.0
-    resume: int = NEVER
+    trail: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
     key: np.uint64 = np.uint64(0)  # noqa: RUF009 - a number, not a call with effects
 
     @property
     def grid(self) -> PlantGrid:
         """Return the plants."""
         return self.aisles.grid
+
+    @property
+    def resume(self) -> int:
+        """Return the plant after which a sweep goes on, or `NEVER` if it has not begun."""
+        if self.at >= 0:
+            return self.at
+        return int(self.trail[-1]) if len(self.trail) else NEVER
 
     @property
     def clock(self) -> Clock:

@@ -56,13 +56,12 @@ class Bouncy:
 
 
 def _sweep(scene: Scene, every: int) -> Stops:
-    start = scene.at if scene.at >= 0 else scene.resume
     stops = scene.blank()
     k = _walk(
         scene.aisles.ground,
         scene.clock,
         (scene.grid.snake, scene.last_inspected),
-        (scene.at, start, scene.day, every),
+        (scene.at, scene.resume, scene.day, every),
         stops,
     )
     return Stops(stops.plant[:k], stops.arrive_s[:k])

@@ -36,6 +36,7 @@ _WORDS = {
     "PCD_ED2": "detected day 2, %",
     "PCD_ED3": "detected day 3, %",
     "PCD_ALL": "detected in all, %",
+    "curve_listed_day3": "detected in all as the listing counts, %",
     "visited_all": "visited in all, %",
     "infected": "infested",
     "detected": "detected",

@@ -265,7 +265,7 @@ _PLANS: dict[str, _Plan] = {
         "The listings with one slip put right at a time, with the night corrected, and with all "
         "put right.",
         experiments.slip_trials,
-        (*_DAY_MEASURES, *_WHOLE),
+        (*_DAY_MEASURES, *_WHOLE, "curve_listed_day3"),
         summaries.say_slips,
     ),
 }

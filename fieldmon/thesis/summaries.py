@@ -109,21 +109,27 @@ def say_bigger(cells: list[Cell]) -> tuple[str, ...]:
 
 def say_slips(cells: list[Cell]) -> tuple[str, ...]:
     """Say which strategy each slip changes most, in percent detected over three days."""
-    means = {(c.rules, c.algorithm, c.n): c.mean for c in cells if c.measure == "PCD_ALL"}
     sentences = []
-    for rules in dict.fromkeys(rules for rules, _, _ in means):
-        change = {
-            (algorithm, n): mean - means["as published", algorithm, n]
-            for (named, algorithm, n), mean in means.items()
-            if named == rules
-        }
-        (algorithm, n), most = max(change.items(), key=lambda item: abs(item[1]))
+    for rules in dict.fromkeys(cell.rules for cell in cells):
+        words = "detected in three days"
+        most, label = _most_changed(cells, rules, "PCD_ALL")
+        if most == 0:
+            words = "what the listing says is detected"
+            most, label = _most_changed(cells, rules, "curve_listed_day3")
         if rules != "as published":
-            sentences.append(
-                f"{rules[0].upper()}{rules[1:]}: detected in three days changes by up to "
-                f"{most:+.1f} points (algorithm {algorithm}, N = {n})."
-            )
+            name = rules[0].upper() + rules[1:]
+            sentences.append(f"{name}: {words} changes by up to {most:+.1f} points ({label}).")
     return tuple(sentences)
+
+
+def _most_changed(cells: list[Cell], rules: str, measure: str) -> tuple[float, str]:
+    """Return the greatest change against the listings as published, and the strategy it meets."""
+    means: dict[str, dict[str, float]] = defaultdict(dict)
+    for cell in cells:
+        if cell.measure == measure:
+            means[f"algorithm {cell.algorithm}, N = {cell.n}"][cell.rules] = cell.mean
+    changes = [(mean[rules] - mean["as published"], label) for label, mean in means.items()]
+    return max(changes, key=lambda change: abs(change[0]))
 
 
 def _field(name: str) -> str:

@@ -12,7 +12,7 @@ if str(Path(__file__).resolve().parents[1]) not in sys.path:
 
 from app import cached, texts  # noqa: E402 - after the path is right
 from app.choices import choose  # noqa: E402
-from app.views import season, today  # noqa: E402
+from app.views import season, study, today  # noqa: E402
 
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
 # Streamlit leaves a hand's breadth above the page, which a phone cannot spare
@@ -46,6 +46,7 @@ st.navigation(
             page_today, title=texts.TODAY, icon=":material/route:", url_path="today", default=True
         ),
         st.Page(page_season, title=texts.SEASON, icon=":material/monitoring:", url_path="season"),
+        st.Page(study.show, title=texts.STUDY, icon=":material/science:", url_path="study"),
     ],
     position="top",
 ).run()

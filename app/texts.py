@@ -1,7 +1,7 @@
 """Every text of the app in one place: a translation is one file."""
 
 TITLE = "fieldmon"
-TODAY, SEASON = "Today", "Season"
+TODAY, SEASON, STUDY = "Today", "Season", "Study"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
 SAMPLE_NOTE = "A made-up estate near Paran, to try things out. Nothing of it exists."
 PLOT_FROM = "Plot"
@@ -79,3 +79,12 @@ LEFT = "Infested left"
 FOUND_SO_FAR, FOUND_TODAY, VISITED_TODAY = "Found so far", "Found that day", "Inspected that day"
 HOT_SPOTS = "{n} hot spot(s)"
 WORKING = "Working ..."
+STUDY_TITLE = "The thesis's samplers without prior information"
+STUDY_INTRO = (
+    "Chapter 4 of A. Yehoshua's thesis (2023), made again: our mean and its interval beside each "
+    "printed figure. The seven samplers themselves run on your own plot on the Season page."
+)
+STUDY_TABLE, REPLICATES = "Table", "Seasons a row"
+STUDY_RUN, STUDY_REPORT = "Run", "Download the report (HTML)"
+STUDY_CSV = "Download the table (CSV)"
+STUDY_PROGRESS = "{done} of {total} rows simulated"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from fieldmon import cli_study
 from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
 
 if TYPE_CHECKING:
@@ -38,6 +39,9 @@ app = typer.Typer(
     "    fieldmon plan estate.zip --feature Gate --observations mites.csv -o route.geojson\n\n"
     "    fieldmon simulate estate.zip --feature Gate --observations mites.csv",
 )
+
+
+app.add_typer(cli_study.app, name="study")
 
 
 class SamplerName(StrEnum):
@@ -123,7 +127,8 @@ On = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM
 def main() -> None:
     """Run the command; a problem is a sentence and exit code 2, never a traceback."""
     try:
-        app(standalone_mode=False)
+        code = app(standalone_mode=False)
+        sys.exit(code if isinstance(code, int) else 0)
     except FieldmonError as error:
         _end(str(error), 2)
     except typer.Exit as stop:

@@ -21,8 +21,10 @@ FLOORS = [
     {"season", "hotspots"},
     {"metrics", "thesis", "monitor"},
     {"study", "project"},
+    {"cli_study"},
     {"cli"},
 ]
+CLI = {"cli", "cli_study"}
 FLOOR = {name: level for level, names in enumerate(FLOORS) for name in names}
 # modules of one floor that form one room: the first may use the second
 SAME_ROOM = {
@@ -36,8 +38,8 @@ ALONE = {
     "geopandas": {"geodata", "project"},
     "pyogrio": {"geodata", "project"},
     "rasterio": {"geodata", "project"},
-    "typer": {"cli"},
-    "rich": {"cli"},
+    "typer": CLI,
+    "rich": CLI,
     "streamlit": set(),
     "pydeck": set(),
     "altair": set(),
@@ -72,7 +74,7 @@ def breaches(here: str, source: str) -> list[str]:
             continue
         there = rest[0]
         if there == "geodata":
-            allowed = here in {"cli", "project"}
+            allowed = here in CLI | {"project"}
         elif here == "geodata":
             allowed = FLOOR.get(there, 99) <= FLOOR["monitor"]
         else:

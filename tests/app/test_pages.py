@@ -196,3 +196,19 @@ def test_very_many_plants_travel_as_one_picture(app, tmp_path):
     assert not app.exception
     assert layer(app, "plants")["@@type"] == "BitmapLayer"
     assert len(json.dumps(map_of(app))) < 1_000_000
+
+
+def test_the_study_page_makes_a_table_again():
+    page = AppTest.from_function(study_page, default_timeout=120).run()
+    page.selectbox(key="study_table").set_value("3").run()
+    page.number_input(key="study_replicates").set_value(10).run()
+    page.button(key="study_run").click().run()
+    assert not page.exception
+    assert len(page.dataframe[0].value) > 50
+    assert any("Table 3" in text.value for text in page.markdown)
+
+
+def study_page():
+    from app.views import study
+
+    study.show()

@@ -1,0 +1,57 @@
+"""The published experiments without prior information, made again."""
+
+from __future__ import annotations
+
+import io
+
+import pandas as pd
+import streamlit as st
+
+from app import texts
+from fieldmon.errors import FieldmonError
+from fieldmon.thesis.cells import csv_text
+from fieldmon.thesis.report import report_html
+from fieldmon.thesis.studies import run_no_prior, table_names
+
+
+def show() -> None:
+    """Choose a table, run it with progress, show it beside the printed one."""
+    st.subheader(texts.STUDY_TITLE)
+    st.caption(texts.STUDY_INTRO)
+    with st.container(horizontal=True, vertical_alignment="bottom"):
+        table = st.selectbox(texts.STUDY_TABLE, table_names(), key="study_table", width=200)
+        replicates = st.number_input(
+            texts.REPLICATES, 2, 2000, 100, 50, key="study_replicates", width=200
+        )
+        seed = st.number_input(texts.SEED, 0, 10_000, 1, key="study_seed", width=150)
+        started = st.button(texts.STUDY_RUN, type="primary", key="study_run")
+    asked = (table, int(replicates), int(seed))
+    if started:
+        bar = st.progress(0.0)
+
+        def progress(done: int, total: int) -> None:
+            text = texts.STUDY_PROGRESS.format(done=done, total=total)
+            bar.progress(done / max(total, 1), text)
+
+        try:
+            made = run_no_prior(*asked, progress)
+        except FieldmonError as error:
+            st.error(str(error))
+            return
+        bar.empty()
+        st.session_state["study"] = (asked, made, csv_text(made.cells), report_html(made))
+    kept = st.session_state.get("study")
+    if kept is None or kept[0] != asked:
+        return
+    _, made, table_csv, report = kept
+    for part in made.tables:
+        st.markdown(f"**{part.title}**")
+        st.markdown("\n".join(f"- {sentence}" for sentence in part.summary))
+    st.dataframe(pd.read_csv(io.StringIO(table_csv)), height=400)
+    with st.container(horizontal=True):
+        st.download_button(
+            texts.STUDY_REPORT, report, f"no_prior_{table}.html", "text/html", on_click="ignore"
+        )
+        st.download_button(
+            texts.STUDY_CSV, table_csv, f"no_prior_{table}.csv", "text/csv", on_click="ignore"
+        )

@@ -116,3 +116,18 @@ def _overnight(
             share = rate / (start[j + 1] - start[j]) if one else rate
             stays_clean *= 1.0 - chance[j] * share
         after[i] = min(max(1.0 - stays_clean, _LEAST), _MOST)
+
+
+def pairs(
+    chance: NDArray[np.float64], grid: PlantGrid, company: float = 0.3
+) -> NDArray[np.float64]:
+    """Return the chance that both of two plants side by side are infested, ``(e,)``.
+
+    In the order of ``grid.adjacent``. `company` is the correlation of the two: about the chance
+    that a plant beside an infested one is infested too, where few are.
+    """
+    start, other = grid.adjacent
+    one = np.repeat(np.arange(len(chance)), np.diff(start))
+    p, q = chance[one], chance[other]
+    both = p * q + company * np.sqrt(p * (1.0 - p) * q * (1.0 - q))
+    return np.minimum(both, np.minimum(p, q))

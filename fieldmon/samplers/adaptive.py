@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numba as nb
 import numpy as np
 
-from fieldmon.belief import pairs
+from fieldmon.belief import Near, look, near, pairs
 from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 _REACH = 6
 # ways of driving a row: 0 from the low end through, 1 from the high end through, 2 and 3 in and out
 _WAYS = 4
-_LEAST = 1e-9
+_LEAST = 1e-6
 _NOWHERE = -1
 # the price moves in steps of a tenth, and stays while the plan fills this much of the hours left
 _STEP, _FULL, _TRIES = 1.1, 0.95, 4
@@ -45,6 +45,7 @@ class _Mind(NamedTuple):
     both: Float
     worth: Float
     detects: float
+    near: Near
 
 
 class _Rows(NamedTuple):
@@ -199,7 +200,7 @@ def _mind(
         for e in range(first, end):
             clean += 1.0 - chance[adjacent.plant[e]]
         worth[i] = detects * (1.0 + spares * clean / max(end - first, 1))
-    return _Mind(np.maximum(chance, _LEAST), both, worth, detects)
+    return _Mind(np.maximum(chance, _LEAST), both.copy(), worth, detects, near(chance.size))
 
 
 @nb.njit(cache=True)
@@ -223,17 +224,13 @@ def _look(
     rows: _Rows,
     result: tuple[int, bool],
 ) -> None:
-    """Close a plant and let its neighbours' chances follow from what was seen."""
+    """Close a plant and let what was seen teach about those near it."""
     i, found = result
-    d, p = mind.detects, mind.chance[i]
+    believed = mind.chance, mind.both
+    n = look(believed, adjacent, (i, found), (mind.detects, True), mind.near)
     mind.worth[i] = 0.0
-    rows.stale[ground.row[i]] = True
-    for e in range(adjacent.start[i], adjacent.start[i + 1]):
-        j = adjacent.plant[e]
-        c = min(mind.both[e], p, mind.chance[j])
-        after = c / p if found else (mind.chance[j] - d * c) / max(1.0 - d * p, _LEAST)
-        mind.chance[j] = min(max(after, _LEAST), 1.0)
-        rows.stale[ground.row[j]] = True
+    for t in range(n):
+        rows.stale[ground.row[mind.near.plant[t]]] = True
 
 
 @nb.njit(cache=True)

@@ -15,7 +15,7 @@ FLOORS = [
     {"grid", "planting", "rows", "neighbours"},
     {"headland", "robot", "spread"},
     {"aisles", "prior", "belief"},
-    {"samplers"},
+    {"samplers", "outlook"},
     {"workday"},
     {"route"},
     {"season", "hotspots"},

@@ -20,7 +20,7 @@ FLOORS = [
     {"route"},
     {"season", "hotspots"},
     {"metrics", "thesis", "monitor"},
-    {"study", "project"},
+    {"study", "project", "comparison"},
     {"cli_parts"},
     {"cli"},
 ]

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon import cli_study_samplers
 from fieldmon.errors import FileProblem
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 app = typer.Typer(no_args_is_help=True, help="Published experiments, made again.")
+app.command("samplers")(cli_study_samplers.samplers)
 
 
 @app.callback()

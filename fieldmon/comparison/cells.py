@@ -146,7 +146,7 @@ def _infested(grid: PlantGrid, start: str, rng: np.random.Generator) -> NDArray[
         return start_infested(edge_chance(grid, PriorSettings()), _SHARE, rng)
     infested = np.zeros(len(grid), np.bool_)
     while np.count_nonzero(infested) < wanted:
-        _grow(grid, infested, min(_TOGETHER, wanted - np.count_nonzero(infested)), rng)
+        _grow(grid, infested, min(_TOGETHER, wanted - int(np.count_nonzero(infested))), rng)
     return infested
 
 

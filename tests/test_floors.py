@@ -17,7 +17,7 @@ FLOORS = [
     {"aisles", "prior", "belief"},
     {"samplers", "outlook"},
     {"workday"},
-    {"route"},
+    {"route", "explain"},
     {"season", "hotspots"},
     {"metrics", "thesis", "monitor"},
     {"study", "project", "comparison"},

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(no_args_is_help=True, help="Published experiments, made again.")
 app.command("samplers")(cli_study_samplers.samplers)
+app.command("beliefs")(cli_study_samplers.beliefs)
 
 
 @app.callback()

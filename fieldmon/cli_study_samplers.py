@@ -78,6 +78,44 @@ def samplers(
     typer.echo(f"Written: {table}\nWritten: {page}")
 
 
+def beliefs(
+    seeds: Annotated[int, typer.Option(min=1, help="Simulated seasons a belief.")] = 10,
+    cell: Annotated[
+        str, typer.Option(help="How the name of the situation begins (see `study samplers`).")
+    ] = "B, spread 30% to one, clusters, prior none",
+    sampler: Annotated[str, typer.Option(help="Who inspects meanwhile.")] = "adaptive",
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder for the report (HTML).")
+    ] = Path(),
+) -> None:
+    """Compare chance maps by what came true: reliability, scores, intervals, cost.
+
+    Example: fieldmon study beliefs --seeds 20 --sampler naive -o study
+    """
+    from fieldmon.comparison.calibration import BELIEFS, calibration, report_html  # noqa: PLC0415
+    from fieldmon.comparison.cells import all_cells  # noqa: PLC0415
+    from fieldmon.geodata.writing import write_whole  # noqa: PLC0415
+    from fieldmon.samplers import sampler as named  # noqa: PLC0415
+
+    if not output.is_dir():
+        raise FileProblem(f"The folder {output} must exist, but it does not. Make it first.")
+    chosen = next((each for each in all_cells() if each.name.startswith(cell)), None)
+    if chosen is None:
+        raise SettingError(f"A cell must begin with {cell!r}, but none does.")
+    made = {}
+    for name, believe in BELIEFS.items():
+        made[name] = c = calibration([chosen], named(sampler), believe, seeds)
+        typer.echo(
+            f"{name:24} Brier {c.brier:.5f}, log score {c.log_score:.4f} "
+            f"(as suspicious or not {c.suspicious_log_score:.4f}), 90 % interval holds "
+            f"{c.covered:.0%}, {1000 * c.seconds_a_day:.0f} ms a day"
+        )
+    about = f"{chosen.name}; {seeds} seasons of 12 days inspected by {sampler}."
+    page = output / "beliefs.html"
+    write_whole(page, report_html(made, about).encode())
+    typer.echo(f"Written: {page}")
+
+
 def _on_maps(folder: Path, output: Path) -> None:
     """Print and write how many infested plants a look finds on mapped plots."""
     from fieldmon.comparison.maps import LAYOUTS, SHARES, maps_from, table, table_csv  # noqa: PLC0415

@@ -15,7 +15,7 @@ FLOORS = [
     {"grid", "planting", "rows", "neighbours"},
     {"headland", "robot", "spread"},
     {"aisles", "prior", "belief"},
-    {"samplers", "outlook"},
+    {"samplers", "outlook", "ensemble"},
     {"workday"},
     {"route", "explain"},
     {"season", "hotspots"},
@@ -29,6 +29,7 @@ CLI = {"cli", "cli_parts"}
 FLOOR = {name: level for level, names in enumerate(FLOORS) for name in names}
 # modules of one floor that form one room: the first may use the second
 SAME_ROOM = {
+    ("ensemble", "outlook"),
     ("planting", "grid"),
     ("planting", "rows"),
     ("planting", "neighbours"),

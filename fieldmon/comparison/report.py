@@ -22,7 +22,7 @@ _WORDS = {
     "found": "Plants found infested",
     "visited_pct": "Plants inspected at least once, %",
 }
-_STYLE = """
+STYLE = """
 :root { color-scheme: light dark; --ink: #1b1f24; --paper: #fff; --grid: #d5dae0; --blue: #0b62b8; }
 @media (prefers-color-scheme: dark) { :root { --ink: #e8eaed; --paper: #16191d; --grid: #3a424c;
   --blue: #7db8f5; } }
@@ -33,13 +33,16 @@ th, td { border: 1px solid var(--grid); padding: 0.25rem 0.5rem; text-align: rig
   font-variant-numeric: tabular-nums; }
 th:first-child { text-align: left; white-space: nowrap; }
 figure { margin: 1rem 0; } figcaption { font-weight: 600; } svg { width: 100%; max-width: 54rem; }
+.line { fill: none; stroke-width: 2; } .c0 { stroke: var(--grid); }
+.c1 { stroke: #b3261e; } .c2 { stroke: var(--blue); } .c3 { stroke: #1b6e3c; }
+.c4 { stroke: #7a3fb0; }
 svg text { font-size: 12px; fill: var(--ink); } .grid { stroke: var(--grid); }
 .range { stroke: var(--blue); stroke-width: 3; opacity: 0.5; } .mean { fill: var(--blue); }
 """
 
 
-def report_html(outcomes: Sequence[Outcome], beliefs: str = "") -> str:
-    """Return the report; `beliefs` is a ready section about calibration."""
+def report_html(outcomes: Sequence[Outcome]) -> str:
+    """Return the whole report as one HTML document."""
     seeds = len({outcome.seed for outcome in outcomes})
     said = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences(outcomes))
     tables = "".join(
@@ -49,10 +52,10 @@ def report_html(outcomes: Sequence[Outcome], beliefs: str = "") -> str:
     return (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>Samplers compared</title><style>{_STYLE}</style></head><body>"
+        f"<title>Samplers compared</title><style>{STYLE}</style></head><body>"
         f"<h1>Samplers compared</h1><p>{seeds} seasons of 25 days a cell; all rivals meet the "
         "same insects and the same luck in looking. Intervals: 95 %, bootstrap over seeds.</p>"
-        f"<ul>{said}</ul>{_chart(outcomes, WORDED)}{_chart(outcomes, TUNED)}{tables}{beliefs}"
+        f"<ul>{said}</ul>{_chart(outcomes, WORDED)}{_chart(outcomes, TUNED)}{tables}"
         "</body></html>\n"
     )
 

@@ -30,7 +30,7 @@ _OF_A_PLAN = {"plot", "output", "on", "now"}
 
 def register(app: typer.Typer) -> None:
     """Add the commands of a season."""
-    for command in (status, undo, treat, change):
+    for command in (status, undo, treat, change, salvage):
         app.command()(command)
 
 
@@ -251,6 +251,29 @@ def change(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         return
     project.change(new, seen)
     typer.echo("Changed; fieldmon plan uses it from now on.")
+
+
+def salvage(
+    season: SeasonFile,
+    output: Annotated[Path, typer.Option("--output", "-o", help="New file to save it in.")],
+) -> None:
+    """Save what can be saved from a damaged season into a new file.
+
+    Example: fieldmon salvage season.gpkg --output rescued.gpkg
+    """
+    from fieldmon.project.salvage import salvage as save  # noqa: PLC0415
+
+    done = save(season, output)
+    for name, rows in done.rows.items():
+        note = "  (some could not be read)" if name in done.lost else ""
+        typer.echo(f"  {rows:8d}  {name}{note}")
+    if done.whole:
+        typer.echo(f"{output} is a season again. Compare it with: fieldmon status {output}")
+    else:
+        typer.echo(
+            f"{output} holds what could be read, but the plot or its settings are lost: begin a "
+            "new season with fieldmon init, and record the layer inspections into it."
+        )
 
 
 def _open(season: Path) -> Project:

@@ -99,7 +99,8 @@ def spot_area(plot: Plot, spots: HotSpots, h: int) -> MultiPolygon:
     """Return the ground of a hot spot, lon/lat: its plants and half a row around them."""
     grid = plot.grid
     plants = shapely.MultiPoint(grid.xy_m[spots.of_plant == h])
-    around = plants.buffer(grid.row_spacing_m / 2, quad_segs=4)
+    row_m = grid.row_spacing_m
+    around = plants.buffer(1.5 * row_m, quad_segs=4).buffer(-row_m, quad_segs=4)
     parts = shapely.get_parts(grid.frame.geometry_lonlat(around))
     return MultiPolygon(list(parts))
 

@@ -97,8 +97,9 @@ def rows(
 ) -> list[tuple[object, ...]]:
     """Return results as rows of the table of inspections; raise where they do not fit.
 
-    `batch` is its number and whose results these are where they do not say. Who brings a file is
-    no part of what it says: the same file brought by another person changes nothing.
+    `batch` is its number and whose results these are where they do not say. Who looked, and what
+    was noted, is no part of what makes a result the same as another: a file that comes back from
+    somebody else, or with more notes, brings nothing new.
     """
     _check(results, grid)
     dates = {day: day.item() for day in np.unique(results.day)}
@@ -114,7 +115,7 @@ def rows(
         told = None if np.isnan(count) else count
         who, notes = str(results.who[k]), str(results.notes[k])
         date = dates[day].isoformat()
-        mark = _digest(plant, date, at, NAMES[code], told, who)
+        mark = _digest(plant, date, at, NAMES[code], told)
         made.append(
             (
                 *(places[k], plant, int(label.line[plant]), int(label.number[plant])),
@@ -182,7 +183,7 @@ def load(db: sqlite3.Connection) -> Inspections:
     """Return the inspections that count, by day; within a day by time, untimed ones last."""
     found = db.execute(
         "SELECT plant, day, result, time FROM inspections "
-        "WHERE undone = 0 AND plant IS NOT NULL AND day IS NOT NULL "
+        "WHERE undone = 0 AND digest IS NOT NULL "
         "ORDER BY day, time IS NULL, time, fid"
     ).fetchall()
     if not found:

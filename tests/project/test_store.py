@@ -266,3 +266,13 @@ def test_a_file_that_cannot_be_written_is_a_sentence(path):
 def three_results():
     plants = np.arange(100, 103)
     return Results.of(plants, np.zeros(3, np.int8), np.datetime64(BEGINS, "D"))
+
+
+def test_rows_that_another_program_adds_do_not_count_before_they_are_recorded(path):
+    season = Project(path)
+    before = season.evening(BEGINS)
+    extra = pyogrio.read_dataframe(path, layer="inspections").tail(1)
+    extra[["digest", "batch", "undone", "plant", "day"]] = None
+    pyogrio.write_dataframe(extra, path, layer="inspections", append=True)
+    assert np.array_equal(season.evening(BEGINS), before)
+    assert len(season.history.inspections) == 12

@@ -52,6 +52,7 @@ class SamplerName(StrEnum):
     NAIVE = "naive"
     BOUNCY = "bouncy"
     DYNAMIC = "dynamic"
+    ADAPTIVE = "adaptive"
     SNAKE = "snake"
     SNAKE_RANDOM = "snake-random"
     NEIGHBOR = "neighbor"

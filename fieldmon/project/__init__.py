@@ -5,7 +5,7 @@ from __future__ import annotations
 from fieldmon.project.batches import Batch
 from fieldmon.project.contents import Remark
 from fieldmon.project.project import Project, Recorded, Status
-from fieldmon.project.results import NAMES, RESULTS, Results
+from fieldmon.project.results import NAMES, RESULTS, Results, results_from
 from fieldmon.project.setup import Setup
 from fieldmon.project.store import Store, is_season
 
@@ -21,4 +21,5 @@ __all__ = [
     "Status",
     "Store",
     "is_season",
+    "results_from",
 ]

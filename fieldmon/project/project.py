@@ -218,7 +218,7 @@ class Project:
             Local time; None: the start of the work or, once something of the day was recorded,
             the time of the last of it.
         keep
-            Whether the route is kept in the file; the same route is kept once.
+            whether the route is kept in the file: the same one once, an empty one never.
         """
         with self._lock:
             snapshot = self._now()
@@ -229,7 +229,7 @@ class Project:
             scene = snapshot.history.scene(crew, day, snapshot.morning(day), now_s)
             work = plan_day(scene, setup.decides())
             today = Today(scene, work, route_of(scene, work))
-            if keep:
+            if keep and len(today.route):
                 with self.store.writing() as db:
                     if kept_routes.keep(db, setup, self.label, today):
                         self._refresh(db, day)

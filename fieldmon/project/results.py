@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import ObservationError
+from fieldmon.field import ABSENT, PRESENT
 from fieldmon.history import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.project import schema
 from fieldmon.project.geopackage import point_blobs, touch
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.geodata.findings_in import Findings
     from fieldmon.grid import PlantGrid, RowLabel
     from fieldmon.project.setup import Setup
 
@@ -90,6 +92,23 @@ class Results:
             day,
             **(unknown | columns),  # type: ignore[arg-type]
         )
+
+
+def results_from(findings: Findings) -> Results:
+    """Return findings that were read from a file as results."""
+    second = (findings.when - findings.when.astype("datetime64[D]")) / np.timedelta64(1, "s")
+    code = np.full(len(findings), SKIPPED, np.int8)
+    code[findings.result == PRESENT] = FOUND
+    code[findings.result == ABSENT] = CLEAN
+    return Results(
+        findings.plant,
+        code,
+        findings.day.astype("datetime64[D]"),
+        np.where(np.isnat(findings.when), np.nan, second),
+        findings.count,
+        findings.who,
+        findings.notes,
+    )
 
 
 def rows(

@@ -106,15 +106,19 @@ def test_what_was_not_inspected_stays_unknown(season):
 
 def test_a_find_raises_its_neighbours_and_a_clean_look_lowers(season):
     before = season.evening(BEGINS)
-    results = some_results(season, found=[0])
-    season.record(results, "x")
+    grid, find, clean = season.plot.grid, 100, 300
+    on_day = np.datetime64(BEGINS, "D")
+    season.record(Results.of(np.array([find, clean]), np.array([FOUND, 0]), on_day), "x")
     after = season.evening(BEGINS)
-    grid = season.plot.grid
-    find = int(results.plant[0])
-    beside = grid.adjacent.plant[grid.adjacent.start[find] : grid.adjacent.start[find + 1]]
-    beside = np.setdiff1d(beside, results.plant)
+    start, plant = grid.adjacent
+    beside = plant[start[find] : start[find + 1]]
     assert (after[beside] > 2 * before[beside]).all()
-    assert (after[results.plant[1:]] < before[results.plant[1:]]).all()
+    assert after[find] < 1e-3  # treated
+    assert after[clean] < before[clean]
+    assert (
+        after[plant[start[clean] : start[clean + 1]]]
+        <= before[plant[start[clean] : start[clean + 1]]]
+    ).all()
 
 
 def test_undoing_a_batch_gives_back_the_state_before_and_deletes_nothing(season):

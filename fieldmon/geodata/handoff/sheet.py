@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import shapely
 
+from fieldmon.geodata.handoff.plan import plain_text
 from fieldmon.geodata.routes import summary
 
 if TYPE_CHECKING:
@@ -21,77 +22,87 @@ if TYPE_CHECKING:
 
     Float = NDArray[np.float64]
 
-_WIDE_MM, _HIGH_MM = 186.0, 95.0
+_WIDE_MM, _HIGH_MM = 186.0, 88.0
+_MARGIN_MM = 5.0
 _MOST_NUMBERS = 60  # stops whose numbers the map shows; of more, every fifth, tenth...
 _STYLE = """
 @page { size: A4; margin: 12mm; }
 * { box-sizing: border-box; }
-body { font: 9pt/1.2 sans-serif; color: #000; background: #fff; margin: 0 auto; max-width: 186mm; }
+body { font: 9pt/1.15 sans-serif; color: #000; background: #fff; margin: 0 auto; max-width: 186mm; }
 section { break-after: page; } section:last-of-type { break-after: auto; }
-h1 { font-size: 14pt; margin: 0 0 1mm; } p { margin: 0 0 2mm; }
-.blank { display: inline-block; width: 45mm; border-bottom: 0.3mm solid #000; }
+h1 { font-size: 14pt; margin: 0 0 1mm; } p { margin: 0 0 1.5mm; }
+.blank { display: inline-block; width: 40mm; border-bottom: 0.3mm solid #000; }
 svg { display: block; width: 100%; height: auto; border: 0.2mm solid #999; break-inside: avoid; }
-.legend { margin: 2mm 0; }
-.rows { columns: 3; column-gap: 5mm; }
-table { border-collapse: collapse; width: 100%; margin: 0 0 2mm; }
-caption { text-align: start; font-weight: bold; break-after: avoid; }
-tr { break-inside: avoid; break-after: auto; }
-td { border-bottom: 0.1mm solid #bbb; padding: 0.45mm 0.6mm; text-align: end; }
-td.n { color: #555; width: 7mm; } td.p { font-weight: bold; width: 8mm; }
-td.w { width: 11mm; } td.c { border-bottom: 0.3mm solid #000; width: 9mm; }
-i { display: inline-block; width: 3.4mm; height: 3.4mm; border: 0.3mm solid #000; margin: 0 0.6mm; }
+.legend { margin: 1.5mm 0; }
+.stops { columns: 3; column-gap: 5mm; }
+table { border-collapse: collapse; width: 100%; }
+thead { display: table-header-group; } th { font-weight: normal; font-size: 7pt; color: #555; }
+tr { break-inside: avoid; }
+td, th { border-bottom: 0.1mm solid #bbb; padding: 0.35mm 0.6mm; text-align: end; }
+td.n { color: #555; } td.p { font-weight: bold; } td.c { width: 11mm; }
+tr.row td { border-top: 0.4mm solid #000; }
+i { display: inline-block; width: 3.2mm; height: 3.2mm; border: 0.3mm solid #000; margin: 0 0.5mm;
+vertical-align: -0.4mm; }
 i.found { border-radius: 50%; } i.not { border-style: dashed; }
 """
 
 
 class _Map(NamedTuple):
-    """From metres of the plot to millimetres of paper, rows along the longer side."""
+    """From metres of the plot to millimetres of paper, its longer side across the page.
+
+    ``corner`` is where the drawing's upper left corner lies on paper.
+    """
 
     turned: bool
     low: Float
     scale: float
+    corner: Float
 
     def __call__(self, xy_m: Float) -> Float:
         xy = np.atleast_2d(xy_m)
         flat = np.stack([xy[:, 0], -xy[:, 1]], axis=1)
         if self.turned:
             flat = np.stack([-flat[:, 1], flat[:, 0]], axis=1)
-        placed: Float = (flat - self.low) * self.scale + 4.0
+        placed: Float = (flat - self.low) * self.scale + self.corner
         return placed
 
 
 def route_sheet(plan: HandoffPlan) -> bytes:
     """Return a day as an HTML page for printing.
 
-    A route has its own page; one of more stops than fit goes on on the next, no plant's line cut in
-    two. Plants are grouped by the row as they come, with arrows for the way the numbers run.
+    A route has a page of its own, which holds about a hundred plants; a longer one goes on on the
+    next, no plant's line cut in two. A thick line parts the rows.
     """
     figures = summary(plan.route, plan.notes)
-    start = "" if plan.notes.start is None else f"from {plan.clock(0.0)[11:16]} "
-    told = (
-        f"{figures['stops']} plants, {figures['drive_m'] / 1000:.2f} km, "
-        f"{start}{figures['seconds'] / 3600:.1f} h"
+    when = "" if plan.notes.start is None else f"{plan.notes.start:%Y-%m-%d}"
+    hours = f"{figures['seconds'] / 3600:.1f} h"
+    if when:
+        hours += f" ({plan.clock(0.0)[11:16]} to {plan.clock(plan.route.end_s)[11:16]})"
+    told = f"{figures['stops']} plants, {figures['drive_m'] / 1000:.2f} km, {hours}."
+    rows = "".join(
+        _line(stop, is_first=k == 0)
+        for _, stops in groupby(plan.stops, key=lambda stop: stop.row)
+        for k, stop in enumerate(stops)
     )
-    tables = "".join(
-        _row_table(row, list(stops)) for row, stops in groupby(plan.stops, key=lambda s: s.row)
-    )
-    title = escape(plan.title)
     page = f"""<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width">
-<title>{title}</title>
+<title>{escape(plan.title)}</title>
 <style>{_STYLE}</style>
 </head>
 <body>
 <section>
-<h1><bdi>{title}</bdi></h1>
-<p>{told}. Inspected by <span class="blank"></span> on <span class="blank"></span></p>
+<h1><bdi>{escape(plain_text(plan.notes.plot))}</bdi> {when}</h1>
+<p>{told} Inspected by <span class="blank"></span> on <span class="blank"></span></p>
 {_svg(plan)}
-<p class="legend">Tick one: <i></i> clean <i class="found"></i> found (write how many)
-<i class="not"></i> could not be inspected. Without a tick it counts as not inspected.</p>
-<div class="rows">{tables}</div>
+<p class="legend">Tick one: <i></i> clean <i class="found"></i> found, and write how many
+<i class="not"></i> could not be inspected. Without a tick, a plant counts as not inspected.</p>
+<div class="stops"><table>
+<thead><tr><th></th><th>row</th><th>plant</th><th>time</th><th></th><th>how many</th></tr></thead>
+<tbody>{rows}</tbody>
+</table></div>
 </section>
 </body>
 </html>
@@ -99,17 +110,15 @@ def route_sheet(plan: HandoffPlan) -> bytes:
     return page.encode()
 
 
-def _row_table(row: int, stops: list[Stop]) -> str:
-    """Return the plants of one row in a line each, with boxes; an arrow where numbers rise."""
-    arrow = "" if len(stops) < 2 else (" ↑" if stops[-1].number > stops[0].number else " ↓")
-    lines = "".join(
-        f'<tr data-plant="{stop.plant}"><td class="n">{stop.order}</td>'
-        f'<td class="p">{stop.number}{"ab"[stop.face - 1] if stop.face else ""}</td>'
-        f'<td class="w">{stop.arrive[11:16]}</td>'
+def _line(stop: Stop, *, is_first: bool) -> str:
+    """Return the table's line of one plant, with its boxes."""
+    face = "ab"[stop.face - 1] if stop.face else ""
+    return (
+        f'<tr data-plant="{stop.plant}"{" class=row" if is_first else ""}>'
+        f'<td class="n">{stop.order}</td><td>{stop.row}</td><td class="p">{stop.number}{face}</td>'
+        f"<td>{stop.arrive[11:16]}</td>"
         '<td><i></i><i class="found"></i><i class="not"></i></td><td class="c"></td></tr>'
-        for stop in stops
     )
-    return f"<table><caption>Row {row}{arrow}</caption>{lines}</table>"
 
 
 def _svg(plan: HandoffPlan) -> str:
@@ -127,7 +136,8 @@ def _svg(plan: HandoffPlan) -> str:
         'fill-rule="evenodd"/>'
         f'<path d="{rows}" stroke="#9c9" stroke-width="0.4" stroke-linecap="round"/>'
         f'<path d="{line}" fill="none" stroke="#c50" stroke-width="0.35" stroke-linejoin="round"/>'
-        f"{_marks(plan, placed)}{_north(plan, placed, size)}{_scale_bar(placed.scale, size)}</svg>"
+        f"{_row_numbers(plan, placed)}{_marks(plan, placed)}"
+        f"{_north(plan, placed, size)}{_scale_bar(placed.scale, size)}</svg>"
     )
 
 
@@ -137,10 +147,29 @@ def _map_of(plan: HandoffPlan) -> tuple[_Map, Float]:
     xy = np.concatenate(everything)
     spread = np.ptp(xy, axis=0)
     turned = bool(spread[1] > spread[0])
-    flat = _Map(turned, np.zeros(2), 1.0)(xy) - 4.0
+    flat = _Map(turned, np.zeros(2), 1.0, np.zeros(2))(xy)
     low, span = flat.min(axis=0), np.maximum(np.ptp(flat, axis=0), 1.0)
-    scale = float(min((_WIDE_MM - 8.0) / span[0], (_HIGH_MM - 8.0) / span[1]))
-    return _Map(turned, low, scale), np.array([_WIDE_MM, span[1] * scale + 8.0])
+    room = np.array([_WIDE_MM, _HIGH_MM]) - 2 * _MARGIN_MM
+    scale = float((room / span).min())
+    # in the middle of the page's width
+    corner = np.array([(_WIDE_MM - span[0] * scale) / 2, _MARGIN_MM])
+    return _Map(turned, low, scale, corner), np.array([_WIDE_MM, span[1] * scale + 2 * _MARGIN_MM])
+
+
+def _row_numbers(plan: HandoffPlan, placed: _Map) -> str:
+    """Return the numbers of the rows at their low ends, as far as there is room."""
+    grid = plan.grid
+    lines, first = np.unique(grid.row_line, return_index=True)
+    gap_mm = grid.row_spacing_m * placed.scale
+    every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 10**9) if k * gap_mm >= 2.5)
+    ends = placed(np.stack([grid.lane_x_m[first, 0], grid.xy_m[grid.row_start[first], 1]], axis=1))
+    texts = "".join(
+        f'<text x="{x:.2f}" y="{y:.2f}" text-anchor="middle">{line + 1}</text>'
+        for line, (x, y) in zip(lines.tolist(), ends.tolist(), strict=True)
+        if line == 0 or (line + 1) % every == 0
+    )
+    style = 'font-size="2.4" font-family="sans-serif" fill="#363" dominant-baseline="central"'
+    return f"<g {style}>{texts}</g>"
 
 
 def _area(plan: HandoffPlan, placed: _Map) -> str:
@@ -170,7 +199,7 @@ def _north(plan: HandoffPlan, placed: _Map, size: Float) -> str:
     ahead = frame.xy_m(np.array([[frame.lon, frame.lat + 1e-4]]))
     step = placed(ahead)[0] - placed(np.zeros(2))[0]
     step = step / np.hypot(*step) * 4.0
-    x, y = size[0] - 8.0, 8.0
+    x, y = size[0] - 8.0, 10.0
     angle = np.degrees(np.arctan2(step[0], -step[1]))
     return (
         f'<g transform="translate({x:.1f} {y:.1f}) rotate({angle:.1f})" class="north">'

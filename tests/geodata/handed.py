@@ -35,8 +35,8 @@ def usual():
 
 @cache
 def long():
-    """Return a day whose line has more than 1000 points."""
-    return day(rectangle(30, 50), hours=14.0, by="naive")
+    """Return a day whose line has more than 500 points."""
+    return day(rectangle(16, 40), hours=8.0, by="naive")
 
 
 @cache

@@ -38,7 +38,7 @@ def test_the_ending_or_the_name_tells_the_format(tmp_path):
     assert by_ending.read_bytes() == by_name.read_bytes()
     with pytest.raises(SettingError, match="must end in one of"):
         write_handoff(plan, tmp_path / "a.docx")
-    with pytest.raises(SettingError, match=r"written as geojson, .* not as 'docx'"):
+    with pytest.raises(SettingError, match=r"written as nav2, .* not as 'docx'"):
         write_handoff(plan, tmp_path / "a.csv", "docx")
 
 
@@ -55,7 +55,13 @@ def test_a_place_that_cannot_be_written_to_is_a_sentence(tmp_path, name):
 
 @pytest.mark.parametrize("name", FORMATS)
 def test_every_format_is_written_for_every_day(tmp_path, name, plan):
-    paths = write_handoff(plan, tmp_path / f"a{FORMATS[name].endings[0]}")
+    to = tmp_path / f"a{FORMATS[name].endings[0]}"
+    if name in {"nav2", "waypoints"} and not len(plan.route):
+        with pytest.raises(SettingError, match="drives nowhere"):
+            write_handoff(plan, to)
+        assert list(tmp_path.iterdir()) == []
+        return
+    paths = write_handoff(plan, to)
     assert sorted(tmp_path.iterdir()) == sorted(paths)
     assert all(path.stat().st_size for path in paths)
 

@@ -53,12 +53,58 @@ def _gpx(plan: HandoffPlan) -> Made:
     return {".gpx": route_gpx(plan)}
 
 
-#: by name, longest ending first where one ends another; each is imported when it is written, as
+def _kml(plan: HandoffPlan) -> Made:
+    from fieldmon.geodata.handoff.kml import route_kml  # noqa: PLC0415
+
+    return {".kml": route_kml(plan)}
+
+
+def _gpkg(plan: HandoffPlan) -> Made:
+    from fieldmon.geodata.handoff.gis import route_gpkg  # noqa: PLC0415
+
+    return {".gpkg": route_gpkg(plan)}
+
+
+def _shapefile(plan: HandoffPlan) -> Made:
+    from fieldmon.geodata.handoff.gis import route_shapefile  # noqa: PLC0415
+
+    return {".zip": route_shapefile(plan)}
+
+
+def _nav2(plan: HandoffPlan) -> Made:
+    from fieldmon.geodata.handoff import nav2  # noqa: PLC0415
+
+    return {
+        ".nav2.geojson": nav2.route_graph(plan),
+        ".datum.yaml": nav2.datum_yaml(plan),
+        ".waypoints.yaml": nav2.waypoints_yaml(plan),
+    }
+
+
+def _waypoints(plan: HandoffPlan) -> Made:
+    from fieldmon.geodata.handoff import nav2  # noqa: PLC0415
+
+    return {".yaml": nav2.waypoints_yaml(plan)}
+
+
+def _sheet(plan: HandoffPlan) -> Made:
+    from fieldmon.geodata.handoff.sheet import route_sheet  # noqa: PLC0415
+
+    return {".html": route_sheet(plan)}
+
+
+#: by name; one whose ending ends another's comes later. Each is imported when it is written, as
 #: some need libraries that take a while to load
 FORMATS = {
+    "nav2": Format(_nav2, (".nav2.geojson",), "robots with Nav2 (ROS 2)"),
+    "waypoints": Format(_waypoints, (".waypoints.yaml", ".yaml", ".yml"), "robots of any kind"),
     "geojson": Format(_geojson, (".geojson", ".json"), "QGIS, phones, web maps"),
+    "gpkg": Format(_gpkg, (".gpkg",), "QGIS, QField, ArcGIS"),
+    "shapefile": Format(_shapefile, (".shp.zip", ".zip"), "older map programs and consoles"),
     "csv": Format(_csv, (".csv",), "spreadsheets"),
+    "kml": Format(_kml, (".kml",), "Google Earth, map apps on phones"),
     "gpx": Format(_gpx, (".gpx",), "GPS handhelds and hiking apps"),
+    "sheet": Format(_sheet, (".html", ".htm"), "a printer: a scout without a phone"),
 }
 
 
@@ -86,7 +132,8 @@ def write_handoff(
     """
     target = Path(to)
     chosen = _format_of(target, as_format)
-    ending = next((e for e in chosen.endings if target.name.lower().endswith(e)), "")
+    known = (e for e in chosen.endings if target.name.lower().endswith(e))
+    ending = next(known, target.suffix)
     stem = target.name[: len(target.name) - len(ending)]
     made = chosen.make(plan)
     # the main file keeps the name it was given, whatever that ends in

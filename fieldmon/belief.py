@@ -124,7 +124,7 @@ def _overnight(
 
 
 def pairs(
-    chance: NDArray[np.float64], grid: PlantGrid, company: float = 0.3
+    chance: NDArray[np.float64], grid: PlantGrid, company: float = 0.5
 ) -> NDArray[np.float64]:
     """Return the chance that both of two plants side by side are infested, ``(e,)``.
 
@@ -202,7 +202,7 @@ class Pairs:
     both: NDArray[np.float64]
 
     @classmethod
-    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = 0.3) -> Pairs:
+    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = 0.5) -> Pairs:
         """Begin with a chance map, see :func:`pairs`."""
         chance = np.clip(chance, _LEAST, _MOST)
         return cls(grid, chance, pairs(chance, grid, company))
@@ -391,23 +391,58 @@ def _overnight_pairs(
     chance, both = mind
     rate, one, arrivals = rule
     start, plant = adjacent
-    spared = np.ones(both.size)
+    # chance that a clean plant stays so, whatever beside it, and what beside each of its plants
+    stays, spared = np.empty(chance.size), np.empty(both.size)
+    close, twice = np.empty(chance.size), 1.0 - (1.0 - rate) ** 2
     for i in range(chance.size):
-        stays_clean = (1.0 - chance[i]) * (1.0 - arrivals)
+        close[i] = 0.0
+        for e in range(start[i], start[i + 1]):
+            close[i] += both[e] / chance[i]
+        close[i] /= max(start[i + 1] - start[i], 1)
+    beside, share = np.empty(64), np.empty(64)
+    for i in range(chance.size):
+        first, degree = start[i], start[i + 1] - start[i]
+        weight, kin = 0.0, 0.0
+        for k in range(degree):
+            j = plant[first + k]
+            share[k] = rate / (start[j + 1] - start[j]) if one else rate
+            beside[k] = max(chance[j] - both[first + k], 0.0) / (1.0 - chance[i])
+            weight += beside[k]
+            kin += beside[k] * close[j] ** 2
+        kin = kin / weight if weight > 0.0 else 0.0
+        stays[i] = (1.0 - arrivals) * _spared(beside[:degree], share, kin, -1)
+        for k in range(degree):
+            spared[first + k] = (1.0 - arrivals) * _spared(beside[:degree], share, kin, k)
+        after[0][i] = min(max(1.0 - (1.0 - chance[i]) * stays[i], _LEAST), _MOST)
+    for i in range(chance.size):
         for e in range(start[i], start[i + 1]):
             j = plant[e]
-            share = rate / (start[j + 1] - start[j]) if one else rate
-            beside = max(chance[j] - both[e], 0.0) / (1.0 - chance[i])
-            spared[e] = max(1.0 - share * beside, _LEAST)
-            stays_clean *= spared[e]
-        after[0][i] = min(max(1.0 - stays_clean, _LEAST), _MOST)
-    for i in range(chance.size):
-        for e in range(start[i], start[i + 1]):
-            j = plant[e]
-            back = _back(adjacent, i, e)
-            neither = max(1.0 - chance[i] - chance[j] + both[e], 0.0)
-            a = (1.0 - after[0][i]) / (1.0 - chance[i]) / spared[e]
-            b = (1.0 - after[0][j]) / (1.0 - chance[j]) / spared[back]
-            c = after[0][i] + after[0][j] - 1.0 + neither * min(a, 1.0) * min(b, 1.0)
+            a, b = 1.0 - spared[e], 1.0 - spared[_back(adjacent, i, e)]
+            # what comes to two neighbours at once mostly comes from one infestation
+            at_once = max(a * b, twice * min(close[i], close[j]) * min(a, b))
+            neither = max(1.0 - chance[i] - chance[j] + both[e], 0.0) * (1.0 - a - b + at_once)
+            c = after[0][i] + after[0][j] - 1.0 + neither
             least = max(0.0, after[0][i] + after[0][j] - 1.0)
-            after[1][e] = min(max(c, least), min(after[0][i], after[0][j]))
+            after[1][e] = min(max(c, least), after[0][i], after[0][j])
+
+
+@nb.njit(cache=True)
+def _spared(beside: NDArray[np.float64], share: NDArray[np.float64], kin: float, but: int) -> float:
+    """Return the chance that none of a plant's neighbours infects it, neighbour `but` aside.
+
+    Neighbours of a clean plant are infested together: there is an infestation beside it with the
+    chance g, and if so each neighbour belongs to it with the chance beside / g, so that where
+    one does another does with the chance `kin`. Independent neighbours are the case of g = 1.
+    """
+    most = 0.0
+    for k in range(beside.size):
+        if k != but:
+            most = max(most, beside[k])
+    if most <= 0.0:
+        return 1.0
+    g = most / max(kin, most)
+    spared = 1.0
+    for k in range(beside.size):
+        if k != but:
+            spared *= 1.0 - share[k] * beside[k] / g
+    return 1.0 - g * (1.0 - spared)

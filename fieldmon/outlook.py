@@ -128,4 +128,4 @@ def _given(
             odds *= (c / p) / max((q - c) / (1.0 - p), 1e-9)
         else:
             odds *= (1.0 - c / p) / max(1.0 - (q - c) / (1.0 - p), 1e-9)
-    return min(odds / (1.0 + odds), 1.0 - 1e-9)
+    return float(min(odds / (1.0 + odds), 1.0 - 1e-9))

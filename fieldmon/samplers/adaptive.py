@@ -100,7 +100,7 @@ class Adaptive:
     """
 
     spares: float = 0.5
-    beside_find: float = 0.3
+    beside_find: float = 0.5
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.spares < np.inf:
@@ -322,6 +322,12 @@ def _plan_on(
 
 
 @nb.njit(cache=True)
+def _row_of(ground: Ground, at: int) -> int:
+    """Return the row of a plant, -1 for the gate; of one integer type, as numba wants it."""
+    return 0 + ground.row[at] if at >= 0 else _NOWHERE
+
+
+@nb.njit(cache=True)
 def _plan_at(
     ground: Ground,
     clock: Clock,
@@ -344,7 +350,7 @@ def _replan(
     """Return the first piece of the best plan at a price."""
     mind, rows, onward = work
     at, price = state
-    own = np.int64(ground.row[at]) if at >= 0 else np.int64(_NOWHERE)
+    own = _row_of(ground, at)
     for row in range(rows.stale.size):
         if rows.stale[row]:
             _value_row(ground, clock, adjacent, (mind, rows), (row, price))
@@ -372,51 +378,66 @@ def _value_row(
     mind, rows = work
     row, price = state
     first, end = ground.row_start[row], ground.row_start[row + 1]
-    d, toll = mind.detects, price * clock.visit_s
-    low_m, high_m = ground.end_x_m[row, 0], ground.end_x_m[row, 1]
-    drive = price / clock.speed_m_s
-    for way in range(2, _WAYS):
-        rows.net[row, way], rows.seconds[row, way], rows.last[row, way] = -np.inf, 0.0, _NOWHERE
-    total, n, low_plant, high_plant = 0.0, 0, _NOWHERE, _NOWHERE
+    toll = price * clock.visit_s
+    previous = _NOWHERE
     for i in range(first, end):
-        rows.gain[i] = 0.0
-        p = mind.chance[i]
-        if mind.worth[i] * p <= toll:
-            continue
-        if high_plant == i - 1 and high_plant >= 0:
-            for e in range(adjacent.start[i], adjacent.start[i + 1]):
-                if adjacent.plant[e] == i - 1:
-                    before = mind.chance[i - 1]
-                    c = min(mind.both[e], p, before)
-                    p = (p - d * c) / max(1.0 - d * before, _LEAST)
-            if mind.worth[i] * p <= toll:
-                continue
-        rows.gain[i] = mind.worth[i] * p - toll
-        total += rows.gain[i]
-        n += 1
-        low_plant = i if low_plant < 0 else low_plant
-        high_plant = i
-        net = total - 2.0 * drive * (ground.x_m[i] - low_m)
-        if net > rows.net[row, 2]:
-            way_m = 2.0 * (ground.x_m[i] - low_m)
-            rows.net[row, 2], rows.last[row, 2] = net, i
-            rows.seconds[row, 2] = way_m / clock.speed_m_s + n * clock.visit_s
-    through_s = (high_m - low_m) / clock.speed_m_s
-    for way in range(2):
-        rows.net[row, way] = total - price * through_s
-        rows.seconds[row, way] = through_s + n * clock.visit_s
-        rows.last[row, way] = high_plant if way == 0 else low_plant
-    total, n = 0.0, 0
-    for i in range(end - 1, first - 1, -1):
+        gain = mind.worth[i] * mind.chance[i] - toll
+        if gain > 0.0 and previous == i - 1 and previous >= 0:
+            gain = mind.worth[i] * _after_clean(mind, adjacent, i, previous) - toll
+        rows.gain[i] = max(gain, 0.0)
+        if gain > 0.0:
+            previous = i
+    _in_and_out(ground, clock, rows, (row, 2, price))
+    _in_and_out(ground, clock, rows, (row, 3, price))
+    _through(ground, clock, rows, row, price)
+
+
+@nb.njit(cache=True)
+def _after_clean(mind: _Mind, adjacent: Csr, i: int, looked: int) -> float:
+    """Return the chance of plant i once the plant beside it was looked at and seemed clean."""
+    p, q = mind.chance[i], mind.chance[looked]
+    for e in range(adjacent.start[i], adjacent.start[i + 1]):
+        if adjacent.plant[e] == looked:
+            c = min(mind.both[e], p, q)
+            return float((p - mind.detects * c) / max(1.0 - mind.detects * q, _LEAST))
+    return float(p)
+
+
+@nb.njit(cache=True)
+def _in_and_out(ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int, float]) -> None:
+    """Value a row that is left by the end it was entered by, as far in as pays best."""
+    row, way, price = state
+    first, end = ground.row_start[row], ground.row_start[row + 1]
+    entry_m = ground.end_x_m[row, way - 2]
+    rows.net[row, way], rows.seconds[row, way], rows.last[row, way] = -np.inf, 0.0, _NOWHERE
+    gains, n = 0.0, 0
+    for k in range(end - first):
+        i = first + k if way == 2 else end - 1 - k
         if rows.gain[i] <= 0.0:
             continue
-        total += rows.gain[i]
+        gains += rows.gain[i]
         n += 1
-        net = total - 2.0 * drive * (high_m - ground.x_m[i])
-        if net > rows.net[row, 3]:
-            way_m = 2.0 * (high_m - ground.x_m[i])
-            rows.net[row, 3], rows.last[row, 3] = net, i
-            rows.seconds[row, 3] = way_m / clock.speed_m_s + n * clock.visit_s
+        drive_s = 2.0 * abs(ground.x_m[i] - entry_m) / clock.speed_m_s
+        if gains - price * drive_s > rows.net[row, way]:
+            rows.net[row, way], rows.last[row, way] = gains - price * drive_s, i
+            rows.seconds[row, way] = drive_s + n * clock.visit_s
+
+
+@nb.njit(cache=True)
+def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) -> None:
+    """Value a row that is driven from end to end, either way."""
+    gains, n, low, high = 0.0, 0, _NOWHERE, _NOWHERE
+    for i in range(ground.row_start[row], ground.row_start[row + 1]):
+        if rows.gain[i] > 0.0:
+            gains += rows.gain[i]
+            n += 1
+            low = i if low < 0 else low
+            high = i
+    drive_s = (ground.end_x_m[row, 1] - ground.end_x_m[row, 0]) / clock.speed_m_s
+    for way in range(2):
+        rows.net[row, way] = gains - price * drive_s
+        rows.seconds[row, way] = drive_s + n * clock.visit_s
+        rows.last[row, way] = high if way == 0 else low
 
 
 @nb.njit(cache=True)
@@ -527,7 +548,7 @@ def _from_row(
     """
     _, rows, onward = work
     at, price = state
-    row = np.int64(ground.row[at])
+    row = _row_of(ground, at)
     best = -np.inf
     piece = _Piece(_NOWHERE, 0, _NOWHERE, 0.0)
     ahead = np.empty((2, 2))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from datetime import date, datetime, time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -145,7 +146,7 @@ def record(
     """
     from fieldmon.geodata.findings_in import read_findings  # noqa: PLC0415
     from fieldmon.geodata.reported import FindingsOptions  # noqa: PLC0415
-    from fieldmon.project import results_from  # noqa: PLC0415
+    from fieldmon.project import counting_copy, results_from  # noqa: PLC0415
 
     project = _open(season)
     options = FindingsOptions(take_doubtful=take_doubtful)
@@ -153,7 +154,10 @@ def record(
         options = options.choose("day", str(_date(on)))
     options = _chosen(options, finding_option)
     # all are read before any is recorded: a file that cannot be used leaves nothing half-done
-    read = [(file, read_findings(file, project.plot.grid, options)) for file in files]
+    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+        sources = [counting_copy(f, Path(folder)) if is_season(f) else f for f in files]
+        heard = [read_findings(source, project.plot.grid, options) for source in sources]
+    read = list(zip(files, heard, strict=True))
     for file, found in read:
         for finding in found.findings:
             typer.echo(f"{file.name}: {finding}", err=True)

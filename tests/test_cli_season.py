@@ -2,11 +2,14 @@
 
 import csv
 import json
+import shutil
 from datetime import date, timedelta
 from pathlib import Path
 
 import numpy as np
+import pyogrio
 import pytest
+import shapely
 from test_cli import run  # noqa: F401 - a fixture
 
 from fieldmon.history import FOUND
@@ -110,6 +113,31 @@ def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):
         with_library.record(Results.of(np.array(plants), found, np.datetime64(on)), "app")
         assert np.array_equal(with_library.evening(on), Project(season).evening(on))
     assert len(with_library.history.inspections) == 120
+
+
+def test_what_qfield_adds_to_a_copy_comes_back_and_what_was_undone_does_not(
+    run,  # noqa: F811
+    season,
+    tmp_path,
+):
+    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    filled_in(tmp_path / "r.csv", finds={0}, n=5)
+    run("record", season, "r.csv", "--date", BEGINS)
+    copy = shutil.copy(season, tmp_path / "copy.gpkg")
+    grid = Project(season).plot.grid
+    extra = pyogrio.read_dataframe(copy, layer="inspections").tail(1)
+    extra.geometry = shapely.points(grid.lonlat(np.array([77])))
+    extra[["digest", "batch", "undone", "plant", "line", "number", "day"]] = None
+    extra[["result", "count"]] = ["found", 4]
+    pyogrio.write_dataframe(extra, copy, layer="inspections", append=True)
+    code, out, err, _ = run("record", season, copy)
+    assert code == 0, err
+    assert "1 new, 5 known" in out
+    assert Project(season).history.inspections.plant[-1] == 77
+    run("undo", season, "--batch", 1)
+    copy = shutil.copy(season, tmp_path / "later.gpkg")
+    code, out, err, _ = run("record", season, copy)
+    assert "0 new, 1 known" in out
 
 
 def test_choices_can_be_changed(run, season):  # noqa: F811

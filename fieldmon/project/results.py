@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import shutil
+import sqlite3
+from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,7 +18,7 @@ from fieldmon.project import schema
 from fieldmon.project.geopackage import point_blobs, touch
 
 if TYPE_CHECKING:
-    import sqlite3
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -109,6 +112,16 @@ def results_from(findings: Findings) -> Results:
         findings.who,
         findings.notes,
     )
+
+
+def counting_copy(season: Path, folder: Path) -> Path:
+    """Return a copy of a season that holds only the inspections that were not undone there."""
+    copy = folder / season.name
+    shutil.copyfile(season, copy)
+    with closing(sqlite3.connect(copy)) as db:
+        db.execute("DELETE FROM inspections WHERE undone = 1")
+        db.commit()
+    return copy
 
 
 def rows(

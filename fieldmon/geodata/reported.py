@@ -35,10 +35,12 @@ if TYPE_CHECKING:
 
 # The columns of findings that no pest record has; spellings as in `columns`
 _NAMES = {
-    "number": "number numberinrow no nr num plantinrow placeinrow nummer numero numéro número מספר",
-    "time": "time when timestamp datetime inspected inspectedat visited visitedat zeit uhrzeit "
-    "zeitpunkt hora heure ora שעה זמן",
-    "who": "who scout inspector observer recordedby surveyor user username name operator by wer "
+    "number": "number numberinrow plantinrow placeinrow nummerinreihe numeroenfila מספרבשורה",
+    # a running number where there is a better one
+    "ordinal": "no nr num nummer numero numéro número מספר",
+    "time": "time hour when timestamp datetime inspected inspectedat visited visitedat zeit "
+    "uhrzeit zeitpunkt hora heure ora שעה זמן",
+    "who": "who scout inspector observer recordedby surveyor user username operator by wer "
     "prüfer kontrolleur quién quien inspecteur בודק פקח שםהבודק מי",
     "notes": "notes note remark remarks comment comments bemerkung bemerkungen notiz kommentar "
     "notas observaciones remarques commentaire cmt הערה הערות",
@@ -317,6 +319,7 @@ def _columns_of(layer: Layer, options: FindingsOptions) -> _Columns:
     number = _own("number", layer, {line})
     plant = options.column("plant") or _own("id", layer)
     plant = plant or find("plant", names, frozenset({line} if line else ()))
+    number = number or (_own("ordinal", layer) if plant is None else None)
     count = options.column("count") or find("count", names, frozenset({plant or "", number or ""}))
     result = options.column("present") or _result_name(layer, count)
     marks = None

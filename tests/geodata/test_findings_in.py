@@ -105,6 +105,8 @@ def test_plants_are_named_by_row_and_number_in_every_dialect():
         "שורה\tעץ\tנמצא\n2\t3\tכן\n",
         "Reihe;Pflanze;Befall\n2;3;ja\n",
         "plant,found\nR2/3,x\n",
+        "No,row,plant,found\n1,2,3,x\n",
+        "row,nr,found\n2,3,x\n",
     ):
         findings = read(text).value
         label = row_label(GRID, findings.plant)
@@ -112,7 +114,9 @@ def test_plants_are_named_by_row_and_number_in_every_dialect():
 
 
 def test_plants_that_the_plot_does_not_have_are_named_and_left_out():
-    imported = read("plant,row,number,found\n60,,,x\n,9,1,x\n,1,11,x\n-4,,,x\n5,,,x\n")
+    imported = read(
+        "plant,row,number,found\n60,,,x\n,9,1,x\n,1,11,x\n,2147483647,2147483647,x\n-4,,,x\n5,,,x\n"
+    )
     assert imported.value.plant.tolist() == [5]
     said = " ".join(f.sentence for f in imported.of(Severity.DROPPED))
     assert "plant 60 is none of 0 to 59" in said

@@ -219,19 +219,24 @@ def _by_label(reported: Reported, grid: PlantGrid, wanted: NDArray[np.bool_]) ->
     if not len(rows):
         return _Placed(plant, {}, {})
     label = row_label(grid)
-    known: dict[tuple[int, int], int] = {}
-    for i in range(len(grid) - 1, -1, -1):
-        known[int(label.line[i]), int(label.number[i])] = i
-    problems = {}
-    for i in rows.tolist():
-        place = int(reported.line[i]), int(reported.number[i])
-        first = known.get(place)
-        if first is None:
-            problems[i] = f"there is no plant {place[1]} in row {place[0]} on this plot"
-            continue
-        twin = int(grid.twin[first])
-        plant[i] = twin if reported.face[i] == 2 and twin >= 0 else first
+    known, first_face = np.unique(_key(label.line, label.number), return_index=True)
+    wished = _key(reported.line[rows], reported.number[rows])
+    at = np.minimum(np.searchsorted(known, wished), len(known) - 1)
+    is_there = known[at] == wished
+    first = first_face[at]
+    second = (reported.face[rows] == 2) & (grid.twin[first] >= 0)
+    plant[rows] = np.where(is_there, np.where(second, grid.twin[first], first), -1)
+    problems = {
+        i: f"there is no plant {reported.number[i]} in row {reported.line[i]} on this plot"
+        for i in rows[~is_there].tolist()
+    }
     return _Placed(plant, problems, {})
+
+
+def _key(line: NDArray[np.int64], number: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return one number for a row and a number in it; both have 31 bits at most."""
+    key: NDArray[np.int64] = (line << 31) | number
+    return key
 
 
 def _by_position(

@@ -11,12 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
+from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem, SettingError
 from fieldmon.field import Field
 from fieldmon.geodata.findings import Severity
-from fieldmon.geodata.findings_in import CLEAN, FOUND, NOT_INSPECTED, read_findings
+from fieldmon.geodata.findings_in import CLEAN, FOUND, NOT_INSPECTED, look_up, read_findings
+from fieldmon.geodata.layers import Layer
 from fieldmon.geodata.options import Upload
-from fieldmon.geodata.reported import FindingsOptions
+from fieldmon.geodata.reported import FindingsOptions, reported_in
 from fieldmon.grid import row_label
 from fieldmon.planting import Planting, lay, rectangle
 
@@ -105,6 +106,8 @@ def test_plants_are_named_by_row_and_number_in_every_dialect():
         "שורה\tעץ\tנמצא\n2\t3\tכן\n",
         "Reihe;Pflanze;Befall\n2;3;ja\n",
         "plant,found\nR2/3,x\n",
+        "No,row,plant,found\n1,2,3,x\n",
+        "row,nr,found\n2,3,x\n",
     ):
         findings = read(text).value
         label = row_label(GRID, findings.plant)
@@ -112,7 +115,9 @@ def test_plants_are_named_by_row_and_number_in_every_dialect():
 
 
 def test_plants_that_the_plot_does_not_have_are_named_and_left_out():
-    imported = read("plant,row,number,found\n60,,,x\n,9,1,x\n,1,11,x\n-4,,,x\n5,,,x\n")
+    imported = read(
+        "plant,row,number,found\n60,,,x\n,9,1,x\n,1,11,x\n,2147483647,2147483647,x\n-4,,,x\n5,,,x\n"
+    )
     assert imported.value.plant.tolist() == [5]
     said = " ".join(f.sentence for f in imported.of(Severity.DROPPED))
     assert "plant 60 is none of 0 to 59" in said
@@ -394,3 +399,35 @@ def test_geojson_properties_of_every_type_are_read():
     findings = read(text, FindingsOptions(take_doubtful=True), name="a.geojson").value
     assert findings.plant.tolist() == [1, 2, 3, 4]
     assert findings.result.tolist() == [FOUND, CLEAN, FOUND, CLEAN]
+
+
+CELLS = st.one_of(
+    st.none(),
+    st.sampled_from(["", "x", "+", "-", "0", "1e400", "inf", "nan", "-3", "24:61", "99/99/2026"]),
+    st.sampled_from(["2026-11-18T08:30:00+25:00", "31.12.2026 8:30 pm", "12345.678", "R1/2b"]),
+    st.sampled_from([True, 3, -1, 2**40, 35.0, 0.5, float("inf")]),
+    st.text(max_size=8),
+)
+COLUMNS = (
+    *("plant", "row", "number", "lon", "lat", "accuracy", "found", "count", "time", "date", "face"),
+    *("name", "arrive", "who", "notes", "x", "y", "position"),
+)
+
+
+@given(
+    st.dictionaries(st.sampled_from(COLUMNS), st.lists(CELLS, min_size=3, max_size=3), min_size=1),
+    st.booleans(),
+)
+@settings(max_examples=150)
+def test_whatever_stands_in_cells_ends_in_findings_or_in_a_sentence(columns, take_doubtful):
+    cells = {name: np.array(values, dtype=object) for name, values in columns.items()}
+    options = FindingsOptions(zone="+02:00", take_doubtful=take_doubtful)
+    try:
+        reported = reported_in(Layer("cells", cells), options).value
+        findings, said = look_up(reported, GRID, options)
+    except FieldmonError:
+        return
+    assert len(findings) <= 3
+    assert ((findings.plant >= 0) & (findings.plant < len(GRID))).all()
+    assert set(findings.result.tolist()) <= {FOUND, CLEAN, NOT_INSPECTED}
+    assert all(finding.sentence.endswith((".", "?")) for finding in said)

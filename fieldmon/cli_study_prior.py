@@ -74,9 +74,9 @@ def prior(
 
 
 def calibrate(
-    drawn: Annotated[int, typer.Option(help="Open choices drawn at first.")] = 2500,
-    kept: Annotated[int, typer.Option(help="How many of them are tried on everything.")] = 80,
-    steps: Annotated[int, typer.Option(help="Steps of improving one choice or two.")] = 400,
+    drawn: Annotated[int, typer.Option(help="Open choices drawn at first.")] = 1200,
+    kept: Annotated[int, typer.Option(help="How many of them are tried on everything.")] = 40,
+    steps: Annotated[int, typer.Option(help="Steps of improving one choice or two.")] = 250,
     seeds: Annotated[int, typer.Option(help="Paired seasons in the final comparison.")] = 20,
     seed: _Seed = 1,
     output: _Folder = Path(),

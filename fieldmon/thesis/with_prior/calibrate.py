@@ -31,6 +31,8 @@ SPACE: dict[str, tuple[Any, ...]] = {
     "to": ("each", "one", "all"),
     "sources": ("left", "missed"),
     "missed_known": (False, True),
+    "map_follows": (False, True),
+    "bouncy_rests": (False, True),
     "counts": ("infestations", "plants"),
     "ends": ("season", "find"),
     "stop_s": (0.0, 10.0, 20.0, 25.0, 30.0),
@@ -53,15 +55,18 @@ class Effort:
         Candidates drawn evenly from `SPACE`, tried on scenarios A to C.
     kept, kept_seeds
         How many of them (best jointly, and best for each part) go on to all parts.
-    steps, final_seeds
-        Rounds in which one choice of the best is changed, and the seeds of the final comparison.
+    steps
+        Rounds in which a choice or two of the best are changed.
+    finalists, final_seeds
+        How many go into the final comparison, and its seeds.
     """
 
-    drawn: int = 600
+    drawn: int = 1200
     drawn_seeds: int = 2
     kept: int = 40
     kept_seeds: int = 4
-    steps: int = 60
+    steps: int = 250
+    finalists: int = 15
     final_seeds: int = 20
 
 
@@ -153,7 +158,7 @@ class _Search:
         self.all_parts: list[Candidate] = []
         self.final: list[Candidate] = []
         self.done = 0
-        self.total = effort.drawn + effort.kept + effort.steps + effort.kept
+        self.total = effort.drawn + effort.kept + effort.steps + effort.finalists
 
     def run(self) -> None:
         effort = self.effort
@@ -170,7 +175,7 @@ class _Search:
             changed = _changed(best.choices, self.rng)
             if all(changed != each.choices for each in self.all_parts):
                 self.all_parts.append(self._try(changed, PARTS, effort.kept_seeds))
-        for choices in _front(self.all_parts, effort.kept):
+        for choices in _front(self.all_parts, effort.finalists):
             self.final.append(self._try(choices, PARTS, effort.final_seeds))
 
     def _try(self, choices: OpenChoices, parts: Sequence[str], seeds: int) -> Candidate:

@@ -79,6 +79,12 @@ class OpenChoices:
         inspected that day and ``missed`` ("a missed one may spread").
     missed_known
         Whether Dynamic knows next morning which plants it missed.
+    map_follows
+        Whether the chance map that makes plants suspicious follows the nights' spread; if not, it
+        only learns: it falls where a look was clean, and rises beside finds.
+    bouncy_rests
+        Whether Bouncy ends a day after one pass over the plot (half of the plants), or goes on
+        with the plants it left out.
     counts
         Detection in percent of ``infestations`` (a plant infested again counts again) or of
         ``plants`` (each once).
@@ -93,6 +99,8 @@ class OpenChoices:
     spread: Spread = field(default_factory=Spread)
     sources: Literal["left", "missed"] = "left"
     missed_known: bool = False
+    map_follows: bool = True
+    bouncy_rests: bool = False
     counts: Literal["infestations", "plants"] = "infestations"
     ends: Literal["season", "find"] = "find"
     stop_s: float = 25.0

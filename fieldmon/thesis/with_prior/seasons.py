@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
     from fieldmon.chance import Chance
     from fieldmon.robot import Robot
-    from fieldmon.samplers import Sampler
     from fieldmon.season import Start
     from fieldmon.thesis.with_prior.sites import Site
 
@@ -92,47 +91,52 @@ def play(site: Site, trial: Trial, luck: Luck) -> Floats:
 
 def play_from(site: Site, trial: Trial, start: Start, luck: Luck) -> Floats:
     """Return a season as :func:`play` does, from a given first morning."""
-    n_days = len(luck.inspect)
-    grid, robot, choices = site.grid, trial.robot, trial.choices
-    who: Sampler = sampler(trial.sampler)
-    table = np.zeros((n_days, len(COLUMNS)))
+    choices, day_s = trial.choices, trial.robot.day_s
+    table = np.zeros((len(luck.inspect), len(COLUMNS)))
     infested, belief = start.infested.copy(), start.chance.copy()
-    ever, ever_found = infested.copy(), np.zeros(len(grid), np.bool_)
-    last = np.full(len(grid), NEVER, np.int32)
+    ever, ever_found = infested.copy(), np.zeros(len(infested), np.bool_)
+    last = np.full(len(infested), NEVER, np.int32)
     trail = np.empty(0, np.int32)
     new = np.count_nonzero(infested)
-    for day in range(n_days):
+    for day in range(len(table)):
         here = np.count_nonzero(infested)
         if here == 0 and choices.ends == "find":
             table[day:, VISITED] = np.nan
             table[day:, EVER], table[day:, EVER_FOUND] = ever.sum(), ever_found.sum()
             break
-        scene = Scene(
-            site.aisles, robot, belief, last, day, GATE, robot.day_s, trail, luck.inspect[day]
-        )
-        would_find = outcomes(infested, robot.detects, luck.inspect[day])
-        plants = who.walk(scene, would_find).plant
-        found = would_find[plants]
-        n_found = np.count_nonzero(found)
-        if n_found == here and n_found and choices.ends == "find":
-            plants = plants[: np.flatnonzero(found)[-1] + 1]
-            found = found[: len(plants)]
-        last[plants] = day
+        scene = Scene(site.aisles, trial.robot, belief, last, day, GATE, day_s, trail)
+        plants, found = _inspect(trial, scene, infested, luck.inspect[day])
         finds = plants[found]
-        ever_found[finds] = True
-        table[day] = len(plants), n_found, here, new, ever.sum(), ever_found.sum()
-        missed = np.zeros(len(grid), np.bool_)
+        missed = np.zeros(len(infested), np.bool_)
         missed[plants] = infested[plants]
         missed[finds] = False
         infested[finds] = False
+        last[plants] = day
+        ever_found[finds] = True
+        table[day] = len(plants), len(finds), here, new, ever.sum(), ever_found.sum()
         if trial.sampler not in _BLIND:
             belief = _morning(site, trial, belief, (plants, found, missed))
         after = _night(site, choices, infested, missed, luck.spread[day])
-        new = np.count_nonzero(after) - (here - n_found)
+        new = np.count_nonzero(after) - np.count_nonzero(infested)
         infested = after
         ever |= infested
         trail = plants if len(plants) else trail
     return table
+
+
+def _inspect(
+    trial: Trial, scene: Scene, infested: Flags, key: np.uint64
+) -> tuple[NDArray[np.int32], Flags]:
+    """Return the plants inspected on a day and which of them were found infested."""
+    would_find = outcomes(infested, scene.robot.detects, key)
+    plants = sampler(trial.sampler).walk(scene, would_find).plant
+    if trial.sampler == "bouncy" and trial.choices.bouncy_rests:
+        plants = plants[: (len(infested) + 1) // 2]
+    found = would_find[plants]
+    finds = np.flatnonzero(found)
+    if trial.choices.ends == "find" and len(finds) == np.count_nonzero(infested) > 0:
+        plants, found = plants[: finds[-1] + 1], found[: finds[-1] + 1]
+    return plants, found
 
 
 def _night(
@@ -156,6 +160,8 @@ def _morning(
     evening = learn(belief, site.grid, plants, found, Learning(detection=trial.robot.detects))
     if choices.missed_known:
         evening[missed] = _MOST
+    if not choices.map_follows:
+        return evening
     if choices.sources == "left":
         return overnight(evening, site.grid, choices.spread)
     # only who was inspected and missed can spread

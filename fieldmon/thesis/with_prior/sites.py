@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 _LEAST, _MOST = 1e-6, 1.0 - 1e-6
 # seeds of clusters that fall on infested plants before the plot's margin is taken as full
 _PATIENCE = 20
+_TRIES = 50
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,12 +137,19 @@ def _grow(
         infested[seed], member[done] = True, seed
         done += 1
         while done < wanted and coin(key, c) >= stop:
-            parent = member[first + int(coin(key, c + 1) * (done - first))]
-            low, high = adjacent.start[parent], adjacent.start[parent + 1]
-            if high > low:
-                child = adjacent.plant[low + int(coin(key, c + 2) * (high - low))]
+            c += 1
+            # a cluster walled in by others may not find room for its next plant
+            for _ in range(_TRIES):
+                parent = member[first + int(coin(key, c) * (done - first))]
+                low, high = adjacent.start[parent], adjacent.start[parent + 1]
+                child = parent
+                if high > low:
+                    child = adjacent.plant[low + int(coin(key, c + 1) * (high - low))]
+                c += 2
                 if not infested[child]:
                     infested[child], member[done] = True, child
                     done += 1
-            c += 3
+                    break
+            else:
+                break
         c += 1

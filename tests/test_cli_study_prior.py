@@ -20,7 +20,7 @@ def test_a_scenario_is_made_again_beside_its_figures(run, tmp_path):  # noqa: F8
     compared = table(tmp_path / "prior_A_published.csv")
     assert {row["part"] for row in compared} == {"A"}
     assert {"67", "53", "47"} <= {row["published"] for row in compared}
-    assert len(table(tmp_path / "prior_A.csv")) == 3 * (8 + 50)
+    assert len(table(tmp_path / "prior_A.csv")) == 3 * (11 + 50)
     assert "<svg" in (tmp_path / "prior_A.html").read_text(encoding="utf-8")
 
 

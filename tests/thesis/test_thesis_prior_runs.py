@@ -31,7 +31,7 @@ def study():
 def fake(detection, visited=()):
     """Return runs whose finds make given detection curves, of 100 insects on 1000 plants."""
     detection = np.asarray(detection, float)
-    tables = np.zeros((*detection.shape, 6))
+    tables = np.zeros((*detection.shape, 9))
     tables[..., 1] = np.diff(detection, axis=1, prepend=0)
     tables[:, 0, 3] = 100
     tables[..., 0] = visited if len(visited) else 10
@@ -120,7 +120,7 @@ def test_figures_without_their_seasons_are_left_out(study):
 
 def test_the_tidy_table_holds_every_measure_and_day(study):
     table = list(csv.DictReader(io.StringIO(csv_text(rows(study)))))
-    assert len(table) == 6 * (8 + 2 * 25)
+    assert len(table) == 6 * (11 + 2 * 25)
     ends = [row for row in table if row["measure"] == "detection_end_pct"]
     last = [row for row in table if row["measure"] == "detection_pct" and row["day"] == "25"]
     assert [row["mean"] for row in ends] == [row["mean"] for row in last]

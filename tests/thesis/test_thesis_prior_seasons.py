@@ -17,11 +17,14 @@ from fieldmon.samplers import sampler
 from fieldmon.season import SeasonSettings, Start, days
 from fieldmon.spread import Spread
 from fieldmon.thesis.with_prior.choices import SAMPLERS, OpenChoices, StartUp, side_of
+from fieldmon.thesis.with_prior.runs import lucks, run_trials
 from fieldmon.thesis.with_prior.seasons import (
+    AT_LEVEL,
     EVER,
     EVER_FOUND,
     FOUND,
     INFESTED,
+    LEVELS_PCT,
     NEW,
     VISITED,
     Luck,
@@ -171,8 +174,35 @@ def test_work_ends_with_the_last_find(name):
     assert table[last, INFESTED] == table[last, FOUND]
     assert table[last, VISITED] < whole[last, VISITED]
     assert np.isnan(table[last + 1 :, VISITED]).all()
-    assert (table[:last] == whole[:last]).all()
+    assert np.array_equal(table[:last], whole[:last], equal_nan=True)
     assert detection_pct(table, choices)[-1] == 100.0
+
+
+@pytest.mark.parametrize("counts", ["infestations", "plants"])
+@pytest.mark.parametrize("name", SAMPLERS)
+def test_levels_are_reached_on_the_day_that_the_curve_says(name, counts):
+    choices = replace(PRODUCT, counts=counts, spread=Spread(0.3, "one"))
+    season = run_trials([Trial(name, choices, 1.0)], lucks(6)).runs[Trial(name, choices, 1.0)]
+    for level in LEVELS_PCT:
+        first, days_to = season.first_day(level), season.days_to(level)
+        never = first > 25
+        assert (np.ceil(days_to[~never]) == first[~never]).all()
+        assert (days_to[never] == 25).all()
+    assert (season.days_to(50.0) <= season.days_to(80.0)).all()
+    assert (season.days_to(80.0) <= season.days_to(100.0)).all()
+
+
+def test_the_last_find_of_a_cleared_field_is_when_all_are_found():
+    # every second plant of the first row: looking is sure, 44.32 s from plant to plant
+    site, infested = square(1.0), np.zeros(784, bool)
+    infested[[0, 2, 4, 6]] = True
+    choices = replace(PRODUCT, stop_s=0.0)
+    start = Start(infested, np.full(784, 0.01))
+    table = play_from(site, Trial("naive", choices, detection=1.0), start, Luck.of(Chance(1), 1))
+    to_gate_s = site.aisles.distance_m(-1, 0) * 3.6 / 2.5
+    step_s = 40.0 + 3.0 * 3.6 / 2.5
+    at = [to_gate_s + 40.0 + k * step_s for k in (2, 6, 6)]
+    assert table[0, AT_LEVEL:] * 43200 == pytest.approx(at)
 
 
 def test_bouncy_rests_after_half_the_plants():

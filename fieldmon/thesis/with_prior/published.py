@@ -121,7 +121,7 @@ def _less(measure: Callable[[Runs], Floats]) -> Callable[[Runs, Runs], Floats]:
 
 
 def _sooner(level_pct: float) -> Callable[[Runs, Runs], Floats]:
-    return lambda one, other: other.first_day(level_pct) - one.first_day(level_pct)
+    return lambda one, other: other.days_to(level_pct) - one.days_to(level_pct)
 
 
 def _fall(small: Runs, middle: Runs, big: Runs, biggest: Runs) -> Floats:

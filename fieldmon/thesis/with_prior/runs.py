@@ -14,8 +14,10 @@ from fieldmon.chance import Chance
 from fieldmon.errors import SettingError
 from fieldmon.thesis.with_prior.choices import N_DAYS
 from fieldmon.thesis.with_prior.seasons import (
+    AT_LEVEL,
     FOUND,
     INFESTED,
+    LEVELS_PCT,
     NEW,
     VISITED,
     Luck,
@@ -45,7 +47,7 @@ class Runs:
     n_plants
         Plants of the plot.
     tables
-        ``(seeds, days, 6)``, see `seasons.COLUMNS`.
+        ``(seeds, days, 9)``, see `seasons.N_COLUMNS`.
     """
 
     trial: Trial
@@ -90,6 +92,18 @@ class Runs:
         first: Floats = np.where(reached.any(axis=1), reached.argmax(axis=1) + 1.0, never)
         return first
 
+    def days_to(self, level_pct: float) -> Floats:
+        """Return the days of work, parts of days included, until a share was found, ``(seeds,)``.
+
+        One of `seasons.LEVELS_PCT`; the length of the season where it never is.
+        """
+        when = self.tables[..., AT_LEVEL + LEVELS_PCT.index(level_pct)]
+        reached = ~np.isnan(when)
+        first = reached.argmax(axis=1)
+        part = np.take_along_axis(when, first[:, None], axis=1)[:, 0]
+        days: Floats = np.where(reached.any(axis=1), first + part, when.shape[1])
+        return days
+
     def measures(self) -> dict[str, Floats]:
         """Return every measure of a season by name, ``(seeds,)`` each.
 
@@ -99,9 +113,8 @@ class Runs:
         return {
             "detection_end_pct": self.end_pct,
             "visited_a_day_pct": self.visited_a_day_pct,
-            "D50": self.first_day(50.0),
-            "D80": self.first_day(80.0),
-            "D100": self.first_day(100.0),
+            **{f"D{level:g}": self.first_day(level) for level in LEVELS_PCT},
+            **{f"days_to_{level:g}": self.days_to(level) for level in LEVELS_PCT},
             "infested_plant_days": self.left.sum(axis=1),
             "new_infestations": self.tables[:, 1:, NEW].sum(axis=1),
             "left": self.left[:, -1],

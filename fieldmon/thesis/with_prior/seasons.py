@@ -25,10 +25,12 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Flags = NDArray[np.bool_]
 
-COLUMNS = ("visited", "found", "infested", "new", "ever", "ever_found")
-VISITED, FOUND, INFESTED, NEW, EVER, EVER_FOUND = range(len(COLUMNS))
+LEVELS_PCT = (50.0, 80.0, 100.0)
+VISITED, FOUND, INFESTED, NEW, EVER, EVER_FOUND, AT_LEVEL = range(7)
+N_COLUMNS = AT_LEVEL + len(LEVELS_PCT)
 """Columns of a season, one row a day: plants inspected and found; infested that morning; new since
-the evening before (day 1: at the start); plants infested, and found, at least once by then."""
+the evening before (day 1: at the start); plants infested, and found, at least once by then; and
+at which part of the working day detection came to each of `LEVELS_PCT` (NaN: not on that day)."""
 
 # who does not look at the chance map needs none
 _BLIND = frozenset({"naive", "bouncy"})
@@ -84,40 +86,45 @@ class Luck:
 
 
 def play(site: Site, trial: Trial, luck: Luck) -> Floats:
-    """Return a season as ``(days, 6)``, see `COLUMNS`; visited is NaN after the end of work."""
+    """Return a season as ``(days, 9)``, see `N_COLUMNS`; visited is NaN after the end of work."""
     start = first_morning(site, trial.choices.start, luck.chance)
     return play_from(site, trial, start, luck)
 
 
 def play_from(site: Site, trial: Trial, start: Start, luck: Luck) -> Floats:
     """Return a season as :func:`play` does, from a given first morning."""
-    choices, day_s = trial.choices, trial.robot.day_s
-    table = np.zeros((len(luck.inspect), len(COLUMNS)))
+    choices, robot, count = trial.choices, trial.robot, np.count_nonzero
+    table = np.zeros((len(luck.inspect), N_COLUMNS))
+    table[:, AT_LEVEL:] = np.nan
     infested, belief = start.infested.copy(), start.chance.copy()
     ever, ever_found = infested.copy(), np.zeros(len(infested), np.bool_)
     last = np.full(len(infested), NEVER, np.int32)
     trail = np.empty(0, np.int32)
-    new = np.count_nonzero(infested)
+    new = count(infested)
     for day in range(len(table)):
-        here = np.count_nonzero(infested)
+        here = count(infested)
         if here == 0 and choices.ends == "find":
             table[day:, VISITED] = np.nan
-            table[day:, EVER], table[day:, EVER_FOUND] = ever.sum(), ever_found.sum()
+            table[day:, EVER], table[day:, EVER_FOUND] = count(ever), count(ever_found)
             break
-        scene = Scene(site.aisles, trial.robot, belief, last, day, GATE, day_s, trail)
-        plants, found = _inspect(trial, scene, infested, luck.inspect[day])
+        scene = Scene(site.aisles, robot, belief, last, day, GATE, robot.day_s, trail)
+        plants, found, at_s = _inspect(trial, scene, infested, luck.inspect[day])
         finds = plants[found]
+        again = ever_found[finds]
         missed = np.zeros(len(infested), np.bool_)
         missed[plants] = infested[plants]
         missed[finds] = False
         infested[finds] = False
         last[plants] = day
         ever_found[finds] = True
-        table[day] = len(plants), len(finds), here, new, ever.sum(), ever_found.sum()
+        row = table[day]
+        row[:AT_LEVEL] = len(plants), len(finds), here, new, count(ever), count(ever_found)
+        row[AT_LEVEL:] = _levels(table[: day + 1], choices, again, at_s[found] / robot.day_s)
         if trial.sampler not in _BLIND:
-            belief = _morning(site, trial, belief, (plants, found, missed))
+            evening = learn(belief, site.grid, plants, found, Learning(detection=robot.detects))
+            belief = _morning(site, choices, evening, (plants, found, missed))
         after = _night(site, choices, infested, missed, luck.spread[day])
-        new = np.count_nonzero(after) - np.count_nonzero(infested)
+        new = count(after) - count(infested)
         infested = after
         ever |= infested
         trail = plants if len(plants) else trail
@@ -126,17 +133,38 @@ def play_from(site: Site, trial: Trial, start: Start, luck: Luck) -> Floats:
 
 def _inspect(
     trial: Trial, scene: Scene, infested: Flags, key: np.uint64
-) -> tuple[NDArray[np.int32], Flags]:
-    """Return the plants inspected on a day and which of them were found infested."""
+) -> tuple[NDArray[np.int32], Flags, Floats]:
+    """Return the plants inspected on a day, which were found infested, and when it was done."""
     would_find = outcomes(infested, scene.robot.detects, key)
-    plants = sampler(trial.sampler).walk(scene, would_find).plant
+    plants, arrive_s = sampler(trial.sampler).walk(scene, would_find)
+    end = len(plants)
     if trial.sampler == "bouncy" and trial.choices.bouncy_rests:
-        plants = plants[: (len(infested) + 1) // 2]
-    found = would_find[plants]
+        end = min(end, (len(infested) + 1) // 2)
+    found = would_find[plants[:end]]
     finds = np.flatnonzero(found)
     if trial.choices.ends == "find" and len(finds) == np.count_nonzero(infested) > 0:
-        plants, found = plants[: finds[-1] + 1], found[: finds[-1] + 1]
-    return plants, found
+        end = finds[-1] + 1
+    return plants[:end], found[:end], arrive_s[:end] + scene.robot.visit_s
+
+
+def _levels(table: Floats, choices: OpenChoices, again: Flags, when: Floats) -> list[float]:
+    """Return when today, the last row, detection came to each level; NaN where it did not.
+
+    `again` tells of today's finds which plants were found before, `when` the part of the day.
+    """
+    today = table[-1]
+    if choices.counts == "plants":
+        fresh, so_far, whole = ~again, today[EVER_FOUND], today[EVER]
+    else:
+        fresh, so_far, whole = np.ones_like(again), table[:, FOUND].sum(), table[:, NEW].sum()
+    gained = np.cumsum(fresh)
+    before = so_far - (gained[-1] if len(gained) else 0)
+    reached = []
+    for level in LEVELS_PCT:
+        wanted = level / 100.0 * whole - before - 1e-9
+        k = int(np.searchsorted(gained, wanted))
+        reached.append(float(when[k]) if wanted > 0 and k < len(gained) else np.nan)
+    return reached
 
 
 def _night(
@@ -150,14 +178,12 @@ def _night(
 
 def _morning(
     site: Site,
-    trial: Trial,
-    belief: Floats,
+    choices: OpenChoices,
+    evening: Floats,
     work: tuple[NDArray[np.int32], Flags, Flags],
 ) -> Floats:
-    """Return the chance map of the next morning."""
+    """Return the chance map of the next morning; that of the evening may be changed."""
     plants, found, missed = work
-    choices = trial.choices
-    evening = learn(belief, site.grid, plants, found, Learning(detection=trial.robot.detects))
     if choices.missed_known:
         evening[missed] = _MOST
     if not choices.map_follows:

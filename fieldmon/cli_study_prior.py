@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.errors import FileProblem
+from fieldmon.errors import ChoiceNeeded, FileProblem
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fieldmon.thesis.with_prior.calibrate import Calibration
+    from fieldmon.thesis.with_prior.sites import Site
     from fieldmon.thesis.with_prior.studies import Study
 
 _Folder = Annotated[Path, typer.Option("--output", "-o", help="Folder for tables and report.")]
@@ -26,7 +27,7 @@ def register(app: typer.Typer) -> None:
     app.command("calibrate")(calibrate)
 
 
-def prior(
+def prior(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     scenario: Annotated[
         list[str] | None, typer.Option(help="A, B or C; may be given again.")
     ] = None,
@@ -41,10 +42,18 @@ def prior(
         Path | None,
         typer.Option(help="Folder of mapped plants: run the samplers on those real maps instead."),
     ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Plot file: run the samplers on that plot instead.")
+    ] = None,
+    feature: Annotated[str | None, typer.Option(help="Which plot of the file.")] = None,
+    observations: Annotated[
+        Path | None, typer.Option(help="Pest records of that plot: they seed the start.")
+    ] = None,
 ) -> None:
     """Run Dynamic, Naive and Bouncy with prior information beside the published figures.
 
-    Without --scenario and --sweep all of them. Ctrl-C keeps what is done.
+    Without --scenario and --sweep all of them. Ctrl-C keeps what is done. With --plot or --maps
+    on your own plot, or on mapped plants, with the same rules.
 
     Example: fieldmon study prior --scenario C --seeds 100 -o study
     """
@@ -55,6 +64,9 @@ def prior(
     _must_be_folder(output)
     if maps is not None:
         _on_maps(maps, seeds, seed, output)
+        return
+    if plot is not None:
+        _on_plot((plot, feature, observations), seeds, seed, output)
         return
     parts = (*(scenario or []), *(sweep or [])) or PARTS
     with typer.progressbar(
@@ -122,6 +134,54 @@ def _on_maps(folder: Path, seeds: int, seed: int, output: Path) -> None:
                 "infested plants (less those found before) in the first 25 % visited"
             )
     _write(output, {"prior_maps.csv": csv_text(table), "prior_maps.html": maps_html(table)})
+
+
+def _on_plot(
+    files: tuple[Path, str | None, Path | None], seeds: int, seed: int, output: Path
+) -> None:
+    from fieldmon.thesis.with_prior.report import report_html  # noqa: PLC0415
+    from fieldmon.thesis.with_prior.studies import csv_text, rows, run_site  # noqa: PLC0415
+
+    site = _site(*files)
+    with typer.progressbar(
+        length=1, label="Simulating", file=sys.stderr, show_eta=True, width=40
+    ) as bar:
+        made = run_site(site, seeds, seed, progress=_shown(bar))
+    for part in made.parts:
+        for runs in part.runs:
+            typer.echo(
+                f"{part.title}: {runs.trial.sampler} finds {runs.end_pct.mean():.0f} % in 25 days"
+            )
+    _write(output, {"prior_plot.csv": csv_text(rows(made)), "prior_plot.html": report_html(made)})
+
+
+def _site(file: Path, feature: str | None, observations: Path | None) -> Site:
+    """Return a plot of a file; its records' chance map if there are any, on their last day."""
+    import numpy as np  # noqa: PLC0415
+
+    from fieldmon.geodata.options import PlotOptions  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_plots, read_records  # noqa: PLC0415
+    from fieldmon.monitor import Plot  # noqa: PLC0415
+    from fieldmon.prior import PriorSettings, prior_chance  # noqa: PLC0415
+    from fieldmon.thesis.with_prior.sites import Site  # noqa: PLC0415
+
+    fields = read_plots(file, PlotOptions(feature=feature)).value
+    if len(fields) > 1:
+        names = tuple(field.name for field in fields)
+        raise ChoiceNeeded(
+            f"One plot must be chosen, but the file holds {len(names)}: {', '.join(names[:12])}. "
+            f'Choose one by name or number: --feature "{names[0]}".',
+            "feature",
+            names,
+        )
+    plot = Plot.of(fields[0])
+    if observations is None:
+        return Site(plot.field.name, plot.aisles, plot.field)
+    records = read_records(observations, near=plot.field).value
+    dated = records.day[~np.isnat(records.day)]
+    last = dated.max() if dated.size else np.datetime64("today", "D")
+    chance = prior_chance(plot.grid, plot.field, records, last, PriorSettings())
+    return Site(plot.field.name, plot.aisles, plot.field, chance)
 
 
 def _tell(study: Study) -> None:

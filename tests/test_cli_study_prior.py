@@ -3,7 +3,7 @@
 import csv
 
 import pytest
-from test_cli import run  # noqa: F401 - a fixture
+from test_cli import MITES, ZIP, run  # noqa: F401 - a fixture
 
 
 def table(path):
@@ -45,6 +45,17 @@ def test_mapped_plants_are_inspected(run, tmp_path):  # noqa: F811
     }
 
 
+def test_an_own_plot_is_played_from_its_records(run, tmp_path):  # noqa: F811
+    words = ["study", "prior", "--plot", ZIP, "--feature", "Nursery", "--seeds", 2]
+    code, out, err, made = run(*words, "--observations", MITES)
+    assert code == 0, err
+    assert {path.name for path in made} == {"prior_plot.csv", "prior_plot.html"}
+    assert "Nursery: dynamic finds" in out
+    seeded = table(tmp_path / "prior_plot.csv")
+    assert run(*words)[0] == 0
+    assert seeded != table(tmp_path / "prior_plot.csv")
+
+
 def test_a_search_tells_its_best_and_writes_what_it_tried(run, tmp_path):  # noqa: F811
     code, out, err, _ = run(
         *["study", "calibrate", "--drawn", 2, "--kept", 1, "--steps", 0, "--seeds", 2]
@@ -62,6 +73,7 @@ def test_a_search_tells_its_best_and_writes_what_it_tried(run, tmp_path):  # noq
         (["prior", "--sweep", "colour"], "colour"),
         (["prior", "--scenario", "A", "--seeds", "1"], "2 seeds"),
         (["prior", "--maps", "none"], "none"),
+        (["prior", "--plot", ZIP], "--feature"),
         (["prior", "-o", "none"], "must exist"),
         (["calibrate", "-o", "none"], "must exist"),
     ],

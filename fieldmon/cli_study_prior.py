@@ -86,9 +86,9 @@ def prior(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
 
 
 def calibrate(
-    drawn: Annotated[int, typer.Option(help="Open choices drawn at first.")] = 1200,
-    kept: Annotated[int, typer.Option(help="How many of them are tried on everything.")] = 40,
-    steps: Annotated[int, typer.Option(help="Steps of improving one choice or two.")] = 250,
+    drawn: Annotated[int, typer.Option(help="Open choices drawn at first.")] = 500,
+    kept: Annotated[int, typer.Option(help="How many of them are tried on everything.")] = 20,
+    steps: Annotated[int, typer.Option(help="Steps of improving one choice or two.")] = 400,
     seeds: Annotated[int, typer.Option(help="Paired seasons in the final comparison.")] = 20,
     seed: _Seed = 1,
     output: _Folder = Path(),

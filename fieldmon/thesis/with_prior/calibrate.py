@@ -11,6 +11,7 @@ from fieldmon.chance import Chance
 from fieldmon.spread import Spread
 from fieldmon.thesis.with_prior.beside import misfit
 from fieldmon.thesis.with_prior.choices import OpenChoices, StartUp
+from fieldmon.thesis.with_prior.defaults import CALIBRATED
 from fieldmon.thesis.with_prior.published import FIGURES, PARTS
 from fieldmon.thesis.with_prior.runs import lucks, run_trials
 
@@ -22,11 +23,11 @@ if TYPE_CHECKING:
     Progress = Callable[[int, int], None]
 
 SPACE: dict[str, tuple[Any, ...]] = {
-    "share": (0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3),
+    "share": (0.002, 0.003, 0.005, 0.008, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3),
     "margin_share": (0.0, 0.5, 0.8, 1.0),
-    "depth_m": (5.0, 10.0, 30.0),
+    "depth_m": (2.0, 5.0, 10.0, 30.0),
     "cluster_size": (1.0, 2.0, 4.0, 10.0, 30.0),
-    "recorded_share": (0.0, 0.2, 0.4, 0.6, 0.8, 1.0),
+    "recorded_share": (0.0, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0),
     "rate_per_day": (0.3, 0.5, 0.8),
     "to": ("each", "one", "all"),
     "sources": ("left", "missed"),
@@ -35,8 +36,8 @@ SPACE: dict[str, tuple[Any, ...]] = {
     "bouncy_rests": (False, True),
     "counts": ("infestations", "plants"),
     "ends": ("season", "find"),
-    "stop_s": (0.0, 10.0, 20.0, 25.0, 30.0),
-    "row_change_s": (25.0, 100.0, 300.0, 600.0),
+    "stop_s": (0.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0),
+    "row_change_s": (25.0, 100.0, 200.0, 300.0, 450.0, 600.0, 900.0),
 }
 """The values tried for each open choice."""
 
@@ -61,11 +62,11 @@ class Effort:
         How many go into the final comparison, and its seeds.
     """
 
-    drawn: int = 1200
+    drawn: int = 500
     drawn_seeds: int = 2
-    kept: int = 40
+    kept: int = 20
     kept_seeds: int = 4
-    steps: int = 250
+    steps: int = 400
     finalists: int = 15
     final_seeds: int = 20
 
@@ -158,7 +159,7 @@ class _Search:
         self.all_parts: list[Candidate] = []
         self.final: list[Candidate] = []
         self.done = 0
-        self.total = effort.drawn + effort.kept + effort.steps + effort.finalists
+        self.total = effort.drawn + 1 + effort.kept + effort.steps + effort.finalists
 
     def run(self) -> None:
         effort = self.effort
@@ -166,7 +167,8 @@ class _Search:
             self._try(_drawn(self.rng), ("A", "B", "C"), effort.drawn_seeds)
             for _ in range(effort.drawn)
         ]
-        for choices in _front(drawn, effort.kept):
+        # the present defaults take part, so that a search goes on where the last one ended
+        for choices in dict.fromkeys([CALIBRATED, *_front(drawn, effort.kept)]):
             self.all_parts.append(self._try(choices, PARTS, effort.kept_seeds))
         for step in range(effort.steps):
             # in turn: the joint fit twice, then each part alone

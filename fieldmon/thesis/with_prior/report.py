@@ -173,7 +173,8 @@ def _line(label: str, x: list[float], values: Iterable[np.ndarray]) -> Line:
         [math.nan if less else getattr(each, name) for each, less in zip(spreads, few, strict=True)]
         for name in ("mean", "low", "high")
     )
-    return Line(label, x, y, low, high)
+    # Student's interval does not know that a share ends at 0 and at 100 %
+    return Line(label, x, y, [max(each, 0.0) for each in low], [min(each, 100.0) for each in high])
 
 
 def _name(part: Part, runs: Runs) -> str:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from fieldmon import cli_study
+from fieldmon import cli_raster, cli_study
 from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
 
 if TYPE_CHECKING:
@@ -201,6 +201,12 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     layer: Layer = None,
     plot_option: Choices = None,
     record_option: RecordChoices = None,
+    risk: cli_raster.Risk = None,
+    risk_option: cli_raster.RiskChoices = None,
+    canopy: cli_raster.Canopy = None,
+    canopy_below: cli_raster.CanopyBelow = None,
+    canopy_option: cli_raster.CanopyChoices = None,
+    chance_map: cli_raster.ChanceMap = None,
 ) -> None:
     """Plan today's route on a plot, and write it as GeoJSON.
 
@@ -227,9 +233,11 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     else:
         fields = _read_plots(plot, feature, crs, layer, plot_option)
         laid = _lay(_place(fields, plants, paths, gate, feature), given)
+    laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option)
+    at_risk = cli_raster.risk_of(laid, risk, risk_option)
     records = _read_records(observations, laid, record_option)
     _hear(records, day)
-    today = first_day(laid, records, day, plans)
+    today = first_day(laid, records, day, plans, at_risk)
     route = today.route
     if not len(route):
         raise SettingError(
@@ -244,6 +252,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         f"about {route.expected_finds * plans.robot.detects:.1f} of these would be found."
     )
     typer.echo(f"Route written to {output}")
+    cli_raster.write_map(chance_map, laid, today.chance)
 
 
 @app.command()

@@ -31,6 +31,8 @@ PIXELS = 16_000_000
 BANDS = 512
 BLOCK_BYTES = 200 * MB
 RASTER_BYTES = 1_000 * MB
+#: pixels of a raster that is written
+WRITTEN_PIXELS = 100_000_000
 
 
 def size(n_bytes: float) -> str:

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     Bounds = tuple[float, float, float, float]
 
 # GDAL's cache counts against the limit on memory
-_CACHE_MB = 64
+_CACHE_BYTES = 64_000_000
 # about a plot, this much more of the raster is read: of its size, and metres
 _MARGIN = 0.25
 _MARGIN_M = 30.0
@@ -108,7 +108,7 @@ def open_raster(folder: str, source: Source, options: RasterOptions) -> Iterator
         try:
             # this driver alone: no other reads what a stranger calls .tif
             with (
-                rasterio.Env(GDAL_CACHEMAX=_CACHE_MB),
+                rasterio.Env(GDAL_CACHEMAX=_CACHE_BYTES),
                 rasterio.open(path, driver="GTiff", sharing=False) as tif,
             ):
                 yield _placed(tif, path, member.name, options)
@@ -149,6 +149,11 @@ def _check_shape(tif: DatasetReader, name: str) -> None:
     if tif.count == 0:
         raise FileProblem(f"{name} must hold a band of values, but it holds none.")
     limits.check("bands", tif.count, limits.BANDS, name)
+    if any(np.dtype(kind).kind == "c" for kind in tif.dtypes):
+        raise FileProblem(
+            f"{name} must hold plain numbers, but it holds complex ones (radar?). Make a raster of "
+            "plain numbers from it."
+        )
     high, wide = tif.block_shapes[0]
     pixel_bytes = sum(np.dtype(kind).itemsize for kind in tif.dtypes)
     if high * wide * pixel_bytes > limits.BLOCK_BYTES:

@@ -44,11 +44,6 @@ def raster(
     with open_raster(folder, source, options) as opened:
         band = _band(opened, options.band)
         kind = np.dtype(opened.tif.dtypes[band - 1])
-        if kind.kind == "c":
-            raise FileProblem(
-                f"{opened.name} must hold plain numbers, but band {band} holds complex ones "
-                "(radar?). Make a band of plain numbers from it."
-            )
         part = part_of(opened, bounds, limits.PIXELS)
         raw = opened.tif.read(band, window=part.window, out_shape=part.shape)
         values = raw.astype(np.result_type(kind, np.float32))

@@ -13,7 +13,7 @@ TO_UTM = Transformer.from_crs("OGC:CRS84", UTM, always_xy=True)
 GRID = rectangle(12, 20, Planting(row_bearing_deg=63.0, row_spacing_m=3.0, plant_spacing_m=1.5))
 
 
-def plane(pixel_m=0.25, turn_deg=0.0, flip=False):
+def plane(pixel_m=0.25, turn_deg=0.0, *, flip=False):
     """Return a raster about GRID whose value is 3 x + 2 y in metres from its corner."""
     east, north = TO_UTM.transform(*GRID.lonlat().T)
     cos, sin = np.cos(np.radians(turn_deg)), np.sin(np.radians(turn_deg))

@@ -12,6 +12,7 @@ import numpy as np
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.geodata.crs import Way, system, way_from
 from fieldmon.geodata.options import ReadOptions
+from fieldmon.geodata.smooth import smoothly
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -99,12 +100,9 @@ class Raster:
         pixels about it, those without a value left out.
         """
         self._check(how)
-        places = self.pixels(np.asarray(lonlat, np.float64).reshape(-1, 2))
-        if how == "nearest":
-            return _points(self.values, places, np.zeros((1, 2)), False)
-        if how == "bilinear":
-            return _bilinear(self.values, places)
-        raise SettingError(f"A position has no footprint to take the {how} of. Sample plants.")
+        if how not in {"nearest", "bilinear"}:
+            raise SettingError(f"A position has no footprint to take the {how} of. Sample plants.")
+        return self._sampled(self.pixels(np.asarray(lonlat, np.float64).reshape(-1, 2)), how)
 
     def of_plants(self, grid: PlantGrid, how: How = "mean") -> Float:
         """Return the values of a grid's plants, ``(n,)``; NaN where there is none.
@@ -115,8 +113,17 @@ class Raster:
         """
         self._check(how)
         if how in {"nearest", "bilinear"}:
-            return self.at(grid.lonlat(), how)
-        return _points(self.values, self.pixels(grid.lonlat()), self._about(grid), how == "highest")
+            return self._sampled(self._of_plants(grid), how)
+        return _points(self.values, self._of_plants(grid), self._about(grid), how == "highest")
+
+    def _of_plants(self, grid: PlantGrid) -> Float:
+        """Return column and row of each plant, ``(n, 2)``."""
+        return smoothly(grid.xy_m, lambda xy_m: self.pixels(grid.frame.lonlat(xy_m)))
+
+    def _sampled(self, places: Float, how: How) -> Float:
+        if how == "nearest":
+            return _points(self.values, places, np.zeros((1, 2)), False)
+        return _bilinear(self.values, places)
 
     def _check(self, how: How) -> None:
         if how not in get_args(How):

@@ -11,6 +11,7 @@ import pyproj
 
 from fieldmon.errors import PlotError
 from fieldmon.geodata import limits
+from fieldmon.geodata.smooth import smoothly
 from fieldmon.geodata.writing import write_whole
 
 if TYPE_CHECKING:
@@ -62,7 +63,11 @@ def chance_raster(grid: PlantGrid, chance: Float) -> ChanceRaster:
     crs = f"EPSG:{326 if grid.frame.lat >= 0 else 327}{zone:02d}"
     to_utm = pyproj.Transformer.from_crs("OGC:CRS84", crs, always_xy=True)
     pixel_m = max(min(grid.row_spacing_m, grid.plant_spacing_m) / 2, _LEAST_PIXEL_M)
-    east, north = to_utm.transform(*grid.lonlat().T)
+
+    def on_map(xy_m: Float) -> Float:
+        return np.stack(to_utm.transform(*grid.frame.lonlat(xy_m).T), axis=1)
+
+    east, north = smoothly(grid.xy_m, on_map).T
     reach_m = np.hypot(grid.row_spacing_m, grid.plant_spacing_m) / 2 + _RIM * pixel_m
     west_m, south_m = (np.floor((v.min() - reach_m) / pixel_m) * pixel_m for v in (east, north))
     east_m, north_m = (np.ceil((v.max() + reach_m) / pixel_m) * pixel_m for v in (east, north))
@@ -71,9 +76,8 @@ def chance_raster(grid: PlantGrid, chance: Float) -> ChanceRaster:
     places = np.stack([(east - west_m) / pixel_m, (north_m - north) / pixel_m], axis=1)
     # a plant's ground is small: there the way from the picture to the rows is a plain turn
     middle = grid.xy_m.mean(axis=0)
-    corners = middle + np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-    on_map = np.stack(to_utm.transform(*grid.frame.lonlat(corners).T), axis=1)
-    turn = (on_map[1:] - on_map[0]).T / pixel_m * [[1.0], [-1.0]]
+    axes = on_map(middle + np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
+    turn = (axes[1:] - axes[0]).T / pixel_m * [[1.0], [-1.0]]
     values = np.full(shape, NODATA, np.float32)
     halves = np.array([grid.plant_spacing_m, grid.row_spacing_m]) / 2
     _paint(values, places, chance.astype(np.float32), np.linalg.inv(turn), halves)

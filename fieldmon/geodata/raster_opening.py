@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import rasterio
+from rasterio._err import CPLE_BaseError
 from rasterio.enums import MaskFlags
 from rasterio.errors import NotGeoreferencedWarning, RasterioError
 from rasterio.windows import Window
@@ -57,7 +58,7 @@ M_PER_DEGREE = 111_320.0
 # what people write for no value and forget to declare
 _SENTINELS = (-9999.0, -99999.0, -32768.0, -999999.0)
 _HUGE = 1e30
-_UNREADABLE = (RasterioError, ValueError, OSError, OverflowError)
+_UNREADABLE = (RasterioError, CPLE_BaseError, ValueError, OSError, OverflowError)
 
 
 class Part(NamedTuple):

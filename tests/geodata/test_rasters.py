@@ -4,10 +4,12 @@ import re
 import shutil
 import warnings
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
 import rasterio
+import shapely
 from pyproj import Transformer
 from raster_files import (
     PLOT,
@@ -26,8 +28,11 @@ from rasterio.transform import Affine, from_origin
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.field import Field
 from fieldmon.geodata.findings import Severity
-from fieldmon.geodata.options import Upload
+from fieldmon.geodata.options import PlotOptions, Upload
 from fieldmon.geodata.rasters import RasterOptions, read_backdrop, read_raster
+from fieldmon.geodata.reading import read_plots
+from fieldmon.monitor import planting_of
+from fieldmon.planting import lay
 
 SPOTS = np.array([[35.1503, 30.3602], [35.1510, 30.3605], [35.1519, 30.3607]])
 
@@ -390,6 +395,22 @@ def test_a_large_picture_that_bends_on_the_map_is_doubted(tmp_path):
     )
     (bent,) = said(read, "m off its place", Severity.DOUBTFUL)
     assert float(re.search(r"up to ([\d.]+) m", bent.sentence).group(1)) > 100
+
+
+def test_the_estates_picture_is_green_where_plants_are_and_sandy_beside():
+    estate = Path(__file__).resolve().parents[2] / "sample_data"
+    (plot,) = read_plots(estate / "paran_estate.zip", PlotOptions(feature="Gate")).value
+    grid = lay(plot, planting_of(plot))
+    red, green = (
+        read_raster(estate / "backdrop.tif", RasterOptions(band=band), near=plot).value
+        for band in ("1", "2")
+    )
+    greener = green.of_plants(grid) - red.of_plants(grid)
+    sand = shapely.segmentize(plot.boundary.buffer(0.00025).exterior, 1e-4)
+    beside = np.array(sand.coords)
+    sandy = red.at(beside) - green.at(beside)
+    assert np.mean(greener > -10) > 0.95
+    assert np.mean(sandy > 10) > 0.8
 
 
 # hostile and unusable

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Protocol
 
 import typer
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.geodata.findings import Finding, Imported
-    from fieldmon.geodata.raster_values import Raster, RasterOptions
+    from fieldmon.geodata.raster_values import How, Raster
     from fieldmon.monitor import Plot
     from fieldmon.risk import RiskSettings
 
@@ -54,8 +54,15 @@ ChanceMap = Annotated[
 ]
 
 
+class Tell(Protocol):
+    """Tells a person what an import has to say about a file, and keeps it where it is noted."""
+
+    def __call__(self, findings: Iterable[Finding], source: object = "", /) -> None:
+        """Tell findings about a source."""
+
+
 def without_missing(
-    plot: Plot, canopy: Path | None, below: float | None, more: list[str] | None
+    plot: Plot, canopy: Path | None, below: float | None, more: list[str] | None, tell: Tell
 ) -> Plot:
     """Return the plot without the plants where the canopy is low; those unseen stay."""
     if canopy is None and below is None and not more:
@@ -64,20 +71,24 @@ def without_missing(
         raise SettingError(
             "Missing plants are found with both --canopy FILE and --canopy-below X: give both."
         )
-    import numpy as np  # noqa: PLC0415
 
-    values = _values(canopy, plot, _pairs(more, "--canopy-option"), "--canopy-option", "highest")
+    from fieldmon.geodata.findings import seen  # noqa: PLC0415
+
+    flag = "--canopy-option"
+    read, how = _read(canopy, plot, _pairs(more, flag), flag)
+    values = read.value.of_plants(plot.grid, how or "highest")
     missing = values < below
-    unseen = int(np.isnan(values).sum())
-    typer.echo(
+    said = seen(
         f"{int(missing.sum())} of {len(missing)} plants are missing (canopy below {below:g})"
-        + (f"; {unseen} are not on the raster and count as there." if unseen else "."),
-        err=True,
+        + _unseen(values, "and count as there")
     )
+    tell([*read.findings, said], canopy)
     return plot.without(missing) if missing.any() else plot
 
 
-def risk_of(plot: Plot, path: Path | None, more: list[str] | None) -> NDArray[np.float64] | None:
+def risk_of(
+    plot: Plot, path: Path | None, more: list[str] | None, tell: Tell
+) -> NDArray[np.float64] | None:
     """Return the risk of each plant from a raster ``(n,)``, NaN where it says nothing."""
     if path is None:
         if more:
@@ -85,19 +96,18 @@ def risk_of(plot: Plot, path: Path | None, more: list[str] | None) -> NDArray[np
         return None
     import numpy as np  # noqa: PLC0415
 
+    from fieldmon.geodata.findings import seen  # noqa: PLC0415
     from fieldmon.risk import risk_chance  # noqa: PLC0415
 
     given = _pairs(more, "--risk-option")
     settings = _risk_settings(given)
-    values = _values(path, plot, given, "--risk-option", "mean")
-    chance = risk_chance(values, settings)
-    unseen = int(np.isnan(chance).sum())
-    typer.echo(
-        f"Risk raster as {settings.meaning}: {np.nanmin(chance):.3g} to {np.nanmax(chance):.3g}, "
-        f"{np.nanmean(chance):.3g} on average"
-        + (f"; it says nothing of {unseen} plants." if unseen else "."),
-        err=True,
+    read, how = _read(path, plot, given, "--risk-option")
+    chance = risk_chance(read.value.of_plants(plot.grid, how or "mean"), settings)
+    said = seen(
+        f"Risk by {settings.meaning}: {np.nanmin(chance):.3g} to {np.nanmax(chance):.3g}, "
+        f"{np.nanmean(chance):.3g} on average" + _unseen(chance, "and have no risk by it")
     )
+    tell([*read.findings, said], path)
     return chance
 
 
@@ -114,30 +124,25 @@ def write_map(to: Path | None, plot: Plot, chance: NDArray[np.float64]) -> None:
     )
 
 
-def _values(
-    path: Path, plot: Plot, given: dict[str, str], flag: str, usual: str
-) -> NDArray[np.float64]:
-    from fieldmon.geodata.raster_values import RasterOptions  # noqa: PLC0415
-    from fieldmon.geodata.rasters import read_raster  # noqa: PLC0415
+def _unseen(values: NDArray[np.float64], what: str) -> str:
+    import numpy as np  # noqa: PLC0415
 
-    how: Any = given.pop("how", usual)
+    unseen = int(np.isnan(values).sum())
+    return f"; {unseen} have no value on the raster {what}." if unseen else "."
+
+
+def _read(
+    path: Path, plot: Plot, given: dict[str, str], flag: str
+) -> tuple[Imported[Raster], How | None]:
+    """Return the raster about the plot, and how it is to be sampled where that was said."""
+    from fieldmon.geodata.rasters import RasterOptions, read_raster  # noqa: PLC0415
+
+    how: Any = given.pop("how", None)
     options = RasterOptions()
     for name, value in given.items():
         options = options.choose(name, value)
-    read = _asked(read_raster, path, options, plot, flag)
-    _tell(read.findings)
-    return read.value.of_plants(plot.grid, how)
-
-
-def _asked(
-    read_raster: Any,  # noqa: ANN401 - imported late
-    path: Path,
-    options: RasterOptions,
-    plot: Plot,
-    flag: str,
-) -> Imported[Raster]:
     try:
-        read: Imported[Raster] = read_raster(path, options, plot.field)
+        return read_raster(path, options, plot.field), how
     except ChoiceNeeded as question:
         answer = question.choices[0] if question.choices else "..."
         raise ChoiceNeeded(
@@ -145,7 +150,6 @@ def _asked(
             question.option,
             question.choices,
         ) from None
-    return read
 
 
 def _risk_settings(given: dict[str, str]) -> RiskSettings:
@@ -179,8 +183,3 @@ def _pairs(more: list[str] | None, flag: str) -> dict[str, str]:
             raise SettingError(f"{flag} must be NAME=VALUE, but it is {item!r}.")
         pairs[name.strip()] = value.strip()
     return pairs
-
-
-def _tell(findings: Iterable[Finding]) -> None:
-    for finding in findings:
-        typer.echo(str(finding), err=True)

@@ -76,7 +76,7 @@ def test_a_risk_raster_raises_the_chance_where_it_says_so(run, tmp_path):
     assert "Chance map written to before.tif" in out
     code, out, err = run(*PLAN, "--risk", risk, "--chance-map", "after.tif")
     assert code == 0, err
-    assert "Risk raster as chance: 0 to 0.3" in err
+    assert "seen: Risk by chance: 0 to 0.3" in err
     (west_before, east_before), (west, east) = chances("before.tif"), chances("after.tif")
     assert west == pytest.approx(west_before, abs=1e-6)
     assert east == pytest.approx(1 - (1 - east_before) * 0.7, abs=0.01)
@@ -117,6 +117,46 @@ def test_plants_under_a_low_canopy_are_not_planned_for(run, tmp_path):
     stops = json.loads((tmp_path / "route.geojson").read_text(encoding="utf-8"))["features"][1:]
     everywhere = [stop["geometry"]["coordinates"][0] for stop in stops]
     assert min(lon) > min(everywhere) + 2e-4
+
+
+def test_a_season_begins_with_rasters_and_maps_its_days(run, tmp_path):
+    risk = covariate(tmp_path / "risk.tif", 0.0, 0.3)
+    plot = [ESTATE / "paran_estate.zip", "--feature", "Nursery"]
+    day = ["--begins", "2026-11-18"]
+    code, out, err = run("init", "plain.gpkg", *plot, *day)
+    assert code == 0, err
+    code, out, err = run(
+        *["init", "season.gpkg", *plot, *day, "--risk", risk],
+        *["--canopy", risk, "--canopy-below", "-1"],
+    )
+    assert code == 0, err
+    assert "seen: 0 of" in err
+    day = ["--date", "2026-11-18"]
+    for season in ("plain", "season"):
+        code, out, err = run("plan", f"{season}.gpkg", *day, "--chance-map", f"{season}.tif")
+        assert code == 0, err
+        assert f"Chance map written to {season}.tif" in out
+    (_, plain_east), (_, east) = chances("plain.tif"), chances("season.tif")
+    assert east > plain_east + 0.2
+    from fieldmon.project import Project
+
+    said = [remark.sentence for remark in Project("season.gpkg").remarks()]
+    assert any("Risk by chance" in sentence for sentence in said)
+    code, _, err = run("plan", "season.gpkg", *day, "--risk", risk)
+    assert code == 2
+    assert "--risk" in err
+
+
+def test_a_simulated_season_starts_from_the_risk_and_without_missing_plants(run, tmp_path):
+    canopy = covariate(tmp_path / "canopy.tif", 0.2, 0.9)
+    words = ["simulate", *PLAN[1:], "--sampler", "naive", "--days", 1, "--infested", 0.1]
+    code, _, err = run(
+        *[*words, "--risk", canopy, "--risk-option", "how=highest"],
+        *["--canopy", canopy, "--canopy-below", 0.5],
+    )
+    assert code == 0, err
+    assert "plants are missing (canopy below 0.5)" in err
+    assert "Risk by chance: 0.9 to 0.9" in err
 
 
 @pytest.mark.parametrize(

@@ -126,8 +126,11 @@ def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -
     size = np.array([[tif.width / 2, tif.height / 2]])
     middle = map_xy(to_map, size)[0]
     crs, findings = _system(tif, path, to_map, options)
-    in_degrees = crs.is_geographic
-    if in_degrees and (abs(middle[0]) > 360 or abs(middle[1]) > 90):
+    if crs.is_geographic and 180.0 < middle[0] <= 360.0:  # counted eastward all around the earth
+        to_map = (*to_map[:2], to_map[2] - 360.0, *to_map[3:])
+        middle = map_xy(to_map, size)[0]
+        findings.append(seen("Longitudes beyond 180 degrees were read as west of Greenwich."))
+    if crs.is_geographic and (abs(middle[0]) > 180 or abs(middle[1]) > 90):
         raise ask_for_crs(
             middle[None], options, f"{name} says {crs.name}, in degrees, but it lies nowhere so."
         )

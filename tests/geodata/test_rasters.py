@@ -24,6 +24,7 @@ from raster_files import (
     write,
 )
 from rasterio.transform import Affine, from_origin
+from shapely import MultiPolygon, box
 
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.field import Field
@@ -94,6 +95,15 @@ def test_any_coordinate_system_leads_to_the_same_ground(tmp_path, crs):
     columns = np.floor((np.array(x) - raster.to_map[2]) / pixel[0])
     rows = np.floor((raster.to_map[5] - np.array(y)) / pixel[1])
     np.testing.assert_array_equal(raster.at(SPOTS), rows * 100 + columns)
+
+
+def test_longitudes_counted_all_around_the_earth_are_west_of_greenwich(tmp_path):
+    west = Field("west", MultiPolygon([box(-121.001, 38.0, -121.0, 38.001)]))
+    place = from_origin(360 - 121.002, 38.002, 1e-4, 1e-4)
+    read = read_raster(write(tmp_path / "r.tif", ramp(40), place, "EPSG:4326"), near=west)
+    # 15 pixels from the west, 25 from the south
+    assert read.value.at(np.array([[-121.00045, 38.00055]])).tolist() == [15 + 1000 * 25]
+    assert said(read, "west of Greenwich")
 
 
 @pytest.mark.parametrize("degrees", [30.0, -100.0])

@@ -12,9 +12,9 @@ FLOORS = [
     {"chance"},
     {"frame"},
     {"field"},
-    {"grid", "planting", "rows", "neighbours"},
+    {"grid", "planting", "rows", "neighbours", "gaps"},
     {"headland", "robot", "spread"},
-    {"aisles", "prior", "belief"},
+    {"aisles", "prior", "belief", "risk"},
     {"samplers", "outlook"},
     {"workday"},
     {"route"},
@@ -33,6 +33,8 @@ SAME_ROOM = {
     ("planting", "rows"),
     ("planting", "neighbours"),
     ("rows", "grid"),
+    ("gaps", "grid"),
+    ("risk", "prior"),
 }
 ALONE = {
     "pyproj": {"frame", "geodata"},

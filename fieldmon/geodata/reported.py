@@ -219,15 +219,25 @@ def reported_of(source: Source, options: FindingsOptions, workroom: Workroom) ->
     Where a file has several layers and nobody chose, the first of `_LAYERS` that reports anything
     is read: QField and QGIS edit a layer of plants, of stops or of inspections in place.
     """
-    if options.member is None and options.layer is None:
-        known = _known_layers(layers_of(source, workroom))
-        for info in known:
-            own = replace(options, member=info.member, layer=info.layer)
+    if options.member is not None or options.layer is not None:
+        return reported_in(open_layer(source, options, workroom), options)
+    known = _known_layers(layers_of(source, workroom))
+    said_nothing: list[Imported[Reported]] = []
+    for info in known:
+        own = replace(options, member=info.member, layer=info.layer)
+        try:
             read = reported_in(open_layer(source, own, workroom), own)
-            if len(read.value) or info is known[-1]:
-                said = seen(f"Findings were read from layer {info.layer}.")
-                return Imported(read.value, (said, *read.findings))
-    return reported_in(open_layer(source, options, workroom), options)
+        except (ChoiceNeeded, FileProblem):
+            continue  # this one has no columns for findings
+        said = seen(f"Findings were read from layer {info.layer}.")
+        if len(read.value):
+            return Imported(read.value, (said, *read.findings))
+        said_nothing.append(Imported(read.value, (said, *read.findings)))
+    return (
+        said_nothing[0]
+        if said_nothing
+        else reported_in(open_layer(source, options, workroom), options)
+    )
 
 
 def _known_layers(infos: tuple[LayerInfo, ...]) -> list[LayerInfo]:
@@ -264,6 +274,7 @@ class _Results(NamedTuple):
 def reported_in(layer: Layer, options: FindingsOptions) -> Imported[Reported]:
     """Return what one layer or table says of plants that were inspected."""
     layer, findings = _without_lines(layer)
+    layer = _without_undone(layer)
     columns = _columns_of(layer, options)
     results = _results(layer, columns, options)
     notes = _texts(layer, _own("notes", layer))
@@ -308,6 +319,14 @@ def _without_lines(layer: Layer) -> tuple[Layer, list[Finding]]:
         return layer, []
     said = seen(f"{int(lines.sum())} line(s) beside the points were passed over.")
     return layer.take(np.flatnonzero(~lines)), [said]
+
+
+def _without_undone(layer: Layer) -> Layer:
+    """Return the layer without what a season's file keeps, but marks as taken back."""
+    name = next((n for n in layer.columns if plain(n) == "undone"), None)
+    if name is None:
+        return layer
+    return layer.take(np.flatnonzero([text(v) in {"", "0", "False"} for v in layer.column(name)]))
 
 
 def _own(role: str, layer: Layer, taken: Iterable[str | None] = ()) -> str | None:

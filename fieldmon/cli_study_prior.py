@@ -116,12 +116,13 @@ def calibrate(
 
 def _on_maps(folder: Path, seeds: int, seed: int, output: Path) -> None:
     from fieldmon.geodata.plant_maps import read_plant_maps  # noqa: PLC0415
+    from fieldmon.robot import Robot  # noqa: PLC0415
     from fieldmon.thesis.with_prior.defaults import CALIBRATED  # noqa: PLC0415
     from fieldmon.thesis.with_prior.maps import MapRules, run_maps  # noqa: PLC0415
     from fieldmon.thesis.with_prior.report import maps_html  # noqa: PLC0415
     from fieldmon.thesis.with_prior.studies import csv_text  # noqa: PLC0415
 
-    rules = MapRules(CALIBRATED.robot(), CALIBRATED.spread)
+    rules = MapRules(Robot(), CALIBRATED.spread)
     maps = read_plant_maps(folder)
     with typer.progressbar(
         length=1, label="Inspecting", file=sys.stderr, show_eta=True, width=40
@@ -206,8 +207,11 @@ def _tell_fit(found: Calibration) -> None:
     for part, best in found.per_part.items():
         typer.echo(f"Best fit of {part} alone: {best.off[part]:.2f} steps off")
         typer.echo(f"  {'; '.join(best.choices.sentences())}")
-    for one, other, steps in found.conflicts:
-        typer.echo(f"{one} and {other} conflict: the best for both is {steps:.2f} steps off.")
+    for one, other, alone, both in found.conflicts:
+        typer.echo(
+            f"{one} and {other} pull apart: alone each is met to {alone:.2f} steps or better, "
+            f"together to {both:.2f}"
+        )
 
 
 def _must_be_folder(output: Path) -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pandas as pd
 import streamlit as st
 
-from app import cached, texts
+from app import texts
 from fieldmon.errors import FieldmonError
+from fieldmon.prior import PriorSettings, prior_chance
 from fieldmon.thesis.with_prior.published import PARTS
 from fieldmon.thesis.with_prior.report import report_html
 from fieldmon.thesis.with_prior.sites import Site
@@ -67,9 +69,9 @@ def _site(choices: Choices) -> Site:
     plot = choices.plot
     if not len(choices.records):
         return Site(plot.field.name, plot.aisles, plot.field)
-    today = cached.today(choices.key, choices.day, choices.robot, choices.sampler, plot,
-                         choices.records)  # fmt: skip
-    return Site(plot.field.name, plot.aisles, plot.field, today.chance)
+    day = np.datetime64(choices.day, "D")
+    chance = prior_chance(plot.grid, plot.field, choices.records, day, PriorSettings())
+    return Site(plot.field.name, plot.aisles, plot.field, chance)
 
 
 def _result(made: Study, table_csv: str, report: str) -> None:

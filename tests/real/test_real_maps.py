@@ -5,13 +5,14 @@ import pytest
 
 from fieldmon.chance import Chance
 from fieldmon.geodata.plant_maps import read_plant_maps
+from fieldmon.robot import Robot
 from fieldmon.thesis.cells import spread_of
 from fieldmon.thesis.with_prior.choices import SAMPLERS
 from fieldmon.thesis.with_prior.defaults import CALIBRATED
 from fieldmon.thesis.with_prior.maps import SHARES_PCT, MapRules, inspect, run_maps
 
 QUARTER = int(np.flatnonzero(SHARES_PCT == 25.0)[0])
-RULES = MapRules(CALIBRATED.robot(), CALIBRATED.spread)
+RULES = MapRules(Robot(), CALIBRATED.spread)
 
 
 @pytest.fixture(scope="module")

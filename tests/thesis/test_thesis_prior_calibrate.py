@@ -64,7 +64,9 @@ def test_the_best_are_named_jointly_and_part_by_part(quick):  # noqa: ARG001
 
 def test_parts_that_nothing_meets_together_conflict(quick):  # noqa: ARG001
     found = calibrate(Effort(drawn=60, kept=20, steps=50, finalists=20))
-    assert ("A", "B", 3.0) in found.conflicts
+    assert ("A", "B", 0.0, 3.0) in found.conflicts
+    assert all(both - alone >= 0.5 for *_, alone, both in found.conflicts)
+    assert {"C", "size"} & {part for pair in found.conflicts for part in pair[:2]} == set()
 
 
 def test_a_search_can_be_stopped(quick):  # noqa: ARG001

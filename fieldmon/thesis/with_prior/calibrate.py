@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import dataclass
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.chance import Chance
@@ -43,7 +44,7 @@ SPACE: dict[str, tuple[Any, ...]] = {
 
 _START = ("share", "margin_share", "depth_m", "cluster_size", "recorded_share")
 _SPREAD = ("rate_per_day", "to")
-_GOOD = 1.0
+_APART = 0.5
 
 
 @dataclass(frozen=True)
@@ -100,14 +101,16 @@ class Calibration:
     per_part
         The best fit of each part alone.
     conflicts
-        Pairs of parts of which each can be met to a step, but none tried meets both.
+        Pairs of parts that pull apart: how far off the worse of the two is where it is met best
+        alone, and where both are met best together, if that is half a step more or worse. Over
+        everything that was tried on all parts.
     tried
-        All candidates that were tried on all parts, best first.
+        The finalists, best first.
     """
 
     best: Candidate
     per_part: dict[str, Candidate]
-    conflicts: tuple[tuple[str, str, float], ...]
+    conflicts: tuple[tuple[str, str, float, float], ...]
     tried: tuple[Candidate, ...]
     stopped: bool = False
 
@@ -146,8 +149,8 @@ def calibrate(
     except KeyboardInterrupt:
         if not search.all_parts:
             raise
-        return _calibration(search.all_parts, stopped=True)
-    return _calibration(search.final, stopped=False)
+        return _calibration(search.all_parts, search.all_parts, stopped=True)
+    return _calibration(search.final, search.all_parts, stopped=False)
 
 
 class _Search:
@@ -221,17 +224,23 @@ def _front(tried: Iterable[Candidate], n: int) -> list[OpenChoices]:
     return list(dict.fromkeys([*best[: n - len(alone)], *alone, *best]))[:n]
 
 
-def _calibration(tried: list[Candidate], *, stopped: bool) -> Calibration:
-    ranked = tuple(sorted(tried, key=_key(None)))
+def _calibration(
+    finalists: list[Candidate], tried: list[Candidate], *, stopped: bool
+) -> Calibration:
+    ranked = tuple(sorted(finalists, key=_key(None)))
     per_part = {part: min(ranked, key=_key(part)) for part in PARTS}
-    conflicts = []
-    for i, one in enumerate(PARTS):
-        for other in PARTS[i + 1 :]:
-            both = min(max(each.off[one], each.off[other]) for each in ranked)
-            alone = max(per_part[one].off[one], per_part[other].off[other])
-            if alone <= _GOOD < both:
-                conflicts.append((one, other, both))
-    return Calibration(ranked[0], per_part, tuple(conflicts), ranked, stopped)
+    return Calibration(ranked[0], per_part, _conflicts(tried), ranked, stopped)
+
+
+def _conflicts(tried: list[Candidate]) -> tuple[tuple[str, str, float, float], ...]:
+    best = {part: min(each.off[part] for each in tried) for part in PARTS}
+    pairs = []
+    for one, other in combinations(PARTS, 2):
+        alone = max(best[one], best[other])
+        both = min(max(each.off[one], each.off[other]) for each in tried)
+        if both - alone >= _APART:
+            pairs.append((one, other, alone, both))
+    return tuple(sorted(pairs, key=lambda pair: pair[2] - pair[3]))
 
 
 def candidates_csv(tried: Sequence[Candidate]) -> str:

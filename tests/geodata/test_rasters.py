@@ -28,6 +28,7 @@ from shapely import MultiPolygon, box
 
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.field import Field
+from fieldmon.geodata import limits, raster_reading
 from fieldmon.geodata.findings import Severity
 from fieldmon.geodata.options import PlotOptions, Upload
 from fieldmon.geodata.rasters import RasterOptions, read_backdrop, read_raster
@@ -305,6 +306,30 @@ def test_a_big_raster_is_read_at_fewer_pixels_about_where_they_are(tmp_path):
     assert read.value.at(np.stack([lon, lat], axis=1)).tolist() == [0.0, 200.0]
 
 
+def test_the_smaller_copies_inside_are_read_where_they_do(tmp_path, monkeypatch):
+    # in this process, where the limits can be made small
+    monkeypatch.setattr(limits, "PIXELS", 10_000)
+    monkeypatch.setattr(limits, "RASTER_BYTES", 100_000)
+    east = np.tile(np.arange(2000, dtype="float32"), (2000, 1))
+    path = write(tmp_path / "r.tif", east, tiled=True, blockxsize=256, blockysize=256)
+    for number, bounds in enumerate((None, PLOT.boundary.bounds)):
+        room = tmp_path / f"room {number}"
+        room.mkdir()
+        with pytest.raises(FileProblem, match="100 kB of a raster may be read"):
+            raster_reading.raster(str(room), path, RasterOptions(), bounds)
+    with rasterio.open(path, "r+") as tif:
+        tif.build_overviews([2, 4, 8, 16], rasterio.enums.Resampling.average)
+    room = tmp_path / "room"
+    room.mkdir()
+    read = raster_reading.raster(str(room), path, RasterOptions(), None)
+    assert read.value.values.size <= 10_000
+    # the mean of 16 x 16 pixels of 0.2 m, at most a step of 4 m away
+    wanted = 5 * (TO_UTM.transform(*SPOTS.T)[0] - corner()[0])
+    np.testing.assert_allclose(read.value.at(SPOTS), wanted, atol=20.0)
+    # no pixel of the file holds half a number, their means do
+    assert set(np.unique(read.value.values % 1)) == {0.5}
+
+
 def test_classes_keep_their_colours_and_are_not_averaged(tmp_path):
     classes = np.ones((400, 400), "uint8")
     classes[:200] = 2
@@ -421,6 +446,27 @@ def test_the_estates_picture_is_green_where_plants_are_and_sandy_beside():
     sandy = red.at(beside) - green.at(beside)
     assert np.mean(greener > -10) > 0.95
     assert np.mean(sandy > 10) > 0.8
+
+
+def test_black_declared_as_nodata_does_not_make_pure_colours_clear(tmp_path):
+    image = np.zeros((3, 400, 400), "uint8")
+    image[1, :, 200:] = 180  # pure green in the east, nothing in the west
+    path = write(tmp_path / "r.tif", image, photometric="RGB", nodata=0)
+    alpha = shown(read_backdrop(path).value)[3]
+    assert (alpha[:, 210:] == 255).all()
+    assert (alpha[:, :190] == 0).all()
+
+
+def test_a_raster_that_is_a_mere_line_keeps_to_the_limit(tmp_path):
+    west, north = corner()
+    line = np.arange(20_000_000, dtype="float32")[None]
+    place = from_origin(west, north, 400 / 20_000_000, 400)
+    read = read_raster(write(tmp_path / "r.tif", line, place))
+    assert read.value.values.shape[0] == 1
+    assert 10_000_000 < read.value.values.size <= 16_000_000
+    x, _ = TO_UTM.transform(*SPOTS[1])
+    wanted = (x - west) / 400 * 20_000_000
+    assert read.value.at(SPOTS[1:2])[0] == pytest.approx(wanted, abs=2.0)
 
 
 # hostile and unusable

@@ -13,7 +13,7 @@ import numpy as np
 import rasterio
 from rasterio._err import CPLE_BaseError
 from rasterio.enums import MaskFlags
-from rasterio.errors import NotGeoreferencedWarning, RasterioError
+from rasterio.errors import RasterioError
 from rasterio.windows import Window
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
@@ -58,6 +58,7 @@ M_PER_DEGREE = 111_320.0
 # what people write for no value and forget to declare
 _SENTINELS = (-9999.0, -99999.0, -32768.0, -999999.0)
 _HUGE = 1e30
+_MOST_TEXT = 20_000
 _UNREADABLE = (RasterioError, CPLE_BaseError, ValueError, OSError, OverflowError)
 
 
@@ -105,7 +106,6 @@ def open_raster(folder: str, source: Source, options: RasterOptions) -> Iterator
     path = room.stage(member)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # affine 3's, and a raster without a place is ours to say
-        warnings.simplefilter("ignore", NotGeoreferencedWarning)
         try:
             # this driver alone: no other reads what a stranger calls .tif
             with (
@@ -217,7 +217,10 @@ def _own(tif: DatasetReader) -> str:
 
 
 def _text(path: Path) -> str:
-    return path.read_bytes()[:20_000].decode("utf-8", "replace") if path.exists() else ""
+    if not path.exists():
+        return ""
+    with path.open("rb") as file:
+        return file.read(_MOST_TEXT).decode("utf-8", "replace")
 
 
 def band_named(opened: Opened, wanted: str) -> int:
@@ -240,7 +243,9 @@ def part_of(opened: Opened, bounds: Bounds | None, most: int, n_bands: int = 1) 
     """Return what is read: within bounds or all, not more pixels than `most`."""
     window = _window(opened, bounds)
     step = max(1.0, math.sqrt(window.width * window.height / most))
-    shape = (max(1, int(window.height / step)), max(1, int(window.width / step)))
+    high = max(1, int(window.height / step))
+    wide = max(1, min(int(window.width / step), most // high))
+    shape = (min(high, most // wide), wide)
     # GDAL decodes the smallest overview that is fine enough, or the raster itself
     overview = max((o for o in opened.tif.overviews(1) if o <= step), default=1)
     pixel_bytes = sum(np.dtype(kind).itemsize for kind in opened.tif.dtypes)
@@ -300,14 +305,15 @@ def without_value(
     nodata: str | None,
 ) -> tuple[NDArray[np.bool_], list[Finding]]:
     """Return which pixels ``(h, w)`` hold no value, by the file's word or by what was chosen."""
-    missing = np.zeros(part.shape, bool)
     if nodata == "none":
-        return missing, []
+        return np.zeros(part.shape, bool), []
+    # black may be declared as nodata, but a pixel is missing only where all colours are
+    missing = np.ones(part.shape, bool)
     for band in bands:
-        flags = opened.tif.mask_flag_enums[band - 1]
-        if MaskFlags.all_valid not in flags:
-            mask = opened.tif.read_masks(band, window=part.window, out_shape=part.shape)
-            missing |= mask == 0
+        if MaskFlags.all_valid in opened.tif.mask_flag_enums[band - 1]:
+            missing[:] = False
+            break
+        missing &= opened.tif.read_masks(band, window=part.window, out_shape=part.shape) == 0
     if nodata is not None:
         return missing | (raw == float(nodata)).all(axis=0), []
     declared = [opened.tif.nodatavals[band - 1] for band in bands]
@@ -319,7 +325,9 @@ def _undeclared(raw: NDArray[Any], missing: NDArray[np.bool_]) -> list[Finding]:
     """Take out what looks like an undeclared nodata value, and say so."""
     if raw.dtype.kind not in "if":
         return []
-    huge = np.abs(raw.astype(np.float64)) > _HUGE if raw.dtype.kind == "f" else raw != raw  # noqa: PLR0124
+    huge = np.zeros(raw.shape, bool)
+    if raw.dtype.kind == "f":
+        np.greater(np.abs(raw), _HUGE, out=huge)
     sentinels = [n for n in _SENTINELS if (raw == n).any()]
     odd = huge.all(axis=0) | np.logical_or.reduce([(raw == n).all(axis=0) for n in sentinels])
     odd &= ~missing

@@ -26,6 +26,7 @@ How: TypeAlias = Literal["nearest", "bilinear", "mean", "highest"]
 #: ``(a, b, c, d, e, f)``: pixel (column, row) lies at x = a column + b row + c, y = d column + ...
 Affine: TypeAlias = tuple[float, float, float, float, float, float]
 
+_NOT_OF_RASTERS = ("layer", "where", "swap_axes", "encoding", "columns", "decimal", "delimiter")
 # of the ground that a plant has to itself, this much each way is looked at: the rest is aisle
 _FOOTPRINT = 0.5
 _MOST_POINTS = 9
@@ -49,6 +50,9 @@ class RasterOptions(ReadOptions):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        for name in _NOT_OF_RASTERS:
+            if getattr(self, name):
+                raise SettingError(f"A raster has no {name} to choose. Leave it away.")
         if self.nodata is not None and self.nodata != "none":
             try:
                 float(self.nodata)

@@ -108,6 +108,8 @@ def test_options_are_checked_and_chosen_by_name():
     assert RasterOptions().choose("band", "4").band == "4"
     with pytest.raises(SettingError, match="nope"):
         RasterOptions(nodata="nope")
+    with pytest.raises(SettingError, match="no swap_axes"):
+        RasterOptions().choose("swap_axes", "yes")
 
 
 @given(

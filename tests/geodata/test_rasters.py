@@ -6,6 +6,7 @@ import warnings
 import zipfile
 from pathlib import Path
 
+import fuzz_rasters
 import numpy as np
 import pytest
 import rasterio
@@ -28,6 +29,7 @@ from shapely import MultiPolygon, box
 
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.field import Field
+from fieldmon.geodata import limits, raster_reading
 from fieldmon.geodata.findings import Severity
 from fieldmon.geodata.options import PlotOptions, Upload
 from fieldmon.geodata.rasters import RasterOptions, read_backdrop, read_raster
@@ -184,7 +186,7 @@ def test_an_undeclared_no_value_is_guessed_and_can_be_taken_back(tmp_path, value
     read = read_raster(path, near=PLOT)
     assert np.isnan(read.value.at(SPOTS)).tolist() == [False, True, True]
     (guess,) = said(read, "taken as no value", Severity.GUESSED)
-    assert guess.remedy.flag == "--nodata none"
+    assert (guess.remedy.option, guess.remedy.value) == ("nodata", "none")
     as_is = RasterOptions().choose(guess.remedy.option, guess.remedy.value)
     assert read_raster(path, as_is, near=PLOT).value.at(SPOTS)[1] == np.float32(value)
 
@@ -305,6 +307,30 @@ def test_a_big_raster_is_read_at_fewer_pixels_about_where_they_are(tmp_path):
     assert read.value.at(np.stack([lon, lat], axis=1)).tolist() == [0.0, 200.0]
 
 
+def test_the_smaller_copies_inside_are_read_where_they_do(tmp_path, monkeypatch):
+    # in this process, where the limits can be made small
+    monkeypatch.setattr(limits, "PIXELS", 10_000)
+    monkeypatch.setattr(limits, "RASTER_BYTES", 100_000)
+    east = np.tile(np.arange(2000, dtype="float32"), (2000, 1))
+    path = write(tmp_path / "r.tif", east, tiled=True, blockxsize=256, blockysize=256)
+    for number, bounds in enumerate((None, PLOT.boundary.bounds)):
+        room = tmp_path / f"room {number}"
+        room.mkdir()
+        with pytest.raises(FileProblem, match="100 kB of a raster may be read"):
+            raster_reading.raster(str(room), path, RasterOptions(), bounds)
+    with rasterio.open(path, "r+") as tif:
+        tif.build_overviews([2, 4, 8, 16], rasterio.enums.Resampling.average)
+    room = tmp_path / "room"
+    room.mkdir()
+    read = raster_reading.raster(str(room), path, RasterOptions(), None)
+    assert read.value.values.size <= 10_000
+    # the mean of 16 x 16 pixels of 0.2 m, at most a step of 4 m away
+    wanted = 5 * (TO_UTM.transform(*SPOTS.T)[0] - corner()[0])
+    np.testing.assert_allclose(read.value.at(SPOTS), wanted, atol=20.0)
+    # no pixel of the file holds half a number, their means do
+    assert set(np.unique(read.value.values % 1)) == {0.5}
+
+
 def test_classes_keep_their_colours_and_are_not_averaged(tmp_path):
     classes = np.ones((400, 400), "uint8")
     classes[:200] = 2
@@ -423,6 +449,27 @@ def test_the_estates_picture_is_green_where_plants_are_and_sandy_beside():
     assert np.mean(sandy > 10) > 0.8
 
 
+def test_black_declared_as_nodata_does_not_make_pure_colours_clear(tmp_path):
+    image = np.zeros((3, 400, 400), "uint8")
+    image[1, :, 200:] = 180  # pure green in the east, nothing in the west
+    path = write(tmp_path / "r.tif", image, photometric="RGB", nodata=0)
+    alpha = shown(read_backdrop(path).value)[3]
+    assert (alpha[:, 210:] == 255).all()
+    assert (alpha[:, :190] == 0).all()
+
+
+def test_a_raster_that_is_a_mere_line_keeps_to_the_limit(tmp_path):
+    west, north = corner()
+    line = np.arange(20_000_000, dtype="float32")[None]
+    place = from_origin(west, north, 400 / 20_000_000, 400)
+    read = read_raster(write(tmp_path / "r.tif", line, place))
+    assert read.value.values.shape[0] == 1
+    assert 10_000_000 < read.value.values.size <= 16_000_000
+    x, _ = TO_UTM.transform(*SPOTS[1])
+    wanted = (x - west) / 400 * 20_000_000
+    assert read.value.at(SPOTS[1:2])[0] == pytest.approx(wanted, abs=2.0)
+
+
 # hostile and unusable
 
 
@@ -531,25 +578,23 @@ def test_complex_numbers_are_refused(tmp_path):
         read_backdrop(path)
 
 
-def test_mutated_rasters_leave_nothing_but_sentences(tmp_path):
-    rng = np.random.default_rng(20)
-    cube = rng.integers(0, 255, (4, 64, 64), dtype="uint8")
-    seeds = [
-        write(tmp_path / "a.tif", cube, tiled=True, blockxsize=16, blockysize=16, compress="lzw"),
-        write(tmp_path / "b.tif", ramp(64), compress="deflate", nodata=-1),
-        write(tmp_path / "c.tif", cube[:1], bands=[palette]),
-    ]
-    outcomes = set()
-    for number in range(60):
-        data = bytearray(seeds[number % 3].read_bytes())
-        for _ in range(rng.integers(1, 6)):
-            # most of the harm is done in the first kilobyte, where the tags are
-            where = rng.integers(0, 600 if rng.random() < 0.7 else len(data))
-            data[where] = rng.integers(0, 256)
-        door = (read_raster, read_backdrop)[number % 2]
-        try:
-            door(Upload("m.tif", bytes(data)), RasterOptions(band="1"))
-            outcomes.add("read")
-        except FieldmonError as problem:
-            outcomes.add("refused" if str(problem).endswith(".") else str(problem))
-    assert outcomes == {"read", "refused"}
+def test_damaged_rasters_leave_nothing_but_sentences():
+    tally = fuzz_rasters.fuzz(66)
+    assert tally.failures == []
+    assert tally.outcomes["came in"] > 0
+    assert tally.outcomes["refused"] > 0
+
+
+def test_the_fuzzer_notices_what_it_looks_for(monkeypatch):
+    def wrong(*_):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(fuzz_rasters, "read_raster", wrong)
+    assert fuzz_rasters.fuzz(1).failures == ["input 0: ZeroDivisionError: "]
+
+
+def test_the_same_number_gives_the_same_file(tmp_path):
+    for number, seed in enumerate(fuzz_rasters.seeds(tmp_path)):
+        once, again = (fuzz_rasters.mutated(seed, np.random.default_rng(number)) for _ in range(2))
+        assert once == again
+        assert once != seed

@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from fieldmon.geodata.options import ReadOptions
 
 _WGS84 = "OGC:CRS84"
-#: coordinates rounded to more than this cannot tell neighbouring plants apart
-_COARSE_M = 1.0
+#: coordinates rounded to more than this cannot tell neighbouring plants apart; five decimals of a
+#: degree, 1.1 m, still can
+_COARSE_M = 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,6 +195,8 @@ def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Fi
     if name is None or options.crs is not None:
         return None, []
     stated = {text(v) for v in layer.column(name) if not is_missing(v)}
+    if name == find("date", layer.columns) and not any(map(_known_system, sorted(stated)[:20])):
+        return None, []  # Datum: the day in German, the system in English
     if len(stated) > 1:
         raise ChoiceNeeded(
             f"All records must be in one coordinate system, but column {name!r} names "
@@ -202,15 +205,21 @@ def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Fi
             tuple(f"{name}={value}" for value in sorted(stated)),
         )
     for value in stated:
-        known = f"EPSG:{value}" if re.fullmatch(r"\d{4,6}", value) else value
-        try:
-            pyproj.CRS.from_user_input(known)
-        except CRSError:
-            return None, [
-                doubtful(f"It names the coordinate system {value!r}, which is not known.", name)
-            ]
+        known = _known_system(value)
+        if known is None:
+            said = f"It names the coordinate system {value!r}, which is not known."
+            return None, [doubtful(said, name)]
         return known, [seen(f"Column {name!r} names the coordinate system {value}.")]
     return None, []
+
+
+def _known_system(value: str) -> str | None:
+    known = f"EPSG:{value}" if re.fullmatch(r"\d{4,6}", value) else value
+    try:
+        pyproj.CRS.from_user_input(known)
+    except CRSError:
+        return None
+    return known
 
 
 def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:

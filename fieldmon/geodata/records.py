@@ -15,6 +15,7 @@ from fieldmon.geodata.findings import Finding, Imported, Remedy, doubtful, dropp
 from fieldmon.geodata.layers import Layer, text
 from fieldmon.geodata.positions import located
 from fieldmon.geodata.values import (
+    could_be_thousands,
     counted,
     dates,
     dates_of_parts,
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from fieldmon.geodata.options import RecordOptions
     from fieldmon.geodata.places import Places
     from fieldmon.geodata.values import Dated
+
+_LOOKED_AT = 200
 
 
 def records_of(
@@ -176,11 +179,11 @@ def _counts(table: _Table) -> _Counts:
 
 def _numbers_of(table: _Table, name: str) -> _Counts:
     cells = table.cells(name)
-    mark = table.options.decimal or decimal_mark(cells)
+    mark, findings = _mark(table, name, cells)
     known = {cell: counted(cell, mark) for cell in set(cells)}
     count = np.array([known[cell].number for cell in cells])
     present = np.array([known[cell].present for cell in cells], dtype=np.int8)
-    findings = [seen(f"Counts are in column {name!r}.")]
+    findings.append(seen(f"Counts are in column {name!r}."))
     rough = [cell for cell in cells if known[cell].is_rough]
     if rough:
         shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(rough))[:3])
@@ -193,6 +196,20 @@ def _numbers_of(table: _Table, name: str) -> _Counts:
     if n_missing:
         findings.append(seen(f"{n_missing} record(s) have no count: not known, not zero.", name))
     return _Counts(count, present, findings)
+
+
+def _mark(table: _Table, name: str, cells: list[str]) -> tuple[str, list[Finding]]:
+    """Return the decimal mark of the counts: 1,234 alone is told by the rest of the table."""
+    if table.options.decimal is not None:
+        return table.options.decimal, []
+    own = decimal_mark(cell for cell in cells if not could_be_thousands(cell))
+    others = (values for column, values in table.layer.columns.items() if column != name)
+    mark = own or decimal_mark(text(v) for values in others for v in values[:_LOOKED_AT])
+    unsure = next((c for c in cells if "," in c and could_be_thousands(c)), None)
+    if mark is not None or unsure is None:
+        return mark or ".", []
+    said = f"Counts such as {unsure} were read as thousands."
+    return ".", [guessed(said, name, Remedy("decimal", ",", "Read the comma as decimal"))]
 
 
 def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:

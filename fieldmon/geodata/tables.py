@@ -62,8 +62,11 @@ def read_sheet(path: Path, name: str, sheet: str) -> Layer:
                 tuple(book.sheetnames),
             )
         rows: list[list[Any]] = []
-        for row in book[sheet].iter_rows(values_only=True, max_col=limits.COLUMNS):
-            rows.append(list(row))
+        for row in book[sheet].iter_rows(values_only=True, max_col=limits.COLUMNS + 1):
+            cells = list(row)
+            while cells and cells[-1] is None:
+                cells.pop()
+            rows.append(cells)
             if len(rows) > limits.RECORDS:
                 break
     while rows and not any(text(v) for v in rows[-1]):
@@ -134,6 +137,7 @@ def _table(rows: list[list[Any]], name: str) -> Layer:
     findings: list[Finding] = []
     if head:
         findings.append(seen(f"{head} line(s) above the column names were passed over."))
+    limits.check("columns", len(rows[head]), limits.COLUMNS, name)
     names = _names(rows[head])
     body = [row for row in rows[head + 1 :] if any(text(v) for v in row)]
     if not body:

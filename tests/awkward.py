@@ -941,11 +941,11 @@ def rows_and_plants_without_any_plants():
         "guessed: without capitals, spaces and marks",
         "seen: somewhere on it",
         "dropped: 2 record(s) name 1 plot(s) that are not known: South",
-        "dropped: 1 record(s) name no plot at all",
+        "dropped: 2 record(s) name no plot at all",
     ),
 )
 def plots_by_name_with_some_unknown():
-    rows = [("north-1", 4), ("South", 0), ("South", 2), ("", 1)]
+    rows = [("north-1", 4), ("South", 0), ("South", 2), ("", 1), ("NA", 0)]
     return table("field,date,count\n" + "".join(f"{name},{DAY},{n}\n" for name, n in rows))
 
 
@@ -1293,3 +1293,33 @@ def thousands_with_points_beside_decimal_commas():
 )
 def thousands_beside_nothing_that_tells():
     return table(f"row;plant;date;count\n1;1;{DAY};1,234\n")
+
+
+@case("records", says="guessed: No column says how many or whether [columns=count=eggs]", at=HERE)
+def a_column_that_could_be_the_count_is_offered():
+    return table(f"lon,lat,date,eggs,by\n35.15013,30.36013,{DAY},4,Noa\n")
+
+
+@case("records", says="doubtful: No column was recognised as the date [columns=date=seen on]")
+def a_column_that_could_be_the_date_is_offered():
+    return table(f"lon,lat,seen on,count,by\n35.15013,30.36013,{DAY},4,Noa\n")
+
+
+@case(
+    "records",
+    places=Places(plants=ROWS),
+    asks=("where", "block=A", "block=B"),
+    refuses="rows and plants must be of one plot",
+)
+def rows_and_plants_of_several_plots():
+    return table(f"block,row,plant,date,count\nA,1,1,{DAY},4\nB,1,1,{DAY},0\n")
+
+
+@case(
+    "records",
+    places=Places(plants=ROWS),
+    options=RecordOptions(where="block=A"),
+    at=((35.1501, 30.3601),),
+)
+def rows_and_plants_of_the_plot_that_was_chosen():
+    return rows_and_plants_of_several_plots()

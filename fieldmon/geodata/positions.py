@@ -230,6 +230,7 @@ def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
     plot = options.column("plot") or find("plot", layer.columns)
     if plant and (row or not plot) and (places.plants or not plot):
         rows = None if row is None else layer.column(row)
+        _check_one_plot(layer, plot)
         named = by_plant(rows, layer.column(plant), places)
     elif plot and places.plants is not None and not places.plots:
         named = by_plant(None, layer.column(plot), places)
@@ -244,6 +245,20 @@ def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
             tuple(layer.columns),
         )
     return _kept(layer, named)
+
+
+def _check_one_plot(layer: Layer, plot: str | None) -> None:
+    """Ask for one plot: row 3, plant 7 is another place on each."""
+    if plot is None:
+        return
+    names = sorted({text(v) for v in layer.column(plot)} - {""})
+    if len(names) > 1:
+        raise ChoiceNeeded(
+            f"Records that name rows and plants must be of one plot, but column {plot!r} names "
+            f"{len(names)}: {', '.join(names[:12])}. Choose the records of one of them.",
+            "where",
+            tuple(f"{plot}={name}" for name in names),
+        )
 
 
 def _kept(layer: Layer, named: Named) -> Located:

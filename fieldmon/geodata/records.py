@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.errors import ObservationError
 from fieldmon.field import PRESENT, UNKNOWN, Observations
-from fieldmon.geodata.columns import find
+from fieldmon.geodata.columns import find, recognised
 from fieldmon.geodata.findings import Finding, Imported, Remedy, doubtful, dropped, guessed, seen
 from fieldmon.geodata.layers import Layer, text
 from fieldmon.geodata.positions import located
@@ -26,6 +26,8 @@ from fieldmon.geodata.values import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.geodata.options import RecordOptions
@@ -122,7 +124,8 @@ def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[Finding]]:
         name = table.named("date", frozenset(parts) if len(parts) > 1 else frozenset())
         if name is None:
             unknown = np.full(len(table), "NaT", dtype="datetime64[D]")
-            return unknown, [doubtful("No column was recognised as the date of the records.")]
+            said = "No column was recognised as the date of the records."
+            return unknown, [doubtful(said, remedy=_offer(table, "date", _are_dates))]
         read = dates(table.layer.column(name), table.options.date_order)
         where = name
     return read.day, [seen(f"Dates are in column(s) {where}."), *_about_dates(read, where)]
@@ -172,9 +175,33 @@ def _counts(table: _Table) -> _Counts:
     if count_name is None and present_name is None:
         counts.present[:] = PRESENT
         counts.findings.append(
-            guessed("No column says how many or whether: every record was taken as a find.")
+            guessed(
+                "No column says how many or whether: every record was taken as a find.",
+                remedy=_offer(table, "count", _are_numbers),
+            )
         )
     return counts
+
+
+def _offer(table: _Table, role: str, fits: Callable[[list[str]], bool]) -> Remedy | None:
+    """Return the columns of unknown name that hold what could play a role, if there are any."""
+    unknown = [name for name in table.layer.columns if not recognised([name])]
+    some = {name: [c for c in table.cells(name)[:_LOOKED_AT] if c] for name in unknown}
+    choices = tuple(f"{role}={name}" for name, cells in some.items() if cells and fits(cells))
+    if not choices:
+        return None
+    label = f"Take the {role} from {choices[0].partition('=')[2]}"
+    return Remedy("columns", choices[0], label, choices[1:])
+
+
+def _are_dates(cells: list[str]) -> bool:
+    column = np.array(cells, dtype=object)
+    return not np.isnat(dates(column).day).all()
+
+
+def _are_numbers(cells: list[str]) -> bool:
+    read = [counted(cell) for cell in cells if not is_missing(cell)]
+    return bool(read) and all(np.isfinite(one.number) for one in read)
 
 
 def _numbers_of(table: _Table, name: str) -> _Counts:
@@ -239,7 +266,8 @@ def _species(table: _Table) -> list[Finding]:
     if len(kinds) < 2:
         return []
     shown = ", ".join(kinds[:5]) + (", ..." if len(kinds) > 5 else "")
-    remedy = Remedy("where", f"{name}={kinds[0]}", f"Only {kinds[0]}")
+    only = tuple(f"{name}={kind}" for kind in kinds)
+    remedy = Remedy("where", only[0], f"Only {kinds[0]}", only[1:])
     return [doubtful(f"{len(kinds)} species are mixed: {shown}.", name, remedy)]
 
 

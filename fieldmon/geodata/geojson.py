@@ -34,6 +34,12 @@ _GEOMETRIES = frozenset(
     }
 )
 
+#: what a geometry that is none may raise
+_NOT_GEOMETRY = (
+    *(ShapelyError, ValueError, TypeError, LookupError, AttributeError),
+    *(RecursionError, OverflowError),
+)
+
 
 def read_geojson(path: Path, name: str, encoding: str | None) -> Layer:
     """Return the one layer of a GeoJSON file (also newline-delimited)."""
@@ -153,7 +159,7 @@ def _geometries(
             continue
         try:
             geometry[i] = _geometry(stated)
-        except (ShapelyError, ValueError, TypeError, KeyError, RecursionError, OverflowError):
+        except _NOT_GEOMETRY:
             broken.append(i)
             continue
         n_vertices += int(shapely.get_num_coordinates(geometry[i]))

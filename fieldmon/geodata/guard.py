@@ -121,6 +121,15 @@ class Reader:
         """Return whether the process can take another file."""
         return self._process.poll() is None
 
+    @property
+    def peak_bytes(self) -> int:
+        """Return the most memory the process ever took; 0 where the system does not tell."""
+        with suppress(OSError):
+            for line in Path(f"/proc/{self.pid}/status").read_text(encoding="ascii").splitlines():
+                if line.startswith("VmHWM:"):
+                    return int(line.split()[1]) * 1024
+        return 0
+
     def stop(self) -> None:
         """End the process and wait until it is gone."""
         self._process.kill()
@@ -155,6 +164,10 @@ class _Idle:
                 return
         reader.stop()
 
+    def peaks_bytes(self) -> list[int]:
+        with self._lock:
+            return [reader.peak_bytes for reader in self._readers]
+
     def stop(self) -> None:
         with self._lock:
             for reader in self._readers:
@@ -184,6 +197,16 @@ def call(task: str, *arguments: Any, seconds: float = limits.READ_SECONDS) -> An
 def warm() -> None:
     """Start a reading process now, so that the first file need not wait for it."""
     _IDLE.give_back(_IDLE.borrow())
+
+
+def peaks_bytes() -> list[int]:
+    """Return the most memory that each waiting process ever took."""
+    return _IDLE.peaks_bytes()
+
+
+def stop() -> None:
+    """End the waiting processes; the next file starts another."""
+    _IDLE.stop()
 
 
 def _serve() -> None:

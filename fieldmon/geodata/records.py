@@ -190,7 +190,8 @@ def _offer(table: _Table, role: str, fits: Callable[[list[str]], bool]) -> Remed
     choices = tuple(f"{role}={name}" for name, cells in some.items() if cells and fits(cells))
     if not choices:
         return None
-    label = f"Take the {role} from {choices[0].partition('=')[2]}"
+    one = f"Take the {role} from {choices[0].partition('=')[2]}"
+    label = one if len(choices) == 1 else f"Name the column of the {role}"
     return Remedy("columns", choices[0], label, choices[1:])
 
 

@@ -1323,3 +1323,15 @@ def rows_and_plants_of_several_plots():
 )
 def rows_and_plants_of_the_plot_that_was_chosen():
     return rows_and_plants_of_several_plots()
+
+
+@case("plots", asks="crs", refuses="does not say in which coordinate system")
+def a_prj_that_nobody_understands(folder):
+    path = shapefile(folder, frame().to_crs(2039))
+    path.with_suffix(".prj").write_bytes(b'PROJCS["Israel_TM_Grid",GEOGCS["GCS\x00')
+    return path
+
+
+@case("plots", options=PlotOptions(crs="EPSG:2039"), says="doubtful: (.prj) cannot", at=CORNERS)
+def a_prj_that_nobody_understands_and_the_system_named(folder):
+    return a_prj_that_nobody_understands(folder)

@@ -61,6 +61,7 @@ class Tally:
 
     outcomes: Counter = field(default_factory=Counter)
     failures: list[str] = field(default_factory=list)
+    notable: list[str] = field(default_factory=list)
     slowest_s: float = 0.0
     peak_bytes: int = 0
 
@@ -296,7 +297,7 @@ def read(seed: Seed, parts: tuple[Upload, ...]) -> str:
         return "asked about"
     except FileProblem as refused:
         if "reader crash" in str(refused):
-            return "refused, the reader gone"
+            return "refused with the reader gone"
         return "refused by the clock" if "seconds" in str(refused) else "refused"
     except FieldmonError:
         return "refused"
@@ -309,7 +310,7 @@ def _check_shapes(value: Any) -> None:
             assert plot.boundary.is_valid
             _check_places(shapely.get_coordinates(plot.boundary))
     else:
-        _check_places(getattr(value, "lonlat", shapely.get_coordinates(value)))
+        _check_places(value.lonlat if hasattr(value, "lonlat") else shapely.get_coordinates(value))
 
 
 def _check_places(lonlat: Any) -> None:
@@ -365,7 +366,10 @@ def fuzz(n_inputs: int, first: int = 0, seconds: float = np.inf) -> Tally:
 def _one(number: int, seed: Seed, parts: tuple[Upload, ...], tally: Tally) -> None:
     began = time.perf_counter()
     try:
-        tally.outcomes[read(seed, parts)] += 1
+        became = read(seed, parts)
+        tally.outcomes[became] += 1
+        if became.startswith("refused "):
+            tally.notable.append(f"input {number} ({seed.name}): {became}")
     except Exception as wrong:  # noqa: BLE001 - that is what is looked for
         tally.outcomes["failed"] += 1
         last = "".join(traceback.format_exception_only(wrong)).strip()
@@ -384,7 +388,7 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0, help="number of the first input")
     chosen = parser.parse_args()
     tally = fuzz(chosen.inputs, chosen.first)
-    sys.stdout.write("\n".join([*tally.failures, str(tally), ""]))
+    sys.stdout.write("\n".join([*tally.notable, *tally.failures, str(tally), ""]))
     sys.exit(bool(tally.failures))
 
 

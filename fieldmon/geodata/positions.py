@@ -18,7 +18,14 @@ from fieldmon.geodata.geometry import sort_out
 from fieldmon.geodata.layers import Layer, text
 from fieldmon.geodata.places import Named, Places, by_plant, by_plot
 from fieldmon.geodata.placing import place
-from fieldmon.geodata.values import all_degrees, hemispheres, is_missing, numbers, pairs
+from fieldmon.geodata.values import (
+    all_degrees,
+    hemispheres,
+    is_missing,
+    numbers,
+    pairs,
+    plain_numbers,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -165,7 +172,10 @@ def _coordinates(
 
 
 def _letters_are_crossed(layer: Layer, names: tuple[str, ...]) -> bool:
-    lon, lat = (hemispheres(text(v) for v in layer.column(name)) for name in names)
+    columns = [layer.column(name) for name in names]
+    if any(plain_numbers(column) is not None for column in columns):
+        return False
+    lon, lat = (hemispheres(text(v) for v in column) for column in columns)
     return bool(lon | lat) and lon <= set("NS") and lat <= set("EW")
 
 

@@ -89,7 +89,9 @@ class _Table:
         name = self.named(role)
         if name is None:
             return np.full(len(self), "", dtype=np.str_)
-        return np.array(["" if is_missing(c) else c for c in self.cells(name)], dtype=np.str_)
+        cells = self.cells(name)
+        known = {cell: "" if is_missing(cell) else cell for cell in set(cells)}
+        return np.array([known[cell] for cell in cells], dtype=np.str_)
 
 
 class _Counts(NamedTuple):
@@ -263,7 +265,7 @@ def _species(table: _Table) -> list[Finding]:
     name = table.named("species")
     if name is None:
         return []
-    kinds = sorted({cell for cell in table.cells(name) if not is_missing(cell)})
+    kinds = sorted(cell for cell in set(table.cells(name)) if not is_missing(cell))
     if len(kinds) < 2:
         return []
     shown = ", ".join(kinds[:5]) + (", ..." if len(kinds) > 5 else "")
@@ -278,10 +280,12 @@ def _same_visit(observations: Observations) -> list[Finding]:
         return []
     place = np.round(observations.lonlat, 8)
     day = observations.day.astype(np.int64).astype(np.float64)
-    kinds = np.unique(np.char.add(observations.species, observations.stage), return_inverse=True)[1]
-    visit = np.column_stack([place, day, kinds])
-    both = np.column_stack([visit, np.nan_to_num(observations.count, nan=-1), observations.present])
-    n_visits, n_stated = len(np.unique(visit, axis=0)), len(np.unique(both, axis=0))
+    kinds = [
+        np.unique(v, return_inverse=True)[1] for v in (observations.species, observations.stage)
+    ]
+    visit = [*place.T, day, *kinds]
+    count = np.nan_to_num(observations.count, nan=-1)
+    n_visits, n_stated = _n_distinct(visit), _n_distinct([*visit, count, observations.present])
     if n_stated == n_visits:
         return []
     return [
@@ -290,3 +294,12 @@ def _same_visit(observations: Observations) -> list[Finding]:
             "another record already has."
         )
     ]
+
+
+def _n_distinct(columns: list[NDArray[np.generic]]) -> int:
+    """Return how many different rows columns ``(n,)`` make."""
+    order = np.lexsort(columns)
+    new = np.zeros(len(order) - 1, dtype=bool)
+    for column in columns:
+        new |= np.diff(column[order]) != 0
+    return int(new.sum()) + 1

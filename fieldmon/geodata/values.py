@@ -75,12 +75,19 @@ def number(cell: str, decimal: str = ".") -> float:
         return np.nan
 
 
+def plain_numbers(column: NDArray[np.object_]) -> Float | None:
+    """Return a column as numbers ``(n,)`` if all it holds are plain ones or nothing, else None."""
+    try:
+        return np.array([np.nan if v is None else v for v in column.tolist()], dtype=np.float64)
+    except (ValueError, TypeError):
+        return None
+
+
 def numbers(column: NDArray[np.object_], decimal: str | None = None) -> Float:
     """Return a column as numbers ``(n,)``; NaN where missing or not a number."""
-    try:
-        return np.array([np.nan if v is None else v for v in column], dtype=np.float64)
-    except (ValueError, TypeError):
-        pass
+    read = plain_numbers(column)
+    if read is not None:
+        return read
     cells = [text(v) for v in column]
     mark = decimal or decimal_mark(cells) or "."
     return np.array([np.nan if c.casefold() in MISSING else number(c, mark) for c in cells])
@@ -189,10 +196,9 @@ def _signed(cell: str) -> tuple[float, str]:
 
 def all_degrees(column: NDArray[np.object_], decimal: str | None = None) -> Float:
     """Return a column of coordinates as degrees ``(n,)``; NaN where a cell holds none."""
-    try:
-        return np.array([np.nan if v is None else v for v in column], dtype=np.float64)
-    except (ValueError, TypeError):
-        pass
+    read = plain_numbers(column)
+    if read is not None:
+        return read
     cells = [text(v) for v in column]
     mark = decimal or decimal_mark(cells) or "."
     return np.array([degrees(c, mark) for c in cells])
@@ -200,7 +206,7 @@ def all_degrees(column: NDArray[np.object_], decimal: str | None = None) -> Floa
 
 def hemispheres(cells: Iterable[str]) -> set[str]:
     """Return the letters N, S, E, W with which cells say where they lie."""
-    found = (_HEMISPHERE.match(cell.strip()) for cell in cells)
+    found = (_HEMISPHERE.match(cell.strip()) for cell in set(cells))
     return {(m.group(1) or m.group(4)).upper() for m in found if m}
 
 

@@ -237,7 +237,8 @@ def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
     row = options.column("row") or find("row", layer.columns)
     taken = frozenset({row} if row else ())
     plant = options.column("plant") or find("plant", layer.columns, taken)
-    plot = options.column("plot") or find("plot", layer.columns)
+    told = options.column("plot")  # "" says that no column names a plot
+    plot = find("plot", layer.columns) if told is None else told
     if plant and (row or not plot) and (places.plants or not plot):
         rows = None if row is None else layer.column(row)
         _check_one_plot(layer, plot)
@@ -259,13 +260,14 @@ def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
 
 def _check_one_plot(layer: Layer, plot: str | None) -> None:
     """Ask for one plot: row 3, plant 7 is another place on each."""
-    if plot is None:
+    if not plot:
         return
     names = sorted({text(v) for v in layer.column(plot)} - {""})
     if len(names) > 1:
         raise ChoiceNeeded(
             f"Records that name rows and plants must be of one plot, but column {plot!r} names "
-            f"{len(names)}: {', '.join(names[:12])}. Choose the records of one of them.",
+            f"{len(names)}: {', '.join(names[:12])}. Choose the records of one of them, "
+            "or say that no column names a plot: columns=plot=.",
             "where",
             tuple(f"{plot}={name}" for name in names),
         )

@@ -163,6 +163,10 @@ class Belief(Protocol):
         """Return what is believed the next morning."""
         ...
 
+    def treated(self, left: NDArray[np.float64]) -> Belief:
+        """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
+        ...
+
 
 @dataclass(frozen=True, eq=False)
 class MeanField:
@@ -181,6 +185,10 @@ class MeanField:
     def overnight(self, spread: Spread) -> MeanField:
         """Return what is believed the next morning."""
         return MeanField(self.grid, overnight(self.chance, self.grid, spread))
+
+    def treated(self, left: NDArray[np.float64]) -> MeanField:
+        """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
+        return MeanField(self.grid, np.maximum(self.chance * left, _LEAST))
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,6 +225,13 @@ class Pairs:
         rule = spread.rate_per_day, spread.to == "one", spread.arrivals_per_day
         _overnight_pairs((self.chance, self.both), after, self.grid.adjacent, rule)
         return Pairs(self.grid, *after)
+
+    def treated(self, left: NDArray[np.float64]) -> Pairs:
+        """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
+        start, other = self.grid.adjacent
+        one = np.repeat(left, np.diff(start))
+        chance = np.maximum(self.chance * left, _LEAST)
+        return Pairs(self.grid, chance, self.both * one * left[other])
 
 
 class Near(NamedTuple):

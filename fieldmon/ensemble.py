@@ -80,6 +80,11 @@ class Ensemble:
         after = [night(self.grid, f, spread, k) for f, k in zip(self.fields, keys, strict=True)]
         return Ensemble(self.grid, np.array(after), self.chances, self.steps + 1)
 
+    def treated(self, left: NDArray[np.float64]) -> Ensemble:
+        """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
+        luck = self.chances.of("treated", self.steps).random(self.fields.shape)
+        return Ensemble(self.grid, self.fields & (luck < left), self.chances, self.steps + 1)
+
     def outlook(self, sure: float = 0.9) -> Outlook:
         """Return what the fields say of the whole plot."""
         counts = self.fields.sum(axis=1)

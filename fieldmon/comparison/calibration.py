@@ -102,6 +102,10 @@ class _Watched:
         self._mornings.append(after)
         return _Watched(after, self._mornings, self._seconds)
 
+    def treated(self, left: NDArray[np.float64]) -> _Watched:
+        """Hear of a treatment."""
+        return _Watched(self._belief.treated(left), self._mornings, self._seconds)
+
 
 def calibration(
     cells: Sequence[Cell], sampler: Sampler, believe: Believe, seeds: int, n_days: int = 12

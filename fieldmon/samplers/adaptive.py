@@ -39,13 +39,18 @@ _BISECTIONS = 24
 
 
 class _Mind(NamedTuple):
-    """What is believed during the day; `worth` is per chance of infestation, 0 once inspected."""
+    """What is believed during the day.
+
+    `worth` is per chance of infestation, 0 once inspected; `behind` is where in `both` each plant
+    stands with the one before it in its row, -1 if there is none.
+    """
 
     chance: Float
     both: Float
     worth: Float
     detects: float
     near: Near
+    behind: Int
 
 
 class _Rows(NamedTuple):
@@ -191,16 +196,18 @@ def _mind(
     spares: float,
     detects: float,
 ) -> _Mind:
-    worth = np.zeros(chance.size)
+    worth, behind = np.zeros(chance.size), np.full(chance.size, _NOWHERE)
     for i in range(chance.size):
-        if closed[i]:
-            continue
         first, end = adjacent.start[i], adjacent.start[i + 1]
         clean = 0.0
         for e in range(first, end):
             clean += 1.0 - chance[adjacent.plant[e]]
-        worth[i] = detects * (1.0 + spares * clean / max(end - first, 1))
-    return _Mind(np.maximum(chance, _LEAST), both.copy(), worth, detects, near(chance.size))
+            if adjacent.plant[e] == i - 1:
+                behind[i] = e
+        if not closed[i]:
+            worth[i] = detects * (1.0 + spares * clean / max(end - first, 1))
+    believed = np.maximum(chance, _LEAST)
+    return _Mind(believed, both.copy(), worth, detects, near(chance.size), behind)
 
 
 @nb.njit(cache=True)
@@ -383,24 +390,27 @@ def _value_row(
     for i in range(first, end):
         gain = mind.worth[i] * mind.chance[i] - toll
         if gain > 0.0 and previous == i - 1 and previous >= 0:
-            gain = mind.worth[i] * _after_clean(mind, adjacent, i, previous) - toll
+            gain = mind.worth[i] * _after_clean(mind, i) - toll
         rows.gain[i] = max(gain, 0.0)
         if gain > 0.0:
             previous = i
+    rows.last[row] = _NOWHERE
+    if previous < 0:
+        return
     _in_and_out(ground, clock, rows, (row, 2, price))
     _in_and_out(ground, clock, rows, (row, 3, price))
     _through(ground, clock, rows, row, price)
 
 
 @nb.njit(cache=True)
-def _after_clean(mind: _Mind, adjacent: Csr, i: int, looked: int) -> float:
-    """Return the chance of plant i once the plant beside it was looked at and seemed clean."""
-    p, q = mind.chance[i], mind.chance[looked]
-    for e in range(adjacent.start[i], adjacent.start[i + 1]):
-        if adjacent.plant[e] == looked:
-            c = min(mind.both[e], p, q)
-            return float((p - mind.detects * c) / max(1.0 - mind.detects * q, _LEAST))
-    return float(p)
+def _after_clean(mind: _Mind, i: int) -> float:
+    """Return the chance of plant i once the one before it was looked at and seemed clean."""
+    p, e = mind.chance[i], mind.behind[i]
+    if e < 0:
+        return float(p)
+    q = mind.chance[i - 1]
+    c = min(mind.both[e], p, q)
+    return float((p - mind.detects * c) / max(1.0 - mind.detects * q, _LEAST))
 
 
 @nb.njit(cache=True)
@@ -409,7 +419,7 @@ def _in_and_out(ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int
     row, way, price = state
     first, end = ground.row_start[row], ground.row_start[row + 1]
     entry_m = ground.end_x_m[row, way - 2]
-    rows.net[row, way], rows.seconds[row, way], rows.last[row, way] = -np.inf, 0.0, _NOWHERE
+    rows.net[row, way] = -np.inf
     gains, n = 0.0, 0
     for k in range(end - first):
         i = first + k if way == 2 else end - 1 - k

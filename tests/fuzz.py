@@ -30,6 +30,7 @@ import shapely
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.geodata import guard, limits, reading
 from fieldmon.geodata.options import PlotOptions, RecordOptions, Upload
+from fieldmon.geodata.reported import FindingsOptions
 
 #: the clock of the reading process, and what ending it may take on a busy machine
 SECONDS = limits.READ_SECONDS + 3.0
@@ -87,6 +88,8 @@ def seeds(folder: Path) -> list[Seed]:
         parts = _uploads(case.source(room))
         if sum(len(part.data) for part in parts) <= _LARGEST_SEED:
             made.append(Seed(case.name, case.door, parts))
+            if case.door == "records":
+                made.append(Seed(case.name, "reported", parts))
     return [*made, *(Seed("raster", door, (_raster(folder),)) for door in ("plots", "layers"))]
 
 
@@ -287,6 +290,8 @@ def read(seed: Seed, parts: tuple[Upload, ...]) -> str:
     try:
         if seed.door == "layers":
             reading.list_layers(source)
+        elif seed.door == "reported":
+            reading.read_reported(source, FindingsOptions())
         elif seed.door == "records":
             places = awkward.Places((awkward.HOME,), awkward.ROWS)
             _check_places(reading.read_records(source, RecordOptions(), None, places).value.lonlat)

@@ -52,7 +52,7 @@ def _measured(geometry: shapely.Geometry) -> _Measured:
 
     The area between a parallel and the equator has a closed form on the ellipsoid (Snyder 1987,
     Map Projections, eq. 3-12), so that of a ring is one sum; sides count as straight in a map that
-    keeps areas, which for a side of 1 km is geodesic to a millimetre.
+    keeps areas, which for a side of 1 km is geodesic to some centimetres.
     """
     polygons = _polygons(geometry).geoms
     rings, polygon = shapely.get_rings(list(polygons), return_index=True)

@@ -10,7 +10,7 @@ from datetime import date, datetime
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeAlias
 
 import typer
 
@@ -23,12 +23,15 @@ if TYPE_CHECKING:
     from fieldmon.field import Field, Observations
     from fieldmon.geodata.findings import Finding, Imported
     from fieldmon.geodata.places import Places
+    from fieldmon.geodata.places import Plants as Measured
     from fieldmon.grid import PlantGrid
     from fieldmon.monitor import Plot
     from fieldmon.robot import Robot
     from fieldmon.samplers import Sampler
     from fieldmon.season import Start
 
+#: a file, and what was chosen about how to read it
+_Asked: TypeAlias = tuple[Path | None, list[str] | None]
 PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
 
 app = typer.Typer(
@@ -101,6 +104,14 @@ Plants = Annotated[
 ]
 Paths = Annotated[
     Path | None, typer.Option(help="Paths and roads from which insects enter (lines).")
+]
+PlantsChoices = Annotated[
+    list[str] | None,
+    typer.Option("--plants-option", help="What the file of plants leaves open, as NAME=VALUE."),
+]
+PathsChoices = Annotated[
+    list[str] | None,
+    typer.Option("--paths-option", help="What the file of paths leaves open, as NAME=VALUE."),
 ]
 Bearing = Annotated[
     float | None,
@@ -226,6 +237,8 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     layer: Layer = None,
     plot_option: Choices = None,
     record_option: RecordChoices = None,
+    plants_option: PlantsChoices = None,
+    paths_option: PathsChoices = None,
 ) -> None:
     """Plan today's route on a plot or in a season, and write it for whoever drives.
 
@@ -257,11 +270,12 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         "faces": 2 if both_faces else None,
     }
     if plot is None:
-        laid = _around(plants, gate, given)
+        laid = _around(plants, plants_option, gate, given)
     else:
         fields = _read_plots(plot, feature, crs, layer, plot_option)
-        laid = _lay(_place(fields, plants, paths, gate, feature), given)
-    named = partial(_named, (plot, plants), crs, layer, plot_option)
+        beside = (plants, plants_option), (paths, paths_option)
+        laid = _lay(_place(fields, *beside, gate, feature), given)
+    named = partial(_named, plot, crs, layer, plot_option, (plants, plants_option))
     records = _read_records(observations, laid, record_option, named)
     _hear(records, day)
     today = first_day(laid, records, day, plans)
@@ -315,6 +329,8 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     layer: Layer = None,
     plot_option: Choices = None,
     record_option: RecordChoices = None,
+    plants_option: PlantsChoices = None,
+    paths_option: PathsChoices = None,
 ) -> None:
     """Begin a season on a plot: one GeoPackage that grows with every day's findings.
 
@@ -347,11 +363,12 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     }
     with _noting() as notes:
         if plot is None:
-            laid = _around(plants, gate, given)
+            laid = _around(plants, plants_option, gate, given)
         else:
             fields = _read_plots(plot, feature, crs, layer, plot_option)
-            laid = _lay(_place(fields, plants, paths, gate, feature), given)
-        named = partial(_named, (plot, plants), crs, layer, plot_option)
+            beside = (plants, plants_option), (paths, paths_option)
+            laid = _lay(_place(fields, *beside, gate, feature), given)
+        named = partial(_named, plot, crs, layer, plot_option, (plants, plants_option))
         records = _read_records(observations, laid, record_option, named)
     _hear(records, day)
     project = Project.create(season, laid, records, setup, cli_season.remarks(notes))
@@ -399,6 +416,8 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     layer: Layer = None,
     plot_option: Choices = None,
     record_option: RecordChoices = None,
+    plants_option: PlantsChoices = None,
+    paths_option: PathsChoices = None,
 ) -> None:
     """Simulate a season on a plot: insects spread at night, samplers look for them by day.
 
@@ -419,11 +438,12 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         "faces": 2 if both_faces else None,
     }
     if plot is None:
-        laid = _around(plants, gate, given)
+        laid = _around(plants, plants_option, gate, given)
     else:
         fields = _read_plots(plot, feature, crs, layer, plot_option)
-        laid = _lay(_place(fields, plants, paths, gate, feature), given)
-    named = partial(_named, (plot, plants), crs, layer, plot_option)
+        beside = (plants, plants_option), (paths, paths_option)
+        laid = _lay(_place(fields, *beside, gate, feature), given)
+    named = partial(_named, plot, crs, layer, plot_option, (plants, plants_option))
     records = _read_records(observations, laid, record_option, named)
     _hear(records, day)
     begin = _start(laid, first_day(laid, records, day, Plans(robot)).chance, infested, seed)
@@ -537,26 +557,25 @@ def _read_records(
 
 
 def _named(
-    files: tuple[Path | None, Path | None],
+    plot: Path | None,
     crs: str | None,
     layer: str | None,
     more: list[str] | None,
+    plants: _Asked,
     grid: PlantGrid,
 ) -> Places:
     """Return the plots and plants of the command's files by their names."""
     from fieldmon.geodata.places import Places  # noqa: PLC0415
-    from fieldmon.geodata.reading import read_plants  # noqa: PLC0415
 
-    plot, plants = files
     # what these files have to say was said before
     fields = () if plot is None else _plots_of(plot, None, crs, layer, more).value
-    return Places.of(fields, grid, None if plants is None else read_plants(plants).value)
+    return Places.of(fields, grid, None if plants[0] is None else _read_plants(*plants).value)
 
 
 def _place(
     fields: tuple[Field, ...],
-    plants: Path | None,
-    paths: Path | None,
+    plants: _Asked,
+    paths: _Asked,
     gate: str | None,
     feature: str | None,
 ) -> Field:
@@ -564,7 +583,7 @@ def _place(
     from dataclasses import replace  # noqa: PLC0415
 
     from fieldmon.geodata.options import ReadOptions  # noqa: PLC0415
-    from fieldmon.geodata.reading import read_lines, read_plants  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_lines  # noqa: PLC0415
 
     if len(fields) > 1 and feature is None:
         names = tuple(field.name for field in fields)
@@ -576,13 +595,14 @@ def _place(
             names,
         )
     field = fields[0]
-    if plants is not None:
-        measured = read_plants(plants, ReadOptions())
-        _tell(measured.findings, plants)
+    if plants[0] is not None:
+        measured = _read_plants(*plants)
+        _tell(measured.findings, plants[0], "--plants-option")
         field = replace(field, plants=measured.value.lonlat.copy())
-    if paths is not None:
-        lines = read_lines(paths, ReadOptions())
-        _tell(lines.findings, paths)
+    if paths[0] is not None:
+        with _asking("--paths-option"):
+            lines = read_lines(paths[0], _chosen(ReadOptions(), paths[1]))
+        _tell(lines.findings, paths[0], "--paths-option")
         field = replace(field, paths=lines.value)
     return field if gate is None else replace(field, gate=_lonlat(gate))
 
@@ -605,21 +625,33 @@ def _lay(field: Field, given: dict[str, float | None]) -> Plot:
     return plot
 
 
-def _around(plants: Path | None, gate: str | None, given: dict[str, float | None]) -> Plot:
-    """Return the plot of measured plants without a boundary."""
+def _read_plants(path: Path | None, more: list[str] | None) -> Imported[Measured]:
     from fieldmon.geodata.options import ReadOptions  # noqa: PLC0415
     from fieldmon.geodata.reading import read_plants  # noqa: PLC0415
+
+    if path is None:
+        raise SettingError("Give a plot file, or the positions of its plants with --plants FILE.")
+    with _asking("--plants-option"):
+        return read_plants(path, _chosen(ReadOptions(), more))
+
+
+def _around(
+    plants: Path | None,
+    plants_option: list[str] | None,
+    gate: str | None,
+    given: dict[str, float | None],
+) -> Plot:
+    """Return the plot of measured plants without a boundary."""
     from fieldmon.monitor import Plot  # noqa: PLC0415
     from fieldmon.planting import Planting  # noqa: PLC0415
 
-    if plants is None:
-        raise SettingError("Give a plot file, or the positions of its plants with --plants FILE.")
-    measured = read_plants(plants, ReadOptions())
-    _tell(measured.findings, plants)
+    measured = _read_plants(plants, plants_option)
+    _tell(measured.findings, plants, "--plants-option")
     by_hand = {name: value for name, value in given.items() if value is not None}
     lonlat = measured.value.lonlat.copy()
     planting = Planting(**by_hand)  # type: ignore[arg-type]
-    plot = Plot.around(plants.stem, lonlat, planting, None if gate is None else _lonlat(gate))
+    name = "plants" if plants is None else plants.stem
+    plot = Plot.around(name, lonlat, planting, None if gate is None else _lonlat(gate))
     _describe(plot)
     return plot
 

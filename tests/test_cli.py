@@ -298,3 +298,15 @@ def test_a_finding_is_printed_with_its_remedy_and_the_remedy_works(run, tmp_path
     assert code == 0, err
     assert "guessed" not in err
     assert "Counts are in column 'eggs'" in err
+
+
+def test_what_the_file_of_plants_leaves_open_is_asked_and_answered(run, tmp_path):
+    xy = [(214_000 + 2 * i, 474_400 + 4 * j) for j in range(8) for i in range(20)]
+    gpd.GeoSeries.from_xy(*zip(*xy, strict=True), crs=2039).to_file(tmp_path / "p.shp")
+    (tmp_path / "p.prj").unlink()
+    code, _, err, _ = run("plan", "--plants", "p.shp")
+    assert code == 2
+    assert "Answer with --plants-option crs=" in err
+    code, out, err, _ = run("plan", "--plants", "p.shp", "--plants-option", "crs=EPSG:2039")
+    assert code == 0, err
+    assert "160 plants in 8 rows" in out

@@ -27,8 +27,7 @@ if sys.platform != "win32":
 
 #: files read before a process is replaced, so that nothing adds up in it
 _USES = 200
-#: real time over its own that a process may take, and the share of it that it must work
-_PATIENCE = 3.0
+#: share of the time that a process must work, or it sleeps
 _LEAST_SHARE = 0.05
 # GDAL reads these when it is loaded. Drivers that lead to other files or to the network are not
 # there at all, and a proxy that does not exist stands between the rest and the world.
@@ -62,7 +61,7 @@ class _Clock(threading.Thread):
     """Ends a process that works for longer than it may, or sleeps.
 
     What counts is the process's own time, or a busy machine would refuse good files; and real time
-    where it does nothing at all, or takes `_PATIENCE` times as long.
+    where it does nothing at all, or takes `limits.PATIENCE` times as long.
     """
 
     def __init__(self, process: subprocess.Popen[bytes], seconds: float) -> None:
@@ -78,7 +77,7 @@ class _Clock(threading.Thread):
             real_s = time.monotonic() - began
             own_s = _own_seconds(self._process.pid) - worked_s
             sleeps = real_s > self._seconds and not own_s > _LEAST_SHARE * real_s
-            if sleeps or own_s > self._seconds or real_s > _PATIENCE * self._seconds:
+            if sleeps or own_s > self._seconds or real_s > limits.PATIENCE * self._seconds:
                 self.is_late = True
                 self._process.kill()
                 return

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeAlias
 
 import typer
 
-from fieldmon import cli_season, cli_study
+from fieldmon import cli_raster, cli_season, cli_study
 from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
 
 if TYPE_CHECKING:
@@ -239,6 +239,12 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     record_option: RecordChoices = None,
     plants_option: PlantsChoices = None,
     paths_option: PathsChoices = None,
+    risk: cli_raster.Risk = None,
+    risk_option: cli_raster.RiskChoices = None,
+    canopy: cli_raster.Canopy = None,
+    canopy_below: cli_raster.CanopyBelow = None,
+    canopy_option: cli_raster.CanopyChoices = None,
+    chance_map: cli_raster.ChanceMap = None,
 ) -> None:
     """Plan today's route on a plot or in a season, and write it for whoever drives.
 
@@ -275,10 +281,12 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         fields = _read_plots(plot, feature, crs, layer, plot_option)
         beside = (plants, plants_option), (paths, paths_option)
         laid = _lay(_place(fields, *beside, gate, feature), given)
+    laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
+    at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
     named = partial(_named, plot, crs, layer, plot_option, (plants, plants_option))
     records = _read_records(observations, laid, record_option, named)
     _hear(records, day)
-    today = first_day(laid, records, day, plans)
+    today = first_day(laid, records, day, plans, at_risk)
     route = today.route
     if not len(route):
         raise SettingError(
@@ -292,6 +300,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         f"about {route.expected_finds * plans.robot.detects:.1f} of these would be found."
     )
     cli_season.hand_off(route, RouteNotes(laid.field.name, sampler.value, began), output)
+    cli_raster.write_map(chance_map, laid, today.chance)
 
 
 @app.command()
@@ -331,6 +340,11 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     record_option: RecordChoices = None,
     plants_option: PlantsChoices = None,
     paths_option: PathsChoices = None,
+    risk: cli_raster.Risk = None,
+    risk_option: cli_raster.RiskChoices = None,
+    canopy: cli_raster.Canopy = None,
+    canopy_below: cli_raster.CanopyBelow = None,
+    canopy_option: cli_raster.CanopyChoices = None,
 ) -> None:
     """Begin a season on a plot: one GeoPackage that grows with every day's findings.
 
@@ -368,10 +382,12 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
             fields = _read_plots(plot, feature, crs, layer, plot_option)
             beside = (plants, plants_option), (paths, paths_option)
             laid = _lay(_place(fields, *beside, gate, feature), given)
+        laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
+        at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
         named = partial(_named, plot, crs, layer, plot_option, (plants, plants_option))
         records = _read_records(observations, laid, record_option, named)
     _hear(records, day)
-    project = Project.create(season, laid, records, setup, cli_season.remarks(notes))
+    project = Project.create(season, laid, records, setup, cli_season.remarks(notes), at_risk)
     ahead = project.status(setup.begins).outlook
     typer.echo(
         f"Season begun in {season}: {len(records)} records, about {ahead.expected:.0f} plants "
@@ -418,6 +434,11 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     record_option: RecordChoices = None,
     plants_option: PlantsChoices = None,
     paths_option: PathsChoices = None,
+    risk: cli_raster.Risk = None,
+    risk_option: cli_raster.RiskChoices = None,
+    canopy: cli_raster.Canopy = None,
+    canopy_below: cli_raster.CanopyBelow = None,
+    canopy_option: cli_raster.CanopyChoices = None,
 ) -> None:
     """Simulate a season on a plot: insects spread at night, samplers look for them by day.
 
@@ -443,10 +464,14 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         fields = _read_plots(plot, feature, crs, layer, plot_option)
         beside = (plants, plants_option), (paths, paths_option)
         laid = _lay(_place(fields, *beside, gate, feature), given)
+    laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
+    at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
     named = partial(_named, plot, crs, layer, plot_option, (plants, plants_option))
     records = _read_records(observations, laid, record_option, named)
     _hear(records, day)
-    begin = _start(laid, first_day(laid, records, day, Plans(robot)).chance, infested, seed)
+    begin = _start(
+        laid, first_day(laid, records, day, Plans(robot), at_risk).chance, infested, seed
+    )
     rows = []
     for name in sampler or list(SamplerName)[:3]:
         rows += _season(laid, robot, (name, _sampler(name, every)), begin, (days, spread, seed))

@@ -82,7 +82,7 @@ def without_missing(
         f"{int(missing.sum())} of {len(missing)} plants are missing (canopy below {below:g})"
         + _unseen(values, "and count as there")
     )
-    tell([*read.findings, said], canopy)
+    tell([*read.findings, said], canopy, flag)
     return plot.without(missing) if missing.any() else plot
 
 
@@ -107,7 +107,7 @@ def risk_of(
         f"Risk by {settings.meaning}: {np.nanmin(chance):.3g} to {np.nanmax(chance):.3g}, "
         f"{np.nanmean(chance):.3g} on average" + _unseen(chance, "and have no risk by it")
     )
-    tell([*read.findings, said], path)
+    tell([*read.findings, said], path, "--risk-option")
     return chance
 
 

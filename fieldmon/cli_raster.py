@@ -57,8 +57,8 @@ ChanceMap = Annotated[
 class Tell(Protocol):
     """Tells a person what an import has to say about a file, and keeps it where it is noted."""
 
-    def __call__(self, findings: Iterable[Finding], source: object = "", /) -> None:
-        """Tell findings about a source."""
+    def __call__(self, findings: Iterable[Finding], source: object = "", flag: str = "", /) -> None:
+        """Tell findings about a source; `flag` takes their remedies."""
 
 
 def without_missing(

@@ -1,5 +1,6 @@
 """Damaged files end in sentences; the long run is ``python tests/fuzz.py``."""
 
+import time
 from pathlib import Path
 
 import fuzz
@@ -64,3 +65,24 @@ def test_a_reader_has_no_drivers_that_lead_elsewhere():
     drivers = set(guard.call("pyogrio:list_drivers"))
     assert "GPKG" in drivers
     assert not drivers & {"OGR_VRT", "WFS", "OAPIF", "HTTP", "CSW", "Elasticsearch", "GPSBabel"}
+
+
+class Process:
+    pid = 0
+
+    def kill(self):
+        self.killed_at = time.monotonic()
+
+
+@pytest.mark.parametrize(
+    ("waits", "at_least_s"),
+    [(False, 0.2), (True, 0.6)],
+    ids=["one that sleeps", "one kept from working by others"],
+)
+def test_a_reader_is_given_patience(monkeypatch, waits, at_least_s):
+    monkeypatch.setattr(guard, "_work", lambda _: guard._Work(0.0, waits))
+    began, process = time.monotonic(), Process()
+    clock = guard._Clock(process, 0.2)
+    clock.run()
+    assert clock.is_late
+    assert process.killed_at - began >= at_least_s

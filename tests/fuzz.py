@@ -64,13 +64,15 @@ class Tally:
     failures: list[str] = field(default_factory=list)
     notable: list[str] = field(default_factory=list)
     slowest_s: float = 0.0
+    slowest: str = "none"
+    hardest_s: float = 0.0
     peak_bytes: int = 0
 
     def __str__(self) -> str:
         counts = ", ".join(f"{n} {what}" for what, n in self.outcomes.most_common())
         return (
-            f"{self.outcomes.total()} inputs: {counts}; slowest {self.slowest_s:.1f} s, most "
-            f"memory {self.peak_bytes / 1e6:.0f} MB, {len(self.failures)} failure(s)."
+            f"{self.outcomes.total()} inputs: {counts}; slowest {self.slowest_s:.1f} s "
+            f"({self.slowest}), most working time {self.hardest_s:.1f} s, most memory {self.peak_bytes / 1e6:.0f} MB, {len(self.failures)} failure(s)."
         )
 
 
@@ -371,7 +373,7 @@ def fuzz(n_inputs: int, first: int = 0, seconds: float = np.inf) -> Tally:
 
 
 def _one(number: int, seed: Seed, parts: tuple[Upload, ...], tally: Tally) -> None:
-    began = time.perf_counter()
+    began, worked_s = time.perf_counter(), _worked_s()
     try:
         became = read(seed, parts)
         tally.outcomes[became] += 1
@@ -383,9 +385,17 @@ def _one(number: int, seed: Seed, parts: tuple[Upload, ...], tally: Tally) -> No
         tally.failures.append(f"input {number} ({seed.name}): {last[:300]}")
     took_s = time.perf_counter() - began
     tally.peak_bytes = max(tally.peak_bytes, *guard.peaks_bytes(), 0)
-    tally.slowest_s = max(tally.slowest_s, took_s)
+    if took_s > tally.slowest_s:
+        tally.slowest_s, tally.slowest = took_s, f"input {number}"
+    spent = [now_s - worked_s.get(pid, 0.0) for pid, now_s in _worked_s().items()]
+    tally.hardest_s = max(tally.hardest_s, *spent, 0.0)
     if took_s > SECONDS:
         tally.failures.append(f"input {number} ({seed.name}) took {took_s:.1f} s")
+
+
+def _worked_s() -> dict[int, float]:
+    """Return how long each waiting reader has worked so far, its start included."""
+    return {one.pid: guard._work(one.pid).worked_s for one in guard._IDLE._readers}
 
 
 def main() -> None:

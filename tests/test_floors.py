@@ -8,7 +8,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 
 FLOORS = [
-    {"errors"},
+    {"errors", "compiled"},
     {"chance"},
     {"frame"},
     {"field"},

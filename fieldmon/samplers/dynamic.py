@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-import numba as nb
 import numpy as np
 
+from fieldmon.compiled import inlined, loop
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.aisles import Ground
-    from fieldmon.grid import Csr
+    from fieldmon.grid import Csr, PlantGrid
 
 # the upper bits of a positive float64 rise with it, in 8 steps an octave: 7 to 13 % each
 _LEVEL_BITS = 49
@@ -23,12 +23,27 @@ _LEVELS = (1023 << 3) + 1  # the level of a chance of 1, plus one
 
 
 class _Open(NamedTuple):
-    """The open list: a flag per plant, and per row how many are open and between which."""
+    """The open list: a flag per plant, and per row how many are open and between which.
+
+    And room to count plants by their level of suspicion.
+    """
 
     flag: NDArray[np.bool_]
     n_open: NDArray[np.int64]
     low: NDArray[np.int64]
     high: NDArray[np.int64]
+    tally: NDArray[np.int64]
+
+    @classmethod
+    def on(cls, grid: PlantGrid) -> _Open:
+        """Return an empty list."""
+        return cls(
+            np.zeros(len(grid), np.bool_),
+            np.zeros(grid.n_rows, np.int64),
+            grid.row_start[1:].copy(),
+            grid.row_start[:-1] - 1,
+            np.empty(_LEVELS, np.int64),
+        )
 
 
 @dataclass(frozen=True)
@@ -49,35 +64,29 @@ class Dynamic:
     def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
         """Return the stops of the rest of the day."""
         stops = scene.blank()
-        closed = scene.last_inspected == scene.day
+        lists = (scene.last_inspected == scene.day, _Open.on(scene.grid))
         k = _walk(
             scene.aisles.ground,
             scene.clock,
             (scene.grid.adjacent, scene.grid.lane_y_m, scene.chance.view(np.int64), would_find),
-            closed,
+            lists,
             scene.at,
             stops,
         )
         return Stops(stops.plant[:k], stops.arrive_s[:k])
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def _walk(
     ground: Ground,
     clock: Clock,
     plants: tuple[Csr, NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]],
-    closed: NDArray[np.bool_],
+    lists: tuple[NDArray[np.bool_], _Open],
     at: int,
     stops: Stops,
 ) -> int:
     adjacent, lane_y_m, chance_bits, would_find = plants
-    rows = ground.row_start.size - 1
-    opened = _Open(
-        np.zeros(closed.size, np.bool_),
-        np.zeros(rows, np.int64),
-        ground.row_start[1:].copy(),
-        ground.row_start[:-1] - 1,
-    )
+    closed, opened = lists
     now_s, k, left = 0.0, 0, 0
     while k < stops.plant.size:
         if left == 0:
@@ -103,7 +112,7 @@ def _walk(
     return k
 
 
-@nb.njit(cache=True)
+@inlined
 def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) -> int:
     """Put a plant on the open list; return how many joined it (0 or 1)."""
     if closed[plant] or opened.flag[plant]:
@@ -116,7 +125,7 @@ def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) 
     return 1
 
 
-@nb.njit(cache=True)
+@loop
 def _refill(
     ground: Ground,
     opened: _Open,
@@ -125,7 +134,8 @@ def _refill(
     room: int,
 ) -> int:
     """Open the suspicious plants that are not closed, `room` at most; return how many."""
-    tally = np.zeros(_LEVELS, np.int64)
+    tally = opened.tally
+    tally[:] = 0
     top = np.int64(0)
     for plant in range(closed.size):
         if not closed[plant]:
@@ -148,7 +158,7 @@ def _refill(
     return joined
 
 
-@nb.njit(cache=True)
+@inlined
 def _nearest(
     ground: Ground, clock: Clock, opened: _Open, lane_y_m: NDArray[np.float64], at: int
 ) -> int:
@@ -176,7 +186,7 @@ def _nearest(
     return best
 
 
-@nb.njit(cache=True)
+@inlined
 def _nearest_in(
     ground: Ground, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
@@ -186,7 +196,7 @@ def _nearest_in(
     return _nearest_end(ground, clock, opened, at, row)
 
 
-@nb.njit(cache=True)
+@inlined
 def _nearest_end(
     ground: Ground, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
@@ -204,19 +214,23 @@ def _nearest_end(
     return (low, low_s) if low_s <= high_s else (high, high_s)
 
 
-@nb.njit(cache=True)
+@inlined
 def _nearest_along(
     ground: Ground, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
     """Return the open plant of a row in the same aisle that is reached first, and the seconds."""
     best, best_s = -1, np.inf
     start, end = ground.row_start[row], ground.row_start[row + 1]
-    middle = start + np.searchsorted(ground.x_m[start:end], ground.x_m[at])
+    middle = at
+    if row != ground.row[at]:
+        middle = start + np.searchsorted(ground.x_m[start:end], ground.x_m[at])
     for plant in range(middle, end):
         if opened.flag[plant]:
             best, best_s = plant, travel_s(ground, clock, at, plant)
             break
     for plant in range(middle - 1, start - 1, -1):
+        if (ground.x_m[at] - ground.x_m[plant]) / clock.speed_m_s >= best_s:
+            break
         if opened.flag[plant]:
             plant_s = travel_s(ground, clock, at, plant)
             if plant_s < best_s:

@@ -19,13 +19,12 @@ if TYPE_CHECKING:
 # the upper bits of a positive float64 rise with it, in 8 steps an octave: 7 to 13 % each
 _LEVEL_BITS = 49
 _HALF = 8
-_LEVELS = (1023 << 3) + 1  # the level of a chance of 1, plus one
 
 
 class _Open(NamedTuple):
     """The open list: a flag per plant, and per row how many are open and between which.
 
-    And room to count plants by their level of suspicion.
+    And room to count plants by how many levels they are below the most suspicious.
     """
 
     flag: NDArray[np.bool_]
@@ -42,7 +41,7 @@ class _Open(NamedTuple):
             np.zeros(grid.n_rows, np.int64),
             grid.row_start[1:].copy(),
             grid.row_start[:-1] - 1,
-            np.empty(_LEVELS, np.int64),
+            np.empty(_HALF, np.int64),
         )
 
 
@@ -134,26 +133,27 @@ def _refill(
     room: int,
 ) -> int:
     """Open the suspicious plants that are not closed, `room` at most; return how many."""
-    tally = opened.tally
-    tally[:] = 0
-    top = np.int64(0)
+    most = np.int64(0)
     for plant in range(closed.size):
-        if not closed[plant]:
-            own = chance_bits[plant] >> _LEVEL_BITS
-            tally[own] += 1
-            top = max(top, own)
-    level, above = top, 0
-    while level > max(top - _HALF, np.int64(0)) and above + tally[level] < room:
-        above += tally[level]
-        level -= 1
+        most = max(most, np.int64(0) if closed[plant] else chance_bits[plant])
+    top = most >> _LEVEL_BITS
+    opened.tally[:] = 0
+    for plant in range(closed.size):
+        below = top - (chance_bits[plant] >> _LEVEL_BITS)
+        if below < _HALF and not closed[plant]:
+            opened.tally[below] += 1
+    least, above = 0, 0
+    while least < min(_HALF, top) and above + opened.tally[least] < room:
+        above += opened.tally[least]
+        least += 1
     even = room - above
     joined = 0
     for plant in range(closed.size):
-        if closed[plant]:
+        below = top - (chance_bits[plant] >> _LEVEL_BITS)
+        if below > least or closed[plant]:
             continue
-        own = chance_bits[plant] >> _LEVEL_BITS
-        if own > level or (own == level and even > 0):
-            even -= own == level
+        if below < least or even > 0:
+            even -= below == least
             joined += _open(ground, opened, closed, plant)
     return joined
 

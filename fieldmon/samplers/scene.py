@@ -32,6 +32,18 @@ class Clock(NamedTuple):
     returns: bool
 
 
+def robot_clock(robot: Robot, seconds_left: float) -> Clock:
+    """Return a robot's numbers for so much of a day."""
+    return Clock(
+        robot.speed_m_s,
+        robot.row_change_s,
+        robot.turn_180_s,
+        robot.visit_s,
+        float(seconds_left),
+        robot.returns,
+    )
+
+
 class Stops(NamedTuple):
     """The plants inspected in order, ``(k,)`` int32, and the seconds at arrival, ``(k,)``."""
 
@@ -91,15 +103,7 @@ class Scene:
     @property
     def clock(self) -> Clock:
         """Return the robot's numbers for the rest of the day."""
-        robot = self.robot
-        return Clock(
-            robot.speed_m_s,
-            robot.row_change_s,
-            robot.turn_180_s,
-            robot.visit_s,
-            float(self.seconds_left),
-            robot.returns,
-        )
+        return robot_clock(self.robot, self.seconds_left)
 
     def blank(self) -> Stops:
         """Return room for as many stops as the time left or the plants allow."""

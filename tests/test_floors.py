@@ -20,7 +20,7 @@ FLOORS = [
     {"route"},
     {"season", "hotspots", "history"},
     {"metrics", "thesis", "monitor"},
-    {"study", "project"},
+    {"study", "batch", "project"},
     {"cli_parts"},
     {"cli"},
 ]

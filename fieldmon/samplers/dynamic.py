@@ -135,15 +135,17 @@ def _refill(
     """Open the suspicious plants that are not closed, `room` at most; return how many."""
     most = np.int64(0)
     for plant in range(closed.size):
-        most = max(most, np.int64(0) if closed[plant] else chance_bits[plant])
+        if chance_bits[plant] > most and not closed[plant]:
+            most = chance_bits[plant]
     top = most >> _LEVEL_BITS
     opened.tally[:] = 0
     for plant in range(closed.size):
         below = top - (chance_bits[plant] >> _LEVEL_BITS)
         if below < _HALF and not closed[plant]:
             opened.tally[below] += 1
+    most_below = min(_HALF, int(top))
     least, above = 0, 0
-    while least < min(_HALF, top) and above + opened.tally[least] < room:
+    while least < most_below and above + opened.tally[least] < room:
         above += opened.tally[least]
         least += 1
     even = room - above

@@ -10,6 +10,7 @@ import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numba as nb
 import numpy as np
 
 from fieldmon.compiled import inlined, loop
@@ -113,14 +114,10 @@ def coin(key: np.uint64, i: int) -> float:
     return float(z >> _S11) * (1.0 / 9007199254740992.0)
 
 
+@nb.njit(cache=True, nogil=True)
 def coin_table(key: np.uint64, n: int) -> NDArray[np.float64]:
     """Return the first `n` entries of the table that `key` names, ``(n,)``."""
     table = np.empty(n)
-    _toss(key, table)
-    return table
-
-
-@loop
-def _toss(key: np.uint64, table: NDArray[np.float64]) -> None:
-    for i in range(table.size):
+    for i in range(n):
         table[i] = coin(key, i)
+    return table

@@ -8,17 +8,23 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon import cli_study_run
 from fieldmon.errors import FileProblem
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-app = typer.Typer(no_args_is_help=True, help="Published experiments, made again.")
+app = typer.Typer(
+    no_args_is_help=True, help="Published experiments, made again, and studies of one's own."
+)
+
+
+cli_study_run.register(app)
 
 
 @app.callback()
 def study() -> None:
-    """Make published experiments again."""
+    """Make published experiments again, or run a study of one's own plots."""
 
 
 @app.command("no-prior")

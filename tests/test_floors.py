@@ -78,7 +78,7 @@ def breaches(here: str, source: str) -> list[str]:
         if there == here:
             continue
         if there == "geodata":
-            allowed = here in CLI | {"project"}
+            allowed = here in CLI | {"project", "study"}
         elif here == "geodata":
             allowed = FLOOR.get(there, 99) <= FLOOR["monitor"]
         else:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from fieldmon.field import Field, Observations
+    from fieldmon.geodata.crews import Crew
     from fieldmon.geodata.findings import Finding, Imported
     from fieldmon.geodata.places import Places
     from fieldmon.geodata.places import Plants as Measured
@@ -147,6 +148,10 @@ Outputs = Annotated[
         "route.geojson if none.",
     ),
 ]
+EveryPlot = Annotated[
+    bool,
+    typer.Option("--all", help="Every plot of the file; --output is the folder of routes then."),
+]
 On = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; today.")]
 FlagOnly = Annotated[
     bool,
@@ -245,6 +250,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     canopy_below: cli_raster.CanopyBelow = None,
     canopy_option: cli_raster.CanopyChoices = None,
     chance_map: cli_raster.ChanceMap = None,
+    every_plot: EveryPlot = False,  # noqa: FBT002 - a flag
 ) -> None:
     """Plan today's route on a plot or in a season, and write it for whoever drives.
 
@@ -257,6 +263,10 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
 
     Example: fieldmon plan vines.zip --feature 3 --observations mites.csv --hours 6 -o route.geojson
     Example: fieldmon plan season.gpkg -o route.geojson
+    Example: fieldmon plan estate.zip --all --observations mites.csv -o routes
+
+    With --all, columns robot (robot or scout), hours, speed_km_h and look_s of the plot file say
+    who works on each plot; options given here go before them.
     """
     from fieldmon.geodata.routes import RouteNotes  # noqa: PLC0415
     from fieldmon.monitor import Plans, first_day  # noqa: PLC0415
@@ -267,7 +277,8 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     if now is not None:
         raise SettingError("--now needs a season (see fieldmon init), but this is a plot file.")
     day, begins = _day(on), _clock(start)
-    plans = Plans(_robot(scout, hours, look, speed, row_change, turn), _sampler(sampler, every))
+    robot = _robot(scout, hours, look, speed, row_change, turn)
+    plans = Plans(robot, _sampler(sampler, every))
     given = {
         "row_bearing_deg": bearing,
         "row_spacing_m": row_spacing,
@@ -275,6 +286,27 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         "headland_m": headland,
         "faces": 2 if both_faces else None,
     }
+    if every_plot:
+        if plot is None or (plants, gate, feature) != (None, None, None):
+            raise SettingError(
+                "--all plans every plot of one plot file: leave out --feature, --plants and --gate."
+            )
+        by_hand = {
+            "hours": hours,
+            "look_s": look,
+            "speed_m_s": speed and robot.speed_m_s,
+            "row_change_s": row_change,
+            "turn_180_s": turn,
+        }
+        who = (sampler, every, scout)
+        crews = _read_crews(plot, paths, crs, layer, plot_option)
+        records = _read_all_records(observations, record_option)
+        began = datetime.combine(day.astype(date), begins)
+        if output is not None and len(output) > 1:
+            raise SettingError("--all writes into one folder, but several --output were given.")
+        folder = output[0] if output else Path("routes")
+        _plan_all(crews, records, (who, by_hand, given), (folder, began))
+        return
     if plot is None:
         laid = _around(plants, plants_option, gate, given)
     else:
@@ -551,6 +583,76 @@ def _plots_of(
             options = options.choose(name, value)
     with _asking("--plot-option"):
         return read_plots(path, _chosen(options, more))
+
+
+def _read_crews(
+    path: Path,
+    paths: Path | None,
+    crs: str | None,
+    layer: str | None,
+    more: list[str] | None,
+) -> list[tuple[Field, Crew]]:
+    """Return every plot of a file, and who works on it."""
+    from dataclasses import replace  # noqa: PLC0415
+
+    from fieldmon.geodata.options import PlotOptions, ReadOptions  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_crews, read_lines  # noqa: PLC0415
+
+    options = PlotOptions()
+    for name, value in (("crs", crs), ("layer", layer)):
+        if value is not None:
+            options = options.choose(name, value)
+    with _asking("--plot-option"):
+        read, crews = read_crews(path, _chosen(options, more))
+    _tell(read.findings)
+    fields = read.value
+    if paths is not None:
+        lines = read_lines(paths, ReadOptions())
+        _tell(lines.findings)
+        fields = tuple(replace(field, paths=lines.value) for field in fields)
+    return [(field, crews[field.name]) for field in fields]
+
+
+def _read_all_records(path: Path | None, more: list[str] | None) -> Observations:
+    """Return the records of all plots."""
+    from fieldmon.field import Observations  # noqa: PLC0415
+
+    if path is None:
+        return Observations.none()
+    from fieldmon.geodata.options import RecordOptions  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_records  # noqa: PLC0415
+
+    with _asking("--record-option"):
+        read = read_records(path, _chosen(RecordOptions(), more))
+    _tell(read.findings)
+    return read.value
+
+
+def _plan_all(
+    plots: list[tuple[Field, Crew]],
+    records: Observations,
+    ordered: tuple[tuple[SamplerName, int | None, bool], dict[str, Any], dict[str, Any]],
+    to: tuple[Path, datetime],
+) -> None:
+    """Plan every plot into a folder, given who chooses, the robot's settings and the planting's."""
+    import numpy as np  # noqa: PLC0415
+
+    from fieldmon import cli_batch  # noqa: PLC0415
+    from fieldmon.batch import Orders  # noqa: PLC0415
+    from fieldmon.samplers import EVERY  # noqa: PLC0415
+
+    (name, every, scout), robot, planting = ordered
+    folder, began = to
+    orders = Orders(
+        day=np.datetime64(began.date(), "D"),
+        sampler=name.value,
+        every=every if name.value in EVERY else None,
+        on_foot=scout,
+        robot={setting: value for setting, value in robot.items() if value is not None},
+        planting={setting: value for setting, value in planting.items() if value is not None},
+    )
+    _hear(records, orders.day)
+    cli_batch.plan_all(plots, orders, cli_batch.Day(records, folder, began))
 
 
 def _read_records(

@@ -1,0 +1,32 @@
+"""The report: the day or the season on paper."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from app import keeping, panels, report, texts
+
+if TYPE_CHECKING:
+    from app.choices import Choices
+
+
+def show(choices: Choices) -> None:
+    """Show the report, and hand it out."""
+    st.subheader(f"{choices.name}: {texts.REPORT}")
+    st.caption(texts.REPORT_INTRO)
+    today = choices.today()
+    statuses = [] if choices.project is None else keeping.statuses(choices)
+    facts = report.Facts(
+        choices.plot.field.name, choices.units.day(choices.day), choices.units,
+        panels.chance_of(choices), panels.states_of(choices), choices.robot,
+        texts.SAMPLERS[choices.sampler],
+    )  # fmt: skip
+    page = report.html(facts, today, panels.stops(choices, today), statuses)
+    st.download_button(
+        texts.REPORT_DOWNLOAD, page, f"report_{choices.day}.html", "text/html", type="primary",
+        on_click="ignore",
+    )  # fmt: skip
+    st.markdown(f"**{texts.REPORT_PREVIEW}**")
+    st.html(report.body_only(page))

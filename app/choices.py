@@ -145,7 +145,7 @@ def _open(name: str) -> Choices:
     setup, key = project.setup, str(project.path)
     day = st.date_input(
         texts.DATE, project.last_date(), min_value=setup.begins, key=_DAY.format(season=name),
-        persist_state="session",
+        persist_state="session", format=read_units().date_format,
     )  # fmt: skip
     heard = tuple(Heard(key, cached.finding_of(remark)) for remark in cached.remarks(key, project))
     choices = Choices(
@@ -281,7 +281,10 @@ def _records(
 
 def _work(where: str) -> tuple[Robot, str, str]:
     first = LAST_SAMPLE_DAY if where == texts.SAMPLE else "today"
-    day = st.date_input(texts.DATE, first, key=_DAY.format(season=where), persist_state="session")
+    day = st.date_input(
+        texts.DATE, first, key=_DAY.format(season=where), persist_state="session",
+        format=read_units().date_format,
+    )  # fmt: skip
     with st.expander(texts.WHO, expanded=True):
         who = st.segmented_control(
             texts.WHO, [texts.ROBOT, texts.SCOUT], default=texts.ROBOT, key="who", required=True,

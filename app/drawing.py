@@ -1,4 +1,4 @@
-"""Drawing on the plot by clicks or typed positions: gate, paths, no-go areas; each can be undone."""
+"""Drawing on the plot by clicks or typed positions: gate, paths, no-go areas; with undo."""
 
 from __future__ import annotations
 

@@ -197,7 +197,7 @@ def batches(choices: Choices) -> None:
             continue
         left, right = st.columns([4, 1], vertical_alignment="center")
         undone = f" ({texts.UNDONE})" if batch.undone else ""
-        when = batch.at  # noqa: PD008 - a time, no pandas
+        when = batch.at
         left.markdown(f"{when[:16].replace('T', ' ')} · {batch.source or batch.kind} · "
                       f"{batch.rows}{undone}")  # fmt: skip
         if not batch.undone:

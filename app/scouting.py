@@ -46,6 +46,13 @@ def now() -> datetime:
     return datetime(*utc[:6]) - timedelta(minutes=minutes)  # noqa: DTZ001 - local time is meant
 
 
+def give_out(choices: Choices) -> None:
+    """Keep the day's route with the season when the scouting begins."""
+    route = cached.season_route(choices.key, choices.revision, choices.day, choices.project)
+    if not len(route):
+        choices.project.plan(choices.on)
+
+
 def status(choices: Choices) -> Status:
     """Return where the season stands today."""
     return cached.status(choices.key, choices.revision, choices.day, choices.project)

@@ -41,6 +41,12 @@ class Units:
         """Return an area."""
         return f"{value_m2 / AREAS_M2[self.area]:,.2f} {self.area}"
 
+    @property
+    def date_format(self) -> str:
+        """Return how dates are typed in, in Streamlit's letters."""
+        form = DATES[self.date_like]
+        return form.replace("%Y", "YYYY").replace("%m", "MM").replace("%d", "DD")
+
     def day(self, on: date | str) -> str:
         """Return a date."""
         day = date.fromisoformat(on) if isinstance(on, str) else on

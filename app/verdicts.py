@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from . import texts
+from .comparing import Estimate
 
 if TYPE_CHECKING:
-    from .comparing import Arm, Estimate, Outcome
+    from .comparing import Arm, Outcome
 
 
 def armname(sampler: str, hours: float, look_s: float) -> str:
@@ -45,12 +46,17 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
         {
             texts.COLUMN_WAY: [name(o.arm) for o in ranked],
             texts.COLUMN_LOSS: [_interval(o.loss, "{:,.0f}") for o in ranked],
-            texts.COLUMN_FOUND: [_interval(o.detection_pct, "{:.1f} %") for o in ranked],
+            texts.COLUMN_FOUND: [_interval(_share(o.detection_pct), "{:.1f} %") for o in ranked],
             texts.COLUMN_VISITED: [f"{o.visited_pct:.1f} %" for o in ranked],
             texts.COLUMN_HALF: ["-" if o.half_day is None else f"{o.half_day:g}" for o in ranked],
             texts.COLUMN_VERDICT: [_word(o, base) for o in ranked],
         }
     )
+
+
+def _share(e: Estimate) -> Estimate:
+    """Return an estimate of a percentage within 0 to 100, which Student's t does not know of."""
+    return Estimate(e.mean, max(e.low, 0.0), min(e.high, 100.0))
 
 
 def _interval(e: Estimate, form: str) -> str:

@@ -22,7 +22,7 @@ def show(choices: Choices) -> None:
         names = dict(texts.MAP_LAYERS)
         shown = st.pills(
             texts.LAYERS, list(names), format_func=names.__getitem__, selection_mode="multi",
-            default=["route", "hot"], key="map_layers", persist_state="session",
+            default=["route", "hot"], key="map_layers", wrap=True, persist_state="session",
         )  # fmt: skip
         rows = _rows(choices)
         if "backdrop" in shown:

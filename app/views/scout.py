@@ -25,6 +25,7 @@ def show(choices: Choices) -> None:
         st.markdown(texts.SCOUT_NEEDS)
         return
     st.html(_BIG)
+    scouting.give_out(choices)
     scouting.ask_start(choices)
     today = choices.today()
     status = scouting.status(choices)

@@ -64,7 +64,6 @@ def _hand_out(choices: Choices, today: Today) -> None:
             if st.button(texts.GIVE_OUT, help=texts.GIVE_OUT_HELP, key="give_out"):
                 choices.project.plan(choices.on)
                 st.toast(texts.GIVEN_OUT.format(day=choices.units.day(choices.day)))
-            if st.button(texts.START_SCOUTING, key="start_scouting", icon=":material/eco:"):
-                choices.project.plan(choices.on)
-                st.switch_page(st.session_state["scout_page"])
+            st.page_link(st.session_state["scout_page"], label=texts.START_SCOUTING,
+                         icon=":material/eco:")  # fmt: skip
     st.caption(texts.PHONE_FORMATS)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from contextlib import contextmanager
+from contextvars import ContextVar
 from datetime import date, datetime
 from enum import StrEnum
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from fieldmon import cli_study
+from fieldmon import cli_season, cli_study
 from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ app = typer.Typer(
 
 
 app.add_typer(cli_study.app, name="study")
+cli_season.register(app)
 
 
 class SamplerName(StrEnum):
@@ -122,6 +124,13 @@ BothFaces = Annotated[
     bool, typer.Option("--both-faces", help="Inspect both faces of each row, each from its aisle.")
 ]
 On = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; today.")]
+FlagOnly = Annotated[
+    bool,
+    typer.Option(
+        "--flag-only", help="Plants found infested are only flagged, not treated at once."
+    ),
+]
+StartTime = Annotated[str, typer.Option(help="Local time the work starts, HH:MM.")]
 
 
 def main() -> None:
@@ -173,6 +182,7 @@ def plots(
 
 @app.command()
 def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
+    context: typer.Context,
     plot: MaybePlotFile = None,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Route file to write (GeoJSON).")
@@ -182,7 +192,11 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     sampler: Annotated[SamplerName, typer.Option(help="Who chooses.")] = SamplerName.DYNAMIC,
     every: Every = None,
     on: On = None,
-    start: Annotated[str, typer.Option(help="Local time the work starts, HH:MM.")] = "06:00",
+    start: StartTime = "06:00",
+    now: Annotated[
+        str | None,
+        typer.Option(help="Of a season: plan the rest of the day from this local time, HH:MM."),
+    ] = None,
     hours: Hours = None,
     look: Look = None,
     speed: Speed = None,
@@ -202,17 +216,26 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     plot_option: Choices = None,
     record_option: RecordChoices = None,
 ) -> None:
-    """Plan today's route on a plot, and write it as GeoJSON.
+    """Plan today's route on a plot or in a season, and write it as GeoJSON.
 
     The file holds the line to drive, which crosses no row of plants, and the stops in order with
     arrival time, row, plant and chance of infestation. Without observations every plant has the
     same chance but for the plot's edge, from which insects come.
 
+    In a season (see fieldmon init) the route follows from everything recorded so far; on a day of
+    which something was recorded already, it is the rest of the day's.
+
     Example: fieldmon plan vines.zip --feature 3 --observations mites.csv --hours 6 -o route.geojson
+    Example: fieldmon plan season.gpkg -o route.geojson
     """
     from fieldmon.geodata.routes import RouteNotes, write_route  # noqa: PLC0415
     from fieldmon.monitor import Plans, first_day  # noqa: PLC0415
 
+    if plot is not None and cli_season.is_season(plot):
+        cli_season.plan_season(context, plot, output)
+        return
+    if now is not None:
+        raise SettingError("--now needs a season (see fieldmon init), but this is a plot file.")
     day, begins = _day(on), _clock(start)
     plans = Plans(_robot(scout, hours, look, speed, row_change, turn), _sampler(sampler, every))
     given = {
@@ -244,6 +267,88 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         f"about {route.expected_finds * plans.robot.detects:.1f} of these would be found."
     )
     typer.echo(f"Route written to {output}")
+
+
+@app.command()
+def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
+    season: Annotated[Path, typer.Argument(help="File of the season to make: season.gpkg.")],
+    plot: MaybePlotFile = None,
+    observations: Records = None,
+    feature: Feature = None,
+    sampler: Annotated[SamplerName, typer.Option(help="Who chooses.")] = SamplerName.DYNAMIC,
+    every: Every = None,
+    on: Annotated[
+        str | None, typer.Option("--begins", help="First day of the season, YYYY-MM-DD; today.")
+    ] = None,
+    start: StartTime = "06:00",
+    flag_only: FlagOnly = False,  # noqa: FBT002 - a flag
+    spread: Annotated[
+        float, typer.Option(help="Chance a night that a plant infests its neighbour, as believed.")
+    ] = 0.02,
+    seed: Annotated[int, typer.Option(help="For samplers that draw.")] = 1,
+    hours: Hours = None,
+    look: Look = None,
+    speed: Speed = None,
+    row_change: RowChange = None,
+    turn: Turn = None,
+    scout: Scout = False,  # noqa: FBT002 - a flag
+    bearing: Bearing = None,
+    row_spacing: RowSpacing = None,
+    plant_spacing: PlantSpacing = None,
+    headland: Headland = None,
+    both_faces: BothFaces = False,  # noqa: FBT002 - a flag
+    gate: Gate = None,
+    plants: Plants = None,
+    paths: Paths = None,
+    crs: Crs = None,
+    layer: Layer = None,
+    plot_option: Choices = None,
+    record_option: RecordChoices = None,
+) -> None:
+    """Begin a season on a plot: one GeoPackage that grows with every day's findings.
+
+    QGIS and QField open it as it is. Then, every day: fieldmon plan, the work, fieldmon record.
+
+    Example: fieldmon init season.gpkg estate.zip --feature Gate --observations mites.csv
+    """
+    from dataclasses import replace  # noqa: PLC0415
+
+    from fieldmon.history import Beliefs  # noqa: PLC0415
+    from fieldmon.project import Project, Setup  # noqa: PLC0415
+    from fieldmon.samplers import EVERY  # noqa: PLC0415
+
+    day, beliefs = _day(on), Beliefs(treated=not flag_only)
+    setup = Setup(
+        day.astype(date),
+        _clock(start),
+        _robot(scout, hours, look, speed, row_change, turn),
+        sampler.value,
+        {} if every is None or sampler.value not in EVERY else {"every": every},
+        beliefs=replace(beliefs, spread=replace(beliefs.spread, rate_per_day=spread)),
+        seed=seed,
+    )
+    given = {
+        "row_bearing_deg": bearing,
+        "row_spacing_m": row_spacing,
+        "plant_spacing_m": plant_spacing,
+        "headland_m": headland,
+        "faces": 2 if both_faces else None,
+    }
+    with _noting() as notes:
+        if plot is None:
+            laid = _around(plants, gate, given)
+        else:
+            fields = _read_plots(plot, feature, crs, layer, plot_option)
+            laid = _lay(_place(fields, plants, paths, gate, feature), given)
+        records = _read_records(observations, laid, record_option)
+    _hear(records, day)
+    project = Project.create(season, laid, records, setup, cli_season.remarks(notes))
+    ahead = project.status(setup.begins).outlook
+    typer.echo(
+        f"Season begun in {season}: {len(records)} records, about {ahead.expected:.0f} plants "
+        f"believed infested ({ahead.low} to {ahead.high})."
+    )
+    typer.echo(f"Next: fieldmon plan {season} -o route.geojson")
 
 
 @app.command()
@@ -376,7 +481,7 @@ def _read_plots(
             options = options.choose(name, value)
     with _asking("--plot-option"):
         read = read_plots(path, _chosen(options, more))
-    _tell(read.findings)
+    _tell(read.findings, path)
     return read.value
 
 
@@ -390,7 +495,7 @@ def _read_records(path: Path | None, plot: Plot, more: list[str] | None) -> Obse
 
     with _asking("--record-option"):
         read = read_records(path, _chosen(RecordOptions(), more), near=plot.field)
-    _tell(read.findings)
+    _tell(read.findings, path)
     return read.value
 
 
@@ -419,11 +524,11 @@ def _place(
     field = fields[0]
     if plants is not None:
         measured = read_plants(plants, ReadOptions())
-        _tell(measured.findings)
+        _tell(measured.findings, plants)
         field = replace(field, plants=measured.value.lonlat.copy())
     if paths is not None:
         lines = read_lines(paths, ReadOptions())
-        _tell(lines.findings)
+        _tell(lines.findings, paths)
         field = replace(field, paths=lines.value)
     return field if gate is None else replace(field, gate=_lonlat(gate))
 
@@ -456,7 +561,7 @@ def _around(plants: Path | None, gate: str | None, given: dict[str, float | None
     if plants is None:
         raise SettingError("Give a plot file, or the positions of its plants with --plants FILE.")
     measured = read_plants(plants, ReadOptions())
-    _tell(measured.findings)
+    _tell(measured.findings, plants)
     by_hand = {name: value for name, value in given.items() if value is not None}
     lonlat = measured.value.lonlat.copy()
     planting = Planting(**by_hand)  # type: ignore[arg-type]
@@ -542,9 +647,26 @@ def _asking(flag: str) -> Iterator[None]:
         ) from None
 
 
-def _tell(findings: Iterable[Finding]) -> None:
+def _tell(findings: Iterable[Finding], source: object = "") -> None:
     for finding in findings:
         typer.echo(str(finding), err=True)
+        for notes in _NOTES.get():
+            notes.append((str(source), finding))
+
+
+# what is being noted beside being printed, see _noting
+_NOTES: ContextVar[tuple[list[tuple[str, Finding]], ...]] = ContextVar("notes", default=())
+
+
+@contextmanager
+def _noting() -> Iterator[list[tuple[str, Finding]]]:
+    """Note what imports have to say, with the file it is about."""
+    notes: list[tuple[str, Finding]] = []
+    token = _NOTES.set((notes,))
+    try:
+        yield notes
+    finally:
+        _NOTES.reset(token)
 
 
 def _hear(records: Observations, day: Any) -> None:  # noqa: ANN401 - a numpy day

@@ -51,14 +51,19 @@ def refresh(
     setup: Setup,
     history: History,
     morning: Callable[[int], NDArray[np.float64]],
+    since: int = 0,
 ) -> None:
-    """Write the layers anew, as of the last day on which anything happened."""
+    """Write the layers anew, as of the last day on which anything happened.
+
+    What is known of days before `since` did not change.
+    """
     worked = [int(day) for day in np.unique(history.inspections.day)]
     planned = [day for (day,) in db.execute("SELECT DISTINCT day FROM routes")]
     treated = [treatment.day for treatment in history.treatments]
     days = sorted({0, *worked, *planned, *treated})
-    db.execute("DELETE FROM days")
-    insert(db, schema.DAYS, [_day_row(setup, history, morning(day), day) for day in days])
+    db.execute("DELETE FROM days WHERE day >= ?", (since,))
+    rows = [_day_row(setup, history, morning(day), day) for day in days if day >= since]
+    insert(db, schema.DAYS, rows)
     spots = _write_spots(db, plot, history, days[-1])
     _write_states(db, setup, history, spots, (days[-1], morning(days[-1])))
 

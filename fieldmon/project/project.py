@@ -230,7 +230,7 @@ class Project:
             if keep:
                 with self.store.writing() as db:
                     if kept_routes.keep(db, setup, self.label, today):
-                        self._refresh(db)
+                        self._refresh(db, day)
         return today
 
     def kept_route(self, on: date) -> NDArray[np.int32]:
@@ -251,11 +251,11 @@ class Project:
         """
         with self._lock, self.store.writing() as db:
             batch = batches.begin(db, "findings", source, who)
-            made = results.rows(found, self.plot.grid, self.label, _setup(db), batch)
+            made = results.rows(found, self.plot.grid, self.label, _setup(db), (batch, who))
             new = results.store(db, made)
             batches.end(db, batch, new)
             if new:
-                self._refresh(db)
+                self._refresh(db, _setup(db).day(found.day.min().item()))
         return Recorded(batch if new else None, new, len(found) - new)
 
     def treat(
@@ -285,7 +285,7 @@ class Project:
             batches.end(db, batch, new)
             touch(db, schema.TREATMENTS.name, ground.bounds)
             if new:
-                self._refresh(db)
+                self._refresh(db, day)
         return Recorded(batch if new else None, new, 1 - new)
 
     def undo(self, batch: int | None = None, inspection: int | None = None) -> str:
@@ -369,6 +369,11 @@ class Project:
                 if derived.digest(snapshot.morning(day)) != digest
             )
 
+    def rebuild(self) -> None:
+        """Write all layers that follow from the causes anew."""
+        with self._lock, self.store.writing() as db:
+            self._refresh(db)
+
     # -- inside
 
     def _now(self) -> _Snapshot:
@@ -410,11 +415,11 @@ class Project:
         inside: NDArray[np.bool_] = shapely.intersects_xy(ground, self.plot.grid.xy_m)
         return inside
 
-    def _refresh(self, db: sqlite3.Connection) -> None:
+    def _refresh(self, db: sqlite3.Connection, since: int = 0) -> None:
         """Write what follows from the causes, within the transaction that changes them."""
         self._last = None
-        snapshot = self._read(db)
-        derived.refresh(db, self.plot, snapshot.setup, snapshot.history, snapshot.morning)
+        now = self._read(db)
+        derived.refresh(db, self.plot, now.setup, now.history, now.morning, since)
         self._last = None  # the transaction may yet fail
 
 

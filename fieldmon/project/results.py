@@ -93,9 +93,13 @@ class Results:
 
 
 def rows(
-    results: Results, grid: PlantGrid, label: RowLabel, setup: Setup, batch: int
+    results: Results, grid: PlantGrid, label: RowLabel, setup: Setup, batch: tuple[int, str]
 ) -> list[tuple[object, ...]]:
-    """Return results as rows of the table of inspections; raise where they do not fit."""
+    """Return results as rows of the table of inspections; raise where they do not fit.
+
+    `batch` is its number and whose results these are where they do not say. Who brings a file is
+    no part of what it says: the same file brought by another person changes nothing.
+    """
     _check(results, grid)
     dates = {day: day.item() for day in np.unique(results.day)}
     number = {day: setup.day(date) for day, date in dates.items()}
@@ -114,7 +118,8 @@ def rows(
         made.append(
             (
                 *(places[k], plant, int(label.line[plant]), int(label.number[plant])),
-                *(number[day], date, at, NAMES[code], told, who, notes, batch, mark, 0),
+                *(number[day], date, at, NAMES[code], told, who or batch[1], notes),
+                *(batch[0], mark, 0),
             )
         )
     return made

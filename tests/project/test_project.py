@@ -313,3 +313,14 @@ def test_a_map_made_otherwise_is_noticed(season):
 def test_a_date_of_no_season_is_a_sentence(season):
     with pytest.raises(SettingError, match="began on 2026-04-06"):
         season.plan(date(2026, 4, 1))
+
+
+def test_findings_that_come_late_change_every_day_after_them(season):
+    for day in (0, 2, 4):
+        season.record(some_results(season, day=day), f"day {day}")
+    late = some_results(season, n=3, day=1, found=[0])
+    season.record(late, "found in a drawer")
+    assert season.verify() == ()
+    with season.store.reading() as db:
+        rows = db.execute("SELECT day, inspected, found FROM days ORDER BY day").fetchall()
+    assert rows == [(0, 5, 0), (1, 3, 1), (2, 5, 0), (4, 5, 0)]

@@ -95,12 +95,12 @@ def season_days(statuses: list[Status], axes: tuple[str, str, str]) -> alt.Layer
     """Return plants inspected and found on each day of a season."""
     table = pd.DataFrame(
         {
-            "day": [str(s.on) for s in statuses],
+            "day": [str(s.on)[5:] for s in statuses],
             "inspected": [s.inspected_today for s in statuses],
             "found": [s.found_today for s in statuses],
         }
     )
-    x = alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=-45))
+    x = alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True))
     tip = ["day", "inspected", "found"]
     bars = (
         alt.Chart(table)
@@ -119,14 +119,14 @@ def still_out(statuses: list[Status], axes: tuple[str, str]) -> alt.LayerChart:
     """Return the expected number of infested plants by day, with its interval."""
     table = pd.DataFrame(
         {
-            "day": [str(s.on) for s in statuses],
+            "day": [str(s.on)[5:] for s in statuses],
             "expected": [s.outlook.expected for s in statuses],
             "low": [s.outlook.low for s in statuses],
             "high": [s.outlook.high for s in statuses],
         }
     )
     base = alt.Chart(table).encode(
-        x=alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=-45)),
+        x=alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True)),
         tooltip=["day", alt.Tooltip("expected:Q", format=".1f"), "low", "high"],
     )
     band = base.mark_bar(opacity=0.3, color=_COLOURS[0], width=10).encode(y="low:Q", y2="high:Q")
@@ -145,8 +145,8 @@ def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64],
         alt.Chart(table)
         .mark_bar(color=_COLOURS[2])
         .encode(
-            x=alt.X("row:Q", title=axes[0], axis=alt.Axis(tickMinStep=1)),
-            y=alt.Y("days:Q", title=axes[1], axis=alt.Axis(tickMinStep=1)),
+            x=alt.X("row:Q", title=axes[0], axis=alt.Axis(tickMinStep=1, format="d")),
+            y=alt.Y("days:Q", title=axes[1], axis=alt.Axis(tickMinStep=1, format="d")),
             tooltip=["row", "days"],
         )
         .properties(height=180)

@@ -40,9 +40,11 @@ CLEAN: Colour = (90, 160, 230)
 NEVER: Colour = (150, 150, 145)
 TRUTH: Colour = (0, 0, 0)
 ROUTE: Colour = (20, 80, 200)
+ROUTE_IN_DARK: Colour = (110, 220, 255)
 GATE: Colour = (0, 140, 90)
 HOT: Colour = (140, 40, 180)
 OUTLINE: Colour = (70, 80, 70)
+OUTLINE_IN_DARK: Colour = (190, 200, 190)
 
 # more plants than this travel as one picture
 POINTS_AT_MOST = 20_000
@@ -135,7 +137,7 @@ def view(grid: PlantGrid, *, phone: bool = False) -> pdk.ViewState:
     )
 
 
-def boundary(field: Field) -> Layer:
+def boundary(field: Field, *, dark: bool = False) -> Layer:
     """Return the plot's outline, holes and no-go areas."""
     rings = [
         {"path": np.round(shapely.get_coordinates(ring), 7).tolist()}
@@ -147,7 +149,7 @@ def boundary(field: Field) -> Layer:
         rings,
         id="boundary",
         get_path="path",
-        get_color=list(OUTLINE),
+        get_color=list(OUTLINE_IN_DARK if dark else OUTLINE),
         get_width=0.5,
         width_min_pixels=1.5,
     )
@@ -233,11 +235,11 @@ def _picture(grid: PlantGrid, shade: Shade) -> Layer:
     )
 
 
-def route(the_route: Route, *, numbers: bool = True) -> list[Layer]:
+def route(the_route: Route, *, numbers: bool = True, dark: bool = False) -> list[Layer]:
     """Return the driven line with arrows in its direction, the gate, and stop numbers."""
     if not len(the_route):
         return []
-    colour = list(ROUTE)
+    colour = list(ROUTE_IN_DARK if dark else ROUTE)
     line = np.round(the_route.line_lonlat(), 7).tolist()
     gate = the_route.aisles.grid.frame.lonlat(the_route.aisles.gate_m)[0].tolist()
     layers = [
@@ -362,7 +364,7 @@ def truth(grid: PlantGrid, infested: NDArray[np.bool_]) -> list[Layer]:
     ]  # fmt: skip
 
 
-def playback(the_route: Route, second: float) -> list[Layer]:
+def playback(the_route: Route, second: float, *, dark: bool = False) -> list[Layer]:
     """Return the line driven up to a second of the day, the stops made, and the robot."""
     if not len(the_route):
         return []
@@ -371,15 +373,16 @@ def playback(the_route: Route, second: float) -> list[Layer]:
     here = [float(np.interp(second, at_s, line[:, axis])) for axis in (0, 1)]
     path = [*np.round(line[:gone], 7).tolist(), here]
     done = the_route.leave_s <= second
+    colour = ROUTE_IN_DARK if dark else ROUTE
     stops = np.round(the_route.stops_lonlat()[done], 7).tolist()
     return [
         Layer(
             "PathLayer", [{"path": path}], id="trail", get_path="path",
-            get_color=[*ROUTE, 230], get_width=0.6, width_min_pixels=2.5,
+            get_color=[*colour, 230], get_width=0.6, width_min_pixels=2.5,
         ),
         Layer(
             "ScatterplotLayer", [{"p": p} for p in stops], id="stops", get_position="p",
-            get_fill_color=[*ROUTE, 150], get_radius=0.5, radius_min_pixels=2,
+            get_fill_color=[*colour, 150], get_radius=0.5, radius_min_pixels=2,
         ),
         Layer(
             "ScatterplotLayer", [{"p": here, "t": "here"}], id="robot", get_position="p",

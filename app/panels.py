@@ -111,9 +111,9 @@ def _plant_layers(choices: Choices, shade_by: str, rows: tuple[int, int] | None)
 
 def route_layers(choices: Choices, route: Route, *, numbers: bool) -> list:
     """Return the route's layers, made once."""
-    key = (f"route {numbers} {choices.key} {choices.revision} {choices.day} {choices.robot} "
-           f"{choices.sampler}")  # fmt: skip
-    return cached.layers(key, partial(maps.route, route, numbers=numbers))
+    shown = f"{choices.robot} {choices.sampler} {numbers} {choices.dark}"
+    key = f"route {choices.key} {choices.revision} {choices.day} {shown}"
+    return cached.layers(key, partial(maps.route, route, numbers=numbers, dark=choices.dark))
 
 
 def draw(choices: Choices, layers: list, key: str, *, tap: bool = False) -> object:
@@ -125,8 +125,9 @@ def draw(choices: Choices, layers: list, key: str, *, tap: bool = False) -> obje
         name=choices.plot.field.name, plants=len(grid), finds=int((states_of(choices) == 1).sum()),
         stops=0 if route is None else len(choices.today().route),
     )  # fmt: skip
+    outline = maps.boundary(choices.plot.field, dark=choices.dark)
     chart = st.pydeck_chart(
-        maps.deck(grid, [maps.boundary(choices.plot.field), *layers, *bar], phone=choices.phone),
+        maps.deck(grid, [outline, *layers, *bar], phone=choices.phone),
         height=choices.map_px, key=key, alt=alt, on_select="rerun" if tap else "ignore",
     )  # fmt: skip
     st.session_state["bar"] = text

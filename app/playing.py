@@ -51,7 +51,7 @@ def show(choices: Choices, layers: list, *, on: bool) -> dict | None:
     if minute:
         second = min(60.0 * minute, route.end_s)
         layers = [one for one in layers if one.id not in ("route", "arrows", "numbers")]
-        layers += maps.playback(route, second)
+        layers += maps.playback(route, second, dark=choices.dark)
         st.caption(f"{begins + timedelta(seconds=second):%H:%M}")
     tapped = panels.draw(choices, layers, "field_map", tap=True)
     if playing:

@@ -69,11 +69,6 @@ def html(facts: Facts, today: Today, stops: pd.DataFrame, statuses: list[Status]
     )
 
 
-def body_only(page: str) -> str:
-    """Return what stands between the page's body tags, to show it inside another page."""
-    return page[page.index("<body>") + 6 : page.index("</body>")]
-
-
 def drawing(facts: Facts, today: Today) -> str:
     """Return the plot as an SVG picture, north up: chance by colour, finds as rings, the route."""
     grid = today.scene.grid

@@ -30,7 +30,9 @@ st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
 # Arabic are set from the right, each by its own first letter
 st.html(
     "<style>[data-testid=stMainBlockContainer]{padding-top:4rem;padding-bottom:3rem}"
-    "h1,h2,h3,[data-testid=stMarkdownContainer] p{unicode-bidi:plaintext}</style>"
+    "h1,h2,h3,[data-testid=stMarkdownContainer] p{unicode-bidi:plaintext}"
+    ".st-key-start_scouting a{border:1px solid currentColor;border-radius:.5rem;"
+    "min-height:2.5rem;padding:.25rem .75rem}</style>"
 )
 cached.warm()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -29,4 +30,6 @@ def show(choices: Choices) -> None:
         on_click="ignore",
     )  # fmt: skip
     st.markdown(f"**{texts.REPORT_PREVIEW}**")
-    st.html(report.body_only(page))
+    # as data it has no way into this page, whatever a plot is called
+    data = base64.b64encode(page.encode()).decode()
+    st.iframe(f"data:text/html;charset=utf-8;base64,{data}", height=900, alt=texts.REPORT)

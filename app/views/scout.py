@@ -42,13 +42,12 @@ def show(choices: Choices) -> None:
     st.markdown(f"## {step.arrow} {step.place}")
     st.markdown(f"**{step.way}**")
     st.caption(step.chance)
-    with st.container(key="scout_buttons"):
-        left, right = st.columns(2)
-        for column, key, label, result in (
-            (left, "scout_clean", texts.CLEAN_BUTTON, scouting.CLEAN),
-            (right, "scout_found", texts.FOUND_BUTTON, scouting.FOUND),
+    with st.container(key="scout_buttons", horizontal=True):
+        for key, label, result in (
+            ("scout_clean", texts.CLEAN_BUTTON, scouting.CLEAN),
+            ("scout_found", texts.FOUND_BUTTON, scouting.FOUND),
         ):
-            column.button(label, key=key, width="stretch", on_click=scouting.tap,
+            st.button(label, key=key, width="stretch", on_click=scouting.tap,
                           args=(choices, step.plant, result))  # fmt: skip
     st.number_input(texts.COUNT_LABEL, 0, 100_000, None, key="scout_count")
     with st.container(key="scout_others"):

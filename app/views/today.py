@@ -21,17 +21,16 @@ def show(choices: Choices) -> None:
     panels.route_figures(choices, today)
     if not len(today.route):
         st.warning(texts.NO_STOPS)
-    if choices.phone:
-        _hand_out(choices, today)
+    picture = st.container()
     shown = st.pills(
         texts.LAYERS, list(texts.LAYER_NAMES), format_func=texts.LAYER_NAMES.__getitem__,
         selection_mode="multi", default=["plants", "route", "numbers", "hot"], key="layers",
     )  # fmt: skip
-    panels.draw(choices, _layers(choices, today, shown), "map")
+    with picture:
+        panels.draw(choices, _layers(choices, today, shown), "map")
+    _hand_out(choices, today)
     st.markdown(f"**{texts.LEGEND_CHANCE}**{maps.chance_legend()}", unsafe_allow_html=True)
     panels.captions([texts.LEGEND_ROUTE, texts.LEGEND_HOT, texts.LEGEND_RECORDS])
-    if not choices.phone:
-        _hand_out(choices, today)
     if choices.project is None:
         keeping.begin(choices)
     else:
@@ -64,6 +63,7 @@ def _hand_out(choices: Choices, today: Today) -> None:
             if st.button(texts.GIVE_OUT, help=texts.GIVE_OUT_HELP, key="give_out"):
                 choices.project.plan(choices.on)
                 st.toast(texts.GIVEN_OUT.format(day=choices.units.day(choices.day)))
-            st.page_link(st.session_state["scout_page"], label=texts.START_SCOUTING,
+            with st.container(key="start_scouting", width="content"):
+                st.page_link(st.session_state["scout_page"], label=texts.START_SCOUTING,
                          icon=":material/eco:")  # fmt: skip
     st.caption(texts.PHONE_FORMATS)

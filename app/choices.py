@@ -127,12 +127,20 @@ def choose() -> Chosen:
 
 def _where() -> str:
     options = [texts.SAMPLE, texts.UPLOAD, *seasons.names()]
-    if st.session_state.get("season", texts.SAMPLE) not in options:
-        del st.session_state["season"]
-    return st.selectbox(
-        texts.PLOT_FROM, options, key="season", bind="query-params", help=texts.PLOT_FROM_HELP,
-        filter_mode=None,
+    if "season" not in st.session_state:
+        st.session_state["season"] = st.query_params.get("season")
+    if st.session_state["season"] not in options:
+        st.session_state["season"] = texts.SAMPLE
+    chosen = st.selectbox(
+        texts.PLOT_FROM, options, key="season", help=texts.PLOT_FROM_HELP, filter_mode=None,
+        persist_state="session",
     )  # fmt: skip
+    # the address leads back to the season after a reload, and to another person's screen
+    if chosen == texts.SAMPLE:
+        st.query_params.pop("season", None)
+    elif st.query_params.get("season") != chosen:
+        st.query_params["season"] = chosen
+    return chosen
 
 
 def open_season(name: str) -> None:

@@ -124,8 +124,10 @@ def table_results(choices: Choices, name: str, data: bytes) -> Results:
     table = table.dropna(subset=["found"])
     found = table["found"].map(_result)
     plants = [
-        plant_at(choices.plot.grid, int(row), int(number))
-        for row, number in zip(table["row"], table["plant_number"], strict=True)
+        plant_at(choices.plot.grid, row, number)
+        for row, number in zip(
+            _whole(name, table["row"]), _whole(name, table["plant_number"]), strict=True
+        )
     ]
     count = pd.to_numeric(table.get("count", pd.Series(np.nan, table.index)), errors="coerce")
     return Results.of(
@@ -146,6 +148,16 @@ def _table(name: str, data: bytes) -> pd.DataFrame:
             f"{name} must be a CSV table or a route file as given out, but it cannot be read. "
             "Save it again as CSV."
         ) from error
+
+
+def _whole(name: str, column: pd.Series) -> list[int]:
+    numbers = pd.to_numeric(column, errors="coerce")
+    wrong = numbers.isna() | (numbers % 1 != 0) | (numbers.abs() > 1e9)
+    if wrong.any():
+        raise ObservationError(
+            f"Row and plant must be whole numbers in {name}, but one is {column[wrong].iloc[0]!r}."
+        )
+    return numbers.astype(int).tolist()
 
 
 def _result(value: object) -> int:

@@ -14,15 +14,15 @@ if TYPE_CHECKING:
     from .comparing import Arm, Outcome
 
 
-def armname(sampler: str, hours: float, look_s: float) -> str:
+def arm_name(sampler: str, hours: float, look_s: float) -> str:
     """Return what to call a way of working."""
-    short = texts.SAMPLERS[sampler].split(":")[0].split(",")[0]
+    short = texts.SAMPLERS[sampler].split(":")[0]
     return texts.ARM_NAME.format(sampler=short, hours=hours, look=look_s)
 
 
 def name(arm: Arm) -> str:
     """Return what to call an arm of a comparison."""
-    return armname(arm.sampler, arm.hours, arm.look_s)
+    return arm_name(arm.sampler, arm.hours, arm.look_s)
 
 
 def sentence(ranked: list[Outcome]) -> str:

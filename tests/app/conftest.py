@@ -80,3 +80,11 @@ def page(browser, request):
     SHOTS.mkdir(exist_ok=True)
     page.screenshot(path=SHOTS / f"{request.node.name.replace('/', '_')}.png")
     context.close()
+
+
+@pytest.fixture(autouse=True)
+def seasons_folder(tmp_path_factory, monkeypatch):
+    """Let each test have a folder of seasons of its own."""
+    folder = tmp_path_factory.mktemp("seasons")
+    monkeypatch.setenv("FIELDMON_SEASONS", str(folder))
+    return folder

@@ -39,6 +39,7 @@ HOURS, LOOK = "Working hours", "Seconds at a plant"
 SAMPLER = "Who chooses the plants"
 SAMPLERS = {
     "dynamic": "Dynamic: suspicious plants first",
+    "adaptive": "Adaptive: the drive that should find most",
     "naive": "Naive: every plant, row by row",
     "bouncy": "Bouncy: every second plant",
     "snake": "Snake: up one side of an aisle, down the other",

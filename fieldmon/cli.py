@@ -53,6 +53,7 @@ class SamplerName(StrEnum):
     NAIVE = "naive"
     BOUNCY = "bouncy"
     DYNAMIC = "dynamic"
+    ADAPTIVE = "adaptive"
     SNAKE = "snake"
     SNAKE_RANDOM = "snake-random"
     NEIGHBOR = "neighbor"
@@ -124,6 +125,15 @@ Every = Annotated[
 BothFaces = Annotated[
     bool, typer.Option("--both-faces", help="Inspect both faces of each row, each from its aisle.")
 ]
+Outputs = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--output",
+        "-o",
+        help="Route file to write, its format by its ending; repeat for several. "
+        "route.geojson if none.",
+    ),
+]
 On = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; today.")]
 FlagOnly = Annotated[
     bool,
@@ -185,9 +195,7 @@ def plots(
 def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     context: typer.Context,
     plot: MaybePlotFile = None,
-    output: Annotated[
-        Path, typer.Option("--output", "-o", help="Route file to write (GeoJSON).")
-    ] = Path("route.geojson"),
+    output: Outputs = None,
     observations: Records = None,
     feature: Feature = None,
     sampler: Annotated[SamplerName, typer.Option(help="Who chooses.")] = SamplerName.DYNAMIC,
@@ -217,9 +225,9 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     plot_option: Choices = None,
     record_option: RecordChoices = None,
 ) -> None:
-    """Plan today's route on a plot or in a season, and write it as GeoJSON.
+    """Plan today's route on a plot or in a season, and write it for whoever drives.
 
-    The file holds the line to drive, which crosses no row of plants, and the stops in order with
+    Files hold the line to drive, which crosses no row of plants, and the stops in order with
     arrival time, row, plant and chance of infestation. Without observations every plant has the
     same chance but for the plot's edge, from which insects come.
 
@@ -229,7 +237,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     Example: fieldmon plan vines.zip --feature 3 --observations mites.csv --hours 6 -o route.geojson
     Example: fieldmon plan season.gpkg -o route.geojson
     """
-    from fieldmon.geodata.routes import RouteNotes, write_route  # noqa: PLC0415
+    from fieldmon.geodata.routes import RouteNotes  # noqa: PLC0415
     from fieldmon.monitor import Plans, first_day  # noqa: PLC0415
 
     if plot is not None and cli_season.is_season(plot):
@@ -261,13 +269,12 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
             f"{plans.robot.hours:g} h are not. Give more --hours."
         )
     began = datetime.combine(day.astype(date), begins)
-    write_route(output, route, RouteNotes(laid.field.name, sampler.value, began))
     typer.echo(
         f"{len(route)} of {len(laid.grid)} plants in {route.end_s / 3600:.1f} h, "
         f"{route.drive_m / 1000:.2f} km; about {route.expected_finds:.1f} of them infested, "
         f"about {route.expected_finds * plans.robot.detects:.1f} of these would be found."
     )
-    typer.echo(f"Route written to {output}")
+    cli_season.hand_off(route, RouteNotes(laid.field.name, sampler.value, began), output)
 
 
 @app.command()

@@ -88,8 +88,10 @@ def _read(choice: Choice, options: ReadOptions) -> Layer:
     if kind is Kind.WORKBOOK:
         return _only_layer(choice, options, sheet_names(choice.path, choice.name))
     listed = gdal_layers(choice.path, choice.name)
+    names = tuple(one.name for one in listed)
     spatial = tuple(one.name for one in listed if one.geometry_type is not None)
-    return _only_layer(choice, options, spatial or tuple(one.name for one in listed))
+    # a plain table beside maps is read only when it is asked for by name
+    return _only_layer(choice, options, names if options.layer in names else spatial or names)
 
 
 def _only_layer(choice: Choice, options: ReadOptions, names: tuple[str, ...]) -> Layer:

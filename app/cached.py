@@ -7,7 +7,9 @@ leaves out, beside a key that stands for them.
 
 from __future__ import annotations
 
+import io
 import threading
+import zipfile
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
@@ -18,6 +20,7 @@ from fieldmon.aisles import Aisles
 from fieldmon.chance import Chance
 from fieldmon.geodata import guard, reading
 from fieldmon.geodata.findings import Finding, Severity
+from fieldmon.geodata.handoff import FORMATS
 from fieldmon.hotspots import HotSpots, hot_spots, record_states
 from fieldmon.metrics import SeasonFigures, figures
 from fieldmon.monitor import Plans, Plot, Today, first_day
@@ -43,6 +46,7 @@ if TYPE_CHECKING:
 
     from fieldmon.field import Field, Observations
     from fieldmon.geodata.findings import Imported
+    from fieldmon.geodata.handoff import HandoffPlan
     from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
     from fieldmon.planting import Planting
     from fieldmon.project import Remark, Status
@@ -207,6 +211,19 @@ def days_of(season: Project, until: date) -> list[str]:
     """Return the days of a season from the first up to one, ISO."""
     first = np.datetime64(season.setup.begins, "D")
     return [str(day) for day in np.arange(first, np.datetime64(until, "D") + 1)]
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def handoff(key: str, name: str, _plan: HandoffPlan) -> tuple[str, bytes]:  # noqa: ARG001
+    """Return a day in one of the formats: its ending and bytes, several files as one zip."""
+    made = FORMATS[name].make(_plan)
+    if len(made) == 1:
+        return next(iter(made.items()))
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for ending, data in made.items():
+            archive.writestr(f"route{ending}", data)
+    return f".{name}.zip", packed.getvalue()
 
 
 @st.cache_resource(max_entries=_MAPS)

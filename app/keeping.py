@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 import streamlit as st
 
-from fieldmon.errors import FieldmonError, ObservationError
+from fieldmon.errors import FieldmonError
+from fieldmon.geodata.findings_in import read_findings
+from fieldmon.geodata.options import Upload
+from fieldmon.geodata.reported import FindingsOptions
 from fieldmon.grid import plant_at
-from fieldmon.project import Project, Remark, Results, Setup
+from fieldmon.project import Project, Remark, Results, Setup, results_from
 
 from . import cached, panels, seasons, texts, verdicts
 from .choices import open_season
@@ -99,78 +100,17 @@ def record_stops(choices: Choices, plants: np.ndarray, found: list[int]) -> str:
 
 @saying
 def record_file(choices: Choices, name: str, data: bytes) -> str:
-    """Record a table with row, plant and found, or a route file with its found column filled."""
-    return _recorded(choices, table_results(choices, name, data), name)
+    """Record findings from a file: a route given out and filled in, a table, positions."""
+    options = FindingsOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
+    options = options.choose("day", choices.day)
+    read = read_findings(Upload(name, data), choices.plot.grid, options)
+    remarks = "".join(f"\n- {finding.sentence}" for finding in read.findings)
+    return _recorded(choices, results_from(read.value), name) + remarks
 
 
 def _recorded(choices: Choices, results: Results, source: str) -> str:
     done = choices.project.record(results, source)
     return texts.RECORDED.format(new=done.new, known=done.known)
-
-
-def table_results(choices: Choices, name: str, data: bytes) -> Results:
-    """Return the results in a table or route file; raise `ObservationError` where it has none."""
-    table = _table(name, data)
-    table.columns = [str(column).strip().lower() for column in table.columns]
-    table = table.rename(columns={"number": "plant_number"})
-    if "plant_number" not in table:
-        table = table.rename(columns={"plant": "plant_number"})
-    missing = {"row", "plant_number", "found"} - set(table.columns)
-    if missing:
-        raise ObservationError(
-            f"{name} must have columns row, plant (its number in the row) and found, but "
-            f"{', '.join(sorted(missing))} is missing. Rename the columns, or use the route file."
-        )
-    table = table.dropna(subset=["found"])
-    found = table["found"].map(_result)
-    plants = [
-        plant_at(choices.plot.grid, row, number)
-        for row, number in zip(
-            _whole(name, table["row"]), _whole(name, table["plant_number"]), strict=True
-        )
-    ]
-    count = pd.to_numeric(table.get("count", pd.Series(np.nan, table.index)), errors="coerce")
-    return Results.of(
-        np.array(plants, np.int64), found.to_numpy(np.int8), np.datetime64(choices.day),
-        count=count.to_numpy(float),
-    )  # fmt: skip
-
-
-def _table(name: str, data: bytes) -> pd.DataFrame:
-    try:
-        if name.lower().endswith((".geojson", ".json")):
-            features = pd.read_json(io.BytesIO(data))["features"]
-            rows = [f["properties"] for f in features]
-            return pd.DataFrame([row for row in rows if row.get("kind", "stop") == "stop"])
-        return pd.read_csv(io.BytesIO(data), sep=None, engine="python")
-    except (ValueError, KeyError, TypeError, AttributeError, pd.errors.ParserError) as error:
-        raise ObservationError(
-            f"{name} must be a CSV table or a route file as given out, but it cannot be read. "
-            "Save it again as CSV."
-        ) from error
-
-
-def _whole(name: str, column: pd.Series) -> list[int]:
-    numbers = pd.to_numeric(column, errors="coerce")
-    wrong = numbers.isna() | (numbers % 1 != 0) | (numbers.abs() > 1e9)
-    if wrong.any():
-        raise ObservationError(
-            f"Row and plant must be whole numbers in {name}, but one is {column[wrong].iloc[0]!r}."
-        )
-    return numbers.astype(int).tolist()
-
-
-def _result(value: object) -> int:
-    text = str(value).strip().lower()
-    if text in {"0", "0.0", "no", "clean", "false", "-"}:
-        return CLEAN
-    if text in {"2", "skipped", "could not inspect"}:
-        return SKIPPED
-    if text in {"yes", "found", "true", "+", "x"} or text.removesuffix(".0").isdigit():
-        return FOUND
-    raise ObservationError(
-        f"The column found must say yes or no, found or clean, or a number, but it says {value!r}."
-    )
 
 
 @saying

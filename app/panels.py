@@ -11,6 +11,7 @@ import pandas as pd
 import streamlit as st
 
 from fieldmon.field import ABSENT, PRESENT
+from fieldmon.geodata.handoff import FORMATS
 from fieldmon.grid import plant_at, row_label
 from fieldmon.hotspots import record_states
 from fieldmon.prior import usable
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fieldmon.field import Observations
+    from fieldmon.geodata.handoff import HandoffPlan
     from fieldmon.hotspots import HotSpots
     from fieldmon.monitor import Today
     from fieldmon.route import Route
@@ -49,6 +51,18 @@ def stops(choices: Choices, today: Today) -> pd.DataFrame:
         texts.COLUMN_CHANCE: (100 * today.route.chance).round(1),
     }
     return pd.DataFrame(columns, pd.RangeIndex(1, len(today.route) + 1, name="stop"))
+
+
+def other_formats(choices: Choices, plan: HandoffPlan) -> None:
+    """Offer the route in the formats of robots, phones and paper."""
+    name = st.selectbox(texts.FORMAT, list(FORMATS), key="format", filter_mode=None,
+                        format_func=lambda one: f"{one}: {FORMATS[one].reader}")  # fmt: skip
+    key = f"{choices.key} {choices.revision} {choices.day} {choices.robot} {choices.sampler}"
+    ending, data = cached.handoff(f"{name} {key}", name, plan)
+    st.download_button(
+        texts.DOWNLOAD_AS.format(reader=FORMATS[name].reader), data,
+        f"route_{choices.day}{ending}", key="download_format", on_click="ignore",
+    )  # fmt: skip
 
 
 def chance_of(choices: Choices) -> cached.Array:
@@ -205,8 +219,10 @@ def history(choices: Choices, tapped: dict | None, key: str) -> None:
     row = st.number_input(texts.HISTORY_ROW, 1, None, 1, key=f"{key} row")
     number = st.number_input(texts.HISTORY_PLANT, 1, None, 1, key=f"{key} plant")
     plant = plant_at(grid, int(row), int(number))
-    first = chance_of(choices) if choices.project is None else choices.project.history.prior
-    now = chance_of(choices)
+    now = first = chance_of(choices)
+    if choices.project is not None:
+        begins = str(choices.project.setup.begins)
+        first = cached.morning(choices.key, choices.revision, begins, choices.project)
     st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
     for line in _looks(choices, plant):
         st.markdown(line)

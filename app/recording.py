@@ -34,8 +34,8 @@ def show(choices: Choices) -> None:
         st.number_input(texts.COUNT, 0, None, None, key="one_count")
         st.form_submit_button(texts.RECORD_BUTTON, on_click=keeping.record_one, args=(choices,))
     with file:
-        brought = st.file_uploader(texts.RECORD_FILE_IN, type=["csv", "geojson", "json", "txt"],
-                                   key="findings_file")  # fmt: skip
+        brought = st.file_uploader(texts.RECORD_FILE_IN, key="findings_file")
+        st.checkbox(texts.TAKE_DOUBTFUL, key="take_doubtful")
         if brought is not None:
             st.button(texts.RECORD_BUTTON, key="record_file", type="primary",
                       on_click=keeping.record_file,

@@ -137,7 +137,7 @@ CHANGED_OUT = "Still infested, as expected: {now:.1f} after {before:.1f} ({sign}
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
 TODAY_DONE = "{inspected} plants inspected today so far, {found} found. The route shows the rest."
-PHONE_FORMATS = "Phone: the same file opens in QField, Organic Maps and most map apps."
+OTHER_FORMATS, FORMAT, DOWNLOAD_AS = "Robot, phone, paper", "Format", "Download for {reader}"
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
 
@@ -190,7 +190,11 @@ CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Found of all expected
 INSPECTED_EVER = "Inspected so far"
 FOUND_EVER = "Found"
 RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
-RECORD_FILE_IN = "The route file with its found column filled in, or any table with row and plant"
+RECORD_FILE_IN = (
+    "The route file with its found column filled in, or any table or GPS file with plants, rows "
+    "or positions"
+)
+TAKE_DOUBTFUL = "Take doubtful positions too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
 RESULT, COUNT, RESULTS_OF = "Result", "Count", {0: "clean", 1: "found", 2: "could not inspect"}
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."

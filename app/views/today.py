@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from app import keeping, maps, panels, texts
+from fieldmon.geodata.handoff import HandoffPlan
 from fieldmon.geodata.routes import RouteNotes, route_geojson
 
 if TYPE_CHECKING:
@@ -59,6 +60,8 @@ def _hand_out(choices: Choices, today: Today) -> None:
             texts.DOWNLOAD, route_geojson(today.route, notes), f"route_{choices.day}.geojson",
             "application/geo+json", type="primary", on_click="ignore",
         )  # fmt: skip
+        with st.popover(texts.OTHER_FORMATS):
+            panels.other_formats(choices, HandoffPlan(today.route, notes))
         if choices.project is not None:
             if st.button(texts.GIVE_OUT, help=texts.GIVE_OUT_HELP, key="give_out"):
                 choices.project.plan(choices.on)
@@ -66,4 +69,3 @@ def _hand_out(choices: Choices, today: Today) -> None:
             with st.container(key="start_scouting", width="content"):
                 st.page_link(st.session_state["scout_page"], label=texts.START_SCOUTING,
                          icon=":material/eco:")  # fmt: skip
-    st.caption(texts.PHONE_FORMATS)

@@ -5,9 +5,12 @@ The suite clicks 120 times; ``FIELDMON_MONKEY=1000`` clicks as often as it says 
 
 import os
 import random
+from datetime import date
 
 import pytest
 from app_driving import PAGES, begun, go, opened
+
+from app import texts
 
 CLICKS = int(os.environ.get("FIELDMON_MONKEY", "120"))
 # a comparison of 500 seasons or a table of the thesis takes minutes, as it should
@@ -31,16 +34,30 @@ FILES = {
 }
 
 
+# what can be chosen, by key; other boxes are chosen from by place
+CHOICES = {
+    "shade": list(texts.SHADES),
+    "who": [texts.ROBOT, texts.SCOUT],
+    "one_result": [0, 1, 2],
+    "layers": list(texts.LAYER_NAMES),
+    "map_layers": list(texts.MAP_LAYERS),
+    "arms": list(texts.SAMPLERS),
+    "compared": list(texts.SAMPLERS),
+}
+DAYS = [date(2026, 11, 16), date(2026, 11, 17), date(2026, 12, 24), date(2026, 11, 20)]
+NUMBERS = ("slider", "number_input")
+KINDS = ("button", "selectbox", "multiselect", "toggle", "radio", "text_input", "date_input",
+         "pills", "segmented_control", "file_uploader", "checkbox", *NUMBERS)  # fmt: skip
+
+
 def widgets(app):
-    kinds = ["button", "selectbox", "multiselect", "slider", "number_input", "toggle", "radio",
-             "text_input", "date_input", "button_group", "file_uploader", "checkbox"]  # fmt: skip
-    found = [(kind, one) for kind in kinds for one in getattr(app, kind, [])]
-    return [(kind, one) for kind, one in found if not getattr(one, "disabled", False)]
+    found = [(kind, one) for kind in KINDS for one in getattr(app, kind)]
+    return [(kind, one) for kind, one in found if not one.disabled]
 
 
 def poke(rng, kind, widget):
     """Do something with a widget that a person could do; return what."""
-    key = getattr(widget, "key", None) or getattr(widget, "label", "?")
+    key = widget.key or widget.label
     if kind == "button":
         widget.click()
         return f"click {key}"
@@ -48,32 +65,38 @@ def poke(rng, kind, widget):
         value = rng.choice(FILES[key])
         widget.upload(*value)
         return f"upload {key} {value[0]}"
-    value = chosen(rng, kind, widget, key)
-    if value is not None:
-        widget.set_value(value)
+    if kind == "selectbox":
+        place = rng.randrange(len(widget.options))
+        widget.select_index(place)
+        return f"choose {key} {widget.options[place]}"
+    value = wanted(rng, kind, widget, key)
+    widget.set_value(value)
     return f"{kind} {key} = {value!r}"
 
 
-def chosen(rng, kind, widget, key):
-    if kind in ("selectbox", "radio"):
-        # options are shown as text, values are chosen by their place
-        widget.select_index(rng.randrange(len(widget.options))) if kind == "selectbox" else None
-        return rng.choice(widget.options) if kind == "radio" else None
-    if kind in ("multiselect", "button_group"):
-        return None
-    if kind == "toggle" or kind == "checkbox":
+def wanted(rng, kind, widget, key):
+    if kind in NUMBERS:
+        return number(rng, widget, key)
+    if kind in {"toggle", "checkbox"}:
         return rng.random() < 0.5
     if kind == "text_input":
         return rng.choice(NASTY)
     if kind == "date_input":
-        return None
-    low = widget.min if widget.min is not None else 0
-    high = min(widget.max if widget.max is not None else 10**6, SMALL.get(key, 10**6))
+        return rng.choice(DAYS)
+    if key not in CHOICES:
+        return widget.value
+    several = kind in {"pills", "multiselect"}
+    return rng.sample(CHOICES[key], rng.randrange(4)) if several else rng.choice(CHOICES[key])
+
+
+def number(rng, widget, key):
+    if isinstance(widget.value, date):
+        return widget.value
+    low = 0 if widget.min is None else widget.min
+    high = min(10**6 if widget.max is None else widget.max, SMALL.get(key, 10**6))
     step = widget.step or 1
-    value = low + step * rng.randrange(max(1, int((high - low) / step) + 1))
-    if isinstance(widget.value, (list, tuple)):
-        return (value, high)
-    return type(widget.value or 1.0)(value)
+    value = type(low)(low + step * rng.randrange(max(1, int((high - low) / step) + 1)))
+    return (value, high) if isinstance(widget.value, (list, tuple)) else value
 
 
 @pytest.mark.timeout(60 + 10 * CLICKS)

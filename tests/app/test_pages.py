@@ -168,7 +168,7 @@ def test_ways_of_working_are_compared_and_the_best_is_put_to_use(app):
     assert "press Compare" in texts_of(app)
     app.button(key="run").click().run()
     for _ in range(300):
-        if len(app.dataframe) and not app.button(key="stop").disabled is False:
+        if len(app.dataframe) and app.button(key="stop").disabled:
             break
         app.run()
     assert not app.exception

@@ -164,6 +164,15 @@ def route_figures(choices: Choices, today: Today) -> None:
         st.metric(texts.FINDS, f"{finds:.1f}", help=texts.FINDS_HELP, width="content")
 
 
+def done_today(choices: Choices) -> None:
+    """Say what was recorded of the day, if anything was."""
+    if choices.project is None:
+        return
+    now = cached.status(choices.key, choices.revision, choices.day, choices.project)
+    if now.inspected_today:
+        st.info(texts.TODAY_DONE.format(inspected=now.inspected_today, found=now.found_today))
+
+
 def changes(choices: Choices) -> list[str]:
     """Return sentences on what changed since yesterday."""
     project, revision = choices.project, choices.revision

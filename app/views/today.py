@@ -20,6 +20,7 @@ def show(choices: Choices) -> None:
     today = choices.today()
     st.subheader(f"{choices.name} · {choices.units.day(choices.day)}")
     panels.route_figures(choices, today)
+    panels.done_today(choices)
     if not len(today.route):
         st.warning(texts.NO_STOPS)
     picture = st.container()

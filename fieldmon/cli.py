@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeAlias
 
 import typer
 
-from fieldmon import cli_raster, cli_season, cli_study
+from fieldmon import cli_app, cli_raster, cli_season, cli_study
 from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ app = typer.Typer(
 
 app.add_typer(cli_study.app, name="study")
 cli_season.register(app)
+app.command(name="app")(cli_app.open_app)
 
 
 class SamplerName(StrEnum):
@@ -513,46 +514,6 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
 
         write_whole(output, "\n".join([header, *rows, ""]).encode())
         typer.echo(f"Table written to {output}")
-
-
-@app.command(name="app")
-def open_app(
-    port: Annotated[int, typer.Option(help="Port on this machine.", min=1, max=65535)] = 8501,
-    address: Annotated[
-        str, typer.Option(help="Address to listen on; others may only see it beyond 127.0.0.1.")
-    ] = "127.0.0.1",
-    browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,  # noqa: FBT002
-) -> None:
-    """Open the app in the browser. It needs no internet; stop it with Ctrl-C."""
-    import importlib.util  # noqa: PLC0415
-    import socket  # noqa: PLC0415
-    import subprocess  # noqa: PLC0415
-
-    found = importlib.util.find_spec("app")
-    if found is None or found.origin is None:
-        raise SettingError("The app must be installed beside fieldmon, but it was not found.")
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((address, port))
-        except OSError as error:
-            raise SettingError(
-                f"Port {port} at {address} must be free, but it is not ({error.strerror}). "
-                "Close what uses it, or choose another with --port."
-            ) from error
-    typer.echo(f"fieldmon is at http://{address}:{port} (stop it with Ctrl-C)")
-    page = Path(found.origin).with_name("streamlit_app.py")
-    settings = {
-        "server.port": port,
-        "server.address": address,
-        "server.headless": not browser,
-        "browser.gatherUsageStats": False,
-        "client.showErrorDetails": "none",
-        "client.toolbarMode": "minimal",
-    }
-    flags = [f"--{name}={str(value).lower()}" for name, value in settings.items()]
-    command = [sys.executable, "-m", "streamlit", "run", str(page), *flags]
-    raise typer.Exit(subprocess.run(command, check=False).returncode)  # noqa: S603
 
 
 def _read_plots(

@@ -12,7 +12,7 @@ if str(Path(__file__).resolve().parents[1]) not in sys.path:
 
 from app import cached, texts  # noqa: E402 - after the path is right
 from app.choices import choose  # noqa: E402
-from app.views import season, study, today  # noqa: E402
+from app.views import prior_study, season, study, today  # noqa: E402
 
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
 # Streamlit leaves a hand's breadth above the page, which a phone cannot spare
@@ -28,6 +28,11 @@ def page_today() -> None:
 def page_season() -> None:
     """Show a simulated season."""
     show(season.show)
+
+
+def page_prior() -> None:
+    """Show the study with prior information, on the chosen plot too."""
+    prior_study.show(choose())
 
 
 def show(page) -> None:  # noqa: ANN001 - a page's function
@@ -47,6 +52,7 @@ st.navigation(
         ),
         st.Page(page_season, title=texts.SEASON, icon=":material/monitoring:", url_path="season"),
         st.Page(study.show, title=texts.STUDY, icon=":material/science:", url_path="study"),
+        st.Page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
     ],
     position="top",
 ).run()

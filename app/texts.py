@@ -25,6 +25,7 @@ HOURS, LOOK = "Working hours", "Seconds at a plant"
 SAMPLER = "Who chooses the plants"
 SAMPLERS = {
     "dynamic": "Dynamic: suspicious plants first",
+    "adaptive": "Adaptive: the drive that should find most",
     "naive": "Naive: every plant, row by row",
     "bouncy": "Bouncy: every second plant",
     "snake": "Snake: up one side of an aisle, down the other",
@@ -88,3 +89,11 @@ STUDY_TABLE, REPLICATES = "Table", "Seasons a row"
 STUDY_RUN, STUDY_REPORT = "Run", "Download the report (HTML)"
 STUDY_CSV = "Download the table (CSV)"
 STUDY_PROGRESS = "{done} of {total} rows simulated"
+PRIOR = "Study, prior information"
+PRIOR_TITLE = "The thesis's samplers with prior information"
+PRIOR_INTRO = (
+    "Chapter 5 of A. Yehoshua's thesis (2023), made again: Dynamic, Naive and Bouncy with the "
+    "thesis's robot, and the choices that its text leaves open as they fit its figures best. On "
+    "this plot the season starts from its own records where it has any."
+)
+PRIOR_PART, PRIOR_OWN = "Scenario or sweep", "This plot"

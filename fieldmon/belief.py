@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numba as nb
 import numpy as np
@@ -20,6 +20,11 @@ if TYPE_CHECKING:
 # no plant is ever taken as certainly clean or certainly infested: evidence must be able to undo it
 _LEAST, _MOST = 1e-6, 1.0 - 1e-6
 _1, _2, _3 = np.uint32(1), np.uint32(2), np.uint32(3)
+# a look is heard as far as three plants away, and as long as it changes a chance by this
+_RINGS = 3
+# round a loop the same news arrives twice: no plant settles its neighbour more than this
+_CLOSEST = 0.9
+_LEAST_SAY = 1e-6
 
 
 @dataclass(frozen=True)
@@ -141,3 +146,328 @@ def _overnight(
         infested = 1.0 - clean
         infested = infested if infested < _MOST else _MOST  # noqa: FURB136 - min is slower
         after[i] = infested if infested > _LEAST else _LEAST  # noqa: FURB136 - max is slower
+
+
+def pairs(
+    chance: NDArray[np.float64], grid: PlantGrid, company: float = 0.5
+) -> NDArray[np.float64]:
+    """Return the chance that both of two plants side by side are infested, ``(e,)``.
+
+    In the order of ``grid.adjacent``. `company` is the correlation of the two: about the chance
+    that a plant beside an infested one is infested too, where few are.
+    """
+    start, other = grid.adjacent
+    one = np.repeat(np.arange(len(chance)), np.diff(start))
+    p, q = chance[one], chance[other]
+    both = p * q + company * np.sqrt(p * (1.0 - p) * q * (1.0 - q))
+    return np.minimum(both, np.minimum(p, q))
+
+
+class Belief(Protocol):
+    """What is believed of a plot on a morning; never changed, each step returns another."""
+
+    @property
+    def chance(self) -> NDArray[np.float64]:
+        """Chance of infestation of every plant, ``(n,)``."""
+        ...
+
+    @property
+    def both(self) -> NDArray[np.float64] | None:
+        """Chance that two plants side by side are both infested, ``(e,)``; None: no idea."""
+        ...
+
+    def learn(
+        self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
+    ) -> Belief:
+        """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
+        ...
+
+    def overnight(self, spread: Spread) -> Belief:
+        """Return what is believed the next morning."""
+        ...
+
+    def treated(self, left: NDArray[np.float64]) -> Belief:
+        """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class MeanField:
+    """Plants taken as independent of each other: see :func:`learn` and :func:`overnight`."""
+
+    grid: PlantGrid
+    chance: NDArray[np.float64]
+    both: None = None
+
+    def learn(
+        self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
+    ) -> MeanField:
+        """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
+        return MeanField(self.grid, learn(self.chance, self.grid, plants, found, learning))
+
+    def overnight(self, spread: Spread) -> MeanField:
+        """Return what is believed the next morning."""
+        return MeanField(self.grid, overnight(self.chance, self.grid, spread))
+
+    def treated(self, left: NDArray[np.float64]) -> MeanField:
+        """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
+        return MeanField(self.grid, np.maximum(self.chance * left, _LEAST))
+
+
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """A chance for every plant and for every two plants side by side.
+
+    The pair approximation of epidemics on lattices (Keeling 1999, Proc. R. Soc. B 266:859): what
+    a plant's other neighbours do is taken as independent once its own state is given.
+    """
+
+    grid: PlantGrid
+    chance: NDArray[np.float64]
+    both: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = 0.5) -> Pairs:
+        """Begin with a chance map, see :func:`pairs`."""
+        chance = np.clip(chance, _LEAST, _MOST)
+        return cls(grid, chance, pairs(chance, grid, company))
+
+    def learn(
+        self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
+    ) -> Pairs:
+        """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
+        mind = self.chance.copy(), self.both.copy()
+        rule = learning.detection, learning.treated
+        _learn_pairs(mind, self.grid.adjacent, plants, found, rule)
+        return Pairs(self.grid, *mind)
+
+    def overnight(self, spread: Spread) -> Pairs:
+        """Return what is believed the next morning."""
+        after = np.empty_like(self.chance), np.empty_like(self.both)
+        rule = spread.rate_per_day, spread.to == "one", spread.arrivals_per_day
+        _overnight_pairs((self.chance, self.both), after, self.grid.adjacent, rule)
+        return Pairs(self.grid, *after)
+
+    def treated(self, left: NDArray[np.float64]) -> Pairs:
+        """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
+        start, other = self.grid.adjacent
+        one = np.repeat(left, np.diff(start))
+        chance = np.maximum(self.chance * left, _LEAST)
+        return Pairs(self.grid, chance, self.both * one * left[other])
+
+
+class Near(NamedTuple):
+    """Room to note the plants that a look has touched, for :func:`look`."""
+
+    plant: NDArray[np.int64]
+    ring: NDArray[np.int64]
+    after: NDArray[np.float64]
+
+
+@nb.njit(cache=True, nogil=True)
+def near(n: int) -> Near:
+    """Return such room for `n` plants."""
+    return Near(np.empty(n, np.int64), np.zeros(n, np.int64), np.empty(n))
+
+
+@nb.njit(cache=True, nogil=True)
+def look(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    result: tuple[int, bool],
+    rule: tuple[float, bool],
+    touched: Near,
+) -> int:
+    """Let one look teach what it can about a plant and those near it; return how many it touched.
+
+    `mind` is ``chance (n,)`` and ``both (e,)``, changed in place; `rule` the detection and whether
+    finds are treated. Exact where the plants' neighbourhood is a tree; round the loops of a
+    lattice the messages that arrive by several ways are combined as if independent. What a look
+    says about plants farther than three away is left out.
+    """
+    chance, both = mind
+    i, found = result
+    detection, treated = rule
+    p = chance[i]
+    after = _MOST if found else p * (1.0 - detection) / (1.0 - p * detection)
+    touched.plant[0], touched.ring[i], touched.after[i] = i, 1, min(max(after, _LEAST), _MOST)
+    n, first = 1, 0
+    for ring in range(2, _RINGS + 2):
+        end = n
+        for t in range(first, end):
+            n = _tell(mind, adjacent, (touched.plant[t], ring), touched, n)
+        first = end
+    for t in range(n):
+        j = touched.plant[t]
+        _keep_company(mind, adjacent, j, touched)
+    for t in range(n):
+        j = touched.plant[t]
+        chance[j], touched.ring[j] = touched.after[j], 0
+    if found and treated:
+        chance[i] = _LEAST
+        for e in range(adjacent.start[i], adjacent.start[i + 1]):
+            both[e] = both[_back(adjacent, i, e)] = 0.0
+    return n
+
+
+@nb.njit(cache=True)
+def _tell(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    teller: tuple[int, int],
+    touched: Near,
+    n: int,
+) -> int:
+    """Pass on what a plant has learnt to its neighbours in the next ring."""
+    chance, both = mind
+    j, ring = teller
+    p, after = chance[j], touched.after[j]
+    if abs(after - p) < _LEAST_SAY:
+        return n
+    for e in range(adjacent.start[j], adjacent.start[j + 1]):
+        k = adjacent.plant[e]
+        if touched.ring[k] == 0:
+            touched.plant[n], touched.ring[k], touched.after[k] = k, ring, chance[k]
+            n += 1
+        elif touched.ring[k] != ring:
+            continue
+        q = chance[k]
+        told = _told(p, q, both[e], after)
+        if told < q:
+            touched.after[k] *= told / q
+        else:
+            touched.after[k] = 1.0 - (1.0 - touched.after[k]) * (1.0 - told) / (1.0 - q)
+        touched.after[k] = min(max(touched.after[k], _LEAST), _MOST)
+    return n
+
+
+@nb.njit(cache=True)
+def _keep_company(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    j: int,
+    touched: Near,
+) -> None:
+    """Bring the pairs of a plant and those farther out to their new chances.
+
+    What an infested plant says about its neighbour changes by as much as the neighbour has heard
+    from others.
+    """
+    chance, both = mind
+    for e in range(adjacent.start[j], adjacent.start[j + 1]):
+        k = adjacent.plant[e]
+        if touched.ring[k] != 0 and (touched.ring[k], k) < (touched.ring[j], j):
+            continue
+        p, q, after = chance[j], chance[k], touched.after[j]
+        own = touched.after[k] if touched.ring[k] else q
+        told = _told(p, q, both[e], after)
+        from_others = own / (1.0 - own) * (1.0 - told) / told
+        beside = min(both[e] / p, 1.0)
+        beside = beside * from_others / (beside * from_others + 1.0 - beside + _LEAST)
+        c = _bounded(beside * after, own, after)
+        both[e] = both[_back(adjacent, j, e)] = c
+
+
+@nb.njit(cache=True, inline="always")
+def _bounded(both: float, p: float, q: float) -> float:
+    """Return the chance of both of two plants, within what their own chances p and q allow."""
+    apart = p * q
+    return max(min(both, apart + _CLOSEST * (min(p, q) - apart)), p + q - 1.0, 0.0)
+
+
+@nb.njit(cache=True, inline="always")
+def _told(p: float, q: float, both: float, after: float) -> float:
+    """Return the chance of a plant, q until now, when its neighbour's goes from p to `after`."""
+    c = _bounded(both, p, q)
+    told = c / p * after + (q - c) / (1.0 - p) * (1.0 - after)
+    return min(max(told, _LEAST), _MOST)
+
+
+@nb.njit(cache=True, inline="always")
+def _back(adjacent: Csr, j: int, e: int) -> int:
+    """Return where the pair of plant j at place e stands in the list of the other plant."""
+    k = adjacent.plant[e]
+    for back in range(adjacent.start[k], adjacent.start[k + 1]):
+        if adjacent.plant[back] == j:
+            return back
+    return e
+
+
+@nb.njit(cache=True, nogil=True)
+def _learn_pairs(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    plants: NDArray[np.int32],
+    found: NDArray[np.bool_],
+    rule: tuple[float, bool],
+) -> None:
+    touched = near(mind[0].size)
+    for k in range(plants.size):
+        look(mind, adjacent, (plants[k], found[k]), rule, touched)
+
+
+@nb.njit(cache=True, nogil=True)
+def _overnight_pairs(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    after: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    rule: tuple[float, bool, float],
+) -> None:
+    chance, both = mind
+    rate, one, arrivals = rule
+    start, plant = adjacent
+    # chance that a clean plant stays so, whatever beside it, and what beside each of its plants
+    stays, spared = np.empty(chance.size), np.empty(both.size)
+    close, twice = np.empty(chance.size), 1.0 - (1.0 - rate) ** 2
+    for i in range(chance.size):
+        close[i] = 0.0
+        for e in range(start[i], start[i + 1]):
+            close[i] += both[e] / chance[i]
+        close[i] /= max(start[i + 1] - start[i], 1)
+    beside, share = np.empty(64), np.empty(64)
+    for i in range(chance.size):
+        first, degree = start[i], start[i + 1] - start[i]
+        weight, kin = 0.0, 0.0
+        for k in range(degree):
+            j = plant[first + k]
+            share[k] = rate / (start[j + 1] - start[j]) if one else rate
+            beside[k] = max(chance[j] - both[first + k], 0.0) / (1.0 - chance[i])
+            weight += beside[k]
+            kin += beside[k] * close[j] ** 2
+        kin = kin / weight if weight > 0.0 else 0.0
+        stays[i] = (1.0 - arrivals) * _spared(beside[:degree], share, kin, -1)
+        for k in range(degree):
+            spared[first + k] = (1.0 - arrivals) * _spared(beside[:degree], share, kin, k)
+        after[0][i] = min(max(1.0 - (1.0 - chance[i]) * stays[i], _LEAST), _MOST)
+    for i in range(chance.size):
+        for e in range(start[i], start[i + 1]):
+            j = plant[e]
+            a, b = 1.0 - spared[e], 1.0 - spared[_back(adjacent, i, e)]
+            # what comes to two neighbours at once mostly comes from one infestation
+            at_once = max(a * b, twice * min(close[i], close[j]) * min(a, b))
+            neither = max(1.0 - chance[i] - chance[j] + both[e], 0.0) * (1.0 - a - b + at_once)
+            c = after[0][i] + after[0][j] - 1.0 + neither
+            least = max(0.0, after[0][i] + after[0][j] - 1.0)
+            after[1][e] = min(max(c, least), after[0][i], after[0][j])
+
+
+@nb.njit(cache=True)
+def _spared(beside: NDArray[np.float64], share: NDArray[np.float64], kin: float, but: int) -> float:
+    """Return the chance that none of a plant's neighbours infects it, neighbour `but` aside.
+
+    Neighbours of a clean plant are infested together: there is an infestation beside it with the
+    chance g, and if so each neighbour belongs to it with the chance beside / g, so that where
+    one does another does with the chance `kin`. Independent neighbours are the case of g = 1.
+    """
+    most = 0.0
+    for k in range(beside.size):
+        if k != but:
+            most = max(most, beside[k])
+    if most <= 0.0:
+        return 1.0
+    g = most / max(kin, most)
+    spared = 1.0
+    for k in range(beside.size):
+        if k != but:
+            spared *= 1.0 - share[k] * beside[k] / g
+    return 1.0 - g * (1.0 - spared)

@@ -8,20 +8,23 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from datetime import date, datetime
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from fieldmon import cli_season, cli_study
+from fieldmon import cli_raster, cli_season, cli_study
 from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from fieldmon.field import Field, Observations
     from fieldmon.geodata.crews import Crew
-    from fieldmon.geodata.findings import Finding
+    from fieldmon.geodata.findings import Finding, Imported
+    from fieldmon.geodata.places import Places
+    from fieldmon.grid import PlantGrid
     from fieldmon.monitor import Plot
     from fieldmon.robot import Robot
     from fieldmon.samplers import Sampler
@@ -53,6 +56,7 @@ class SamplerName(StrEnum):
     NAIVE = "naive"
     BOUNCY = "bouncy"
     DYNAMIC = "dynamic"
+    ADAPTIVE = "adaptive"
     SNAKE = "snake"
     SNAKE_RANDOM = "snake-random"
     NEIGHBOR = "neighbor"
@@ -128,6 +132,15 @@ EveryPlot = Annotated[
     bool,
     typer.Option("--all", help="Every plot of the file; --output is the folder of routes then."),
 ]
+Outputs = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--output",
+        "-o",
+        help="Route file to write, its format by its ending; repeat for several. "
+        "route.geojson if none.",
+    ),
+]
 On = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; today.")]
 FlagOnly = Annotated[
     bool,
@@ -189,9 +202,7 @@ def plots(
 def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     context: typer.Context,
     plot: MaybePlotFile = None,
-    output: Annotated[
-        Path, typer.Option("--output", "-o", help="Route file to write (GeoJSON).")
-    ] = Path("route.geojson"),
+    output: Outputs = None,
     observations: Records = None,
     feature: Feature = None,
     sampler: Annotated[SamplerName, typer.Option(help="Who chooses.")] = SamplerName.DYNAMIC,
@@ -221,10 +232,16 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     plot_option: Choices = None,
     record_option: RecordChoices = None,
     every_plot: EveryPlot = False,  # noqa: FBT002 - a flag
+    risk: cli_raster.Risk = None,
+    risk_option: cli_raster.RiskChoices = None,
+    canopy: cli_raster.Canopy = None,
+    canopy_below: cli_raster.CanopyBelow = None,
+    canopy_option: cli_raster.CanopyChoices = None,
+    chance_map: cli_raster.ChanceMap = None,
 ) -> None:
-    """Plan today's route on a plot or in a season, and write it as GeoJSON.
+    """Plan today's route on a plot or in a season, and write it for whoever drives.
 
-    The file holds the line to drive, which crosses no row of plants, and the stops in order with
+    Files hold the line to drive, which crosses no row of plants, and the stops in order with
     arrival time, row, plant and chance of infestation. Without observations every plant has the
     same chance but for the plot's edge, from which insects come.
 
@@ -238,7 +255,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     With --all, columns robot (robot or scout), hours, speed_km_h and look_s of the plot file say
     who works on each plot; options given here go before them.
     """
-    from fieldmon.geodata.routes import RouteNotes, write_route  # noqa: PLC0415
+    from fieldmon.geodata.routes import RouteNotes  # noqa: PLC0415
     from fieldmon.monitor import Plans, first_day  # noqa: PLC0415
 
     if plot is not None and cli_season.is_season(plot):
@@ -257,9 +274,10 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         "faces": 2 if both_faces else None,
     }
     if every_plot:
-        if plot is None or (plants, gate, feature) != (None, None, None):
+        if plot is None or any((plants, gate, feature, risk, canopy, chance_map)):
             raise SettingError(
-                "--all plans every plot of one plot file: leave out --feature, --plants and --gate."
+                "--all plans every plot of one plot file: leave out --feature, --plants, --gate, "
+                "--risk, --canopy and --chance-map."
             )
         by_hand = {
             "hours": hours,
@@ -272,16 +290,19 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         crews = _read_crews(plot, paths, crs, layer, plot_option)
         records = _read_all_records(observations, record_option)
         began = datetime.combine(day.astype(date), begins)
-        _plan_all(crews, records, (who, by_hand, given), (output, began))
+        _plan_all(crews, records, (who, by_hand, given), (output or [], began))
         return
     if plot is None:
         laid = _around(plants, gate, given)
     else:
         fields = _read_plots(plot, feature, crs, layer, plot_option)
         laid = _lay(_place(fields, plants, paths, gate, feature), given)
-    records = _read_records(observations, laid, record_option)
+    laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
+    at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
+    named = partial(_named, (plot, plants), crs, layer, plot_option)
+    records = _read_records(observations, laid, record_option, named)
     _hear(records, day)
-    today = first_day(laid, records, day, plans)
+    today = first_day(laid, records, day, plans, at_risk)
     route = today.route
     if not len(route):
         raise SettingError(
@@ -289,13 +310,13 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
             f"{plans.robot.hours:g} h are not. Give more --hours."
         )
     began = datetime.combine(day.astype(date), begins)
-    write_route(output, route, RouteNotes(laid.field.name, sampler.value, began))
     typer.echo(
         f"{len(route)} of {len(laid.grid)} plants in {route.end_s / 3600:.1f} h, "
         f"{route.drive_m / 1000:.2f} km; about {route.expected_finds:.1f} of them infested, "
         f"about {route.expected_finds * plans.robot.detects:.1f} of these would be found."
     )
-    typer.echo(f"Route written to {output}")
+    cli_season.hand_off(route, RouteNotes(laid.field.name, sampler.value, began), output)
+    cli_raster.write_map(chance_map, laid, today.chance)
 
 
 @app.command()
@@ -333,6 +354,11 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     layer: Layer = None,
     plot_option: Choices = None,
     record_option: RecordChoices = None,
+    risk: cli_raster.Risk = None,
+    risk_option: cli_raster.RiskChoices = None,
+    canopy: cli_raster.Canopy = None,
+    canopy_below: cli_raster.CanopyBelow = None,
+    canopy_option: cli_raster.CanopyChoices = None,
 ) -> None:
     """Begin a season on a plot: one GeoPackage that grows with every day's findings.
 
@@ -369,9 +395,12 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         else:
             fields = _read_plots(plot, feature, crs, layer, plot_option)
             laid = _lay(_place(fields, plants, paths, gate, feature), given)
-        records = _read_records(observations, laid, record_option)
+        laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
+        at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
+        named = partial(_named, (plot, plants), crs, layer, plot_option)
+        records = _read_records(observations, laid, record_option, named)
     _hear(records, day)
-    project = Project.create(season, laid, records, setup, cli_season.remarks(notes))
+    project = Project.create(season, laid, records, setup, cli_season.remarks(notes), at_risk)
     ahead = project.status(setup.begins).outlook
     typer.echo(
         f"Season begun in {season}: {len(records)} records, about {ahead.expected:.0f} plants "
@@ -416,6 +445,11 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     layer: Layer = None,
     plot_option: Choices = None,
     record_option: RecordChoices = None,
+    risk: cli_raster.Risk = None,
+    risk_option: cli_raster.RiskChoices = None,
+    canopy: cli_raster.Canopy = None,
+    canopy_below: cli_raster.CanopyBelow = None,
+    canopy_option: cli_raster.CanopyChoices = None,
 ) -> None:
     """Simulate a season on a plot: insects spread at night, samplers look for them by day.
 
@@ -440,9 +474,14 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     else:
         fields = _read_plots(plot, feature, crs, layer, plot_option)
         laid = _lay(_place(fields, plants, paths, gate, feature), given)
-    records = _read_records(observations, laid, record_option)
+    laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
+    at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
+    named = partial(_named, (plot, plants), crs, layer, plot_option)
+    records = _read_records(observations, laid, record_option, named)
     _hear(records, day)
-    begin = _start(laid, first_day(laid, records, day, Plans(robot)).chance, infested, seed)
+    begin = _start(
+        laid, first_day(laid, records, day, Plans(robot), at_risk).chance, infested, seed
+    )
     rows = []
     for name in sampler or list(SamplerName)[:3]:
         rows += _season(laid, robot, (name, _sampler(name, every)), begin, (days, spread, seed))
@@ -501,6 +540,18 @@ def _read_plots(
     layer: str | None,
     more: list[str] | None,
 ) -> tuple[Field, ...]:
+    read = _plots_of(path, feature, crs, layer, more)
+    _tell(read.findings, path, "--plot-option")
+    return read.value
+
+
+def _plots_of(
+    path: Path,
+    feature: str | None,
+    crs: str | None,
+    layer: str | None,
+    more: list[str] | None,
+) -> Imported[tuple[Field, ...]]:
     from fieldmon.geodata.options import PlotOptions  # noqa: PLC0415
     from fieldmon.geodata.reading import read_plots  # noqa: PLC0415
 
@@ -509,9 +560,7 @@ def _read_plots(
         if value is not None:
             options = options.choose(name, value)
     with _asking("--plot-option"):
-        read = read_plots(path, _chosen(options, more))
-    _tell(read.findings, path)
-    return read.value
+        return read_plots(path, _chosen(options, more))
 
 
 def _read_crews(
@@ -533,11 +582,11 @@ def _read_crews(
             options = options.choose(name, value)
     with _asking("--plot-option"):
         read, crews = read_crews(path, _chosen(options, more))
-    _tell(read.findings)
+    _tell(read.findings, path, "--plot-option")
     fields = read.value
     if paths is not None:
         lines = read_lines(paths, ReadOptions())
-        _tell(lines.findings)
+        _tell(lines.findings, paths)
         fields = tuple(replace(field, paths=lines.value) for field in fields)
     return [(field, crews[field.name]) for field in fields]
 
@@ -553,7 +602,7 @@ def _read_all_records(path: Path | None, more: list[str] | None) -> Observations
 
     with _asking("--record-option"):
         read = read_records(path, _chosen(RecordOptions(), more))
-    _tell(read.findings)
+    _tell(read.findings, path, "--record-option")
     return read.value
 
 
@@ -561,7 +610,7 @@ def _plan_all(
     plots: list[tuple[Field, Crew]],
     records: Observations,
     ordered: tuple[tuple[SamplerName, int | None, bool], dict[str, Any], dict[str, Any]],
-    to: tuple[Path, datetime],
+    to: tuple[list[Path], datetime],
 ) -> None:
     """Plan every plot into a folder, given who chooses, the robot's settings and the planting's."""
     import numpy as np  # noqa: PLC0415
@@ -571,7 +620,9 @@ def _plan_all(
     from fieldmon.samplers import EVERY  # noqa: PLC0415
 
     (name, every, scout), robot, planting = ordered
-    output, began = to
+    outputs, began = to
+    if len(outputs) > 1 or any(output.suffix for output in outputs):
+        raise SettingError("With --all, --output must be one folder for the routes of all plots.")
     orders = Orders(
         day=np.datetime64(began.date(), "D"),
         sampler=name.value,
@@ -581,23 +632,53 @@ def _plan_all(
         planting={setting: value for setting, value in planting.items() if value is not None},
     )
     _hear(records, orders.day)
-    # the option's default is a file for one plot
-    folder = output.with_suffix("") if output.suffix == ".geojson" else output
+    folder = outputs[0] if outputs else Path("routes")
     cli_batch.plan_all(plots, orders, cli_batch.Day(records, folder, began))
 
 
-def _read_records(path: Path | None, plot: Plot, more: list[str] | None) -> Observations:
+def _read_records(
+    path: Path | None,
+    plot: Plot,
+    more: list[str] | None,
+    named: Callable[[PlantGrid], Places],
+) -> Observations:
+    """Return the records on a plot; `named` is asked for what they name if they do."""
     from fieldmon.field import Observations  # noqa: PLC0415
 
     if path is None:
         return Observations.none()
+    from fieldmon.geodata.nearby import on_plants  # noqa: PLC0415
     from fieldmon.geodata.options import RecordOptions  # noqa: PLC0415
     from fieldmon.geodata.reading import read_records  # noqa: PLC0415
 
+    options = _chosen(RecordOptions(), more)
     with _asking("--record-option"):
-        read = read_records(path, _chosen(RecordOptions(), more), near=plot.field)
-    _tell(read.findings, path)
+        try:
+            read = read_records(path, options, near=plot.field)
+        except ChoiceNeeded as question:
+            if question.option != "places":
+                raise
+            read = read_records(path, options, plot.field, named(plot.grid))
+    _tell(read.findings, path, "--record-option")
+    _tell(on_plants(read.value, plot.grid), path)
     return read.value
+
+
+def _named(
+    files: tuple[Path | None, Path | None],
+    crs: str | None,
+    layer: str | None,
+    more: list[str] | None,
+    grid: PlantGrid,
+) -> Places:
+    """Return the plots and plants of the command's files by their names."""
+    from fieldmon.geodata.places import Places  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_plants  # noqa: PLC0415
+
+    plot, plants = files
+    # what these files have to say was said before
+    fields = () if plot is None else _plots_of(plot, None, crs, layer, more).value
+    return Places.of(fields, grid, None if plants is None else read_plants(plants).value)
 
 
 def _place(
@@ -748,9 +829,9 @@ def _asking(flag: str) -> Iterator[None]:
         ) from None
 
 
-def _tell(findings: Iterable[Finding], source: object = "") -> None:
+def _tell(findings: Iterable[Finding], source: object = "", flag: str = "") -> None:
     for finding in findings:
-        typer.echo(str(finding), err=True)
+        typer.echo(finding.line(flag), err=True)
         for notes in _NOTES.get():
             notes.append((str(source), finding))
 

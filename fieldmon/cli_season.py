@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import tempfile
 from datetime import date, datetime, time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fieldmon import cli_raster
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from fieldmon.geodata.findings import Finding
+    from fieldmon.geodata.reported import FindingsOptions
+    from fieldmon.geodata.routes import RouteNotes
     from fieldmon.project import Project, Remark, Status
+    from fieldmon.route import Route
 
 SeasonFile = Annotated[Path, typer.Argument(help="The season's file, made by fieldmon init.")]
 On = Annotated[str | None, typer.Option("--date", help="The day, YYYY-MM-DD; today.")]
@@ -24,13 +29,24 @@ ListBatches = Annotated[
 ListRows = Annotated[
     bool, typer.Option("--rows", help="List the days since each row was inspected.")
 ]
+TakeDoubtful = Annotated[
+    bool, typer.Option("--take-doubtful", help="Take doubtful positions at the nearest plant.")
+]
+FindingChoices = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--finding-option",
+        help="What the files leave open, as NAME=VALUE: zone=Asia/Jerusalem, accuracy_m=3, "
+        "columns=count=Milben.",
+    ),
+]
 # what a plan of a season may be told; all else was chosen when it began
-_OF_A_PLAN = {"plot", "output", "on", "now"}
+_OF_A_PLAN = {"plot", "output", "on", "now", "chance_map"}
 
 
 def register(app: typer.Typer) -> None:
     """Add the commands of a season."""
-    for command in (status, undo, treat, change, salvage):
+    for command in (record, status, undo, treat, change, salvage):
         app.command()(command)
 
 
@@ -51,15 +67,24 @@ def remarks(notes: Iterable[tuple[str, Finding]]) -> list[Remark]:
             finding.severity.value,
             finding.feature,
             finding.sentence,
-            None if finding.remedy is None else finding.remedy.flag,
+            None if finding.remedy is None else finding.remedy.setting,
         )
         for source, finding in notes
     ]
 
 
-def plan_season(context: typer.Context, season: Path, output: Path) -> None:
+def hand_off(route: Route, notes: RouteNotes, outputs: list[Path] | None) -> None:
+    """Write a route in every format asked for, and say where."""
+    from fieldmon.geodata.handoff import HandoffPlan, write_handoff  # noqa: PLC0415
+
+    for output in outputs or [Path("route.geojson")]:
+        for path in write_handoff(HandoffPlan(route, notes), output):
+            typer.echo(f"Route written to {path}")
+
+
+def plan_season(context: typer.Context, season: Path, outputs: list[Path] | None) -> None:
     """Plan a day of a season, keep the route in its file, and write it for whoever drives."""
-    from fieldmon.geodata.routes import RouteNotes, write_route  # noqa: PLC0415
+    from fieldmon.geodata.routes import RouteNotes  # noqa: PLC0415
     from fieldmon.project.kept_routes import begins  # noqa: PLC0415
 
     told = {
@@ -85,7 +110,6 @@ def plan_season(context: typer.Context, season: Path, output: Path) -> None:
             f"{left_h:.1f} h are left of {on}. Plan another day with --date."
         )
     notes = RouteNotes(project.plot.field.name, setup.sampler, begins(setup, today))
-    write_route(output, route, notes)
     seen = project.history.inspections.on(today.scene.day)
     done = f"{len(seen)} done, " if len(seen) else ""
     typer.echo(
@@ -94,7 +118,61 @@ def plan_season(context: typer.Context, season: Path, output: Path) -> None:
         f"{route.expected_finds:.1f} of them infested, about "
         f"{route.expected_finds * setup.robot.detects:.1f} of these would be found."
     )
-    typer.echo(f"Route written to {output}")
+    hand_off(route, notes, outputs)
+    cli_raster.write_map(context.params["chance_map"], project.plot, today.chance)
+
+
+def record(
+    season: SeasonFile,
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            help="Findings: CSV, Excel, GeoJSON, GPX, GeoPackage... with plants or positions; "
+            "or the route file given out, filled in."
+        ),
+    ],
+    on: Annotated[
+        str | None,
+        typer.Option("--date", help="Day of findings whose file names none, YYYY-MM-DD."),
+    ] = None,
+    who: Annotated[str, typer.Option(help="Who inspected.")] = "",
+    take_doubtful: TakeDoubtful = False,  # noqa: FBT002 - a flag
+    finding_option: FindingChoices = None,
+) -> None:
+    """Record what was found; the same findings twice change nothing.
+
+    Plants that are not in the files stay unknown. Positions are snapped to the nearest plant;
+    doubtful ones are listed and left out, unless --take-doubtful is given.
+
+    Example: fieldmon record season.gpkg route.csv --date 2026-04-06 --who Ann
+    """
+    from fieldmon.geodata.findings_in import read_findings  # noqa: PLC0415
+    from fieldmon.geodata.reported import FindingsOptions  # noqa: PLC0415
+    from fieldmon.project import counting_copy, results_from  # noqa: PLC0415
+
+    project = _open(season)
+    options = FindingsOptions(take_doubtful=take_doubtful)
+    if on is not None:
+        options = options.choose("day", str(_date(on)))
+    options = _chosen(options, finding_option)
+    # all are read before any is recorded: a file that cannot be used leaves nothing half-done
+    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+        sources = [counting_copy(f, Path(folder)) if is_season(f) else f for f in files]
+        heard = [read_findings(source, project.plot.grid, options) for source in sources]
+    read = list(zip(files, heard, strict=True))
+    for file, found in read:
+        for finding in found.findings:
+            typer.echo(f"{file.name}: {finding}", err=True)
+    last = None
+    for file, found in read:
+        results = results_from(found.value)
+        done = project.record(results, file.name, who)
+        if len(results):
+            last = max(last or results.day.max(), results.day.max())
+        batch = "" if done.batch is None else f" (batch {done.batch})"
+        typer.echo(f"{file.name}: {done.new} new, {done.known} known already{batch}")
+    if last is not None:
+        typer.echo("\n".join(_lines(project, project.status(last.item()))))
 
 
 def status(
@@ -280,6 +358,15 @@ def _open(season: Path) -> Project:
     from fieldmon.project import Project  # noqa: PLC0415
 
     return Project(season)
+
+
+def _chosen(options: FindingsOptions, more: list[str] | None) -> FindingsOptions:
+    for item in more or []:
+        name, equals, value = item.partition("=")
+        if not equals:
+            raise SettingError(f"An option must be NAME=VALUE, but it is {item!r}.")
+        options = options.choose(name.strip(), value.strip())
+    return options
 
 
 def _date(text: str | None) -> date:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon import cli_study_run
+from fieldmon import cli_study_run, cli_study_samplers
+from fieldmon.cli_study_prior import register as register_prior
 from fieldmon.errors import FileProblem
 
 if TYPE_CHECKING:
@@ -17,8 +18,9 @@ if TYPE_CHECKING:
 app = typer.Typer(
     no_args_is_help=True, help="Published experiments, made again, and studies of one's own."
 )
-
-
+register_prior(app)
+app.command("samplers")(cli_study_samplers.samplers)
+app.command("beliefs")(cli_study_samplers.beliefs)
 cli_study_run.register(app)
 
 

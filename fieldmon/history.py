@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.belief import Learning, learn, overnight
+from fieldmon.belief import Learning
 from fieldmon.chance import Chance
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.samplers.scene import GATE, NEVER, Scene, robot_clock, travel_s
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.aisles import Aisles
+    from fieldmon.belief import Belief
     from fieldmon.grid import PlantGrid
     from fieldmon.robot import Robot
 
 CLEAN, FOUND, SKIPPED = 0, 1, 2
-_LEAST = 1e-6
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,6 @@ class Beliefs:
         pest nobody measured: each infested plant infests each of its neighbours with 2 % a night
         (8 % a night altogether: doubling in nine days), and 1 plant in 5 000 is infested from
         outside. The thesis's 30 to 80 % are meant for its simulator.
-    beside_find
-        Chance that a plant next to a find is infested too, see `fieldmon.belief.Learning`.
     treated
         Whether plants found infested are treated at once (the thesis's rule), or only flagged.
     """
@@ -45,12 +43,11 @@ class Beliefs:
     spread: Spread = field(
         default_factory=lambda: Spread(rate_per_day=0.02, arrivals_per_day=0.0002)
     )
-    beside_find: float = 0.3
     treated: bool = True
 
     def learning(self, detection: float) -> Learning:
         """Return how findings of that detection rate change the chance map."""
-        return Learning(detection, self.beside_find, self.treated)
+        return Learning(detection, treated=self.treated)
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +138,7 @@ class History:
     grid
         The plants.
     prior
-        ``(n,)`` chance of infestation on the first morning.
+        What is believed on the first morning.
     inspections, treatments
         What was done.
     beliefs
@@ -151,27 +148,27 @@ class History:
     """
 
     grid: PlantGrid
-    prior: NDArray[np.float64]
+    prior: Belief
     inspections: Inspections = field(default_factory=Inspections.none)
     treatments: tuple[Treatment, ...] = ()
     beliefs: Beliefs = field(default_factory=Beliefs)
     detection: float = 0.84
 
-    def night_after(self, morning: NDArray[np.float64], day: int) -> NDArray[np.float64]:
-        """Return the next morning's chance map ``(n,)`` from that of a day."""
-        return overnight(self.evening(morning, day), self.grid, self.beliefs.spread)
+    def night_after(self, morning: Belief, day: int) -> Belief:
+        """Return what is believed the next morning, from what was on the morning of a day."""
+        return self.evening(morning, day).overnight(self.beliefs.spread)
 
-    def evening(self, chance: NDArray[np.float64], day: int) -> NDArray[np.float64]:
-        """Return a morning's chance map ``(n,)`` after what was found and treated on that day."""
+    def evening(self, morning: Belief, day: int) -> Belief:
+        """Return what is believed after what was found and treated on a day."""
         done = self.inspections.on(day).looked
-        learning = self.beliefs.learning(self.detection)
+        believed = morning
         if len(done):
-            chance = learn(chance, self.grid, done.plant, done.result == FOUND, learning)
+            learning = self.beliefs.learning(self.detection)
+            believed = believed.learn(done.plant, done.result == FOUND, learning)
         for treatment in self.treatments:
             if treatment.day == day:
-                left = np.maximum(chance * (1.0 - treatment.efficacy), _LEAST)
-                chance = np.where(treatment.plants, left, chance)
-        return chance
+                believed = believed.treated(np.where(treatment.plants, 1 - treatment.efficacy, 1.0))
+        return believed
 
     def last_inspected(self, day: int) -> NDArray[np.int32]:
         """Return ``(n,)`` the day of each plant's last inspection up to `day`, or `NEVER`."""
@@ -187,9 +184,7 @@ class History:
         np.maximum.at(state, done.plant, done.result)
         return state
 
-    def scene(
-        self, crew: Crew, day: int, morning: NDArray[np.float64], now_s: float | None = None
-    ) -> Scene:
+    def scene(self, crew: Crew, day: int, morning: Belief, now_s: float | None = None) -> Scene:
         """Return the scene of a day as it stands after what was recorded of it.
 
         Parameters
@@ -199,13 +194,13 @@ class History:
         day
             Number of the day.
         morning
-            ``(n,)`` its morning's chance map.
+            What was believed on its morning.
         now_s
             Seconds since midnight; None: when the last inspection recorded was done, by its own
             time or, where none was noted, by what driving and looking cost.
         """
         aisles, robot = crew.aisles, crew.robot
-        today = self.inspections.on(day)
+        today, believed = self.inspections.on(day), self.evening(morning, day)
         last = self.last_inspected(day)
         last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
         trail = self._trail(day)
@@ -213,7 +208,8 @@ class History:
         return Scene(
             aisles=aisles,
             robot=robot,
-            chance=self.evening(morning, day),
+            chance=believed.chance,
+            both=believed.both,
             last_inspected=last,
             day=day,
             at=int(today.plant[-1]) if len(today) else resting,

@@ -7,19 +7,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.belief import Learning, learn, overnight
+from fieldmon.belief import Learning, Pairs
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.samplers.scene import GATE, NEVER, Scene
 from fieldmon.spread import Spread, night
 from fieldmon.workday import outcomes, work_day
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
     from fieldmon.aisles import Aisles
+    from fieldmon.belief import Belief
     from fieldmon.chance import Chance
+    from fieldmon.grid import PlantGrid
     from fieldmon.robot import Robot
     from fieldmon.samplers.scene import Sampler
     from fieldmon.workday import Workday
@@ -39,12 +41,15 @@ class SeasonSettings:
         What the chance map takes them to do; None: the same.
     learning
         How findings change the chance map; None: with the robot's own detection.
+    believe
+        How plot and first chance map become a belief.
     """
 
     n_days: int = 25
     spread: Spread = field(default_factory=Spread)
     believed_spread: Spread | None = None
     learning: Learning | None = None
+    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = Pairs.of
 
     def __post_init__(self) -> None:
         if self.n_days < 1:
@@ -140,7 +145,7 @@ def days(
     _check(aisles, start)
     learning = settings.learning or Learning(detection=robot.detects)
     believed = settings.believed_spread or settings.spread
-    infested, belief = start.infested.copy(), start.chance.copy()
+    infested, belief = start.infested.copy(), settings.believe(aisles.grid, start.chance)
     last_inspected = np.full(len(infested), NEVER, np.int32)
     ever_infested, ever_found = int(np.count_nonzero(infested)), 0
     trail, at = np.empty(0, np.int32), GATE
@@ -148,7 +153,8 @@ def days(
         scene = Scene(
             aisles=aisles,
             robot=robot,
-            chance=belief,
+            chance=belief.chance,
+            both=belief.both,
             last_inspected=last_inspected,
             day=number,
             at=at,
@@ -161,10 +167,8 @@ def days(
         last_inspected = last_inspected.copy()
         last_inspected[work.plant] = number
         ever_found += int(np.count_nonzero(work.found))
-        yield Day(number, work, infested, belief, last_inspected, ever_infested, ever_found)
-        belief = overnight(
-            learn(belief, aisles.grid, work.plant, work.found, learning), aisles.grid, believed
-        )
+        yield Day(number, work, infested, belief.chance, last_inspected, ever_infested, ever_found)
+        belief = belief.learn(work.plant, work.found, learning).overnight(believed)
         evening = infested.copy()
         evening[work.plant[work.found]] = False
         infested = night(aisles.grid, evening, settings.spread, chance.key("spread", number))

@@ -162,8 +162,9 @@ def no_folder(_):
     return ["plan", ZIP, "--feature", "Gate", "-o", "none/route.geojson"]
 
 
-def no_plain_file(_):
-    return ["plan", ZIP, "--feature", "Gate", "-o", "/dev/full"]
+def no_plain_file(folder):
+    (folder / "full.geojson").symlink_to("/dev/full")
+    return ["plan", ZIP, "--feature", "Gate", "-o", "full.geojson"]
 
 
 def bad_day(_):

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fieldmon.geodata.findings import Imported
     from fieldmon.geodata.layers import LayerInfo
     from fieldmon.geodata.places import Places, Plants
+    from fieldmon.geodata.reported import FindingsOptions, Reported
 
 
 def _read(task: str, source: Source, *arguments: Any) -> Any:  # noqa: ANN401 - each door says
@@ -92,3 +93,9 @@ def read_lines(source: Source, options: ReadOptions | None = None) -> Imported[M
     """Return lines (rows, paths, roads) in degrees WGS84."""
     lines: Imported[MultiLineString] = _read("lines", source, options or ReadOptions())
     return lines
+
+
+def read_reported(source: Source, options: FindingsOptions) -> Imported[Reported]:
+    """Return what a file says of plants that were inspected, before they are looked up."""
+    reported: Imported[Reported] = _read("reported", source, options)
+    return reported

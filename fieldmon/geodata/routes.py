@@ -61,7 +61,7 @@ def route_geojson(route: Route, notes: RouteNotes) -> str:
     """Return a route as GeoJSON text: first the driven line, then a point for every stop.
 
     A stop lies at its plant; its ``line_vertex`` tells where on the line the robot stands for it.
-    ``found`` and ``count`` are empty, to be filled in by whoever inspects.
+    ``found``, ``count``, ``who`` and ``notes`` are empty, to be filled in by whoever inspects.
     """
     line_lonlat = np.round(route.line_lonlat(), _DECIMALS)
     features = [_line_feature(route, notes, line_lonlat), *_stop_features(route, notes)]
@@ -125,6 +125,8 @@ def _stop_features(route: Route, notes: RouteNotes) -> list[dict[str, Any]]:
                 "line_vertex": vertex,
                 "found": None,
                 "count": None,
+                "who": None,
+                "notes": None,
             },
         }
         for order, (place, plant, row, number, arrive_s, leave_s, chance, vertex) in enumerate(

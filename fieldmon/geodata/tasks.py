@@ -11,6 +11,7 @@ from fieldmon.geodata.opening import layers_of, open_layer
 from fieldmon.geodata.plots import named_areas, plots_of
 from fieldmon.geodata.points_and_lines import lines_of, plants_of
 from fieldmon.geodata.records import records_of
+from fieldmon.geodata.reported import Reported, reported_of
 
 if TYPE_CHECKING:
     from shapely import MultiLineString
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from fieldmon.geodata.layers import LayerInfo
     from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
     from fieldmon.geodata.places import Places, Plants
+    from fieldmon.geodata.reported import FindingsOptions
 
 
 def layers(folder: str, source: Source) -> tuple[LayerInfo, ...]:
@@ -56,3 +58,8 @@ def plants(folder: str, source: Source, options: ReadOptions) -> Imported[Plants
 def lines(folder: str, source: Source, options: ReadOptions) -> Imported[MultiLineString]:
     """Return the lines of a source."""
     return lines_of(open_layer(source, options, Workroom(Path(folder))), options)
+
+
+def reported(folder: str, source: Source, options: FindingsOptions) -> Imported[Reported]:
+    """Return what a file says of plants that were inspected."""
+    return reported_of(source, options, Workroom(Path(folder)))

@@ -22,9 +22,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.belief import Belief
     from fieldmon.history import History
     from fieldmon.hotspots import HotSpots
     from fieldmon.monitor import Plot
+    from fieldmon.outlook import Outlook
     from fieldmon.project.setup import Setup
 
 STATES = {-1: "never inspected", 0: "looked clean", 1: "found infested"}
@@ -37,12 +39,12 @@ def digest(chance: NDArray[np.float64]) -> str:
     return hashlib.sha256(plain).hexdigest()[:24]
 
 
-def still_out(history: History, morning: NDArray[np.float64], day: int) -> NDArray[np.float64]:
-    """Return the chance ``(n,)`` that each plant is infested and nobody found it yet."""
-    chance = history.evening(morning, day)
-    if history.beliefs.treated:
-        return chance
-    return np.where(history.states(day) == PRESENT, 0.0, chance)
+def outlook_of(history: History, morning: Belief, day: int) -> Outlook:
+    """Return how many plants are infested and not found yet, after a day's work."""
+    evening = history.evening(morning, day)
+    if not history.beliefs.treated:  # what was found is known: it is not out there any more
+        evening = evening.treated(np.where(history.states(day) == PRESENT, 0.0, 1.0))
+    return outlook(history.grid, evening.chance, evening.both)
 
 
 def refresh(
@@ -50,7 +52,7 @@ def refresh(
     plot: Plot,
     setup: Setup,
     history: History,
-    morning: Callable[[int], NDArray[np.float64]],
+    morning: Callable[[int], Belief],
     since: int = 0,
 ) -> None:
     """Write the layers anew, as of the last day on which anything happened.
@@ -68,15 +70,13 @@ def refresh(
     _write_states(db, setup, history, spots, (days[-1], morning(days[-1])))
 
 
-def _day_row(
-    setup: Setup, history: History, morning: NDArray[np.float64], day: int
-) -> tuple[object, ...]:
+def _day_row(setup: Setup, history: History, morning: Belief, day: int) -> tuple[object, ...]:
     today = history.inspections.on(day).looked
-    ahead = outlook(still_out(history, morning, day))
+    ahead = outlook_of(history, morning, day)
     found = int(np.count_nonzero(today.result == FOUND))
     return (
         *(day, str(setup.date(day)), len(today), found),
-        *(ahead.expected, ahead.low, ahead.high, ahead.chance_clean, digest(morning)),
+        *(ahead.expected, ahead.low, ahead.high, ahead.chance_clean, digest(morning.chance)),
     )
 
 
@@ -99,7 +99,8 @@ def spot_area(plot: Plot, spots: HotSpots, h: int) -> MultiPolygon:
     """Return the ground of a hot spot, lon/lat: its plants and half a row around them."""
     grid = plot.grid
     plants = shapely.MultiPoint(grid.xy_m[spots.of_plant == h])
-    around = plants.buffer(grid.row_spacing_m / 2, quad_segs=4)
+    row_m = grid.row_spacing_m
+    around = plants.buffer(1.5 * row_m, quad_segs=4).buffer(-row_m, quad_segs=4)
     parts = shapely.get_parts(grid.frame.geometry_lonlat(around))
     return MultiPolygon(list(parts))
 
@@ -109,13 +110,13 @@ def _write_states(
     setup: Setup,
     history: History,
     spots: HotSpots,
-    latest: tuple[int, NDArray[np.float64]],
+    latest: tuple[int, Belief],
 ) -> None:
     day, morning = latest
     name = {int(d): str(setup.date(int(d))) for d in np.unique(history.inspections.day)}
     rows = zip(
-        range(1, len(history.prior) + 1),
-        np.round(history.evening(morning, day), 6).tolist(),
+        range(1, len(history.grid) + 1),
+        np.round(history.evening(morning, day).chance, 6).tolist(),
         [STATES[state] for state in history.states(day).tolist()],
         [name.get(last) for last in history.last_inspected(day).tolist()],
         [None if h < 0 else h + 1 for h in spots.of_plant.tolist()],

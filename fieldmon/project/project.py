@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from fieldmon.belief import Pairs
 from fieldmon.chance import Chance
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.field import PRESENT
@@ -18,7 +19,6 @@ from fieldmon.grid import RowLabel, row_label
 from fieldmon.history import FOUND, Crew, History, Treatment
 from fieldmon.hotspots import HotSpots, hot_spots
 from fieldmon.monitor import Plot, Today
-from fieldmon.outlook import Outlook, outlook
 from fieldmon.prior import prior_chance
 from fieldmon.project import batches, contents, derived, kept_routes, results, schema
 from fieldmon.project.geopackage import blob, geometry, insert, touch
@@ -36,7 +36,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
+    from fieldmon.belief import Belief
     from fieldmon.field import Observations
+    from fieldmon.outlook import Outlook
     from fieldmon.project.batches import Batch
     from fieldmon.project.contents import Remark
     from fieldmon.project.results import Results
@@ -110,9 +112,9 @@ class _Snapshot:
     revision: str
     setup: Setup
     history: History
-    mornings: list[Floats]
+    mornings: list[Belief]
 
-    def morning(self, day: int) -> Floats:
+    def morning(self, day: int) -> Belief:
         while len(self.mornings) <= day:
             number = len(self.mornings) - 1
             self.mornings.append(self.history.night_after(self.mornings[number], number))
@@ -159,7 +161,7 @@ class Project:
         begins = np.datetime64(setup.begins, "D")
         prior = prior_chance(plot.grid, plot.field, observations, begins, setup.prior, risk)
         history = _nothing_yet(plot, setup, prior)
-        first = _Snapshot("", setup, history, [prior])
+        first = _Snapshot("", setup, history, [history.prior])
         with Store.new(path) as db:
             contents.write_plot(db, plot)
             contents.write_observations(db, observations)
@@ -216,7 +218,7 @@ class Project:
             Local time; None: the start of the work or, once something of the day was recorded,
             the time of the last of it.
         keep
-            Whether the route is kept in the file; the same route is kept once.
+            whether the route is kept in the file: the same one once, an empty one never.
         """
         with self._lock:
             snapshot = self._now()
@@ -227,7 +229,7 @@ class Project:
             scene = snapshot.history.scene(crew, day, snapshot.morning(day), now_s)
             work = plan_day(scene, setup.decides())
             today = Today(scene, work, route_of(scene, work))
-            if keep:
+            if keep and len(today.route):
                 with self.store.writing() as db:
                     if kept_routes.keep(db, setup, self.label, today):
                         self._refresh(db, day)
@@ -307,14 +309,14 @@ class Project:
         """Return the chance map ``(n,)`` of a morning."""
         with self._lock:
             snapshot = self._now()
-            return snapshot.morning(snapshot.setup.day(on))
+            return snapshot.morning(snapshot.setup.day(on)).chance
 
     def evening(self, on: date) -> Floats:
         """Return the chance map ``(n,)`` of a day, after what was recorded of it so far."""
         with self._lock:
             snapshot = self._now()
             day = snapshot.setup.day(on)
-            return snapshot.history.evening(snapshot.morning(day), day)
+            return snapshot.history.evening(snapshot.morning(day), day).chance
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""
@@ -335,7 +337,7 @@ class Project:
             found=int(np.count_nonzero(state == PRESENT)),
             inspected_today=len(today),
             found_today=int(np.count_nonzero(today.result == FOUND)),
-            outlook=outlook(derived.still_out(history, morning, day)),
+            outlook=derived.outlook_of(history, morning, day),
             days_since=np.where(last < 0, np.nan, day - last),
             hot_spots=hot_spots(grid, state),
         )
@@ -366,7 +368,7 @@ class Project:
                 f"The chance map of {on} comes out differently from the one used then: it was "
                 "made by another version of fieldmon, or the file was changed by other hands."
                 for day, on, digest in kept
-                if derived.digest(snapshot.morning(day)) != digest
+                if derived.digest(snapshot.morning(day).chance) != digest
             )
 
     def rebuild(self) -> None:
@@ -397,7 +399,7 @@ class Project:
                 inspections=results.load(db),
                 treatments=treatments,
             )
-            self._last = _Snapshot(revision, setup, history, [prior])
+            self._last = _Snapshot(revision, setup, history, [history.prior])
         return self._last
 
     def _first_morning(self, setup: Setup) -> Floats:
@@ -424,14 +426,13 @@ class Project:
 
 
 def _nothing_yet(plot: Plot, setup: Setup, prior: Floats) -> History:
-    return History(plot.grid, prior, beliefs=setup.beliefs, detection=setup.robot.detects)
+    belief = Pairs.of(plot.grid, prior)
+    return History(plot.grid, belief, beliefs=setup.beliefs, detection=setup.robot.detects)
 
 
 def _revision(db: sqlite3.Connection) -> str:
     """Return what changes when anything that counts does, whoever changed it."""
-    counted = db.execute(
-        "SELECT count(*), max(fid), total(undone) FROM inspections WHERE plant IS NOT NULL"
-    ).fetchone()
+    counted = db.execute("SELECT count(*), max(fid), total(undone) FROM inspections").fetchone()
     return repr((get_meta(db, "revision"), counted))
 
 

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import hashlib
+import shutil
+import sqlite3
+from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fieldmon.errors import ObservationError
+from fieldmon.field import ABSENT, PRESENT
 from fieldmon.history import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.project import schema
 from fieldmon.project.geopackage import point_blobs, touch
 
 if TYPE_CHECKING:
-    import sqlite3
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from fieldmon.geodata.findings_in import Findings
     from fieldmon.grid import PlantGrid, RowLabel
     from fieldmon.project.setup import Setup
 
@@ -92,13 +97,41 @@ class Results:
         )
 
 
+def results_from(findings: Findings) -> Results:
+    """Return findings that were read from a file as results."""
+    second = (findings.when - findings.when.astype("datetime64[D]")) / np.timedelta64(1, "s")
+    code = np.full(len(findings), SKIPPED, np.int8)
+    code[findings.result == PRESENT] = FOUND
+    code[findings.result == ABSENT] = CLEAN
+    return Results(
+        findings.plant,
+        code,
+        findings.day.astype("datetime64[D]"),
+        np.where(np.isnat(findings.when), np.nan, second),
+        findings.count,
+        findings.who,
+        findings.notes,
+    )
+
+
+def counting_copy(season: Path, folder: Path) -> Path:
+    """Return a copy of a season that holds only the inspections that were not undone there."""
+    copy = folder / season.name
+    shutil.copyfile(season, copy)
+    with closing(sqlite3.connect(copy)) as db:
+        db.execute("DELETE FROM inspections WHERE undone = 1")
+        db.commit()
+    return copy
+
+
 def rows(
     results: Results, grid: PlantGrid, label: RowLabel, setup: Setup, batch: tuple[int, str]
 ) -> list[tuple[object, ...]]:
     """Return results as rows of the table of inspections; raise where they do not fit.
 
-    `batch` is its number and whose results these are where they do not say. Who brings a file is
-    no part of what it says: the same file brought by another person changes nothing.
+    `batch` is its number and whose results these are where they do not say. Who looked, and what
+    was noted, is no part of what makes a result the same as another: a file that comes back from
+    somebody else, or with more notes, brings nothing new.
     """
     _check(results, grid)
     dates = {day: day.item() for day in np.unique(results.day)}
@@ -114,7 +147,7 @@ def rows(
         told = None if np.isnan(count) else count
         who, notes = str(results.who[k]), str(results.notes[k])
         date = dates[day].isoformat()
-        mark = _digest(plant, date, at, NAMES[code], told, who)
+        mark = _digest(plant, date, at, NAMES[code], told)
         made.append(
             (
                 *(places[k], plant, int(label.line[plant]), int(label.number[plant])),
@@ -182,7 +215,7 @@ def load(db: sqlite3.Connection) -> Inspections:
     """Return the inspections that count, by day; within a day by time, untimed ones last."""
     found = db.execute(
         "SELECT plant, day, result, time FROM inspections "
-        "WHERE undone = 0 AND plant IS NOT NULL AND day IS NOT NULL "
+        "WHERE undone = 0 AND digest IS NOT NULL "
         "ORDER BY day, time IS NULL, time, fid"
     ).fetchall()
     if not found:

@@ -110,7 +110,7 @@ INSPECTIONS = Table(
         "notes TEXT",
         "batch INTEGER",
         "digest TEXT",
-        "undone INTEGER NOT NULL DEFAULT 0",
+        "undone INTEGER DEFAULT 0",
     ),
     "POINT",
     "What was found at which plant: clean, found or skipped.",

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fieldmon.errors import SettingError
+from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.blind import Neighbor, NeighborRandom, RandomShare, Snake, SnakeRandom
 from fieldmon.samplers.dynamic import Dynamic
 from fieldmon.samplers.scene import GATE, NEVER, Sampler, Scene, Stops
@@ -20,6 +21,7 @@ SAMPLERS: dict[str, Callable[..., Sampler]] = {
     "naive": Naive,
     "bouncy": Bouncy,
     "dynamic": Dynamic,
+    "adaptive": Adaptive,
     "snake": Snake,
     "snake-random": SnakeRandom,
     "neighbor": Neighbor,
@@ -34,6 +36,7 @@ __all__ = [
     "GATE",
     "NEVER",
     "SAMPLERS",
+    "Adaptive",
     "Bouncy",
     "Dynamic",
     "Naive",

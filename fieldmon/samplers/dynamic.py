@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fieldmon.compiled import inlined, loop
+from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
 if TYPE_CHECKING:
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 
 # the upper bits of a positive float64 rise with it, in 8 steps an octave: 7 to 13 % each
 _LEVEL_BITS = 49
-_HALF = 8
+_OCTAVE = 8
 
 
 class _Open(NamedTuple):
@@ -34,14 +36,14 @@ class _Open(NamedTuple):
     tally: NDArray[np.int64]
 
     @classmethod
-    def on(cls, grid: PlantGrid) -> _Open:
-        """Return an empty list."""
+    def on(cls, grid: PlantGrid, steps: int) -> _Open:
+        """Return an empty list, with room for so many levels."""
         return cls(
             np.zeros(len(grid), np.bool_),
             np.zeros(grid.n_rows, np.int64),
             grid.row_start[1:].copy(),
             grid.row_start[:-1] - 1,
-            np.empty(_HALF, np.int64),
+            np.empty(steps, np.int64),
         )
 
 
@@ -58,18 +60,36 @@ class Dynamic:
     is at least half that of the most suspicious one not yet visited today, but no more plants
     than the day can still hold: the more suspicious first, in steps of about a tenth, then in
     the order of the rows.
+
+    Parameters
+    ----------
+    suspicious
+        Share of the most suspicious plant's chance from which a plant is suspicious (our choice).
+    at_once
+        How much of what the day can still hold is opened at once (our choice: all).
     """
+
+    suspicious: float = 0.5
+    at_once: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("suspicious", "at_once"):
+            if not 0.0 < getattr(self, name) <= 1.0:
+                raise SettingError(
+                    f"Dynamic's {name} must be above 0 and at most 1, "
+                    f"but it is {getattr(self, name)}."
+                )
 
     def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
         """Return the stops of the rest of the day."""
         stops = scene.blank()
-        lists = (scene.last_inspected == scene.day, _Open.on(scene.grid))
+        steps = round(-_OCTAVE * math.log2(self.suspicious))
         k = _walk(
             scene.aisles.ground,
             scene.clock,
             (scene.grid.adjacent, scene.grid.lane_y_m, scene.chance.view(np.int64), would_find),
-            lists,
-            scene.at,
+            (scene.last_inspected == scene.day, _Open.on(scene.grid, steps)),
+            (scene.at, steps, self.at_once),
             stops,
         )
         return Stops(stops.plant[:k], stops.arrive_s[:k])
@@ -81,16 +101,17 @@ def _walk(
     clock: Clock,
     plants: tuple[Csr, NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]],
     lists: tuple[NDArray[np.bool_], _Open],
-    at: int,
+    start: tuple[int, int, float],
     stops: Stops,
 ) -> int:
+    at, steps, at_once = start
     adjacent, lane_y_m, chance_bits, would_find = plants
     closed, opened = lists
     now_s, k, left = 0.0, 0, 0
     while k < stops.plant.size:
         if left == 0:
-            room = int((clock.seconds_left - now_s) // clock.visit_s)
-            left = _refill(ground, opened, closed, chance_bits, room)
+            room = int(at_once * ((clock.seconds_left - now_s) // clock.visit_s))
+            left = _refill(ground, opened, (closed, chance_bits), (max(room, 1), steps))
             if left == 0:
                 break
         plant = _nearest(ground, clock, opened, lane_y_m, at)
@@ -128,11 +149,12 @@ def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) 
 def _refill(
     ground: Ground,
     opened: _Open,
-    closed: NDArray[np.bool_],
-    chance_bits: NDArray[np.int64],
-    room: int,
+    plants: tuple[NDArray[np.bool_], NDArray[np.int64]],
+    limits: tuple[int, int],
 ) -> int:
     """Open the suspicious plants that are not closed, `room` at most; return how many."""
+    closed, chance_bits = plants
+    room, steps = limits
     most = np.int64(0)
     for plant in range(closed.size):
         if chance_bits[plant] > most and not closed[plant]:
@@ -141,9 +163,9 @@ def _refill(
     opened.tally[:] = 0
     for plant in range(closed.size):
         below = top - (chance_bits[plant] >> _LEVEL_BITS)
-        if below < _HALF and not closed[plant]:
+        if below < steps and not closed[plant]:
             opened.tally[below] += 1
-    most_below = min(_HALF, int(top))
+    most_below = min(steps, int(top))
     least, above = 0, 0
     while least < most_below and above + opened.tally[least] < room:
         above += opened.tally[least]

@@ -76,6 +76,9 @@ class Scene:
         none. A sweep goes on where it ends, in its direction.
     key
         64 random bits for samplers that draw, see `fieldmon.chance.coin`.
+    both
+        ``(e,)`` believed chance that two plants side by side are both infested, in the order of
+        ``grid.adjacent``; None where nothing is believed of pairs.
     """
 
     aisles: Aisles
@@ -87,6 +90,7 @@ class Scene:
     seconds_left: float = 0.0
     trail: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
     key: np.uint64 = np.uint64(0)  # noqa: RUF009 - a number, not a call with effects
+    both: NDArray[np.float64] | None = None
 
     @property
     def grid(self) -> PlantGrid:

@@ -1,5 +1,6 @@
 """A season on disk: what comes back is what went in, and every day follows from it."""
 
+from dataclasses import fields
 from datetime import date, time, timedelta
 
 import numpy as np
@@ -40,8 +41,8 @@ def test_a_season_comes_back_bit_for_bit(tmp_path):
     again = Project(tmp_path / "s.gpkg")
     assert again.setup == setup
     assert again.remarks() == (said,)
-    for name, value in vars(plot.grid).items():
-        other = getattr(again.plot.grid, name)
+    for name in (each.name for each in fields(plot.grid)):
+        value, other = getattr(plot.grid, name), getattr(again.plot.grid, name)
         same = np.array_equal(value, other) if isinstance(value, np.ndarray) else value == other
         assert same, name
     assert again.plot.field.boundary == plot.field.boundary
@@ -105,15 +106,19 @@ def test_what_was_not_inspected_stays_unknown(season):
 
 def test_a_find_raises_its_neighbours_and_a_clean_look_lowers(season):
     before = season.evening(BEGINS)
-    results = some_results(season, found=[0])
-    season.record(results, "x")
+    grid, find, clean = season.plot.grid, 100, 300
+    on_day = np.datetime64(BEGINS, "D")
+    season.record(Results.of(np.array([find, clean]), np.array([FOUND, 0]), on_day), "x")
     after = season.evening(BEGINS)
-    grid = season.plot.grid
-    find = int(results.plant[0])
-    beside = grid.adjacent.plant[grid.adjacent.start[find] : grid.adjacent.start[find + 1]]
-    beside = np.setdiff1d(beside, results.plant)
-    assert (after[beside] >= 0.3).all()
-    assert (after[results.plant[1:]] < before[results.plant[1:]]).all()
+    start, plant = grid.adjacent
+    beside = plant[start[find] : start[find + 1]]
+    assert (after[beside] > 2 * before[beside]).all()
+    assert after[find] < 1e-3  # treated
+    assert after[clean] < before[clean]
+    assert (
+        after[plant[start[clean] : start[clean + 1]]]
+        <= before[plant[start[clean] : start[clean + 1]]]
+    ).all()
 
 
 def test_undoing_a_batch_gives_back_the_state_before_and_deletes_nothing(season):
@@ -184,9 +189,9 @@ def test_the_time_of_the_last_result_is_the_time_of_day(season):
 
 def test_a_plant_that_could_not_be_inspected_is_left_alone_today_and_comes_back(season):
     results = some_results(season, n=2)
-    shut = Results.of(results.plant, np.array([0, SKIPPED]), results.day[0])
+    season.record(Results.of(results.plant[:1], np.array([0]), results.day[0]), "phone")
     before = season.evening(BEGINS)[results.plant[1]]
-    season.record(shut, "phone")
+    season.record(Results.of(results.plant[1:], np.array([SKIPPED]), results.day[0]), "phone")
     assert season.evening(BEGINS)[results.plant[1]] == before
     assert season.history.states(0)[results.plant[1]] == -1
     assert results.plant[1] not in season.plan(BEGINS).route.plant

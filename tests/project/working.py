@@ -14,7 +14,7 @@ def one_by_one(path, who, rounds):
     n = len(project.plot.grid)
     for k in range(rounds):
         plant = np.array([(k * 2 + who) % n])
-        on = np.datetime64(BEGINS, "D")
+        on = np.datetime64(BEGINS + timedelta(days=1), "D")
         project.record(Results.of(plant, np.array([0]), on, who=np.array([str(who)])), f"{who}-{k}")
 
 

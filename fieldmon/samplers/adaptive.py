@@ -1,0 +1,587 @@
+"""Adaptive: the drive that is expected to find most in the hours left, planned anew after a find.
+
+The hours have a price: a plant is worth its stop, and a row its drive, only if what is expected
+there is worth more than the seconds cost. The price is set so that the day is just filled. At a
+given price the best drive through the rows, one after the other up or down the plot, is found by
+dynamic programming: each row is passed by, driven through, or entered and left by the same end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numba as nb
+import numpy as np
+
+from fieldmon.belief import Near, look, near, pairs
+from fieldmon.errors import SettingError
+from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.aisles import Ground
+    from fieldmon.grid import Csr
+
+    Float = NDArray[np.float64]
+    Int = NDArray[np.int64]
+
+# a row is left for one of the next six in line: on plots with holes the next is not the nearest
+_REACH = 6
+# ways of driving a row: 0 from the low end through, 1 from the high end through, 2 and 3 in and out
+_WAYS = 4
+_LEAST = 1e-6
+_NOWHERE = -1
+# the price moves in steps of a tenth, and stays while the plan fills this much of the hours left
+_STEP, _FULL, _TRIES = 1.1, 0.9, 2
+_BISECTIONS = 24
+
+
+class _Mind(NamedTuple):
+    """What is believed during the day; `worth` is per chance of infestation, 0 once inspected."""
+
+    chance: Float
+    both: Float
+    worth: Float
+    detects: float
+    near: Near
+
+
+class _Rows(NamedTuple):
+    """What each way of driving each row comes to, ``(r, 4)``, and each plant's gain ``(n,)``."""
+
+    net: Float
+    seconds: Float
+    last: Int
+    gain: Float
+    stale: NDArray[np.bool_]
+
+
+class _Onward(NamedTuple):
+    """The best rest of the day from a lane end, going up (0) or down (1) the plot, ``(2, r, 2)``.
+
+    ``way`` is how the row is driven, or -1 where it is passed by; ``to`` the lane end
+    (2 row + end) after it, or -1 for home. ``left_...``: the same once the row is done.
+    """
+
+    net: Float
+    seconds: Float
+    way: Int
+    left_net: Float
+    left_seconds: Float
+    to: Int
+
+
+class _Piece(NamedTuple):
+    """The first piece of a plan: plants of one row up to `last`; what the plan comes to."""
+
+    row: int
+    first_end: int
+    last: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Adaptive:
+    """Take the drive through the rows with the most expected finds for its time.
+
+    A plant is worth its chance of infestation times the chance of detection, and more where a
+    find would save plants beside it. A find raises the plants beside it, a clean look lowers
+    them, as far as the belief says that they share their fate; then the rest of the day is
+    planned again from where the robot stands. Where the map is flat the drive is a plain sweep.
+
+    Parameters
+    ----------
+    spares
+        How much more than itself a find is worth where all plants beside it are clean.
+    beside_find
+        Chance that a plant next to a find is infested, where the belief says nothing of pairs.
+    """
+
+    spares: float = 0.5
+    beside_find: float = 0.5
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.spares < np.inf:
+            raise SettingError(f"Adaptive's spares must be 0 or more, but it is {self.spares}.")
+        if not 0.0 <= self.beside_find <= 1.0:
+            raise SettingError(
+                f"Adaptive's beside_find must be a chance in 0..1, but it is {self.beside_find}."
+            )
+
+    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+        """Return the stops of the rest of the day."""
+        stops = scene.blank()
+        both = scene.both
+        if both is None:
+            both = pairs(scene.chance, scene.grid, self.beside_find)
+        k = _walk(
+            scene.aisles.ground,
+            scene.clock,
+            (scene.grid.adjacent, scene.chance, both, would_find),
+            scene.last_inspected == scene.day,
+            (scene.at, self.spares, scene.robot.detects),
+            stops,
+        )
+        return Stops(stops.plant[:k], stops.arrive_s[:k])
+
+
+@nb.njit(cache=True, nogil=True)
+def _walk(
+    ground: Ground,
+    clock: Clock,
+    plants: tuple[Csr, Float, Float, NDArray[np.bool_]],
+    closed: NDArray[np.bool_],
+    start: tuple[int, float, float],
+    stops: Stops,
+) -> int:
+    adjacent, chance, both, would_find = plants
+    at, spares, detects = start
+    mind = _mind(adjacent, chance, both, closed, spares, detects)
+    n_rows = ground.row_start.size - 1
+    rows = _Rows(
+        np.zeros((n_rows, _WAYS)),
+        np.zeros((n_rows, _WAYS)),
+        np.full((n_rows, _WAYS), _NOWHERE),
+        np.zeros(closed.size),
+        np.ones(n_rows, np.bool_),
+    )
+    onward = _onward(n_rows)
+    now_s, k = 0.0, 0
+    price = _first_price(ground, clock, adjacent, (mind, rows, onward), at)
+    while k < stops.plant.size:
+        here = (at, price, clock.seconds_left - now_s)
+        price, piece = _plan_on(ground, clock, adjacent, (mind, rows, onward), here)
+        before = k
+        while piece.row >= 0 and k < stops.plant.size:
+            plant = _next_in(ground, clock, mind, piece, (at, price))
+            if plant < 0 or not can_visit(ground, clock, at, plant, now_s):
+                break
+            now_s, at, k = _visit(ground, clock, stops, (at, plant, k), now_s)
+            _look(ground, adjacent, mind, rows, (plant, would_find[plant]))
+            if would_find[plant] or plant == piece.last:
+                break
+        if k == before:
+            plant = _best_left(ground, clock, mind, at, now_s)
+            if plant < 0:
+                break
+            now_s, at, k = _visit(ground, clock, stops, (at, plant, k), now_s)
+            _look(ground, adjacent, mind, rows, (plant, would_find[plant]))
+    return k
+
+
+@nb.njit(cache=True)
+def _visit(
+    ground: Ground, clock: Clock, stops: Stops, move: tuple[int, int, int], now_s: float
+) -> tuple[float, int, int]:
+    """Write down a stop; return the time after it, the place, and the number of stops."""
+    at, plant, k = move
+    arrive_s = now_s + travel_s(ground, clock, at, plant)
+    stops.plant[k], stops.arrive_s[k] = plant, arrive_s
+    return arrive_s + clock.visit_s, plant, k + 1
+
+
+@nb.njit(cache=True)
+def _mind(
+    adjacent: Csr,
+    chance: Float,
+    both: Float,
+    closed: NDArray[np.bool_],
+    spares: float,
+    detects: float,
+) -> _Mind:
+    worth = np.zeros(chance.size)
+    for i in range(chance.size):
+        if closed[i]:
+            continue
+        first, end = adjacent.start[i], adjacent.start[i + 1]
+        clean = 0.0
+        for e in range(first, end):
+            clean += 1.0 - chance[adjacent.plant[e]]
+        worth[i] = detects * (1.0 + spares * clean / max(end - first, 1))
+    return _Mind(np.maximum(chance, _LEAST), both.copy(), worth, detects, near(chance.size))
+
+
+@nb.njit(cache=True)
+def _onward(n_rows: int) -> _Onward:
+    shape = (2, n_rows, 2)
+    return _Onward(
+        np.zeros(shape),
+        np.zeros(shape),
+        np.full(shape, _NOWHERE),
+        np.zeros(shape),
+        np.zeros(shape),
+        np.full(shape, _NOWHERE),
+    )
+
+
+@nb.njit(cache=True)
+def _look(
+    ground: Ground,
+    adjacent: Csr,
+    mind: _Mind,
+    rows: _Rows,
+    result: tuple[int, bool],
+) -> None:
+    """Close a plant and let what was seen teach about those near it."""
+    i, found = result
+    believed = mind.chance, mind.both
+    n = look(believed, adjacent, (i, found), (mind.detects, True), mind.near)
+    mind.worth[i] = 0.0
+    for t in range(n):
+        rows.stale[ground.row[mind.near.plant[t]]] = True
+
+
+@nb.njit(cache=True)
+def _next_in(
+    ground: Ground, clock: Clock, mind: _Mind, piece: _Piece, state: tuple[int, float]
+) -> int:
+    """Return the next plant of a piece that is worth its stop, from where the robot is, or -1."""
+    at, price = state
+    up = piece.first_end == 0
+    if at >= 0 and ground.row[at] == piece.row:
+        i = at + 1 if up else at - 1
+    elif up:
+        i = ground.row_start[piece.row]
+    else:
+        i = ground.row_start[piece.row + 1] - 1
+    step = 1 if up else -1
+    while (i <= piece.last) if up else (i >= piece.last):
+        if mind.worth[i] * mind.chance[i] > price * clock.visit_s:
+            return int(i)
+        i += step
+    return _NOWHERE
+
+
+@nb.njit(cache=True)
+def _best_left(ground: Ground, clock: Clock, mind: _Mind, at: int, now_s: float) -> int:
+    """Return the plant with the most worth for its time that still fits into the day, or -1."""
+    best, best_rate = _NOWHERE, 0.0
+    for i in range(mind.worth.size):
+        most = mind.worth[i] * mind.chance[i]
+        if most <= best_rate * clock.visit_s:
+            continue
+        rate = most / (travel_s(ground, clock, at, i) + clock.visit_s)
+        if rate > best_rate and can_visit(ground, clock, at, i, now_s):
+            best, best_rate = i, rate
+    return best
+
+
+@nb.njit(cache=True)
+def _first_price(
+    ground: Ground,
+    clock: Clock,
+    adjacent: Csr,
+    work: tuple[_Mind, _Rows, _Onward],
+    at: int,
+) -> float:
+    """Return the price of a second at which the plan just fills the day."""
+    mind = work[0]
+    high = _LEAST
+    for i in range(mind.worth.size):
+        high = max(high, mind.worth[i] * mind.chance[i])
+    high /= clock.visit_s
+    low = high * 1e-7
+    if _plan_at(ground, clock, adjacent, work, (at, low)).seconds <= clock.seconds_left:
+        return low
+    for _ in range(_BISECTIONS):
+        middle = np.sqrt(low * high)
+        if _plan_at(ground, clock, adjacent, work, (at, middle)).seconds > clock.seconds_left:
+            low = middle
+        else:
+            high = middle
+        if high < 1.04 * low:
+            break
+    return float(high)
+
+
+@nb.njit(cache=True)
+def _plan_on(
+    ground: Ground,
+    clock: Clock,
+    adjacent: Csr,
+    work: tuple[_Mind, _Rows, _Onward],
+    state: tuple[int, float, float],
+) -> tuple[float, _Piece]:
+    """Return the price that suits the seconds left, a few steps from the last, and the plan."""
+    at, price, left_s = state
+    rows = work[1]
+    trend = 0
+    piece = _replan(ground, clock, adjacent, work, (at, price))
+    for _ in range(_TRIES):
+        if piece.seconds > left_s and trend >= 0:
+            trend, price = 1, price * _STEP
+        elif piece.seconds < _FULL * left_s and trend <= 0:
+            trend, price = -1, price / _STEP
+        else:
+            break
+        rows.stale[:] = True
+        piece = _replan(ground, clock, adjacent, work, (at, price))
+    return price, piece
+
+
+@nb.njit(cache=True)
+def _row_of(ground: Ground, at: int) -> int:
+    """Return the row of a plant, -1 for the gate; of one integer type, as numba wants it."""
+    return 0 + ground.row[at] if at >= 0 else _NOWHERE
+
+
+@nb.njit(cache=True)
+def _plan_at(
+    ground: Ground,
+    clock: Clock,
+    adjacent: Csr,
+    work: tuple[_Mind, _Rows, _Onward],
+    state: tuple[int, float],
+) -> _Piece:
+    work[1].stale[:] = True
+    return _replan(ground, clock, adjacent, work, state)
+
+
+@nb.njit(cache=True)
+def _replan(
+    ground: Ground,
+    clock: Clock,
+    adjacent: Csr,
+    work: tuple[_Mind, _Rows, _Onward],
+    state: tuple[int, float],
+) -> _Piece:
+    """Return the first piece of the best plan at a price."""
+    mind, rows, onward = work
+    at, price = state
+    own = _row_of(ground, at)
+    for row in range(rows.stale.size):
+        if rows.stale[row]:
+            _value_row(ground, clock, adjacent, (mind, rows), (row, price))
+            rows.stale[row] = False
+    _go(ground, clock, rows, onward, (0, own, price))
+    _go(ground, clock, rows, onward, (1, own, price))
+    if at < 0:
+        _, seconds, onto = _leave(ground, clock, onward, 2 * (rows.stale.size), price)
+        return _first_piece(rows, onward, onto, seconds)
+    return _from_row(ground, clock, (mind, rows, onward), (at, price))
+
+
+@nb.njit(cache=True)
+def _value_row(
+    ground: Ground,
+    clock: Clock,
+    adjacent: Csr,
+    work: tuple[_Mind, _Rows],
+    state: tuple[int, float],
+) -> None:
+    """Work out what each way of driving a row comes to at a price.
+
+    Of neighbours in the row the second counts as it will be after a clean look at the first.
+    """
+    mind, rows = work
+    row, price = state
+    first, end = ground.row_start[row], ground.row_start[row + 1]
+    toll = price * clock.visit_s
+    previous = _NOWHERE
+    for i in range(first, end):
+        gain = mind.worth[i] * mind.chance[i] - toll
+        if gain > 0.0 and previous == i - 1 and previous >= 0:
+            gain = mind.worth[i] * _after_clean(mind, adjacent, i, previous) - toll
+        rows.gain[i] = max(gain, 0.0)
+        if gain > 0.0:
+            previous = i
+    _in_and_out(ground, clock, rows, (row, 2, price))
+    _in_and_out(ground, clock, rows, (row, 3, price))
+    _through(ground, clock, rows, row, price)
+
+
+@nb.njit(cache=True)
+def _after_clean(mind: _Mind, adjacent: Csr, i: int, looked: int) -> float:
+    """Return the chance of plant i once the plant beside it was looked at and seemed clean."""
+    p, q = mind.chance[i], mind.chance[looked]
+    for e in range(adjacent.start[i], adjacent.start[i + 1]):
+        if adjacent.plant[e] == looked:
+            c = min(mind.both[e], p, q)
+            return float((p - mind.detects * c) / max(1.0 - mind.detects * q, _LEAST))
+    return float(p)
+
+
+@nb.njit(cache=True)
+def _in_and_out(ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int, float]) -> None:
+    """Value a row that is left by the end it was entered by, as far in as pays best."""
+    row, way, price = state
+    first, end = ground.row_start[row], ground.row_start[row + 1]
+    entry_m = ground.end_x_m[row, way - 2]
+    rows.net[row, way], rows.seconds[row, way], rows.last[row, way] = -np.inf, 0.0, _NOWHERE
+    gains, n = 0.0, 0
+    for k in range(end - first):
+        i = first + k if way == 2 else end - 1 - k
+        if rows.gain[i] <= 0.0:
+            continue
+        gains += rows.gain[i]
+        n += 1
+        drive_s = 2.0 * abs(ground.x_m[i] - entry_m) / clock.speed_m_s
+        if gains - price * drive_s > rows.net[row, way]:
+            rows.net[row, way], rows.last[row, way] = gains - price * drive_s, i
+            rows.seconds[row, way] = drive_s + n * clock.visit_s
+
+
+@nb.njit(cache=True)
+def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) -> None:
+    """Value a row that is driven from end to end, either way."""
+    gains, n, low, high = 0.0, 0, _NOWHERE, _NOWHERE
+    for i in range(ground.row_start[row], ground.row_start[row + 1]):
+        if rows.gain[i] > 0.0:
+            gains += rows.gain[i]
+            n += 1
+            low = i if low < 0 else low
+            high = i
+    drive_s = (ground.end_x_m[row, 1] - ground.end_x_m[row, 0]) / clock.speed_m_s
+    for way in range(2):
+        rows.net[row, way] = gains - price * drive_s
+        rows.seconds[row, way] = drive_s + n * clock.visit_s
+        rows.last[row, way] = high if way == 0 else low
+
+
+@nb.njit(cache=True)
+def _go(
+    ground: Ground,
+    clock: Clock,
+    rows: _Rows,
+    onward: _Onward,
+    state: tuple[int, int, float],
+) -> None:
+    """Find the best rest of the day from every lane end, row after row up or down the plot."""
+    down, own, price = state
+    n_rows = rows.stale.size
+    for place in range(n_rows):
+        row = place if down else n_rows - 1 - place
+        for end in range(2):
+            _after(ground, clock, onward, (down, row, end), price)
+        for end in range(2):
+            onward.net[down, row, end] = onward.left_net[down, row, end]
+            onward.seconds[down, row, end] = onward.left_seconds[down, row, end]
+            onward.way[down, row, end] = _NOWHERE
+            if row == own:
+                continue
+            for way in range(end, _WAYS, 2):
+                if rows.last[row, way] < 0:
+                    continue
+                out = 1 - end if way < 2 else end
+                net = rows.net[row, way] + onward.left_net[down, row, out]
+                net -= price * clock.row_change_s
+                if net > onward.net[down, row, end]:
+                    onward.net[down, row, end] = net
+                    onward.seconds[down, row, end] = (
+                        clock.row_change_s
+                        + rows.seconds[row, way]
+                        + onward.left_seconds[down, row, out]
+                    )
+                    onward.way[down, row, end] = way
+
+
+@nb.njit(cache=True)
+def _after(
+    ground: Ground, clock: Clock, onward: _Onward, place: tuple[int, int, int], price: float
+) -> None:
+    """Find the best rest of the day after a row: home, or to one of the next rows in line."""
+    down, row, end = place
+    here = 2 * row + end
+    gate = ground.between_m.shape[0] - 1
+    n_rows = onward.net.shape[1]
+    best_s = ground.between_m[here, gate] / clock.speed_m_s if clock.returns else 0.0
+    best, to = -price * best_s, _NOWHERE
+    for k in range(1, _REACH + 1):
+        other = row - k if down else row + k
+        if not 0 <= other < n_rows:
+            break
+        for other_end in range(2):
+            way_s = ground.between_m[here, 2 * other + other_end] / clock.speed_m_s
+            net = onward.net[down, other, other_end] - price * way_s
+            if net > best:
+                best, to = net, 2 * other + other_end
+                best_s = way_s + onward.seconds[down, other, other_end]
+    onward.left_net[down, row, end], onward.left_seconds[down, row, end] = best, best_s
+    onward.to[down, row, end] = to
+
+
+@nb.njit(cache=True)
+def _leave(
+    ground: Ground, clock: Clock, onward: _Onward, here: int, price: float
+) -> tuple[float, float, tuple[int, int, int]]:
+    """Return the best way on from a lane end or the gate: its net, seconds, and where to."""
+    gate = ground.between_m.shape[0] - 1
+    best_s = ground.between_m[here, gate] / clock.speed_m_s if clock.returns else 0.0
+    best, onto = -price * best_s, (0, _NOWHERE, 0)
+    for row in range(onward.net.shape[1]):
+        for end in range(2):
+            way_s = ground.between_m[here, 2 * row + end] / clock.speed_m_s
+            for down in range(2):
+                if onward.way[down, row, end] < 0:
+                    continue
+                net = onward.net[down, row, end] - price * way_s
+                if net > best:
+                    best, onto = net, (down, row, end)
+                    best_s = way_s + onward.seconds[down, row, end]
+    return best, best_s, onto
+
+
+@nb.njit(cache=True)
+def _first_piece(
+    rows: _Rows, onward: _Onward, onto: tuple[int, int, int], seconds: float
+) -> _Piece:
+    down, row, end = onto
+    if row < 0:
+        return _Piece(_NOWHERE, 0, _NOWHERE, seconds)
+    way = onward.way[down, row, end]
+    return _Piece(row, end, rows.last[row, way], seconds)
+
+
+@nb.njit(cache=True)
+def _from_row(
+    ground: Ground,
+    clock: Clock,
+    work: tuple[_Mind, _Rows, _Onward],
+    state: tuple[int, float],
+) -> _Piece:
+    """Return the first piece of the best plan from the middle of a row.
+
+    The row is left by either end, with the plants that way; before that, plants the other way
+    are fetched as far as they pay.
+    """
+    _, rows, onward = work
+    at, price = state
+    row = _row_of(ground, at)
+    best = -np.inf
+    piece = _Piece(_NOWHERE, 0, _NOWHERE, 0.0)
+    ahead = np.empty((2, 2))
+    fetch = np.empty((2, 2))
+    last, turn = np.empty(2, np.int64), np.empty(2, np.int64)
+    for end in range(2):
+        gains, n, farthest = 0.0, 0, _NOWHERE
+        fetch[end, 0], fetch[end, 1], turn[end] = 0.0, 0.0, _NOWHERE
+        i = at - 1 if end == 0 else at + 1
+        while ground.row_start[row] <= i < ground.row_start[row + 1]:
+            if rows.gain[i] > 0.0:
+                gains += rows.gain[i]
+                n += 1
+                farthest = i
+                way_s = 2.0 * abs(ground.x_m[i] - ground.x_m[at]) / clock.speed_m_s
+                if gains - price * way_s > fetch[end, 0]:
+                    fetch[end, 0], turn[end] = gains - price * way_s, i
+                    fetch[end, 1] = way_s + n * clock.visit_s
+            i = i - 1 if end == 0 else i + 1
+        out_s = abs(ground.end_x_m[row, end] - ground.x_m[at]) / clock.speed_m_s
+        ahead[end, 0], ahead[end, 1] = gains - price * out_s, out_s + n * clock.visit_s
+        last[end] = farthest
+    for end in range(2):
+        net, seconds, onto = _leave(ground, clock, onward, 2 * row + end, price)
+        net += ahead[end, 0] + fetch[1 - end, 0]
+        seconds += ahead[end, 1] + fetch[1 - end, 1]
+        if net <= best:
+            continue
+        best = net
+        if turn[1 - end] >= 0:
+            piece = _Piece(row, end, turn[1 - end], seconds)
+        elif last[end] >= 0:
+            piece = _Piece(row, 1 - end, last[end], seconds)
+        else:
+            piece = _first_piece(rows, onward, onto, seconds)
+    return piece

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 # no plant is ever taken as certainly clean or certainly infested: evidence must be able to undo it
 _LEAST, _MOST = 1e-6, 1.0 - 1e-6
+_1, _2, _3 = np.uint32(1), np.uint32(2), np.uint32(3)
 # a look is heard as far as three plants away, and as long as it changes a chance by this
 _RINGS = 3
 # round a loop the same news arrives twice: no plant settles its neighbour more than this
 _CLOSEST = 0.9
 _LEAST_SAY = 1e-6
-_1, _2, _3 = np.uint32(1), np.uint32(2), np.uint32(3)
 
 
 @dataclass(frozen=True)

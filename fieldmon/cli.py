@@ -288,9 +288,10 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         "faces": 2 if both_faces else None,
     }
     if every_plot:
-        if plot is None or (plants, gate, feature) != (None, None, None):
+        if plot is None or any((plants, gate, feature, risk, canopy, chance_map)):
             raise SettingError(
-                "--all plans every plot of one plot file: leave out --feature, --plants and --gate."
+                "--all plans every plot of one plot file: leave out --feature, --plants, --gate, "
+                "--risk, --canopy and --chance-map."
             )
         by_hand = {
             "hours": hours,
@@ -303,8 +304,10 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         crews = _read_crews(plot, paths, crs, layer, plot_option)
         records = _read_all_records(observations, record_option)
         began = datetime.combine(day.astype(date), begins)
-        if output is not None and len(output) > 1:
-            raise SettingError("--all writes into one folder, but several --output were given.")
+        if output and (len(output) > 1 or output[0].suffix):
+            raise SettingError(
+                "With --all, --output must be one folder for the routes of all plots."
+            )
         folder = output[0] if output else Path("routes")
         _plan_all(crews, records, (who, by_hand, given), (folder, began))
         return
@@ -565,11 +568,11 @@ def _read_crews(
             options = options.choose(name, value)
     with _asking("--plot-option"):
         read, crews = read_crews(path, _chosen(options, more))
-    _tell(read.findings)
+    _tell(read.findings, path, "--plot-option")
     fields = read.value
     if paths is not None:
         lines = read_lines(paths, ReadOptions())
-        _tell(lines.findings)
+        _tell(lines.findings, paths)
         fields = tuple(replace(field, paths=lines.value) for field in fields)
     return [(field, crews[field.name]) for field in fields]
 
@@ -585,7 +588,7 @@ def _read_all_records(path: Path | None, more: list[str] | None) -> Observations
 
     with _asking("--record-option"):
         read = read_records(path, _chosen(RecordOptions(), more))
-    _tell(read.findings)
+    _tell(read.findings, path, "--record-option")
     return read.value
 
 
@@ -593,7 +596,7 @@ def _plan_all(
     plots: list[tuple[Field, Crew]],
     records: Observations,
     ordered: tuple[tuple[SamplerName, int | None, bool], dict[str, Any], dict[str, Any]],
-    to: tuple[Path, datetime],
+    to: tuple[list[Path], datetime],
 ) -> None:
     """Plan every plot into a folder, given who chooses, the robot's settings and the planting's."""
     import numpy as np  # noqa: PLC0415

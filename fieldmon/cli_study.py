@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 app = typer.Typer(
     no_args_is_help=True, help="Published experiments, made again, and studies of one's own."
 )
-
-
+register_prior(app)
+app.command("samplers")(cli_study_samplers.samplers)
+app.command("beliefs")(cli_study_samplers.beliefs)
 cli_study_run.register(app)
 register_prior(app)
 app.command("samplers")(cli_study_samplers.samplers)

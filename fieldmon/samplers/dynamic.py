@@ -37,7 +37,7 @@ class _Open(NamedTuple):
 
     @classmethod
     def on(cls, grid: PlantGrid, steps: int) -> _Open:
-        """Return an empty list, with room for the plants within so many levels."""
+        """Return an empty list, with room for so many levels."""
         return cls(
             np.zeros(len(grid), np.bool_),
             np.zeros(grid.n_rows, np.int64),
@@ -84,13 +84,12 @@ class Dynamic:
         """Return the stops of the rest of the day."""
         stops = scene.blank()
         steps = round(-_OCTAVE * math.log2(self.suspicious))
-        lists = (scene.last_inspected == scene.day, _Open.on(scene.grid, steps))
         k = _walk(
             scene.aisles.ground,
             scene.clock,
             (scene.grid.adjacent, scene.grid.lane_y_m, scene.chance.view(np.int64), would_find),
-            lists,
-            (scene.at, self.at_once),
+            (scene.last_inspected == scene.day, _Open.on(scene.grid, steps)),
+            (scene.at, steps, self.at_once),
             stops,
         )
         return Stops(stops.plant[:k], stops.arrive_s[:k])
@@ -102,17 +101,17 @@ def _walk(
     clock: Clock,
     plants: tuple[Csr, NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]],
     lists: tuple[NDArray[np.bool_], _Open],
-    start: tuple[int, float],
+    start: tuple[int, int, float],
     stops: Stops,
 ) -> int:
-    at, at_once = start
+    at, steps, at_once = start
     adjacent, lane_y_m, chance_bits, would_find = plants
     closed, opened = lists
     now_s, k, left = 0.0, 0, 0
     while k < stops.plant.size:
         if left == 0:
             room = int(at_once * ((clock.seconds_left - now_s) // clock.visit_s))
-            left = _refill(ground, opened, closed, chance_bits, max(room, 1))
+            left = _refill(ground, opened, (closed, chance_bits), (max(room, 1), steps))
             if left == 0:
                 break
         plant = _nearest(ground, clock, opened, lane_y_m, at)
@@ -150,16 +149,17 @@ def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) 
 def _refill(
     ground: Ground,
     opened: _Open,
-    closed: NDArray[np.bool_],
-    chance_bits: NDArray[np.int64],
-    room: int,
+    plants: tuple[NDArray[np.bool_], NDArray[np.int64]],
+    limits: tuple[int, int],
 ) -> int:
     """Open the suspicious plants that are not closed, `room` at most; return how many."""
+    closed, chance_bits = plants
+    room, steps = limits
     most = np.int64(0)
     for plant in range(closed.size):
         if chance_bits[plant] > most and not closed[plant]:
             most = chance_bits[plant]
-    top, steps = most >> _LEVEL_BITS, opened.tally.size
+    top = most >> _LEVEL_BITS
     opened.tally[:] = 0
     for plant in range(closed.size):
         below = top - (chance_bits[plant] >> _LEVEL_BITS)

@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 from datetime import date
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -80,7 +81,7 @@ def measure(n_plants):
     scene = Scene(aisles, Robot(), chance, last, seconds_left=Robot().day_s)
     for name in SAMPLERS:
         took[f"a day's plan and route: {name}"], _ = best_of(
-            lambda who=sampler(name): route_of(scene, plan_day(scene, who))
+            lambda name=name: route_of(scene, plan_day(scene, sampler(name)))
         )
     start = Start(start_infested(chance, 0.02, Chance(1).of("start")), chance)
     for name in THESIS:
@@ -136,7 +137,7 @@ def per_visit_and_night():
     visits = {}
     for name in THESIS:
         scene = Scene(aisles, Robot(), chance, last, seconds_left=Robot().day_s)
-        took, work = best_of(lambda scene=scene, who=sampler(name): plan_day(scene, who), 200)
+        took, work = best_of(lambda scene=scene, name=name: plan_day(scene, sampler(name)), 200)
         visits[name] = took / len(work) * 1e9
     infested = np.random.default_rng(1).random(n) < 0.1
     nights = {
@@ -166,9 +167,8 @@ def table(results):
     lines.append("|---" * (len(sizes) + 1) + "|")
     for what in results[0]["took"]:
         seconds = [result["took"][what] for result in results]
-        cells = [told(seconds[0])]
-        for k in range(1, len(seconds)):
-            cells.append(f"{told(seconds[k])} (x {seconds[k] / seconds[k - 1]:.3g})")
+        grown = [f"{told(b)} (x {b / a:.3g})" for a, b in pairwise(seconds)]
+        cells = [told(seconds[0]), *grown]
         lines.append("| " + " | ".join([what, *cells]) + " |")
     memory = [f"{result['memory_mb']} MB" for result in results]
     lines.append("| " + " | ".join(["most memory, all of this in one process", *memory]) + " |")

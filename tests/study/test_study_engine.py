@@ -14,6 +14,7 @@ import shapely
 from parcels import write_geojson
 from shapely import MultiPolygon
 
+from fieldmon import cli_study_run
 from fieldmon.aisles import Aisles
 from fieldmon.chance import Chance
 from fieldmon.errors import FileProblem, SettingError
@@ -85,10 +86,11 @@ def test_a_killed_worker_costs_only_what_it_had_in_hand(undisturbed, tmp_path):
     same_files(tmp_path, undisturbed)
 
 
+@pytest.mark.timeout(900)
 def test_a_killed_client_costs_only_unfinished_chunks(tmp_path):
     write_geojson(tmp_path / "plot.geojson", [area(60.0)])
     words = [*[sys.executable, "-m", "fieldmon.cli", "study", "run", "plot.geojson"], "--seeds"]
-    words += ["2500", "--days", "10", "--workers", "2", "--date", "2026-11-02"]
+    words += ["1400", "--days", "10", "--workers", "2", "--date", "2026-11-02"]
     command = subprocess.Popen([*words, "-o", "killed"], cwd=tmp_path, stderr=subprocess.DEVNULL)
     until = time.monotonic() + 200
     while not list(tmp_path.glob("killed/*/*.parquet")) and time.monotonic() < until:
@@ -99,9 +101,13 @@ def test_a_killed_client_costs_only_unfinished_chunks(tmp_path):
     _, alive = psutil.wait_procs(children, timeout=60)
     assert not alive, "workers outlive the client that started them"
     half = {path: path.stat().st_mtime_ns for path in tmp_path.glob("killed/*/*.parquet")}
-    for name in ("killed", "whole"):
-        subprocess.run([*words, "-o", name], cwd=tmp_path, check=True, capture_output=True)
-    assert 0 < len(half) < len(list(tmp_path.glob("whole/*/*.parquet")))
+    subprocess.run([*words, "-o", "killed"], cwd=tmp_path, check=True, capture_output=True)
+    (tmp_path / "whole").mkdir()
+    sites = cli_study_run._sites(tmp_path / "plot.geojson", None, None, "2026-11-02")
+    whole = list(chunks(sites, Design(n_days=10, n_seeds=1400)))
+    for chunk in whole:
+        store.keep(tmp_path / "whole", chunk, study_chunks.run_chunk(chunk))
+    assert 0 < len(half) < len(whole)
     same_files(tmp_path / "killed", tmp_path / "whole")
     assert all(path.stat().st_mtime_ns == written for path, written in half.items())
 

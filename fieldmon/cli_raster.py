@@ -57,8 +57,8 @@ ChanceMap = Annotated[
 class Tell(Protocol):
     """Tells a person what an import has to say about a file, and keeps it where it is noted."""
 
-    def __call__(self, findings: Iterable[Finding], source: object = "", /) -> None:
-        """Tell findings about a source."""
+    def __call__(self, findings: Iterable[Finding], source: object = "", flag: str = "", /) -> None:
+        """Tell findings about a source; `flag` takes their remedies."""
 
 
 def without_missing(
@@ -82,7 +82,7 @@ def without_missing(
         f"{int(missing.sum())} of {len(missing)} plants are missing (canopy below {below:g})"
         + _unseen(values, "and count as there")
     )
-    tell([*read.findings, said], canopy)
+    tell([*read.findings, said], canopy, flag)
     return plot.without(missing) if missing.any() else plot
 
 
@@ -107,7 +107,7 @@ def risk_of(
         f"Risk by {settings.meaning}: {np.nanmin(chance):.3g} to {np.nanmax(chance):.3g}, "
         f"{np.nanmean(chance):.3g} on average" + _unseen(chance, "and have no risk by it")
     )
-    tell([*read.findings, said], path)
+    tell([*read.findings, said], path, "--risk-option")
     return chance
 
 

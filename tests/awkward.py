@@ -1353,3 +1353,12 @@ def a_file_of_half_a_gigabyte(folder):
 @case("records", refuses="field larger than field limit (1000000)")
 def a_cell_of_a_million_letters():
     return placed(f"30.36013,35.15013,{'x' * 1_000_001}", "lat,lon,remarks")
+
+
+@case("records", refuses="must be an Excel workbook, but it cannot be read")
+def a_workbook_whose_sheet_breaks_off(folder):
+    path = workbook(folder, [["lon", "lat", "date", "count"], RECORD])
+    with zipfile.ZipFile(path) as book:
+        parts = {name: book.read(name) for name in book.namelist()}
+    sheet = "xl/worksheets/sheet1.xml"
+    return zipped(parts | {sheet: parts[sheet][:300]}, "mites.xlsx")

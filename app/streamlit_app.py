@@ -16,6 +16,7 @@ from app.views import (  # noqa: E402
     compare,
     field,
     plot,
+    prior_study,
     report,
     scout,
     season,
@@ -56,6 +57,11 @@ def page(show, title: str, icon: str, path: str) -> st.Page:  # noqa: ANN001 - a
     )
 
 
+def page_prior() -> None:
+    """Show the study with prior information, on the chosen plot too."""
+    prior_study.show(choose().choices)
+
+
 scouting = page(scout.show, texts.SCOUTING, "eco", "scout")
 st.session_state["scout_page"] = scouting
 st.navigation(
@@ -69,6 +75,7 @@ st.navigation(
         page(report.show, texts.REPORT, "print", "report"),
         page(simulate.show, texts.SIMULATE, "bug_report", "simulate"),
         st.Page(study.show, title=texts.STUDY, icon=":material/science:", url_path="study"),
+        st.Page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
     ],
     position="top",
 ).run()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fieldmon import cli_raster
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ FindingChoices = Annotated[
     ),
 ]
 # what a plan of a season may be told; all else was chosen when it began
-_OF_A_PLAN = {"plot", "output", "on", "now"}
+_OF_A_PLAN = {"plot", "output", "on", "now", "chance_map"}
 
 
 def register(app: typer.Typer) -> None:
@@ -66,7 +67,7 @@ def remarks(notes: Iterable[tuple[str, Finding]]) -> list[Remark]:
             finding.severity.value,
             finding.feature,
             finding.sentence,
-            None if finding.remedy is None else finding.remedy.flag,
+            None if finding.remedy is None else finding.remedy.setting,
         )
         for source, finding in notes
     ]
@@ -118,6 +119,7 @@ def plan_season(context: typer.Context, season: Path, outputs: list[Path] | None
         f"{route.expected_finds * setup.robot.detects:.1f} of these would be found."
     )
     hand_off(route, notes, outputs)
+    cli_raster.write_map(context.params["chance_map"], project.plot, today.chance)
 
 
 def record(

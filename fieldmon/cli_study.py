@@ -8,12 +8,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon import cli_study_samplers
+from fieldmon.cli_study_prior import register as register_prior
 from fieldmon.errors import FileProblem
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 app = typer.Typer(no_args_is_help=True, help="Published experiments, made again.")
+register_prior(app)
+app.command("samplers")(cli_study_samplers.samplers)
+app.command("beliefs")(cli_study_samplers.beliefs)
 
 
 @app.callback()

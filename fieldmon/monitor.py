@@ -9,6 +9,7 @@ import numpy as np
 
 from fieldmon.aisles import Aisles
 from fieldmon.field import Field
+from fieldmon.gaps import without
 from fieldmon.planting import Planting, found_planting, grid_from_plants, lay
 from fieldmon.prior import PriorSettings, prior_chance
 from fieldmon.robot import Robot
@@ -78,6 +79,10 @@ class Plot:
         boundary = grid.frame.geometry_lonlat(grid.drivable_m)
         return cls._with(Field(name, boundary, gate=gate, plants=plants), grid)
 
+    def without(self, missing: NDArray[np.bool_]) -> Plot:
+        """Return the plot without the plants marked ``(n,)``, which are not there."""
+        return self._with(self.field, without(self.grid, missing))
+
     @classmethod
     def _with(cls, field: Field, grid: PlantGrid) -> Plot:
         gate = None if field.gate is None else grid.frame.xy_m(field.gate)[0]
@@ -118,9 +123,15 @@ class Today:
         return self.scene.chance
 
 
-def first_day(plot: Plot, observations: Observations, on_day: np.datetime64, plans: Plans) -> Today:
-    """Plan a day on a plot of which nothing but records is known."""
-    chance = prior_chance(plot.grid, plot.field, observations, on_day, plans.prior)
+def first_day(
+    plot: Plot,
+    observations: Observations,
+    on_day: np.datetime64,
+    plans: Plans,
+    risk: NDArray[np.float64] | None = None,
+) -> Today:
+    """Plan a day on a plot of which nothing but records is known, and perhaps a risk ``(n,)``."""
+    chance = prior_chance(plot.grid, plot.field, observations, on_day, plans.prior, risk)
     return plan_from(plot, chance, plans)
 
 

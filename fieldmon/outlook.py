@@ -107,6 +107,21 @@ def _draw(
     return float(np.exp(log_clean))
 
 
+@nb.njit(cache=True, nogil=True)
+def draw_fields(
+    believed: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    key: np.uint64,
+    fields: NDArray[np.bool_],
+) -> None:
+    """Draw whole fields ``(m, n)`` in place from ``chance (n,)`` and ``both (e,)``."""
+    chance, both = believed
+    for k in range(fields.shape[0]):
+        for i in range(chance.size):
+            given = _given(chance, both, adjacent, fields[k], i)
+            fields[k, i] = coin(key, k * chance.size + i) < given
+
+
 @nb.njit(cache=True)
 def _given(
     chance: NDArray[np.float64],

@@ -12,15 +12,15 @@ FLOORS = [
     {"chance"},
     {"frame"},
     {"field"},
-    {"grid", "planting", "rows", "neighbours"},
+    {"grid", "planting", "rows", "neighbours", "gaps"},
     {"headland", "robot", "spread"},
-    {"aisles", "prior", "belief"},
-    {"samplers", "outlook"},
+    {"aisles", "prior", "belief", "risk"},
+    {"samplers", "outlook", "ensemble"},
     {"workday"},
-    {"route"},
+    {"route", "explain"},
     {"season", "hotspots", "history"},
     {"metrics", "thesis", "monitor"},
-    {"study", "project"},
+    {"study", "project", "comparison"},
     {"cli_parts"},
     {"cli"},
 ]
@@ -29,10 +29,13 @@ CLI = {"cli", "cli_parts"}
 FLOOR = {name: level for level, names in enumerate(FLOORS) for name in names}
 # modules of one floor that form one room: the first may use the second
 SAME_ROOM = {
+    ("ensemble", "outlook"),
     ("planting", "grid"),
     ("planting", "rows"),
     ("planting", "neighbours"),
     ("rows", "grid"),
+    ("gaps", "grid"),
+    ("risk", "prior"),
 }
 ALONE = {
     "pyproj": {"frame", "geodata"},

@@ -31,6 +31,7 @@ from fieldmon.geodata.findings import Finding, Imported, Remedy, doubtful, dropp
 from fieldmon.geodata.reading import read_reported
 from fieldmon.geodata.reported import FindingsOptions, Reported
 from fieldmon.grid import row_label
+from fieldmon.history import CLEAN, FOUND, SKIPPED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -38,8 +39,7 @@ if TYPE_CHECKING:
     from fieldmon.geodata.options import Source
     from fieldmon.grid import PlantGrid
 
-FOUND, CLEAN, NOT_INSPECTED = PRESENT, ABSENT, UNKNOWN
-
+_RESULTS = {PRESENT: FOUND, ABSENT: CLEAN, UNKNOWN: SKIPPED}
 _LISTED = 20  # doubtful findings that are named one by one
 _NEIGHBOURS = 13  # plants among which the nearest and its rivals are: two rings, or both faces
 _FARTHEST_DEG = 1.0
@@ -56,7 +56,7 @@ class Findings:
     plant
         int32, number in the grid.
     result
-        int8: `FOUND`, `CLEAN` or `NOT_INSPECTED` (tried, but it could not be done).
+        int8, as in `fieldmon.history`: `FOUND`, `CLEAN` or `SKIPPED` (could not be inspected).
     count
         Pests counted; NaN where they were not.
     when
@@ -88,6 +88,12 @@ class Findings:
     def __len__(self) -> int:
         """Return the number of findings."""
         return len(self.plant)
+
+    @property
+    def second(self) -> NDArray[np.float64]:
+        """Return the seconds since local midnight, ``(k,)``; NaN where there is no clock time."""
+        since = (self.when - self.when.astype("datetime64[D]")) / np.timedelta64(1, "s")
+        return np.asarray(since, dtype=np.float64)
 
     def take(self, which: NDArray[np.generic]) -> Findings:
         """Return the findings at the given indices or mask."""
@@ -125,6 +131,7 @@ def look_up(
     labelled = _by_label(reported, grid, plant < 0)
     plant = np.where(labelled.plant >= 0, labelled.plant, plant)
     problems |= labelled.problems
+    doubts = _misplaced(reported, grid, plant) | doubts
     open_yet = (plant < 0) & np.isfinite(reported.lonlat).all(axis=1)
     open_yet &= ~np.isin(np.arange(len(reported)), list(problems))
     snapped = _by_position(reported, grid, np.flatnonzero(open_yet), options)
@@ -182,15 +189,20 @@ def _by_number(reported: Reported, grid: PlantGrid) -> _Placed:
             f"plant {plant[here[k]]} is {_label(grid, plant[here[k]])} on this plot, but the "
             f"record says row {line[k]}, number {number[k]}"
         )
+    return _Placed(plant, problems, doubts)
+
+
+def _misplaced(reported: Reported, grid: PlantGrid, plant: NDArray[np.int64]) -> dict[int, str]:
+    """Return which records name a plant ``(m,)`` that stands elsewhere than their position."""
+    here = np.flatnonzero(plant >= 0)
     far_m = _away_m(reported, grid, here, plant[here])
     spacing_m = max(grid.row_spacing_m, grid.plant_spacing_m)
     reach_m = spacing_m + 3 * np.nan_to_num(reported.accuracy_m[here])
-    for k in np.flatnonzero(far_m > reach_m).tolist():
-        doubts[int(here[k])] = (
-            f"plant {plant[here[k]]} stands {far_m[k]:.1f} m from the record's position: "
-            "is it a file for another plot?"
-        )
-    return _Placed(plant, problems, doubts)
+    return {
+        int(here[k]): f"{_label(grid, plant[here[k]])} is {far_m[k]:.1f} m from the record's "
+        "position: is it a file for another plot?"
+        for k in np.flatnonzero(far_m > reach_m).tolist()
+    }
 
 
 def _away_m(
@@ -219,19 +231,24 @@ def _by_label(reported: Reported, grid: PlantGrid, wanted: NDArray[np.bool_]) ->
     if not len(rows):
         return _Placed(plant, {}, {})
     label = row_label(grid)
-    known: dict[tuple[int, int], int] = {}
-    for i in range(len(grid) - 1, -1, -1):
-        known[int(label.line[i]), int(label.number[i])] = i
-    problems = {}
-    for i in rows.tolist():
-        place = int(reported.line[i]), int(reported.number[i])
-        first = known.get(place)
-        if first is None:
-            problems[i] = f"there is no plant {place[1]} in row {place[0]} on this plot"
-            continue
-        twin = int(grid.twin[first])
-        plant[i] = twin if reported.face[i] == 2 and twin >= 0 else first
+    known, first_face = np.unique(_key(label.line, label.number), return_index=True)
+    wished = _key(reported.line[rows], reported.number[rows])
+    at = np.minimum(np.searchsorted(known, wished), len(known) - 1)
+    is_there = known[at] == wished
+    first = first_face[at]
+    second = (reported.face[rows] == 2) & (grid.twin[first] >= 0)
+    plant[rows] = np.where(is_there, np.where(second, grid.twin[first], first), -1)
+    problems = {
+        i: f"there is no plant {reported.number[i]} in row {reported.line[i]} on this plot"
+        for i in rows[~is_there].tolist()
+    }
     return _Placed(plant, problems, {})
+
+
+def _key(line: NDArray[np.int64], number: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return one number for a row and a number in it; both have 31 bits at most."""
+    key: NDArray[np.int64] = (line << 31) | number
+    return key
 
 
 def _by_position(
@@ -336,7 +353,7 @@ def _about_accuracy(
 
 def _findings(reported: Reported, plant: NDArray[np.int64], rows: NDArray[np.intp]) -> Findings:
     # a clean plant has none of them; what could not be inspected was not counted
-    result = reported.result[rows]
+    result = np.array([_RESULTS[int(code)] for code in reported.result[rows]], dtype=np.int8)
     count = np.where(result == FOUND, reported.count[rows], np.nan)
     count[count == 0] = np.nan
     return Findings(

@@ -25,8 +25,14 @@ CELL_CHARACTERS = 1_000_000
 #: what the reading process may take
 READ_SECONDS = 10.0
 MEMORY_BYTES = 1_000 * MB
-#: pixels read at once from a raster, per band
-PIXELS = 50_000_000
+#: pixels of a raster that are kept, bands it may have, one of its tiles or strips unpacked, and all
+#: that is unpacked of it (its smaller copies are used where they do)
+PIXELS = 16_000_000
+BANDS = 512
+BLOCK_BYTES = 200 * MB
+RASTER_BYTES = 1_000 * MB
+#: pixels of a raster that is written
+WRITTEN_PIXELS = 100_000_000
 
 
 def size(n_bytes: float) -> str:

@@ -6,6 +6,7 @@ This half runs in the reading process and knows no plot; `findings_in` looks the
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta, timezone, tzinfo
 from typing import TYPE_CHECKING, NamedTuple, Self
@@ -35,10 +36,12 @@ if TYPE_CHECKING:
 
 # The columns of findings that no pest record has; spellings as in `columns`
 _NAMES = {
-    "number": "number numberinrow no nr num plantinrow placeinrow nummer numero numéro número מספר",
-    "time": "time when timestamp datetime inspected inspectedat visited visitedat zeit uhrzeit "
-    "zeitpunkt hora heure ora שעה זמן",
-    "who": "who scout inspector observer recordedby surveyor user username name operator by wer "
+    "number": "number numberinrow plantinrow placeinrow nummerinreihe numeroenfila מספרבשורה",
+    # a running number where there is a better one
+    "ordinal": "no nr num nummer numero numéro número מספר",
+    "time": "time hour when timestamp datetime inspected inspectedat visited visitedat zeit "
+    "uhrzeit zeitpunkt hora heure ora שעה זמן",
+    "who": "who scout inspector observer recordedby surveyor user username operator by wer "
     "prüfer kontrolleur quién quien inspecteur בודק פקח שםהבודק מי",
     "notes": "notes note remark remarks comment comments bemerkung bemerkungen notiz kommentar "
     "notas observaciones remarques commentaire cmt הערה הערות",
@@ -89,6 +92,7 @@ _CLOCK = re.compile(
 _SERIAL = re.compile(r"^\d{5}(\.\d+)?$")
 _OFFSET = re.compile(r"^([-+])(\d{1,2}):?(\d{2})?$")
 _ROW = "\0row"
+_FARTHEST_ZONE = timedelta(hours=14)
 
 
 @dataclass(frozen=True)
@@ -199,13 +203,14 @@ def zone_of(name: str) -> tzinfo:
     if offset:
         sign, hours, minutes = offset.groups()
         ahead = timedelta(hours=int(hours), minutes=int(minutes or 0))
-        return timezone(-ahead if sign == "-" else ahead)
-    try:
-        return ZoneInfo(name.strip())
-    except (KeyError, ValueError, OSError):
-        raise SettingError(
-            f"A time zone must be named as Asia/Jerusalem or +02:00, but it is {name!r}."
-        ) from None
+        if ahead <= _FARTHEST_ZONE:
+            return timezone(-ahead if sign == "-" else ahead)
+    else:
+        with suppress(KeyError, ValueError, OSError):
+            return ZoneInfo(name.strip())
+    raise SettingError(
+        f"A time zone must be named as Asia/Jerusalem or +02:00, but it is {name!r}."
+    )
 
 
 def reported_of(source: Source, options: FindingsOptions, workroom: Workroom) -> Imported[Reported]:
@@ -214,15 +219,25 @@ def reported_of(source: Source, options: FindingsOptions, workroom: Workroom) ->
     Where a file has several layers and nobody chose, the first of `_LAYERS` that reports anything
     is read: QField and QGIS edit a layer of plants, of stops or of inspections in place.
     """
-    if options.member is None and options.layer is None:
-        known = _known_layers(layers_of(source, workroom))
-        for info in known:
-            own = replace(options, member=info.member, layer=info.layer)
-            read = _reported(open_layer(source, own, workroom), own)
-            if len(read.value) or info is known[-1]:
-                said = seen(f"Findings were read from layer {info.layer}.")
-                return Imported(read.value, (said, *read.findings))
-    return _reported(open_layer(source, options, workroom), options)
+    if options.member is not None or options.layer is not None:
+        return reported_in(open_layer(source, options, workroom), options)
+    known = _known_layers(layers_of(source, workroom))
+    said_nothing: list[Imported[Reported]] = []
+    for info in known:
+        own = replace(options, member=info.member, layer=info.layer)
+        try:
+            read = reported_in(open_layer(source, own, workroom), own)
+        except (ChoiceNeeded, FileProblem):
+            continue  # this one has no columns for findings
+        said = seen(f"Findings were read from layer {info.layer}.")
+        if len(read.value):
+            return Imported(read.value, (said, *read.findings))
+        said_nothing.append(Imported(read.value, (said, *read.findings)))
+    return (
+        said_nothing[0]
+        if said_nothing
+        else reported_in(open_layer(source, options, workroom), options)
+    )
 
 
 def _known_layers(infos: tuple[LayerInfo, ...]) -> list[LayerInfo]:
@@ -256,8 +271,10 @@ class _Results(NamedTuple):
     findings: list[Finding]
 
 
-def _reported(layer: Layer, options: FindingsOptions) -> Imported[Reported]:
+def reported_in(layer: Layer, options: FindingsOptions) -> Imported[Reported]:
+    """Return what one layer or table says of plants that were inspected."""
     layer, findings = _without_lines(layer)
+    layer = _without_undone(layer)
     columns = _columns_of(layer, options)
     results = _results(layer, columns, options)
     notes = _texts(layer, _own("notes", layer))
@@ -304,6 +321,14 @@ def _without_lines(layer: Layer) -> tuple[Layer, list[Finding]]:
     return layer.take(np.flatnonzero(~lines)), [said]
 
 
+def _without_undone(layer: Layer) -> Layer:
+    """Return the layer without what a season's file keeps, but marks as taken back."""
+    name = next((n for n in layer.columns if plain(n) == "undone"), None)
+    if name is None:
+        return layer
+    return layer.take(np.flatnonzero([text(v) in {"", "0", "False"} for v in layer.column(name)]))
+
+
 def _own(role: str, layer: Layer, taken: Iterable[str | None] = ()) -> str | None:
     """Return the column of one of the roles that only findings have."""
     known = {plain(name): name for name in reversed(list(layer.columns)) if name not in taken}
@@ -317,6 +342,7 @@ def _columns_of(layer: Layer, options: FindingsOptions) -> _Columns:
     number = _own("number", layer, {line})
     plant = options.column("plant") or _own("id", layer)
     plant = plant or find("plant", names, frozenset({line} if line else ()))
+    number = number or (_own("ordinal", layer) if plant is None else None)
     count = options.column("count") or find("count", names, frozenset({plant or "", number or ""}))
     result = options.column("present") or _result_name(layer, count)
     marks = None
@@ -386,13 +412,13 @@ def _results(layer: Layer, columns: _Columns, options: FindingsOptions) -> _Resu
     if columns.result is not None:
         cells = [text(v) for v in layer.column(columns.result)]
         signs = any(_PLUS.match(cell) for cell in cells)
-        mark = options.decimal or decimal_mark(cells)
+        mark = options.decimal or decimal_mark(cells) or "."
         known = {cell: _of_word(cell, mark, signs=signs) for cell in set(cells)}
         by_result = [known[cell] for cell in cells]
         findings += [seen(f"Results are in column {columns.result!r}."), *_unread(cells, known)]
     if columns.number_found is not None:
         cells = [text(v) for v in layer.column(columns.number_found)]
-        mark = options.decimal or decimal_mark(cells)
+        mark = options.decimal or decimal_mark(cells) or "."
         known = {cell: _of_count(cell, mark) for cell in set(cells)}
         by_count = [known[cell] for cell in cells]
         findings += [
@@ -661,13 +687,15 @@ def _clock(cell: str) -> _Clock | None:
     hour, minute, second = (int(part or 0) for part in found.groups()[:3])
     half = (found.group(4) or "").replace(".", "").casefold()
     hour = hour % 12 + 12 * (half == "pm") if half else hour
-    if hour > 24 or minute > 59 or second > 60:
+    if hour > 23 or minute > 59 or second > 60:
         return None
     zone = found.group(5)
     if zone is None:
         return _Clock(3600 * hour + 60 * minute + second, None)
-    offset = zone_of(zone) if zone[0] in "+-" else UTC
-    ahead = offset.utcoffset(None)
+    try:
+        ahead = (zone_of(zone) if zone[0] in "+-" else UTC).utcoffset(None)
+    except SettingError:
+        return None
     return _Clock(3600 * hour + 60 * minute + second, ahead)
 
 

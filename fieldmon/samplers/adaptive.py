@@ -34,7 +34,7 @@ _WAYS = 4
 _LEAST = 1e-6
 _NOWHERE = -1
 # the price moves in steps of a tenth, and stays while the plan fills this much of the hours left
-_STEP, _FULL, _TRIES = 1.1, 0.95, 4
+_STEP, _FULL, _TRIES = 1.1, 0.9, 2
 _BISECTIONS = 24
 
 
@@ -291,7 +291,7 @@ def _first_price(
             low = middle
         else:
             high = middle
-        if high < 1.01 * low:
+        if high < 1.04 * low:
             break
     return float(high)
 

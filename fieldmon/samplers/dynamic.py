@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numba as nb
 import numpy as np
 
+from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
 if TYPE_CHECKING:
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 
 # the upper bits of a positive float64 rise with it, in 8 steps an octave: 7 to 13 % each
 _LEVEL_BITS = 49
-_HALF = 8
+_OCTAVE = 8
 _LEVELS = (1023 << 3) + 1  # the level of a chance of 1, plus one
 
 
@@ -44,7 +46,25 @@ class Dynamic:
     is at least half that of the most suspicious one not yet visited today, but no more plants
     than the day can still hold: the more suspicious first, in steps of about a tenth, then in
     the order of the rows.
+
+    Parameters
+    ----------
+    suspicious
+        Share of the most suspicious plant's chance from which a plant is suspicious (our choice).
+    at_once
+        How much of what the day can still hold is opened at once (our choice: all).
     """
+
+    suspicious: float = 0.5
+    at_once: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("suspicious", "at_once"):
+            if not 0.0 < getattr(self, name) <= 1.0:
+                raise SettingError(
+                    f"Dynamic's {name} must be above 0 and at most 1, "
+                    f"but it is {getattr(self, name)}."
+                )
 
     def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
         """Return the stops of the rest of the day."""
@@ -55,7 +75,7 @@ class Dynamic:
             scene.clock,
             (scene.grid.adjacent, scene.grid.lane_y_m, scene.chance.view(np.int64), would_find),
             closed,
-            scene.at,
+            (scene.at, round(-_OCTAVE * math.log2(self.suspicious)), self.at_once),
             stops,
         )
         return Stops(stops.plant[:k], stops.arrive_s[:k])
@@ -67,9 +87,10 @@ def _walk(
     clock: Clock,
     plants: tuple[Csr, NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]],
     closed: NDArray[np.bool_],
-    at: int,
+    start: tuple[int, int, float],
     stops: Stops,
 ) -> int:
+    at, steps, at_once = start
     adjacent, lane_y_m, chance_bits, would_find = plants
     rows = ground.row_start.size - 1
     opened = _Open(
@@ -81,8 +102,8 @@ def _walk(
     now_s, k, left = 0.0, 0, 0
     while k < stops.plant.size:
         if left == 0:
-            room = int((clock.seconds_left - now_s) // clock.visit_s)
-            left = _refill(ground, opened, closed, chance_bits, room)
+            room = int(at_once * ((clock.seconds_left - now_s) // clock.visit_s))
+            left = _refill(ground, opened, (closed, chance_bits), (max(room, 1), steps))
             if left == 0:
                 break
         plant = _nearest(ground, clock, opened, lane_y_m, at)
@@ -120,11 +141,12 @@ def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) 
 def _refill(
     ground: Ground,
     opened: _Open,
-    closed: NDArray[np.bool_],
-    chance_bits: NDArray[np.int64],
-    room: int,
+    plants: tuple[NDArray[np.bool_], NDArray[np.int64]],
+    limits: tuple[int, int],
 ) -> int:
     """Open the suspicious plants that are not closed, `room` at most; return how many."""
+    closed, chance_bits = plants
+    room, steps = limits
     tally = np.zeros(_LEVELS, np.int64)
     top = np.int64(0)
     for plant in range(closed.size):
@@ -133,7 +155,7 @@ def _refill(
             tally[own] += 1
             top = max(top, own)
     level, above = top, 0
-    while level > max(top - _HALF, np.int64(0)) and above + tally[level] < room:
+    while level > max(top - steps, np.int64(0)) and above + tally[level] < room:
         above += tally[level]
         level -= 1
     even = room - above

@@ -8,7 +8,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
 _WIDTH, _RIGHT, _TOP, _BOTTOM = 640, 20, 28, 40
 _LETTER = 6.6
@@ -30,11 +30,13 @@ class Range:
 
 @dataclass(frozen=True)
 class Line:
-    """A line of a line chart."""
+    """A line of a line chart, in a band from low to high where those are given."""
 
     label: str
     x: Sequence[float]
     y: Sequence[float]
+    low: Sequence[float] = ()
+    high: Sequence[float] = ()
 
 
 def range_chart(title: str, rows: Sequence[Range], axis: str) -> str:
@@ -94,6 +96,7 @@ def line_chart(title: str, lines: Sequence[Line], axes: tuple[str, str]) -> str:
         for tick in _ticks(y_low, y_high, y_step)
     ]
     for k, line in enumerate(lines):
+        parts.append(_band(line, at, k))
         pairs = [at(x, y) for x, y in zip(line.x, line.y, strict=True) if not math.isnan(y)]
         path = " ".join(f"{x:.1f},{y:.1f}" for x, y in pairs)
         style = f'class="line c{k % _LINES}{" dashed" if k >= _LINES else ""}"'
@@ -106,6 +109,17 @@ def line_chart(title: str, lines: Sequence[Line], axes: tuple[str, str]) -> str:
     parts.append(_text((left + right) / 2, _HEIGHT - 8, axes[0], "middle"))
     parts.append(_text(left, _TOP - 8, axes[1], "start"))
     return _svg(title, _HEIGHT, parts)
+
+
+def _band(line: Line, at: Callable[[float, float], tuple[float, float]], k: int) -> str:
+    """Return the area between the low and the high of a line; nothing where it has none."""
+    if not line.low:
+        return ""
+    forth = [(x, y) for x, y in zip(line.x, line.high, strict=True) if not math.isnan(y)]
+    back = [(x, y) for x, y in zip(line.x, line.low, strict=True) if not math.isnan(y)]
+    corners = (at(x, y) for x, y in [*forth, *reversed(back)])
+    points = " ".join(f"{x:.1f},{y:.1f}" for x, y in corners)
+    return f'<polygon points="{points}" class="band b{k % _LINES}"/>'
 
 
 def _scale(low: float, high: float) -> tuple[float, float, float]:

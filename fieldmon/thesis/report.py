@@ -49,7 +49,7 @@ _WORDS = {
 
 _LONG = 60
 
-_STYLE = """
+STYLE = """
 :root { color-scheme: light dark; --ink: #1b1f24; --paper: #fff; --soft: #5b6570; --grid: #d5dae0;
   --blue: #0b62b8; --red: #b3261e; --green: #1b6e3c; --violet: #7a3fb0; --brown: #8a5a00; }
 @media (prefers-color-scheme: dark) { :root { --ink: #e8eaed; --paper: #16191d; --soft: #a9b2bd;
@@ -81,7 +81,7 @@ def report_html(study: Study) -> str:
     return (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>The thesis's samplers without prior information</title><style>{_STYLE}</style>"
+        f"<title>The thesis's samplers without prior information</title><style>{STYLE}</style>"
         "</head><body><h1>The thesis's samplers without prior information</h1>"
         "<p>A. Yehoshua (2023), chapter 4 and appendix A, run again by fieldmon: "
         f"{study.replicates} replicates a configuration, seed {study.seed}. In each cell: our mean "

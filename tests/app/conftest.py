@@ -1,7 +1,6 @@
 """A real server and a real browser, on this machine only."""
 
 import os
-import shutil
 import socket
 import subprocess
 import sys
@@ -12,27 +11,6 @@ from pathlib import Path
 import pytest
 
 SHOTS = Path(__file__).with_name("screenshots")
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-# software drawing, and no name in the world but this machine's
-FLAGS = [
-    *["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-    *["--disable-background-networking", "--disable-component-update", "--no-first-run"],
-    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
-]
-
-
-@pytest.fixture(scope="session")
-def browser():
-    if CHROMIUM is None:
-        if os.environ.get("FIELDMON_REQUIRE_BROWSER"):
-            pytest.fail("Chromium must be installed here, but it was not found")
-        pytest.skip("Chromium is not installed (Debian's package chromium)")
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield chromium
-        chromium.close()
 
 
 @pytest.fixture(scope="session")

@@ -22,6 +22,8 @@ from streamlit.proto.BackMsg_pb2 import BackMsg
 from streamlit.proto.ForwardMsg_pb2 import ForwardMsg
 from streamlit.util import calc_hash
 
+# people look at a page before they click again; mean seconds
+PAUSE_S = 2.0
 PAGES = ["", "map", "season", "compare", "plot", "report", "simulate", "scout"]
 
 
@@ -43,7 +45,11 @@ async def person(port, number, clicks):
     address = f"ws://127.0.0.1:{port}/_stcore/stream"
     async with websockets.connect(address, subprotocols=["streamlit"], max_size=None) as line:
         first = await click(line, "")
-        return first, [await click(line, rng.choice(PAGES)) for _ in range(clicks)]
+        taken = []
+        for _ in range(clicks):
+            await asyncio.sleep(rng.uniform(0, 2 * PAUSE_S))
+            taken.append(await click(line, rng.choice(PAGES)))
+        return first, taken
 
 
 def resident_mb(pid):
@@ -62,24 +68,25 @@ def resident_mb(pid):
 
 
 async def measure(port, server, people, clicks):
-    for page in PAGES:
-        await person(port, 0, 1)
-        del page
+    await person(port, 0, 2 * len(PAGES))
     alone = await person(port, 1, clicks)
     before = resident_mb(server.pid)
     every = await asyncio.gather(*(person(port, k, clicks) for k in range(people)))
     after = resident_mb(server.pid)
     seconds = np.concatenate([one for _, one in every])
-    print(
-        f"alone:        median {np.median(alone[1]):.2f} s, slowest {max(alone[1]):.2f} s a click"
-    )
-    print(
-        f"{people} at once:   median {np.median(seconds):.2f} s, "
-        f"slowest {seconds.max():.2f} s a click, first page {max(f for f, _ in every):.2f} s"
-    )
-    print(f"server:       {before:.0f} MB with one, {after:.0f} MB after {people}: "
-          f"{(after - before) / people:.1f} MB a person")  # fmt: skip
-    print(f"load of this machine: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+    lines = [
+        f"alone:      median {np.median(alone[1]):.2f} s, slowest {max(alone[1]):.2f} s a click",
+        (
+            f"{people} at once: median {np.median(seconds):.2f} s, slowest {seconds.max():.2f} s a "
+            f"click, first page {max(f for f, _ in every):.2f} s"
+        ),
+        (
+            f"server:     {before:.0f} MB with one, {after:.0f} MB after {people}: "
+            f"{(after - before) / people:.1f} MB a person"
+        ),
+        f"load of this machine: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores",
+    ]
+    sys.stdout.write("\n".join(lines) + "\n")
 
 
 def main():

@@ -11,13 +11,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
+from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem, SettingError
 from fieldmon.field import Field
 from fieldmon.geodata.findings import Severity
-from fieldmon.geodata.findings_in import CLEAN, FOUND, NOT_INSPECTED, read_findings
+from fieldmon.geodata.findings_in import look_up, read_findings
+from fieldmon.geodata.layers import Layer
 from fieldmon.geodata.options import Upload
-from fieldmon.geodata.reported import FindingsOptions
+from fieldmon.geodata.reported import FindingsOptions, reported_in
 from fieldmon.grid import row_label
+from fieldmon.history import CLEAN, FOUND, SKIPPED
 from fieldmon.planting import Planting, lay, rectangle
 
 GRID = rectangle(6, 10)
@@ -46,7 +48,7 @@ def two_faced():
             (w, CLEAN)
             for w in ("no", "False", "0", "clean", "nein", "לא", "נקי", "ok", "not found")
         ),
-        *((w, NOT_INSPECTED) for w in ("not inspected", "could_not_inspect", "skipped", "לא נבדק")),
+        *((w, SKIPPED) for w in ("not inspected", "could_not_inspect", "skipped", "לא נבדק")),
     ],
 )
 def test_results_are_read_in_many_spellings(word, result):
@@ -89,12 +91,12 @@ def test_result_and_count_that_contradict_are_left_out_unless_one_asks():
     text = "plant,found,count\n1,clean,4\n2,found,0\n3,,0\n4,skipped,0\n5,clean,0\n6,,3\n"
     imported = read(text)
     assert imported.value.plant.tolist() == [4, 5, 6]
-    assert imported.value.result.tolist() == [NOT_INSPECTED, CLEAN, FOUND]
+    assert imported.value.result.tolist() == [SKIPPED, CLEAN, FOUND]
     doubts = imported.of(Severity.DOUBTFUL)
     assert [f.feature for f in doubts] == ["record 1", "record 2", "record 3"]
     assert {f.remedy.option for f in doubts} == {"take_doubtful"}
     taken = read(text, FindingsOptions().choose("take_doubtful", "yes")).value
-    assert taken.result.tolist() == [FOUND, FOUND, CLEAN, NOT_INSPECTED, CLEAN, FOUND]
+    assert taken.result.tolist() == [FOUND, FOUND, CLEAN, SKIPPED, CLEAN, FOUND]
     np.testing.assert_array_equal(taken.count[:2], [4, np.nan])
 
 
@@ -105,6 +107,8 @@ def test_plants_are_named_by_row_and_number_in_every_dialect():
         "שורה\tעץ\tנמצא\n2\t3\tכן\n",
         "Reihe;Pflanze;Befall\n2;3;ja\n",
         "plant,found\nR2/3,x\n",
+        "No,row,plant,found\n1,2,3,x\n",
+        "row,nr,found\n2,3,x\n",
     ):
         findings = read(text).value
         label = row_label(GRID, findings.plant)
@@ -112,7 +116,9 @@ def test_plants_are_named_by_row_and_number_in_every_dialect():
 
 
 def test_plants_that_the_plot_does_not_have_are_named_and_left_out():
-    imported = read("plant,row,number,found\n60,,,x\n,9,1,x\n,1,11,x\n-4,,,x\n5,,,x\n")
+    imported = read(
+        "plant,row,number,found\n60,,,x\n,9,1,x\n,1,11,x\n,2147483647,2147483647,x\n-4,,,x\n5,,,x\n"
+    )
     assert imported.value.plant.tolist() == [5]
     said = " ".join(f.sentence for f in imported.of(Severity.DROPPED))
     assert "plant 60 is none of 0 to 59" in said
@@ -123,10 +129,12 @@ def test_plants_that_the_plot_does_not_have_are_named_and_left_out():
 def test_a_file_of_another_plot_is_noticed():
     lon, lat = GRID.lonlat(np.array([7]))[0]
     text = f"plant,row,number,lon,lat,found\n7,1,8,{lon},{lat},x\n7,1,8,{lon + 0.001},{lat},x\n"
-    text += f"7,3,8,{lon},{lat},x\n7,1,8,{lon + 90},{lat},x\n"
+    text += f"7,3,8,{lon},{lat},x\n7,1,8,{lon + 90},{lat},x\n,2,8,{lon + 0.001},{lat},x\n"
     imported = read(text)
     assert imported.value.source_row.tolist() == [1]
-    assert [f.feature for f in imported.of(Severity.DOUBTFUL)] == [f"record {i}" for i in (2, 3, 4)]
+    assert [f.feature for f in imported.of(Severity.DOUBTFUL)] == [
+        f"record {i}" for i in range(2, 6)
+    ]
 
 
 @given(
@@ -207,6 +215,8 @@ def test_times_are_read_as_people_write_them(head, row, when):
     findings = read(f"plant,found,{head}\n7,x,{row}\n").value
     assert str(findings.when[0]) == when
     assert str(findings.day[0]) == when[:10]
+    midnight = np.datetime64(when[:10], "s")
+    assert findings.second[0] == (np.datetime64(when) - midnight).astype(int)
 
 
 def test_utc_times_become_local_where_the_zone_is_told():
@@ -297,7 +307,7 @@ def layer():
 
 def assert_table(findings):
     assert findings.plant.tolist() == [7, 8, 10]
-    assert findings.result.tolist() == [FOUND, CLEAN, NOT_INSPECTED]
+    assert findings.result.tolist() == [FOUND, CLEAN, SKIPPED]
     np.testing.assert_array_equal(findings.count, [3, np.nan, np.nan])
     assert findings.who.tolist() == ["נועה", "נועה", ""]
     assert findings.notes.tolist() == ["leaf", "", "thorns"]
@@ -332,6 +342,39 @@ def test_an_edited_layer_is_found_among_the_others_of_a_project(tmp_path):
     assert any("2 record(s) have a note, but no result" in f.sentence for f in unknown.findings)
 
 
+def test_a_season_file_edited_in_qfield_gives_what_was_added_and_not_what_was_undone(tmp_path):
+    path = tmp_path / "season.gpkg"
+    lonlat = GRID.lonlat(np.array([7, 8, 9]))
+    kept = pd.DataFrame(
+        {
+            "plant": pd.Series([7, 8, None], dtype="Int32"),
+            "line": pd.Series([1, 1, None], dtype="Int32"),
+            "number": pd.Series([8, 9, None], dtype="Int32"),
+            "day": pd.Series([0, 0, None], dtype="Int32"),
+            "date": pd.to_datetime(["2026-11-18", "2026-11-18", "2026-11-19"]),
+            "time": ["08:30:00", None, "09:15"],
+            "result": ["clean", "found", "found"],
+            "count": [None, 3, 2],
+            "undone": [0, 1, 0],
+        }
+    )
+    shapes = gpd.points_from_xy(*lonlat.T)
+    bare = gpd.GeoDataFrame(
+        {"plant": [7, 8, 9], "line": 1, "number": [8, 9, 10]}, geometry=shapes, crs=4326
+    )
+    bare.to_file(path, layer="plants")
+    bare.to_file(path, layer="stops")
+    gpd.GeoDataFrame(kept, geometry=shapes, crs=4326).to_file(path, layer="inspections")
+    findings = read_findings(path, GRID).value
+    assert findings.plant.tolist() == [7, 9]
+    assert findings.when.astype(str).tolist() == ["2026-11-18T08:30:00", "2026-11-19T09:15:00"]
+    emptied = tmp_path / "emptied.gpkg"
+    bare.to_file(emptied, layer="stops")
+    gpd.GeoDataFrame(kept[:0], geometry=[], crs=4326).to_file(emptied, layer="inspections")
+    bare.assign(result=["found", None, None]).to_file(emptied, layer="plants")
+    assert read_findings(emptied, GRID).value.plant.tolist() == [7]
+
+
 def test_a_table_without_shapes_is_read_where_it_is_named(tmp_path):
     path = tmp_path / "season.gpkg"
     layer()[["plant", "geometry"]].to_file(path, layer="plots")
@@ -341,7 +384,7 @@ def test_a_table_without_shapes_is_read_where_it_is_named(tmp_path):
 
 def test_waypoints_are_read_by_their_names():
     names = ["+3", "-", "+", "0", "clean", "found", "001", "R1/9 +2", "Gate", "not inspected"]
-    xy = GRID.lonlat(np.arange(20, 20 + len(names)))
+    xy = GRID.lonlat(np.array([*range(20, 27), 9, 28, 29]))  # R1/9 was taken one plant further on
     points = "".join(
         f'<wpt lat="{lat:.9f}" lon="{lon:.9f}"><time>2026-11-18T06:30:00Z</time>'
         f"<name>{name}</name><desc>by the dripper</desc></wpt>"
@@ -352,7 +395,7 @@ def test_waypoints_are_read_by_their_names():
     findings = imported.value
     assert findings.plant.tolist() == [20, 21, 22, 23, 24, 25, 8, 29]
     assert findings.result.tolist() == [
-        *(FOUND, CLEAN, FOUND, CLEAN, CLEAN, FOUND, FOUND, NOT_INSPECTED),
+        *(FOUND, CLEAN, FOUND, CLEAN, CLEAN, FOUND, FOUND, SKIPPED),
     ]
     np.testing.assert_array_equal(findings.count, [3, *[np.nan] * 5, 2, np.nan])
     assert set(findings.when.astype(str)) == {"2026-11-18T08:30:00"}
@@ -394,3 +437,35 @@ def test_geojson_properties_of_every_type_are_read():
     findings = read(text, FindingsOptions(take_doubtful=True), name="a.geojson").value
     assert findings.plant.tolist() == [1, 2, 3, 4]
     assert findings.result.tolist() == [FOUND, CLEAN, FOUND, CLEAN]
+
+
+CELLS = st.one_of(
+    st.none(),
+    st.sampled_from(["", "x", "+", "-", "0", "1e400", "inf", "nan", "-3", "24:61", "99/99/2026"]),
+    st.sampled_from(["2026-11-18T08:30:00+25:00", "31.12.2026 8:30 pm", "12345.678", "R1/2b"]),
+    st.sampled_from([True, 3, -1, 2**40, 35.0, 0.5, float("inf")]),
+    st.text(max_size=8),
+)
+COLUMNS = (
+    *("plant", "row", "number", "lon", "lat", "accuracy", "found", "count", "time", "date", "face"),
+    *("name", "arrive", "who", "notes", "x", "y", "position"),
+)
+
+
+@given(
+    st.dictionaries(st.sampled_from(COLUMNS), st.lists(CELLS, min_size=3, max_size=3), min_size=1),
+    st.booleans(),
+)
+@settings(max_examples=150)
+def test_whatever_stands_in_cells_ends_in_findings_or_in_a_sentence(columns, take_doubtful):
+    cells = {name: np.array(values, dtype=object) for name, values in columns.items()}
+    options = FindingsOptions(zone="+02:00", take_doubtful=take_doubtful)
+    try:
+        reported = reported_in(Layer("cells", cells), options).value
+        findings, said = look_up(reported, GRID, options)
+    except FieldmonError:
+        return
+    assert len(findings) <= 3
+    assert ((findings.plant >= 0) & (findings.plant < len(GRID))).all()
+    assert set(findings.result.tolist()) <= {FOUND, CLEAN, SKIPPED}
+    assert all(finding.sentence.endswith((".", "?")) for finding in said)

@@ -12,9 +12,10 @@ import pyogrio
 import pytest
 from handed import DAYS, apart_m, crooked, day, usual
 
-from fieldmon.geodata.findings_in import CLEAN, FOUND, read_findings
+from fieldmon.geodata.findings_in import read_findings
 from fieldmon.geodata.handoff import write_handoff
 from fieldmon.geodata.options import Upload
+from fieldmon.history import CLEAN, FOUND
 from fieldmon.planting import rectangle
 
 CM = 0.01

@@ -6,12 +6,19 @@ from collections import deque
 import numpy as np
 import pyproj
 import pytest
+import scipy.sparse.csgraph
 import shapely
 import yaml
-from handed import DAYS, apart_m, crooked, long, usual
+from crooked import crooked_fields
+from handed import DAYS, apart_m, crooked, day, long, usual
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from fieldmon.aisles import crosses_rows
+from fieldmon.errors import PlotError, SettingError
 from fieldmon.geodata.handoff import write_handoff
+from fieldmon.geodata.handoff.nav2 import graph_of
+from fieldmon.planting import Planting, lay
 
 MM = 1e-3
 
@@ -232,3 +239,20 @@ def test_waypoints_alone_are_the_same(tmp_path):
     *_, beside = write_handoff(plan, tmp_path / "day.geojson", "nav2")
     assert alone.read_bytes() == beside.read_bytes()
     assert beside.name == "day.waypoints.yaml"
+
+
+@given(field=crooked_fields(60.0), seed=st.integers(0, 1000))
+@settings(max_examples=15)
+def test_on_crooked_plots_the_graph_joins_every_stop_and_crosses_no_row(field, seed):
+    try:
+        plan = day(lay(field, Planting()), hours=1.0, seed=seed)
+        graph = graph_of(plan)
+    except (PlotError, SettingError):  # no room for a plant, or one stop at the gate
+        return
+    n = len(graph.xy_m)
+    links = scipy.sparse.coo_array((np.ones(len(graph.pair)), graph.pair.T), (n, n))
+    assert scipy.sparse.csgraph.connected_components(links)[0] == 1
+    enu = plan.grid.frame.turned(90.0)
+    there = plan.grid.frame.xy_m(enu.lonlat(graph.xy_m))
+    assert np.abs(there[graph.of_vertex] - plan.route.line_m).max() < 0.005
+    assert not any(crosses_rows(plan.grid, there[pair]) for pair in graph.pair)

@@ -1,7 +1,6 @@
 """The field sheet for paper: every plant in order with its boxes, a map true to scale."""
 
 import re
-import shutil
 from html.parser import HTMLParser
 
 import numpy as np
@@ -11,7 +10,6 @@ from handed import DAYS, crooked, day, long, usual
 from fieldmon.geodata.handoff import write_handoff
 from fieldmon.planting import rectangle
 
-_CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 _VOID = {"meta"}
 
 
@@ -113,21 +111,17 @@ def test_the_map_is_true_to_scale_and_not_mirrored(tmp_path, plan):
     assert np.cos(np.radians(plan.grid.frame.bearing_deg - up + north)) > np.cos(np.radians(0.2))
 
 
-@pytest.mark.skipif(_CHROMIUM is None, reason="Chromium is not installed")
-def test_on_paper_a_day_of_a_hundred_plants_has_one_page_and_no_line_is_cut(tmp_path):
-    sync_api = pytest.importorskip("playwright.sync_api")
-    with sync_api.sync_playwright() as play:
-        browser = play.chromium.launch(executable_path=_CHROMIUM)
-        page = browser.new_page()
-        pages = {}
-        for make in (usual, crooked, long):
-            (path,) = write_handoff(make(), tmp_path / f"{make.__name__}.html")
-            page.goto(path.as_uri())
-            printed = page.pdf(prefer_css_page_size=True)
-            pages[make] = len(re.findall(rb"/Type\s*/Page\b", printed))
-            box = re.search(rb"/MediaBox\s*\[\s*0 0 ([\d.]+) ([\d.]+)", printed)
-            assert [float(side) for side in box.groups()] == pytest.approx([595, 842], abs=1)
-        browser.close()
+def test_on_paper_a_day_of_a_hundred_plants_has_one_page_and_no_line_is_cut(browser, tmp_path):
+    page = browser.new_page()
+    pages = {}
+    for make in (usual, crooked, long):
+        (path,) = write_handoff(make(), tmp_path / f"{make.__name__}.html")
+        page.goto(path.as_uri())
+        printed = page.pdf(prefer_css_page_size=True)
+        pages[make] = len(re.findall(rb"/Type\s*/Page\b", printed))
+        box = re.search(rb"/MediaBox\s*\[\s*0 0 ([\d.]+) ([\d.]+)", printed)
+        assert [float(side) for side in box.groups()] == pytest.approx([595, 842], abs=1)
+    page.close()
     assert len(crooked().route) > 95
     assert pages[usual] == pages[crooked] == 1
     assert pages[long] <= 1 + len(long().route) // 120

@@ -14,9 +14,10 @@ import pytest
 from handed import DAYS, START, apart_m, crooked, day, usual
 
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.geodata.findings_in import CLEAN, FOUND, read_findings
+from fieldmon.geodata.findings_in import read_findings
 from fieldmon.geodata.handoff import FORMATS, write_handoff
 from fieldmon.geodata.options import Upload
+from fieldmon.history import CLEAN, FOUND
 from fieldmon.planting import rectangle
 
 CM = 0.01

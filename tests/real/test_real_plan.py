@@ -35,7 +35,9 @@ def plan(monkeypatch, tmp_path, capsys):
     def run(*words):
         to = tmp_path / "route.geojson"
         monkeypatch.setattr(sys, "argv", ["fieldmon", "plan", *map(str, words), "-o", str(to)])
-        cli.main()
+        with pytest.raises(SystemExit) as stop:
+            cli.main()
+        assert stop.value.code == 0
         said = capsys.readouterr().out
         return json.loads(to.read_text(encoding="utf-8"))["features"], said
 

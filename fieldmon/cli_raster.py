@@ -1,0 +1,185 @@
+"""What `fieldmon plan` does with rasters: risk, missing plants, the chance map as GeoTIFF."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Protocol
+
+import typer
+
+from fieldmon.errors import ChoiceNeeded, SettingError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.geodata.findings import Finding, Imported
+    from fieldmon.geodata.raster_values import How, Raster
+    from fieldmon.monitor import Plot
+    from fieldmon.risk import RiskSettings
+
+Risk = Annotated[
+    Path | None,
+    typer.Option(help="GeoTIFF of the risk of infestation, one more way to be infested."),
+]
+RiskChoices = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--risk-option",
+        help="What the risk raster means, as NAME=VALUE: meaning=chance (0..1), percent, rank or "
+        "score; mean_share=0.02 and low_is_risky=yes with rank and score; how=mean, highest, "
+        "nearest or bilinear; and band, crs, nodata, member.",
+    ),
+]
+Canopy = Annotated[
+    Path | None,
+    typer.Option(help="GeoTIFF of the canopy (height, NDVI): where it is low no plant stands."),
+]
+CanopyBelow = Annotated[
+    float | None, typer.Option(help="A plant is missing where the canopy is below this.")
+]
+CanopyChoices = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--canopy-option",
+        help="How the canopy is read, as NAME=VALUE: how=highest, mean, nearest or bilinear; and "
+        "band, crs, nodata, member.",
+    ),
+]
+ChanceMap = Annotated[
+    Path | None, typer.Option(help="Cloud Optimised GeoTIFF to write: chance of each plant.")
+]
+
+
+class Tell(Protocol):
+    """Tells a person what an import has to say about a file, and keeps it where it is noted."""
+
+    def __call__(self, findings: Iterable[Finding], source: object = "", /) -> None:
+        """Tell findings about a source."""
+
+
+def without_missing(
+    plot: Plot, canopy: Path | None, below: float | None, more: list[str] | None, tell: Tell
+) -> Plot:
+    """Return the plot without the plants where the canopy is low; those unseen stay."""
+    if canopy is None and below is None and not more:
+        return plot
+    if canopy is None or below is None:
+        raise SettingError(
+            "Missing plants are found with both --canopy FILE and --canopy-below X: give both."
+        )
+
+    from fieldmon.geodata.findings import seen  # noqa: PLC0415
+
+    flag = "--canopy-option"
+    read, how = _read(canopy, plot, _pairs(more, flag), flag)
+    values = read.value.of_plants(plot.grid, how or "highest")
+    missing = values < below
+    said = seen(
+        f"{int(missing.sum())} of {len(missing)} plants are missing (canopy below {below:g})"
+        + _unseen(values, "and count as there")
+    )
+    tell([*read.findings, said], canopy)
+    return plot.without(missing) if missing.any() else plot
+
+
+def risk_of(
+    plot: Plot, path: Path | None, more: list[str] | None, tell: Tell
+) -> NDArray[np.float64] | None:
+    """Return the risk of each plant from a raster ``(n,)``, NaN where it says nothing."""
+    if path is None:
+        if more:
+            raise SettingError("--risk-option says how to read a raster: give it with --risk FILE.")
+        return None
+    import numpy as np  # noqa: PLC0415
+
+    from fieldmon.geodata.findings import seen  # noqa: PLC0415
+    from fieldmon.risk import risk_chance  # noqa: PLC0415
+
+    given = _pairs(more, "--risk-option")
+    settings = _risk_settings(given)
+    read, how = _read(path, plot, given, "--risk-option")
+    chance = risk_chance(read.value.of_plants(plot.grid, how or "mean"), settings)
+    said = seen(
+        f"Risk by {settings.meaning}: {np.nanmin(chance):.3g} to {np.nanmax(chance):.3g}, "
+        f"{np.nanmean(chance):.3g} on average" + _unseen(chance, "and have no risk by it")
+    )
+    tell([*read.findings, said], path)
+    return chance
+
+
+def write_map(to: Path | None, plot: Plot, chance: NDArray[np.float64]) -> None:
+    """Write the chance map, if it was asked for."""
+    if to is None:
+        return
+    from fieldmon.geodata.raster_writing import write_chance_raster  # noqa: PLC0415
+
+    made = write_chance_raster(plot.grid, chance, to)
+    high, wide = made.values.shape
+    typer.echo(
+        f"Chance map written to {to} ({wide} x {high} pixels of {made.pixel_m:g} m, {made.crs})"
+    )
+
+
+def _unseen(values: NDArray[np.float64], what: str) -> str:
+    import numpy as np  # noqa: PLC0415
+
+    unseen = int(np.isnan(values).sum())
+    return f"; {unseen} have no value on the raster {what}." if unseen else "."
+
+
+def _read(
+    path: Path, plot: Plot, given: dict[str, str], flag: str
+) -> tuple[Imported[Raster], How | None]:
+    """Return the raster about the plot, and how it is to be sampled where that was said."""
+    from fieldmon.geodata.rasters import RasterOptions, read_raster  # noqa: PLC0415
+
+    how: Any = given.pop("how", None)
+    options = RasterOptions()
+    for name, value in given.items():
+        options = options.choose(name, value)
+    try:
+        return read_raster(path, options, plot.field), how
+    except ChoiceNeeded as question:
+        answer = question.choices[0] if question.choices else "..."
+        raise ChoiceNeeded(
+            f'{question} Answer with {flag} {question.option}="{answer}", for instance.',
+            question.option,
+            question.choices,
+        ) from None
+
+
+def _risk_settings(given: dict[str, str]) -> RiskSettings:
+    """Return what was said of the meaning, taken out of the options."""
+    from fieldmon.risk import RiskSettings  # noqa: PLC0415
+
+    said: dict[str, Any] = {
+        name: given.pop(name) for name in [f.name for f in fields(RiskSettings)] if name in given
+    }
+    if "mean_share" in said:
+        said["mean_share"] = _number(said["mean_share"])
+    if "low_is_risky" in said:
+        said["low_is_risky"] = said["low_is_risky"].lower() in {"yes", "true", "1"}
+    return replace(RiskSettings(), **said)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise SettingError(
+            f"mean_share must be a number such as 0.02, but it is {text!r}."
+        ) from None
+
+
+def _pairs(more: list[str] | None, flag: str) -> dict[str, str]:
+    pairs = {}
+    for item in more or []:
+        name, equals, value = item.partition("=")
+        if not equals:
+            raise SettingError(f"{flag} must be NAME=VALUE, but it is {item!r}.")
+        pairs[name.strip()] = value.strip()
+    return pairs

@@ -1,0 +1,1 @@
+"""The thesis's chapter 5: Dynamic, Naive and Bouncy with prior information, run again."""

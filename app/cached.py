@@ -21,6 +21,7 @@ from fieldmon.chance import Chance
 from fieldmon.geodata import guard, reading
 from fieldmon.geodata.findings import Finding, Severity
 from fieldmon.geodata.handoff import FORMATS
+from fieldmon.geodata.rasters import read_backdrop
 from fieldmon.hotspots import HotSpots, hot_spots, record_states
 from fieldmon.metrics import SeasonFigures, figures
 from fieldmon.monitor import Plans, Plot, Today, first_day
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from fieldmon.geodata.findings import Imported
     from fieldmon.geodata.handoff import HandoffPlan
     from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
+    from fieldmon.geodata.raster_values import Backdrop, RasterOptions
     from fieldmon.planting import Planting
     from fieldmon.project import Remark, Status
 
@@ -224,6 +226,12 @@ def handoff(key: str, name: str, _plan: HandoffPlan) -> tuple[str, bytes]:  # no
         for ending, data in made.items():
             archive.writestr(f"route{ending}", data)
     return f".{name}.zip", packed.getvalue()
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Backdrop:  # noqa: ARG001
+    """Return a picture of the ground about a plot."""
+    return read_backdrop(_source, options, _near).value
 
 
 @st.cache_resource(max_entries=_MAPS)

@@ -7,6 +7,7 @@ import io
 import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import pydeck as pdk
@@ -60,14 +61,36 @@ AGE_COLOURS: tuple[Colour, ...] = (
 )  # fmt: skip
 _EMPTY = 30  # opacity of a plant that nobody looked at: an outline with next to nothing in it
 _LATTICE = 70
+# layers are not changed once made; their texts go when they do
+_WRITTEN: WeakKeyDictionary[Layer, str] = WeakKeyDictionary()
 
 
 class Deck(pdk.Deck):
-    """A deck whose JSON is written without white space: half the size, several times the speed."""
+    """A deck whose JSON has no white space, and whose layers are written once each.
+
+    Half the size and several times the speed; a layer that is shown again costs nothing.
+    """
 
     def to_json(self) -> str:
         """Return the deck as compact JSON."""
-        return json.dumps(self, sort_keys=True, default=default_serialize, separators=(",", ":"))
+        layers, self.layers = self.layers, []
+        try:
+            frame = _json(self)
+        finally:
+            self.layers = layers
+        texts = ",".join(_layer_json(layer) for layer in layers)
+        return frame.replace('"layers":[]', f'"layers":[{texts}]', 1)
+
+
+def _layer_json(layer: Layer) -> str:
+    text = _WRITTEN.get(layer)
+    if text is None:
+        text = _WRITTEN[layer] = _json(layer)
+    return text
+
+
+def _json(thing: object) -> str:
+    return json.dumps(thing, sort_keys=True, default=default_serialize, separators=(",", ":"))
 
 
 @dataclass(frozen=True)

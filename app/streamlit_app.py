@@ -57,6 +57,11 @@ def page(show, title: str, icon: str, path: str) -> st.Page:  # noqa: ANN001 - a
     )
 
 
+def page_prior() -> None:
+    """Show the study with prior information, on the chosen plot too."""
+    prior_study.show(choose().choices)
+
+
 scouting = page(scout.show, texts.SCOUTING, "eco", "scout")
 st.session_state["scout_page"] = scouting
 st.navigation(
@@ -70,7 +75,7 @@ st.navigation(
         page(report.show, texts.REPORT, "print", "report"),
         page(simulate.show, texts.SIMULATE, "bug_report", "simulate"),
         st.Page(study.show, title=texts.STUDY, icon=":material/science:", url_path="study"),
-        page(prior_study.show, texts.PRIOR, "science", "prior"),
+        st.Page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
     ],
     position="top",
 ).run()

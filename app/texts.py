@@ -113,14 +113,6 @@ STUDY_TABLE, REPLICATES = "Table", "Seasons a row"
 STUDY_RUN, STUDY_REPORT = "Run", "Download the report (HTML)"
 STUDY_CSV = "Download the table (CSV)"
 STUDY_PROGRESS = "{done} of {total} rows simulated"
-PRIOR = "Study, prior information"
-PRIOR_TITLE = "The thesis's samplers with prior information"
-PRIOR_INTRO = (
-    "Chapter 5 of A. Yehoshua's thesis (2023), made again: Dynamic, Naive and Bouncy with the "
-    "thesis's robot, and the choices that its text leaves open as they fit its figures best. On "
-    "this plot the season starts from its own records where it has any."
-)
-PRIOR_PART, PRIOR_OWN = "Scenario or sweep", "This plot"
 
 # -- who works, and how numbers are written
 CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
@@ -272,3 +264,12 @@ REPORT_TITLE = "Plot {name}, {day}"
 REPORT_SETTINGS, REPORT_ROUTE, REPORT_SEASON = "Settings", "Route", "Season so far"
 REPORT_TICK = "found?"
 SPEED, DETECTS = "Speed", "Finds what is there with a chance of"
+
+PRIOR = "Study, prior information"
+PRIOR_TITLE = "The thesis's samplers with prior information"
+PRIOR_INTRO = (
+    "Chapter 5 of A. Yehoshua's thesis (2023), made again: Dynamic, Naive and Bouncy with the "
+    "thesis's robot, and the choices that its text leaves open as they fit its figures best. On "
+    "this plot the season starts from its own records where it has any."
+)
+PRIOR_PART, PRIOR_OWN = "Scenario or sweep", "This plot"

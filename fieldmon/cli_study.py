@@ -22,9 +22,6 @@ register_prior(app)
 app.command("samplers")(cli_study_samplers.samplers)
 app.command("beliefs")(cli_study_samplers.beliefs)
 cli_study_run.register(app)
-register_prior(app)
-app.command("samplers")(cli_study_samplers.samplers)
-app.command("beliefs")(cli_study_samplers.beliefs)
 
 
 @app.callback()

@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 from app_driving import (
     PAGES,
@@ -17,6 +18,8 @@ from app_driving import (
     upload,
     zipped,
 )
+from rasterio.io import MemoryFile
+from rasterio.transform import from_bounds
 from streamlit.testing.v1 import AppTest
 
 
@@ -135,6 +138,29 @@ def test_the_map_tells_three_states_apart_by_shape_and_the_history_of_a_plant(ap
     app.number_input(key="plant row").set_value(99_999).run()
     assert not app.exception
     assert "must be one of 1 to" in app.error[0].value
+
+
+def test_a_picture_of_the_ground_lies_under_the_plants_where_it_is(app):
+    west, south, east, north = 35.1, 30.3, 35.2, 30.4
+    with MemoryFile() as memory:
+        shape = {"width": 400, "height": 400, "count": 1, "dtype": "uint8", "driver": "GTiff"}
+        place = from_bounds(west, south, east, north, 400, 400)
+        with memory.open(**shape, crs="EPSG:4326", transform=place) as picture:
+            picture.write(np.full((1, 400, 400), 90, np.uint8))
+        data = memory.read()
+    go(app, "map")
+    app.pills(key="map_layers").set_value(["backdrop"]).run()
+    app.file_uploader(key="ground_file").upload("ground.tif", data).run()
+    assert not app.exception
+    assert map_of(app)["layers"][1]["id"] == "backdrop"
+    corners = np.array(layer(app, "backdrop")["bounds"])
+    plants = np.array([p["p"] for p in layer(app, "plants")["data"]])
+    assert (corners.min(axis=0) <= plants.min(axis=0)).all()
+    assert (corners.max(axis=0) >= plants.max(axis=0)).all()
+    app.file_uploader(key="ground_file").upload("ground.tif", b"no picture").run()
+    assert not app.exception
+    assert app.error
+    assert layer(app, "backdrop") is None
 
 
 def test_the_path_grows_as_the_day_is_played(app):

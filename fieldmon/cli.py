@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from datetime import date, datetime
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
@@ -17,10 +18,12 @@ from fieldmon import cli_raster, cli_season, cli_study
 from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from fieldmon.field import Field, Observations
-    from fieldmon.geodata.findings import Finding
+    from fieldmon.geodata.findings import Finding, Imported
+    from fieldmon.geodata.places import Places
+    from fieldmon.grid import PlantGrid
     from fieldmon.monitor import Plot
     from fieldmon.robot import Robot
     from fieldmon.samplers import Sampler
@@ -264,9 +267,10 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     else:
         fields = _read_plots(plot, feature, crs, layer, plot_option)
         laid = _lay(_place(fields, plants, paths, gate, feature), given)
+    named = partial(_named, (plot, plants), crs, layer, plot_option)
+    records = _read_records(observations, laid, record_option, named)
     laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
     at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
-    records = _read_records(observations, laid, record_option)
     _hear(records, day)
     today = first_day(laid, records, day, plans, at_risk)
     route = today.route
@@ -361,9 +365,10 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         else:
             fields = _read_plots(plot, feature, crs, layer, plot_option)
             laid = _lay(_place(fields, plants, paths, gate, feature), given)
+        named = partial(_named, (plot, plants), crs, layer, plot_option)
+        records = _read_records(observations, laid, record_option, named)
         laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
         at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
-        records = _read_records(observations, laid, record_option)
     _hear(records, day)
     project = Project.create(season, laid, records, setup, cli_season.remarks(notes), at_risk)
     ahead = project.status(setup.begins).outlook
@@ -439,9 +444,10 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     else:
         fields = _read_plots(plot, feature, crs, layer, plot_option)
         laid = _lay(_place(fields, plants, paths, gate, feature), given)
+    named = partial(_named, (plot, plants), crs, layer, plot_option)
+    records = _read_records(observations, laid, record_option, named)
     laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
     at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
-    records = _read_records(observations, laid, record_option)
     _hear(records, day)
     begin = _start(
         laid, first_day(laid, records, day, Plans(robot), at_risk).chance, infested, seed
@@ -504,6 +510,18 @@ def _read_plots(
     layer: str | None,
     more: list[str] | None,
 ) -> tuple[Field, ...]:
+    read = _plots_of(path, feature, crs, layer, more)
+    _tell(read.findings, path, "--plot-option")
+    return read.value
+
+
+def _plots_of(
+    path: Path,
+    feature: str | None,
+    crs: str | None,
+    layer: str | None,
+    more: list[str] | None,
+) -> Imported[tuple[Field, ...]]:
     from fieldmon.geodata.options import PlotOptions  # noqa: PLC0415
     from fieldmon.geodata.reading import read_plots  # noqa: PLC0415
 
@@ -512,23 +530,52 @@ def _read_plots(
         if value is not None:
             options = options.choose(name, value)
     with _asking("--plot-option"):
-        read = read_plots(path, _chosen(options, more))
-    _tell(read.findings, path)
-    return read.value
+        return read_plots(path, _chosen(options, more))
 
 
-def _read_records(path: Path | None, plot: Plot, more: list[str] | None) -> Observations:
+def _read_records(
+    path: Path | None,
+    plot: Plot,
+    more: list[str] | None,
+    named: Callable[[PlantGrid], Places],
+) -> Observations:
+    """Return the records on a plot; `named` is asked for what they name if they do."""
     from fieldmon.field import Observations  # noqa: PLC0415
 
     if path is None:
         return Observations.none()
+    from fieldmon.geodata.nearby import on_plants  # noqa: PLC0415
     from fieldmon.geodata.options import RecordOptions  # noqa: PLC0415
     from fieldmon.geodata.reading import read_records  # noqa: PLC0415
 
+    options = _chosen(RecordOptions(), more)
     with _asking("--record-option"):
-        read = read_records(path, _chosen(RecordOptions(), more), near=plot.field)
-    _tell(read.findings, path)
+        try:
+            read = read_records(path, options, near=plot.field)
+        except ChoiceNeeded as question:
+            if question.option != "places":
+                raise
+            read = read_records(path, options, plot.field, named(plot.grid))
+    _tell(read.findings, path, "--record-option")
+    _tell(on_plants(read.value, plot.grid), path)
     return read.value
+
+
+def _named(
+    files: tuple[Path | None, Path | None],
+    crs: str | None,
+    layer: str | None,
+    more: list[str] | None,
+    grid: PlantGrid,
+) -> Places:
+    """Return the plots and plants of the command's files by their names."""
+    from fieldmon.geodata.places import Places  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_plants  # noqa: PLC0415
+
+    plot, plants = files
+    # what these files have to say was said before
+    fields = () if plot is None else _plots_of(plot, None, crs, layer, more).value
+    return Places.of(fields, grid, None if plants is None else read_plants(plants).value)
 
 
 def _place(
@@ -679,9 +726,9 @@ def _asking(flag: str) -> Iterator[None]:
         ) from None
 
 
-def _tell(findings: Iterable[Finding], source: object = "") -> None:
+def _tell(findings: Iterable[Finding], source: object = "", flag: str = "") -> None:
     for finding in findings:
-        typer.echo(str(finding), err=True)
+        typer.echo(finding.line(flag), err=True)
         for notes in _NOTES.get():
             notes.append((str(source), finding))
 

@@ -67,7 +67,7 @@ def remarks(notes: Iterable[tuple[str, Finding]]) -> list[Remark]:
             finding.severity.value,
             finding.feature,
             finding.sentence,
-            None if finding.remedy is None else finding.remedy.flag,
+            None if finding.remedy is None else finding.remedy.setting,
         )
         for source, finding in notes
     ]

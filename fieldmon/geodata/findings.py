@@ -1,7 +1,16 @@
-"""What an import saw, repaired, guessed, dropped or doubts, for people and for programs."""
+"""What an import saw, repaired, guessed, dropped or doubts, for people and for programs.
+
+A finding with a remedy can be answered. The remedy names an option of the door (`options`) and the
+values that can be chosen for it, the likeliest first:
+
+- a page shows a button for each of `remedy.choices` and reads again with
+  ``options.choose(remedy.option, choice)``;
+- the command line prints ``--plot-option NAME=VALUE`` or ``--record-option NAME=VALUE``.
+"""
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Generic, TypeVar
@@ -40,19 +49,25 @@ class Remedy:
         The value as text; ``options.choose(option, value)`` sets it.
     label
         A few words for a button.
+    others
+        Further values that could be chosen.
     """
 
     option: str
     value: str
     label: str
+    others: tuple[str, ...] = ()
 
     @property
-    def flag(self) -> str:
-        """Return the option as one writes it on the command line."""
-        name = f"--{self.option.replace('_', '-')}"
-        if self.value == "yes":
-            return name
-        return f"{name} {self.value}" if self.value.isalnum() else f'{name} "{self.value}"'
+    def choices(self) -> tuple[str, ...]:
+        """Return every value that can be chosen, the likeliest first."""
+        return (self.value, *self.others)
+
+    @property
+    def setting(self) -> str:
+        """Return the option as one writes it on the command line: ``date_order=mdy``."""
+        text = f"{self.option}={self.value}"
+        return text if re.fullmatch(r"[\w=:.,+-]+", text) else f'"{text}"'
 
 
 @dataclass(frozen=True)
@@ -77,8 +92,14 @@ class Finding:
     remedy: Remedy | None = None
 
     def __str__(self) -> str:
+        return self.line()
+
+    def line(self, flag: str = "") -> str:
+        """Return the finding in a line, its remedy behind the `flag` that takes it."""
         place = f"{self.feature}: " if self.feature else ""
-        way_out = f" ({self.remedy.label}: {self.remedy.flag})" if self.remedy else ""
+        way_out = ""
+        if self.remedy is not None:
+            way_out = f" ({self.remedy.label}: {f'{flag} {self.remedy.setting}'.strip()})"
         return f"{self.severity}: {place}{self.sentence}{way_out}"
 
 

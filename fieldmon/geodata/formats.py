@@ -135,7 +135,8 @@ def _text_kind(head: bytes, name: str) -> Kind:
 
 def _xml_kind(start: bytes, name: str) -> Kind:
     bare = re.sub(rb"<!--.*?(-->|$)|<\?.*?(\?>|$)", b"", start, flags=re.DOTALL)
-    if b"<!ENTITY" in bare:
+    # map files have no DTD of their own; whatever stands in one is there to be expanded
+    if b"<!ENTITY" in bare or re.search(rb"<!DOCTYPE[^>\[]*\[", bare):
         raise FileProblem(
             f"{name} must not define XML entities, but it does; that is how such files are made to "
             "read others or to fill the memory. Export it again."
@@ -149,6 +150,6 @@ def _xml_kind(start: bytes, name: str) -> Kind:
     if b"opengis.net/gml" in start:
         return Kind.GML
     raise FileProblem(
-        f"{name} must be KML, GML or GPX where it is XML, but its first element is "
-        f"<{root.decode('ascii', 'replace')}>. Export it as GeoPackage or GeoJSON."
+        f"{name} must be KML, GML or GPX where it is XML, but it begins with "
+        f"{f'<{root.decode()}>' if root else 'something else'}. Export it as GeoPackage or GeoJSON."
     )

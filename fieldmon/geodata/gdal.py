@@ -11,7 +11,7 @@ from pyogrio.errors import DataLayerError, DataSourceError
 
 from fieldmon.errors import FileProblem
 from fieldmon.geodata import limits
-from fieldmon.geodata.findings import Finding, repaired, seen
+from fieldmon.geodata.findings import Finding, doubtful, repaired, seen
 from fieldmon.geodata.layers import Layer
 from fieldmon.geodata.text import Decoder
 
@@ -74,7 +74,14 @@ def read_shapefile(path: Path, name: str, encoding: str | None) -> Layer:
         findings.append(repaired("The index (.shx) was missing and was made anew."))
     if not path.with_suffix(".dbf").exists():
         findings.append(seen("The table (.dbf) is missing: there are shapes only."))
-    raw = read_layer(path, name, None, _BYTE_FOR_BYTE)
+    try:
+        raw = read_layer(path, name, None, _BYTE_FOR_BYTE)
+    except (FileProblem, UnboundLocalError):  # the latter is pyogrio's own, for a broken .prj
+        if not path.with_suffix(".prj").exists():
+            raise
+        path.with_suffix(".prj").unlink()
+        findings.append(doubtful("The coordinate system (.prj) cannot be understood; it was left."))
+        raw = read_layer(path, name, None, _BYTE_FOR_BYTE)
     decoder = Decoder(_all_bytes(raw), _stated_encoding(path), encoding)
     columns = {
         decoder(_bytes(column)): _decoded(values, decoder) for column, values in raw.columns.items()

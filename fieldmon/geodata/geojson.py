@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import json
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +18,7 @@ from fieldmon.geodata.layers import Layer
 from fieldmon.geodata.text import decode
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -34,6 +36,12 @@ _GEOMETRIES = frozenset(
     }
 )
 
+#: what a geometry that is none may raise
+_NOT_GEOMETRY = (
+    *(ShapelyError, ValueError, TypeError, LookupError, AttributeError),
+    *(RecursionError, OverflowError),
+)
+
 
 def read_geojson(path: Path, name: str, encoding: str | None) -> Layer:
     """Return the one layer of a GeoJSON file (also newline-delimited)."""
@@ -48,9 +56,20 @@ def read_geojson(path: Path, name: str, encoding: str | None) -> Layer:
     return Layer(name, columns, geometry, crs, (*findings, *more, *crs_findings))
 
 
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Keep Python from looking for garbage where millions of lists are made and none is left."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
+
+
 def _parsed(content: str, name: str) -> dict[str, Any]:
     try:
-        root = json.loads(content)
+        with _no_collection():
+            root = json.loads(content)
     except json.JSONDecodeError as bad:
         lines = _line_by_line(content)
         if lines is None:
@@ -153,7 +172,7 @@ def _geometries(
             continue
         try:
             geometry[i] = _geometry(stated)
-        except (ShapelyError, ValueError, TypeError, KeyError, RecursionError, OverflowError):
+        except _NOT_GEOMETRY:
             broken.append(i)
             continue
         n_vertices += int(shapely.get_num_coordinates(geometry[i]))

@@ -14,6 +14,7 @@ import pickle
 import subprocess
 import sys
 import threading
+import time
 from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
@@ -26,6 +27,9 @@ if sys.platform != "win32":
 
 #: files read before a process is replaced, so that nothing adds up in it
 _USES = 200
+#: real time over its own that a process may take, and the share of it that it must work
+_PATIENCE = 3.0
+_LEAST_SHARE = 0.05
 # GDAL reads these when it is loaded. Drivers that lead to other files or to the network are not
 # there at all, and a proxy that does not exist stands between the rest and the world.
 _SKIPPED = (
@@ -54,6 +58,46 @@ _ENVIRONMENT = {
 }
 
 
+class _Clock(threading.Thread):
+    """Ends a process that works for longer than it may, or sleeps.
+
+    What counts is the process's own time, or a busy machine would refuse good files; and real time
+    where it does nothing at all, or takes `_PATIENCE` times as long.
+    """
+
+    def __init__(self, process: subprocess.Popen[bytes], seconds: float) -> None:
+        super().__init__(daemon=True)
+        self._process, self._seconds = process, seconds
+        self._done = threading.Event()
+        self.is_late = False
+
+    def run(self) -> None:
+        """Look at the process until it has answered."""
+        began, worked_s = time.monotonic(), _own_seconds(self._process.pid)
+        while not self._done.wait(min(0.1, self._seconds / 10)):
+            real_s = time.monotonic() - began
+            own_s = _own_seconds(self._process.pid) - worked_s
+            sleeps = real_s > self._seconds and not own_s > _LEAST_SHARE * real_s
+            if sleeps or own_s > self._seconds or real_s > _PATIENCE * self._seconds:
+                self.is_late = True
+                self._process.kill()
+                return
+
+    def cancel(self) -> None:
+        """Stop looking."""
+        self._done.set()
+
+
+def _own_seconds(pid: int) -> float:
+    """Return the time a process has worked; NaN where the system does not tell."""
+    try:
+        after_name = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2]
+    except OSError:
+        return float("nan")
+    user, system = after_name.split()[11:13]
+    return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+
+
 class Reader:
     """One reading process."""
 
@@ -78,13 +122,7 @@ class Reader:
     def call(self, task: str, arguments: tuple[Any, ...], seconds: float) -> Any:  # noqa: ANN401
         """Return what ``module:function`` returns there; raise what it raises there."""
         self.uses += 1
-        late = threading.Event()
-
-        def stop() -> None:
-            late.set()
-            self._process.kill()
-
-        clock = threading.Timer(seconds, stop)
+        clock = _Clock(self._process, seconds)
         clock.start()
         try:
             sent, received = self._pipes()
@@ -93,7 +131,7 @@ class Reader:
             is_good, answer = pickle.load(received)  # noqa: S301 - see the module's first words
         except (EOFError, OSError, pickle.UnpicklingError) as gone:
             self.stop()
-            raise FileProblem(self._why(late.is_set())) from gone
+            raise FileProblem(self._why(clock.is_late)) from gone
         finally:
             clock.cancel()
         if is_good:
@@ -120,6 +158,15 @@ class Reader:
     def is_alive(self) -> bool:
         """Return whether the process can take another file."""
         return self._process.poll() is None
+
+    @property
+    def peak_bytes(self) -> int:
+        """Return the most memory the process ever took; 0 where the system does not tell."""
+        with suppress(OSError):
+            for line in Path(f"/proc/{self.pid}/status").read_text(encoding="ascii").splitlines():
+                if line.startswith("VmHWM:"):
+                    return int(line.split()[1]) * 1024
+        return 0
 
     def stop(self) -> None:
         """End the process and wait until it is gone."""
@@ -155,6 +202,10 @@ class _Idle:
                 return
         reader.stop()
 
+    def peaks_bytes(self) -> list[int]:
+        with self._lock:
+            return [reader.peak_bytes for reader in self._readers]
+
     def stop(self) -> None:
         with self._lock:
             for reader in self._readers:
@@ -171,8 +222,8 @@ def call(task: str, *arguments: Any, seconds: float = limits.READ_SECONDS) -> An
     Raises
     ------
     FieldmonError
-        What the function raised; `FileProblem` where the process crashed, took more than `seconds`
-        or more than `limits.MEMORY_BYTES`.
+        What the function raised; `FileProblem` where the process crashed, worked for more than
+        `seconds` or took more than `limits.MEMORY_BYTES`.
     """
     reader = _IDLE.borrow()
     try:
@@ -184,6 +235,16 @@ def call(task: str, *arguments: Any, seconds: float = limits.READ_SECONDS) -> An
 def warm() -> None:
     """Start a reading process now, so that the first file need not wait for it."""
     _IDLE.give_back(_IDLE.borrow())
+
+
+def peaks_bytes() -> list[int]:
+    """Return the most memory that each waiting process ever took."""
+    return _IDLE.peaks_bytes()
+
+
+def stop() -> None:
+    """End the waiting processes; the next file starts another."""
+    _IDLE.stop()
 
 
 def _serve() -> None:

@@ -10,12 +10,14 @@ import pyproj
 import shapely
 
 from fieldmon.errors import ChoiceNeeded, ObservationError
-from fieldmon.geodata.findings import Finding, Remedy, doubtful, dropped
+from fieldmon.geodata.findings import Finding, Remedy, doubtful, dropped, seen
+from fieldmon.grid import nearest_plants
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.field import Field, Observations
+    from fieldmon.grid import PlantGrid
 
 _GEOD = pyproj.Geod(ellps="WGS84")
 _FAR_M = 100_000.0
@@ -85,6 +87,35 @@ def of_plot(observations: Observations, field: Field) -> tuple[Observations, lis
     )
 
 
+def on_plants(observations: Observations, grid: PlantGrid) -> list[Finding]:
+    """Return what to say about records that cannot be told a plant of their own.
+
+    A record belongs to the nearest plant within half a row and its own accuracy.
+    """
+    away = nearest_plants(grid, observations.lonlat, NEARBY_M)[1]
+    own_m = np.nan_to_num(observations.accuracy_m)
+    beside = (away > grid.row_spacing_m / 2 + own_m) & np.isfinite(away)
+    rough = np.isfinite(away) & ~beside & (own_m > grid.plant_spacing_m)
+    findings = []
+    if beside.any():
+        findings.append(
+            doubtful(
+                f"{int(beside.sum())} record(s) lie on no plant: {_far(away[beside].min())} to "
+                f"{_far(away[beside].max())} from the nearest. They count for the plants around "
+                "them, and for none as its own."
+            )
+        )
+    if rough.any():
+        findings.append(
+            seen(
+                f"{int(rough.sum())} record(s) are placed to {_far(float(np.median(own_m[rough])))}"
+                f" while plants stand {grid.plant_spacing_m:g} m apart: they count "
+                "for the nearest plant and for those around it."
+            )
+        )
+    return findings
+
+
 def distance_m(lonlat: NDArray[np.float64], field: Field) -> NDArray[np.float64]:
     """Return how far each position is from a plot's area ``(n,)``; 0 on it."""
     west, south, east, north = field.boundary.bounds
@@ -118,4 +149,6 @@ def _questioned(observations: Observations, field: Field) -> list[Finding]:
 
 
 def _far(metres: float) -> str:
+    if metres < 10:
+        return f"{metres:.2g} m"
     return f"{metres:.0f} m" if metres < 1000 else f"{metres / 1000:.4g} km"

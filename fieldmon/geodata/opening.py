@@ -102,20 +102,19 @@ def _only_layer(choice: Choice, options: ReadOptions, names: tuple[str, ...]) ->
         raise _which_layer(choice, names, f", but none is called {options.layer!r}")
     full = _full_layers(choice, names)
     if len(full) > 1:
-        raise _which_layer(choice, tuple(layer.name for layer in full), " with something in them")
+        raise _which_layer(choice, tuple(full), " with something in them")
     if not full:
         raise FileProblem(
             f"{choice.name} must hold at least one layer with something in it, but holds none."
         )
+    ((called, layer),) = full.items()
     if len(names) == 1:
-        return full[0]
-    return full[0].saying(
-        seen(f"Layer {full[0].name} was read; {len(names) - 1} other(s) hold nothing.")
-    )
+        return layer
+    return layer.saying(seen(f"Layer {called} was read; {len(names) - 1} other(s) hold nothing."))
 
 
-def _full_layers(choice: Choice, names: tuple[str, ...]) -> list[Layer]:
-    full = []
+def _full_layers(choice: Choice, names: tuple[str, ...]) -> dict[str, Layer]:
+    full = {}
     for name in names:
         try:
             layer = _layer(choice, name)
@@ -124,7 +123,7 @@ def _full_layers(choice: Choice, names: tuple[str, ...]) -> list[Layer]:
                 raise
             continue
         if len(layer):
-            full.append(layer)
+            full[name] = layer
     return full
 
 

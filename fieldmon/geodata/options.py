@@ -87,7 +87,7 @@ class ReadOptions:
     near
         ``(lon, lat)`` of a place close by; ranks them too, and shows swapped coordinates.
     columns
-        Pairs of a role (see `ROLES`) and the column that holds it.
+        Pairs of a role (see `ROLES`) and the column that holds it; ``("plot", "")``: none does.
     decimal
         ``"."`` or ``","`` in a text table.
     delimiter

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 import shapely
@@ -14,6 +14,8 @@ from fieldmon.geodata.columns import plain
 from fieldmon.geodata.findings import Finding, dropped, guessed, seen
 from fieldmon.geodata.geometry import area_m2
 from fieldmon.geodata.layers import text
+from fieldmon.geodata.values import is_missing
+from fieldmon.grid import row_label
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.field import Field
+    from fieldmon.grid import PlantGrid
 
 _MOST_NAMED = 12
 
@@ -65,6 +68,16 @@ class Places:
     plots: tuple[Field, ...] = ()
     plants: Plants | None = None
 
+    @classmethod
+    def of(cls, plots: tuple[Field, ...], grid: PlantGrid, measured: Plants | None = None) -> Self:
+        """Return plots by name, and plants by the labels of their file or as the grid counts."""
+        if measured is not None and (measured.plant != "").all():
+            return cls(plots, measured)
+        label = np.stack(row_label(grid), axis=1)
+        once, first = np.unique(label, axis=0, return_index=True)
+        names = once.astype(np.str_)
+        return cls(plots, Plants(grid.lonlat(first), names[:, 0], names[:, 1]))
+
 
 @dataclass(frozen=True, eq=False)
 class Named:
@@ -95,10 +108,11 @@ def by_plant(row: NDArray[np.object_] | None, plant: NDArray[np.object_], places
             "places",
         )
     if row is None:
-        known, wanted = list(plants.plant), [text(v) for v in plant]
+        known, wanted = list(plants.plant), _names(plant)
     else:
         known = [f"{r}/{p}" for r, p in zip(plants.row, plants.plant, strict=True)]
-        wanted = [f"{text(r)}/{text(p)}" for r, p in zip(row, plant, strict=True)]
+        both = zip(_names(row), _names(plant), strict=True)
+        wanted = [f"{r}/{p}" if r and p else "" for r, p in both]
     match, how = _join(wanted, known)
     lonlat = np.where(match[:, None] >= 0, plants.lonlat[match], np.nan)
     findings = (*how, *_unmatched(wanted, match, "plant"))
@@ -112,7 +126,7 @@ def by_plot(names: NDArray[np.object_], places: Places) -> Named:
             "The records name plots instead of positions. Give the file with the plots they name.",
             "places",
         )
-    wanted = [text(v) for v in names]
+    wanted = _names(names)
     match, how = _join(wanted, [field.name for field in places.plots])
     middle = shapely.get_coordinates(
         [shapely.point_on_surface(field.boundary) for field in places.plots]
@@ -126,6 +140,10 @@ def by_plot(names: NDArray[np.object_], places: Places) -> Named:
         "middle, with the plot's radius as their accuracy."
     )
     return Named(lonlat, accuracy, (*how, said, *_unmatched(wanted, match, "plot")))
+
+
+def _names(column: NDArray[np.object_]) -> list[str]:
+    return ["" if is_missing(value) else text(value) for value in column]
 
 
 def _join(wanted: list[str], known: list[str]) -> tuple[NDArray[np.int64], list[Finding]]:

@@ -184,7 +184,10 @@ def _some(names: list[str]) -> str:
 def _duplicates(fields: list[Field]) -> list[Finding]:
     first: dict[bytes, str] = {}
     findings = []
+    bounds = Counter(field.boundary.bounds for field in fields)
     for field in fields:
+        if bounds[field.boundary.bounds] == 1:
+            continue
         key = shapely.to_wkb(shapely.normalize(field.boundary))
         if key in first:
             findings.append(doubtful(f"It has the same outline as {first[key]}.", field.name))

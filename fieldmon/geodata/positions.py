@@ -18,7 +18,14 @@ from fieldmon.geodata.geometry import sort_out
 from fieldmon.geodata.layers import Layer, text
 from fieldmon.geodata.places import Named, Places, by_plant, by_plot
 from fieldmon.geodata.placing import place
-from fieldmon.geodata.values import all_degrees, hemispheres, is_missing, numbers, pairs
+from fieldmon.geodata.values import (
+    all_degrees,
+    hemispheres,
+    is_missing,
+    numbers,
+    pairs,
+    plain_numbers,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,8 +33,9 @@ if TYPE_CHECKING:
     from fieldmon.geodata.options import ReadOptions
 
 _WGS84 = "OGC:CRS84"
-#: coordinates rounded to more than this cannot tell neighbouring plants apart
-_COARSE_M = 1.0
+#: coordinates rounded to more than this cannot tell neighbouring plants apart; five decimals of a
+#: degree, 1.1 m, still can
+_COARSE_M = 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +172,10 @@ def _coordinates(
 
 
 def _letters_are_crossed(layer: Layer, names: tuple[str, ...]) -> bool:
-    lon, lat = (hemispheres(text(v) for v in layer.column(name)) for name in names)
+    columns = [layer.column(name) for name in names]
+    if any(plain_numbers(column) is not None for column in columns):
+        return False
+    lon, lat = (hemispheres(text(v) for v in column) for column in columns)
     return bool(lon | lat) and lon <= set("NS") and lat <= set("EW")
 
 
@@ -194,6 +205,8 @@ def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Fi
     if name is None or options.crs is not None:
         return None, []
     stated = {text(v) for v in layer.column(name) if not is_missing(v)}
+    if name == find("date", layer.columns) and not any(map(_known_system, sorted(stated)[:20])):
+        return None, []  # Datum: the day in German, the system in English
     if len(stated) > 1:
         raise ChoiceNeeded(
             f"All records must be in one coordinate system, but column {name!r} names "
@@ -202,15 +215,21 @@ def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Fi
             tuple(f"{name}={value}" for value in sorted(stated)),
         )
     for value in stated:
-        known = f"EPSG:{value}" if re.fullmatch(r"\d{4,6}", value) else value
-        try:
-            pyproj.CRS.from_user_input(known)
-        except CRSError:
-            return None, [
-                doubtful(f"It names the coordinate system {value!r}, which is not known.", name)
-            ]
+        known = _known_system(value)
+        if known is None:
+            said = f"It names the coordinate system {value!r}, which is not known."
+            return None, [doubtful(said, name)]
         return known, [seen(f"Column {name!r} names the coordinate system {value}.")]
     return None, []
+
+
+def _known_system(value: str) -> str | None:
+    known = f"EPSG:{value}" if re.fullmatch(r"\d{4,6}", value) else value
+    try:
+        pyproj.CRS.from_user_input(known)
+    except CRSError:
+        return None
+    return known
 
 
 def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
@@ -218,9 +237,11 @@ def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
     row = options.column("row") or find("row", layer.columns)
     taken = frozenset({row} if row else ())
     plant = options.column("plant") or find("plant", layer.columns, taken)
-    plot = options.column("plot") or find("plot", layer.columns)
+    told = options.column("plot")  # "" says that no column names a plot
+    plot = find("plot", layer.columns) if told is None else told
     if plant and (row or not plot) and (places.plants or not plot):
         rows = None if row is None else layer.column(row)
+        _check_one_plot(layer, plot)
         named = by_plant(rows, layer.column(plant), places)
     elif plot and places.plants is not None and not places.plots:
         named = by_plant(None, layer.column(plot), places)
@@ -235,6 +256,21 @@ def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
             tuple(layer.columns),
         )
     return _kept(layer, named)
+
+
+def _check_one_plot(layer: Layer, plot: str | None) -> None:
+    """Ask for one plot: row 3, plant 7 is another place on each."""
+    if not plot:
+        return
+    names = sorted({text(v) for v in layer.column(plot)} - {""})
+    if len(names) > 1:
+        raise ChoiceNeeded(
+            f"Records that name rows and plants must be of one plot, but column {plot!r} names "
+            f"{len(names)}: {', '.join(names[:12])}. Choose the records of one of them, "
+            "or say that no column names a plot: columns=plot=.",
+            "where",
+            tuple(f"{plot}={name}" for name in names),
+        )
 
 
 def _kept(layer: Layer, named: Named) -> Located:

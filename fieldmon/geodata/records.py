@@ -10,11 +10,12 @@ import numpy as np
 
 from fieldmon.errors import ObservationError
 from fieldmon.field import PRESENT, UNKNOWN, Observations
-from fieldmon.geodata.columns import find
+from fieldmon.geodata.columns import find, recognised
 from fieldmon.geodata.findings import Finding, Imported, Remedy, doubtful, dropped, guessed, seen
 from fieldmon.geodata.layers import Layer, text
 from fieldmon.geodata.positions import located
 from fieldmon.geodata.values import (
+    could_be_thousands,
     counted,
     dates,
     dates_of_parts,
@@ -25,11 +26,15 @@ from fieldmon.geodata.values import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.geodata.options import RecordOptions
     from fieldmon.geodata.places import Places
     from fieldmon.geodata.values import Dated
+
+_LOOKED_AT = 200
 
 
 def records_of(
@@ -84,7 +89,9 @@ class _Table:
         name = self.named(role)
         if name is None:
             return np.full(len(self), "", dtype=np.str_)
-        return np.array(["" if is_missing(c) else c for c in self.cells(name)], dtype=np.str_)
+        cells = self.cells(name)
+        known = {cell: "" if is_missing(cell) else cell for cell in set(cells)}
+        return np.array([known[cell] for cell in cells], dtype=np.str_)
 
 
 class _Counts(NamedTuple):
@@ -119,7 +126,8 @@ def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[Finding]]:
         name = table.named("date", frozenset(parts) if len(parts) > 1 else frozenset())
         if name is None:
             unknown = np.full(len(table), "NaT", dtype="datetime64[D]")
-            return unknown, [doubtful("No column was recognised as the date of the records.")]
+            said = "No column was recognised as the date of the records."
+            return unknown, [doubtful(said, remedy=_offer(table, "date", _are_dates))]
         read = dates(table.layer.column(name), table.options.date_order)
         where = name
     return read.day, [seen(f"Dates are in column(s) {where}."), *_about_dates(read, where)]
@@ -169,18 +177,43 @@ def _counts(table: _Table) -> _Counts:
     if count_name is None and present_name is None:
         counts.present[:] = PRESENT
         counts.findings.append(
-            guessed("No column says how many or whether: every record was taken as a find.")
+            guessed(
+                "No column says how many or whether: every record was taken as a find.",
+                remedy=_offer(table, "count", _are_numbers),
+            )
         )
     return counts
 
 
+def _offer(table: _Table, role: str, fits: Callable[[list[str]], bool]) -> Remedy | None:
+    """Return the columns of unknown name that hold what could play a role, if there are any."""
+    unknown = [name for name in table.layer.columns if not recognised([name])]
+    some = {name: [c for c in table.cells(name)[:_LOOKED_AT] if c] for name in unknown}
+    choices = tuple(f"{role}={name}" for name, cells in some.items() if cells and fits(cells))
+    if not choices:
+        return None
+    one = f"Take the {role} from {choices[0].partition('=')[2]}"
+    label = one if len(choices) == 1 else f"Name the column of the {role}"
+    return Remedy("columns", choices[0], label, choices[1:])
+
+
+def _are_dates(cells: list[str]) -> bool:
+    column = np.array(cells, dtype=object)
+    return not np.isnat(dates(column).day).all()
+
+
+def _are_numbers(cells: list[str]) -> bool:
+    read = [counted(cell) for cell in cells if not is_missing(cell)]
+    return bool(read) and all(np.isfinite(one.number) for one in read)
+
+
 def _numbers_of(table: _Table, name: str) -> _Counts:
     cells = table.cells(name)
-    mark = table.options.decimal or decimal_mark(cells)
+    mark, findings = _mark(table, name, cells)
     known = {cell: counted(cell, mark) for cell in set(cells)}
     count = np.array([known[cell].number for cell in cells])
     present = np.array([known[cell].present for cell in cells], dtype=np.int8)
-    findings = [seen(f"Counts are in column {name!r}.")]
+    findings.append(seen(f"Counts are in column {name!r}."))
     rough = [cell for cell in cells if known[cell].is_rough]
     if rough:
         shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(rough))[:3])
@@ -193,6 +226,20 @@ def _numbers_of(table: _Table, name: str) -> _Counts:
     if n_missing:
         findings.append(seen(f"{n_missing} record(s) have no count: not known, not zero.", name))
     return _Counts(count, present, findings)
+
+
+def _mark(table: _Table, name: str, cells: list[str]) -> tuple[str, list[Finding]]:
+    """Return the decimal mark of the counts: 1,234 alone is told by the rest of the table."""
+    if table.options.decimal is not None:
+        return table.options.decimal, []
+    own = decimal_mark(cell for cell in cells if not could_be_thousands(cell))
+    others = (values for column, values in table.layer.columns.items() if column != name)
+    mark = own or decimal_mark(text(v) for values in others for v in values[:_LOOKED_AT])
+    unsure = next((c for c in cells if "," in c and could_be_thousands(c)), None)
+    if mark is not None or unsure is None:
+        return mark or ".", []
+    said = f"Counts such as {unsure} were read as thousands."
+    return ".", [guessed(said, name, Remedy("decimal", ",", "Read the comma as decimal"))]
 
 
 def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
@@ -218,11 +265,12 @@ def _species(table: _Table) -> list[Finding]:
     name = table.named("species")
     if name is None:
         return []
-    kinds = sorted({cell for cell in table.cells(name) if not is_missing(cell)})
+    kinds = sorted(cell for cell in set(table.cells(name)) if not is_missing(cell))
     if len(kinds) < 2:
         return []
     shown = ", ".join(kinds[:5]) + (", ..." if len(kinds) > 5 else "")
-    remedy = Remedy("where", f"{name}={kinds[0]}", f"Only {kinds[0]}")
+    only = tuple(f"{name}={kind}" for kind in kinds)
+    remedy = Remedy("where", only[0], f"Only {kinds[0]}", only[1:])
     return [doubtful(f"{len(kinds)} species are mixed: {shown}.", name, remedy)]
 
 
@@ -232,10 +280,12 @@ def _same_visit(observations: Observations) -> list[Finding]:
         return []
     place = np.round(observations.lonlat, 8)
     day = observations.day.astype(np.int64).astype(np.float64)
-    kinds = np.unique(np.char.add(observations.species, observations.stage), return_inverse=True)[1]
-    visit = np.column_stack([place, day, kinds])
-    both = np.column_stack([visit, np.nan_to_num(observations.count, nan=-1), observations.present])
-    n_visits, n_stated = len(np.unique(visit, axis=0)), len(np.unique(both, axis=0))
+    kinds = [
+        np.unique(v, return_inverse=True)[1] for v in (observations.species, observations.stage)
+    ]
+    visit = [*place.T, day, *kinds]
+    count = np.nan_to_num(observations.count, nan=-1)
+    n_visits, n_stated = _n_distinct(visit), _n_distinct([*visit, count, observations.present])
     if n_stated == n_visits:
         return []
     return [
@@ -244,3 +294,12 @@ def _same_visit(observations: Observations) -> list[Finding]:
             "another record already has."
         )
     ]
+
+
+def _n_distinct(columns: list[NDArray[np.generic]]) -> int:
+    """Return how many different rows columns ``(n,)`` make."""
+    order = np.lexsort(columns)
+    new = np.zeros(len(order) - 1, dtype=bool)
+    for column in columns:
+        new |= np.diff(column[order]) != 0
+    return int(new.sum()) + 1

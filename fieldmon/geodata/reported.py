@@ -386,13 +386,13 @@ def _results(layer: Layer, columns: _Columns, options: FindingsOptions) -> _Resu
     if columns.result is not None:
         cells = [text(v) for v in layer.column(columns.result)]
         signs = any(_PLUS.match(cell) for cell in cells)
-        mark = options.decimal or decimal_mark(cells)
+        mark = options.decimal or decimal_mark(cells) or "."
         known = {cell: _of_word(cell, mark, signs=signs) for cell in set(cells)}
         by_result = [known[cell] for cell in cells]
         findings += [seen(f"Results are in column {columns.result!r}."), *_unread(cells, known)]
     if columns.number_found is not None:
         cells = [text(v) for v in layer.column(columns.number_found)]
-        mark = options.decimal or decimal_mark(cells)
+        mark = options.decimal or decimal_mark(cells) or "."
         known = {cell: _of_count(cell, mark) for cell in set(cells)}
         by_count = [known[cell] for cell in cells]
         findings += [

@@ -6,6 +6,7 @@ import csv
 import io
 import zipfile
 from collections import Counter
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -62,8 +63,11 @@ def read_sheet(path: Path, name: str, sheet: str) -> Layer:
                 tuple(book.sheetnames),
             )
         rows: list[list[Any]] = []
-        for row in book[sheet].iter_rows(values_only=True, max_col=limits.COLUMNS):
-            rows.append(list(row))
+        for row in book[sheet].iter_rows(values_only=True, max_col=limits.COLUMNS + 1):
+            cells = list(row)
+            while cells and cells[-1] is None:
+                cells.pop()
+            rows.append(cells)
             if len(rows) > limits.RECORDS:
                 break
     while rows and not any(text(v) for v in rows[-1]):
@@ -134,8 +138,9 @@ def _table(rows: list[list[Any]], name: str) -> Layer:
     findings: list[Finding] = []
     if head:
         findings.append(seen(f"{head} line(s) above the column names were passed over."))
+    limits.check("columns", len(rows[head]), limits.COLUMNS, name)
     names = _names(rows[head])
-    body = [row for row in rows[head + 1 :] if any(text(v) for v in row)]
+    body = [row for row in rows[head + 1 :] if any(map(_is_filled, row))]
     if not body:
         raise FileProblem(f"{name} must hold records below its column names, but holds none.")
     longer = sum(len(row) > len(names) and any(text(v) for v in row[len(names) :]) for row in body)
@@ -150,11 +155,17 @@ def _table(rows: list[list[Any]], name: str) -> Layer:
 
 def _columns(names: list[str], body: list[list[Any]]) -> dict[str, NDArray[np.object_]]:
     columns = {}
-    for i, name in enumerate(names):
+    for name, cells in zip(names, zip_longest(*body), strict=False):
         values = np.empty(len(body), dtype=object)
-        values[:] = [_cell(row[i]) if i < len(row) else None for row in body]
+        values[:] = [_cell(value) for value in cells]
         columns[name] = values
+    for name in names[len(columns) :]:
+        columns[name] = np.full(len(body), None, dtype=object)
     return columns
+
+
+def _is_filled(value: object) -> bool:
+    return not value.isspace() and value != "" if isinstance(value, str) else value is not None
 
 
 def _cell(value: object) -> object:

@@ -129,11 +129,11 @@ def _fits(samples: list[bytes], encoding: str) -> bool:
 
 
 def _guess(best: str, stated: str | None = None) -> Finding:
-    other = next(name for name in ENCODINGS if name != best)
+    other, *more = (name for name in ENCODINGS if name != best)
     why = f"The .cpg file says {stated}, but the" if stated else "The"
     return guessed(
         f"{why} text is not UTF-8; by its letters it was read as {best}.",
-        remedy=Remedy("encoding", other, f"Read as {other}"),
+        remedy=Remedy("encoding", other, f"Read as {other}", tuple(more)),
     )
 
 

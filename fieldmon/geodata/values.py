@@ -41,11 +41,23 @@ def is_missing(value: object) -> bool:
     return text(value).casefold() in MISSING
 
 
-def decimal_mark(cells: list[str]) -> str:
-    """Return the decimal mark that a column of text speaks for; ``"."`` where nothing does."""
-    commas = sum(bool(re.fullmatch(r"[-+]?\d+,\d+", c)) for c in cells)
-    points = sum(bool(re.fullmatch(r"[-+]?\d+\.\d+", c)) for c in cells)
-    return "," if commas > points else "."
+_GROUPED = re.compile(r"[-+]?\d{1,3}([.,]\d{3})+")
+_COMMA = re.compile(r"[-+]?(\d{1,3}(\.\d{3})+|\d+),\d+")
+_POINT = re.compile(r"[-+]?(\d{1,3}(,\d{3})+|\d+)\.\d+")
+
+
+def could_be_thousands(cell: str) -> bool:
+    """Return whether 1,234 may mean more than a thousand, or little more than one."""
+    return bool(_GROUPED.fullmatch(cell))
+
+
+def decimal_mark(cells: Iterable[str]) -> str | None:
+    """Return the decimal mark that cells speak for; None where they speak for none."""
+    commas = points = 0
+    for cell in cells:
+        commas += bool(_COMMA.fullmatch(cell))
+        points += bool(_POINT.fullmatch(cell))
+    return None if commas == points == 0 else "," if commas > points else "."
 
 
 def number(cell: str, decimal: str = ".") -> float:
@@ -63,14 +75,21 @@ def number(cell: str, decimal: str = ".") -> float:
         return np.nan
 
 
+def plain_numbers(column: NDArray[np.object_]) -> Float | None:
+    """Return a column as numbers ``(n,)`` if all it holds are plain ones or nothing, else None."""
+    try:
+        return np.array([np.nan if v is None else v for v in column.tolist()], dtype=np.float64)
+    except (ValueError, TypeError):
+        return None
+
+
 def numbers(column: NDArray[np.object_], decimal: str | None = None) -> Float:
     """Return a column as numbers ``(n,)``; NaN where missing or not a number."""
-    try:
-        return np.array([np.nan if v is None else v for v in column], dtype=np.float64)
-    except (ValueError, TypeError):
-        pass
+    read = plain_numbers(column)
+    if read is not None:
+        return read
     cells = [text(v) for v in column]
-    mark = decimal or decimal_mark(cells)
+    mark = decimal or decimal_mark(cells) or "."
     return np.array([np.nan if c.casefold() in MISSING else number(c, mark) for c in cells])
 
 
@@ -149,9 +168,10 @@ def degrees(cell: str, decimal: str = ".") -> float:
     Minutes and seconds must be below 60: ``07.16.5046`` is not a coordinate to guess, and neither
     is the letter O, which is east in German and west in Spanish.
     """
-    bare = cell.strip()
-    sign, bare = _signed(bare)
-    value = number(bare.rstrip("°º "), decimal)
+    sign, bare = _signed(cell.strip())
+    bare = re.sub(r"\s+", " ", bare).replace(" °", "°").replace(" º", "º")
+    # a blank here stands between degrees and minutes, never between thousands
+    value = np.nan if " " in bare else number(bare.rstrip("°º"), decimal)
     if np.isfinite(value):
         return sign * value
     parts = _DMS.match(bare)
@@ -176,18 +196,17 @@ def _signed(cell: str) -> tuple[float, str]:
 
 def all_degrees(column: NDArray[np.object_], decimal: str | None = None) -> Float:
     """Return a column of coordinates as degrees ``(n,)``; NaN where a cell holds none."""
-    try:
-        return np.array([np.nan if v is None else v for v in column], dtype=np.float64)
-    except (ValueError, TypeError):
-        pass
+    read = plain_numbers(column)
+    if read is not None:
+        return read
     cells = [text(v) for v in column]
-    mark = decimal or decimal_mark(cells)
+    mark = decimal or decimal_mark(cells) or "."
     return np.array([degrees(c, mark) for c in cells])
 
 
 def hemispheres(cells: Iterable[str]) -> set[str]:
     """Return the letters N, S, E, W with which cells say where they lie."""
-    found = (_HEMISPHERE.match(cell.strip()) for cell in cells)
+    found = (_HEMISPHERE.match(cell.strip()) for cell in set(cells))
     return {(m.group(1) or m.group(4)).upper() for m in found if m}
 
 

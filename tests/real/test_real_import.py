@@ -5,12 +5,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from shapely import Point
 
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.geodata.findings import Severity
 from fieldmon.geodata.geometry import area_m2
+from fieldmon.geodata.nearby import distance_m
 from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions
+from fieldmon.geodata.places import Places, Plants
 from fieldmon.geodata.reading import read_lines, read_plants, read_plots, read_records
+from fieldmon.grid import plant_at
+from fieldmon.planting import rectangle
 
 ACRE_M2 = 4046.8564224
 
@@ -110,14 +115,145 @@ def test_pistachio_traps_hang_at_their_points_not_where_one_looks_from(shared):
     np.testing.assert_allclose(traps.lonlat[0], (lon, lat), atol=1e-12)
 
 
-def test_trees_of_a_projected_geojson_land_in_california(shared):
-    trees = read_plants(shared / "naip_trees/chico_2020_70.geojson").value
-    # the tile's north-west corner is 39.7222, -121.8119 (UTM 601845.6, 4397523.0)
-    assert np.abs(trees.lonlat - (-121.8110, 39.7215)).max() < 0.002
+# --- what else the files hold --------------------------------------------------------------------
 
 
-def test_eight_soil_samples_lie_outside_their_field_but_none_far(shared):
+def utm_lonlat(easting, northing, zone):
+    """Return longitude and latitude of northern UTM coordinates: Krueger's series, to 0.1 mm."""
+    a, f = 6378137.0, 1 / 298.257222101
+    n = f / (2 - f)
+    radius = a / (1 + n) * (1 + n**2 / 4 + n**4 / 64)
+    beta = (n / 2 - 2 / 3 * n**2 + 37 / 96 * n**3, n**2 / 48 + n**3 / 15, 17 / 480 * n**3)
+    delta = (2 * n - 2 / 3 * n**2 - 2 * n**3, 7 / 3 * n**2 - 8 / 5 * n**3, 56 / 15 * n**3)
+    xi, eta = northing / (0.9996 * radius), (easting - 500_000) / (0.9996 * radius)
+    rings = list(enumerate(beta, 1))
+    x = xi - sum(b * np.sin(2 * j * xi) * np.cosh(2 * j * eta) for j, b in rings)
+    y = eta - sum(b * np.cos(2 * j * xi) * np.sinh(2 * j * eta) for j, b in rings)
+    chi = np.arcsin(np.sin(x) / np.cosh(y))
+    lat = chi + sum(d * np.sin(2 * j * chi) for j, d in enumerate(delta, 1))
+    return zone * 6 - 183 + np.rad2deg(np.arctan2(np.sinh(y), np.cos(x))), np.rad2deg(lat)
+
+
+@pytest.mark.parametrize(("tile", "zone"), [("chico_2020_70", 10), ("claremont_2020_82", 11)])
+def test_trees_of_a_projected_geojson_stand_where_utm_says(shared, tile, zone):
+    path = shared / f"naip_trees/{tile}.geojson"
+    features = json.loads(path.read_text("utf-8"))["features"]
+    metres = np.array([feature["geometry"]["coordinates"] for feature in features])
+    trees = read_plants(path).value
+    wanted = np.stack(utm_lonlat(*metres.T, zone), axis=1)
+    # NAD83 is WGS 84 to a metre or two, and PROJ says so
+    np.testing.assert_allclose(trees.lonlat, wanted, atol=2e-5)
+
+
+def test_positions_in_pixels_are_asked_about_and_not_put_on_the_map(shared):
+    with pytest.raises(ChoiceNeeded) as asked:
+        read_plants(shared / "naip_trees/chico_2020_70.csv")
+    assert asked.value.option == "columns"
+
+
+def test_an_orchard_near_lleida_has_its_corner_where_utm_says(shared):
+    path = shared / "parcels_orchards_vineyards/lleida_apricot_orchards_epsg25831.gpkg"
+    (first, *_) = read_plots(path).value
+    corner = utm_lonlat(398830.1839, 4598402.7504, 31)
+    np.testing.assert_allclose(first.boundary.geoms[0].exterior.coords[0], corner, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("file", "corner"),
+    [  # in California as the file has it, else by the way that PROJ takes when nobody chooses
+        ("aveiro_vinha_olival_epsg3763.gpkg", (-8.27748206, 40.90826184)),
+        ("france_vignes_epsg2154.gpkg", (-1.28018862, 47.16778342)),
+        ("california_tuolumne_vineyard_apple_epsg4269_Z.gpkg", (-120.325693962, 38.017025113)),
+    ],
+)
+def test_parcels_have_their_first_corner_where_it_is(shared, file, corner):
+    first = read_plots(shared / "parcels_orchards_vineyards" / file).value[0]
+    np.testing.assert_allclose(first.boundary.geoms[0].exterior.coords[0], corner, atol=2e-5)
+
+
+def test_aphid_counts_lie_on_the_fields_they_name_and_six_names_are_unknown(shared):
+    folder = shared / "arlington_aphids"
+    fields = read_plots(folder / "Arlington.geojson").value
+    options = RecordOptions().naming(count="SweepsPeaAphids")
+    path = folder / "parasitism-2011-2019.csv"
+    read = read_records(path, options, places=Places(fields))
+    (unknown,) = [f.sentence for f in read.findings if "that are not known" in f.sentence]
+    assert "6 plot(s)" in unknown
+    assert unknown.endswith(": 110/110, 2110, 349_Clover, 4110, 635S, N1902.")
+    assert any("1 record(s) name no plot" in f.sentence for f in read.findings)
+    named = {field.name: field.boundary for field in fields}
+    assert named["219"].contains(Point(read.value.lonlat[0]))
+    assert read.value.count[:3].tolist() == [209, 430, 1005]
+    assert read.value.day[:3].astype(str).tolist() == ["2011-10-12", "2011-09-01", "2011-09-08"]
+
+
+def test_moth_counts_hang_in_the_traps_they_name(shared):
+    folder = shared / "pistachio_traps"
+    traps = read_plants(folder / "mwoolf-farmsense-expt-2020-07-01.kml").value
+    read = read_records(folder / "y20_farmsense_wingtrap_counts.csv", places=Places(plants=traps))
+    assert len(read.value) == 357
+    assert any("by their digits alone" in f.sentence for f in read.findings)
+    (third,) = traps.lonlat[traps.plant == "Block1-3"]
+    np.testing.assert_array_equal(read.value.lonlat[0], third)  # PlotID 13: block 1, position 3
+    assert (read.value.count[0], str(read.value.day[0])) == (15, "2020-07-02")
+
+
+def test_mite_counts_sit_on_their_patches_with_the_day_first(shared):
+    names = [f"{letter}{number}" for letter in "ABC" for number in (1, 2, 3)]
+    lonlat = np.array([(3.7 + i // 3 * 1e-5, 51.0 + i % 3 * 1e-5) for i in range(9)])
+    patches = Plants(lonlat, np.full(9, ""), np.array(names))
+    options = RecordOptions(where="MP=Hom1").naming(plant="P", count="AvgFem")
+    path = shared / "mite_patches/tetranychus_patches.csv"
+    read = read_records(path, options, places=Places(plants=patches)).value
+    np.testing.assert_array_equal(read.lonlat[1], lonlat[names.index("A2")])
+    assert read.count[1] == pytest.approx(5.666667)
+    assert str(read.day[1]) == "2011-05-10"
+    assert len(np.unique(read.day)) == 22
+    assert (np.diff(np.unique(read.day)) == np.timedelta64(7, "D")).mean() > 0.9
+
+
+@pytest.mark.parametrize(
+    ("file", "size", "where", "roles", "record"),
+    [  # record: its row, plant and count or presence, as one reads it in the file's line
+        ("citrus_ctv_IVI3and4.csv", (18, 12), "t=1991", ("x", "y", "present=i"), (0, 1, 1, 1)),
+        ("hop_viruses_HpLV.csv", (25, 51), "t=1996", ("x", "y", "present=i"), (2, 1, 3, 0)),
+        ("beall.webworms.txt", (65, 20), None, ("row", "col", "count=y"), (3, 4, 1, 3)),
+        ("gumpertz.pepper.txt", (20, 20), "field=F1", ("row", "quadrat", "present=disease"), None),
+        ("aphids.csv", (7, 9), None, ("x", "y", "count=i"), (3, 4, 1, 7)),
+    ],
+)
+def test_counts_by_row_and_plant_stand_on_the_plants_they_name(
+    shared, file, size, where, roles, record
+):
+    grid = rectangle(*size)
+    row, plant, role = roles
+    options = (
+        RecordOptions(where=where).naming(row=row, plant=plant, plot="").choose("columns", role)
+    )
+    read = read_records(shared / "plant_maps" / file, options, places=Places.of((), grid)).value
+    spots = np.unique(np.round(read.lonlat, 9), axis=0)
+    assert len(spots) == size[0] * size[1]
+    i, line, number, value = record or (0, 1, 1, 0)
+    spot = grid.lonlat(np.array([plant_at(grid, line, number)]))[0]
+    np.testing.assert_allclose(read.lonlat[i], spot, atol=1e-12)
+    assert (read.count[i] if role.startswith("count") else read.present[i]) == value
+
+
+def test_severities_of_a_watermelon_field_stand_on_its_plants(shared):
+    grid = rectangle(16, 12)
+    path = shared / "banana_fusarium/DidymellaWatermelon.csv"
+    options = RecordOptions(where="dap=50").naming(row="EW_row", plant="NS_col", count="severity")
+    read = read_records(path, options, places=Places.of((), grid)).value
+    assert len(read) == 192
+    np.testing.assert_allclose(
+        read.lonlat[1], grid.lonlat(np.array([plant_at(grid, 2, 1)]))[0], atol=1e-12
+    )
+
+
+def test_eight_soil_samples_lie_outside_the_fence(shared):
     folder = shared / "field_sensor_samples"
     (field,) = read_plots(folder / "sensor_farm_boundary.geojson").value
-    samples = read_records(folder / "sensor_samples.geojson", near=field)
-    assert len(samples.value) == 104
+    samples = read_records(folder / "sensor_samples.geojson", near=field).value
+    np.testing.assert_allclose(samples.lonlat[0], (-117.0464255, 47.03466384), atol=1e-12)
+    assert (distance_m(samples.lonlat, field) > 0).sum() == 8
+    assert area_m2(field.boundary) == pytest.approx(60_500, rel=2e-3)

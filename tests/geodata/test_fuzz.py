@@ -1,0 +1,66 @@
+"""Damaged files end in sentences; the long run is ``python tests/fuzz.py``."""
+
+from pathlib import Path
+
+import fuzz
+import numpy as np
+import pytest
+
+from fieldmon.geodata import guard, reading
+from fieldmon.geodata.options import Upload
+
+
+def test_damaged_files_leave_only_sentences():
+    tally = fuzz.fuzz(200, seconds=12.0)
+    assert tally.failures == []
+    assert tally.outcomes.total() > 20
+    assert tally.outcomes["refused"] > 0
+    assert tally.outcomes["came in"] > 0
+
+
+def test_every_structure_is_changed_and_the_same_number_gives_the_same_file(tmp_path):
+    corpus = fuzz.seeds(tmp_path)
+    endings = {part.name.rpartition(".")[2] for seed in corpus for part in seed.parts}
+    assert {"shp", "dbf", "zip", "geojson", "csv", "kml", "tif", "gpkg", "xlsx"} <= endings
+    for number, seed in enumerate(corpus[:40]):
+        once, again = (fuzz.mutated(seed, np.random.default_rng(number)) for _ in range(2))
+        assert once == again
+
+
+@pytest.mark.parametrize(
+    ("does", "failure"),
+    [
+        (lambda *_: 1 / 0, "ZeroDivisionError"),
+        (lambda *_: str(Path("left.txt").write_text("here")), "a file was left: left.txt"),
+    ],
+)
+def test_the_fuzzer_notices_what_it_looks_for(monkeypatch, does, failure):
+    monkeypatch.setattr(fuzz, "seeds", lambda _: [fuzz.Seed("one", "plots", (GOOD,))])
+    monkeypatch.setattr(fuzz, "read", does)
+    (said,) = fuzz.fuzz(1).failures
+    assert failure in said
+
+
+GOOD = Upload("p.csv", b"lon,lat\n35.15,30.36\n35.16,30.36\n35.16,30.37\n")
+
+
+def test_a_reader_that_hangs_or_crashes_is_ended_and_the_next_file_is_read():
+    for task, number, said in (
+        ("time:sleep", 20, "within"),
+        ("math:factorial", 3_000_000, "within"),
+        ("os:_exit", 1, "crash"),
+    ):
+        with pytest.raises(fuzz.FileProblem, match=said):
+            guard.call(task, number, seconds=0.5)
+    assert len(reading.read_plots(GOOD).value) == 1
+
+
+def test_a_reader_that_fills_the_memory_is_stopped():
+    with pytest.raises(fuzz.FileProblem, match="of memory at most"):
+        guard.call("numpy:ones", 400_000_000)
+
+
+def test_a_reader_has_no_drivers_that_lead_elsewhere():
+    drivers = set(guard.call("pyogrio:list_drivers"))
+    assert "GPKG" in drivers
+    assert not drivers & {"OGR_VRT", "WFS", "OAPIF", "HTTP", "CSW", "Elasticsearch", "GPSBabel"}

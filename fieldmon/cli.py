@@ -317,10 +317,10 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         fields = _read_plots(plot, feature, crs, layer, plot_option)
         beside = (plants, plants_option), (paths, paths_option)
         laid = _lay(_place(fields, *beside, gate, feature), given)
-    laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
-    at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
     named = partial(_named, plot, crs, layer, plot_option, (plants, plants_option))
     records = _read_records(observations, laid, record_option, named)
+    laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
+    at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
     _hear(records, day)
     today = first_day(laid, records, day, plans, at_risk)
     route = today.route
@@ -418,10 +418,10 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
             fields = _read_plots(plot, feature, crs, layer, plot_option)
             beside = (plants, plants_option), (paths, paths_option)
             laid = _lay(_place(fields, *beside, gate, feature), given)
-        laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
-        at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
         named = partial(_named, plot, crs, layer, plot_option, (plants, plants_option))
         records = _read_records(observations, laid, record_option, named)
+        laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
+        at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
     _hear(records, day)
     project = Project.create(season, laid, records, setup, cli_season.remarks(notes), at_risk)
     ahead = project.status(setup.begins).outlook
@@ -500,10 +500,10 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         fields = _read_plots(plot, feature, crs, layer, plot_option)
         beside = (plants, plants_option), (paths, paths_option)
         laid = _lay(_place(fields, *beside, gate, feature), given)
-    laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
-    at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
     named = partial(_named, plot, crs, layer, plot_option, (plants, plants_option))
     records = _read_records(observations, laid, record_option, named)
+    laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
+    at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
     _hear(records, day)
     begin = _start(
         laid, first_day(laid, records, day, Plans(robot), at_risk).chance, infested, seed

@@ -596,7 +596,7 @@ def _plan_all(
     plots: list[tuple[Field, Crew]],
     records: Observations,
     ordered: tuple[tuple[SamplerName, int | None, bool], dict[str, Any], dict[str, Any]],
-    to: tuple[list[Path], datetime],
+    to: tuple[Path, datetime],
 ) -> None:
     """Plan every plot into a folder, given who chooses, the robot's settings and the planting's."""
     import numpy as np  # noqa: PLC0415

@@ -99,15 +99,16 @@ def risk_of(
     from fieldmon.geodata.findings import seen  # noqa: PLC0415
     from fieldmon.risk import risk_chance  # noqa: PLC0415
 
-    given = _pairs(more, "--risk-option")
+    flag = "--risk-option"
+    given = _pairs(more, flag)
     settings = _risk_settings(given)
-    read, how = _read(path, plot, given, "--risk-option")
+    read, how = _read(path, plot, given, flag)
     chance = risk_chance(read.value.of_plants(plot.grid, how or "mean"), settings)
     said = seen(
         f"Risk by {settings.meaning}: {np.nanmin(chance):.3g} to {np.nanmax(chance):.3g}, "
         f"{np.nanmean(chance):.3g} on average" + _unseen(chance, "and have no risk by it")
     )
-    tell([*read.findings, said], path, "--risk-option")
+    tell([*read.findings, said], path, flag)
     return chance
 
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from shapely import MultiLineString
 
     from fieldmon.field import Field, Observations
+    from fieldmon.geodata.crews import Crew
     from fieldmon.geodata.findings import Imported
     from fieldmon.geodata.layers import LayerInfo
     from fieldmon.geodata.places import Places, Plants
@@ -46,6 +47,16 @@ def read_plots(source: Source, options: PlotOptions | None = None) -> Imported[t
     """Return the plots of a source in degrees WGS84, all of them unless one is chosen."""
     plots: Imported[tuple[Field, ...]] = _read("plots", source, options or PlotOptions())
     return plots
+
+
+def read_crews(
+    source: Source, options: PlotOptions | None = None
+) -> tuple[Imported[tuple[Field, ...]], dict[str, Crew]]:
+    """Return the plots of a source as `read_plots`, and by name who works on each."""
+    read: tuple[Imported[tuple[Field, ...]], dict[str, Crew]] = _read(
+        "crews", source, options or PlotOptions()
+    )
+    return read
 
 
 def read_records(

@@ -72,7 +72,8 @@ class Tally:
         counts = ", ".join(f"{n} {what}" for what, n in self.outcomes.most_common())
         return (
             f"{self.outcomes.total()} inputs: {counts}; slowest {self.slowest_s:.1f} s "
-            f"({self.slowest}), most working time {self.hardest_s:.1f} s, most memory {self.peak_bytes / 1e6:.0f} MB, {len(self.failures)} failure(s)."
+            f"({self.slowest}), most working time {self.hardest_s:.1f} s, most memory "
+            f"{self.peak_bytes / 1e6:.0f} MB, {len(self.failures)} failure(s)."
         )
 
 

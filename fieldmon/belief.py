@@ -24,6 +24,8 @@ _1, _2, _3 = np.uint32(1), np.uint32(2), np.uint32(3)
 _RINGS = 3
 # round a loop the same news arrives twice: no plant settles its neighbour more than this
 _CLOSEST = 0.9
+# how many finds beside finds the belief's own idea of clusters is worth; the most it grows a day
+_HABIT, _MORE = 3.0, 1.5
 _LEAST_SAY = 1e-6
 
 
@@ -238,6 +240,7 @@ class Pairs:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
         mind = self.chance.copy(), self.both.copy()
         rule = learning.detection, learning.treated
+        _regroup(mind, self.grid.adjacent, plants, found, learning.detection)
         _learn_pairs(mind, self.grid.adjacent, plants, found, rule)
         return Pairs(self.grid, *mind)
 
@@ -391,6 +394,41 @@ def _back(adjacent: Csr, j: int, e: int) -> int:
         if adjacent.plant[back] == j:
             return back
     return e
+
+
+@nb.njit(cache=True, nogil=True)
+def _regroup(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    plants: NDArray[np.int32],
+    found: NDArray[np.bool_],
+    detection: float,
+) -> None:
+    """Learn from a day's looks beside its finds how much infested plants stand together.
+
+    What pairs have in common is scaled, all over the plot, by the finds beside finds: those there
+    were over those expected, both beyond what independent plants would give. A few expected
+    ones are added to both, so that a day of few finds changes little.
+    """
+    chance, both = mind
+    outcome = np.full(chance.size, -1, np.int8)
+    for k in range(plants.size):
+        outcome[plants[k]] = found[k]
+    seen, expected = _HABIT, _HABIT
+    for k in range(plants.size):
+        i = plants[k]
+        if not found[k]:
+            continue
+        for e in range(adjacent.start[i], adjacent.start[i + 1]):
+            j = adjacent.plant[e]
+            if outcome[j] >= 0:
+                seen += outcome[j] - detection * chance[j]
+                expected += detection * (both[e] / chance[i] - chance[j])
+    scale = min(max(seen, 0.0) / max(expected, _HABIT), _MORE)
+    for i in range(chance.size):
+        for e in range(adjacent.start[i], adjacent.start[i + 1]):
+            p, q = chance[i], chance[adjacent.plant[e]]
+            both[e] = _bounded(p * q + scale * (both[e] - p * q), p, q)
 
 
 @nb.njit(cache=True, nogil=True)

@@ -24,7 +24,7 @@ from fieldmon.geodata.routes import RouteNotes, write_route
 from fieldmon.geodata.writing import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
     from concurrent.futures import Future
     from datetime import datetime
     from pathlib import Path
@@ -40,6 +40,8 @@ _COLUMNS = (
 )
 # the summary on disk is never older than this while plots are planned
 _EVERY_S = 2.0
+# tasks handed to the pool at once, so that no worker waits for the next
+_AHEAD = 32
 # a name of a file may be 255 bytes long; Hebrew and Arabic take two a letter
 _NAME_BYTES = 120
 
@@ -138,14 +140,21 @@ def _plan(
     """Plan tasks in worker processes, a few ahead of them, and keep `rows` and the disk current."""
     if not tasks:
         return
+
+    def keep(one: Future[Row]) -> None:
+        # also those that end while a stop is on its way
+        if not one.cancelled() and one.exception() is None:
+            row = one.result()
+            rows[row["file"]] = row | {"digest": digests[row["file"]]}
+
     pool = ProcessPoolExecutor(min(workers, len(tasks)), get_context("spawn"), _prepare, (day,))
     names, saved = list(tasks), time.monotonic()
     with typer.progressbar(
         length=len(names), label="Planning", file=sys.stderr, show_eta=True, width=40
     ) as bar:
         try:
-            for row in _results(pool, tasks.items(), 4 * workers):
-                rows[row["file"]] = row | {"digest": digests[row["file"]]}
+            for one in _ended(pool, tasks.items(), keep):
+                one.result()
                 bar.update(1)
                 if time.monotonic() - saved > _EVERY_S:
                     _write(day.folder, digests, rows)
@@ -159,18 +168,25 @@ def _plan(
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _results(
-    pool: ProcessPoolExecutor, tasks: Iterable[tuple[str, Task]], ahead: int
-) -> Iterator[Row]:
+def _ended(
+    pool: ProcessPoolExecutor,
+    tasks: Iterable[tuple[str, Task]],
+    keep: Callable[[Future[Row]], None],
+) -> Iterator[Future[Row]]:
+    """Hand tasks to a pool, some ahead of it; yield each as it ends, `keep` hears of it before."""
     waiting = iter(tasks)
-    running: set[Future[Row]] = {
-        pool.submit(_work, name, task) for name, task in islice(waiting, ahead)
-    }
+
+    def more(n: int) -> set[Future[Row]]:
+        handed = {pool.submit(_work, *item) for item in islice(waiting, n)}
+        for one in handed:
+            one.add_done_callback(keep)
+        return handed
+
+    running = more(_AHEAD)
     while running:
         done, running = wait(running, return_when=FIRST_COMPLETED)
-        running |= {pool.submit(_work, *item) for item in islice(waiting, len(done))}
-        for one in done:
-            yield one.result()
+        running |= more(len(done))
+        yield from done
 
 
 def _prepare(day: Day) -> None:

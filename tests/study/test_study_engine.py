@@ -210,3 +210,16 @@ def test_the_dataset_is_read_by_any_reader_of_parquet(undisturbed):
 def test_impossible_designs_are_refused(settings):
     with pytest.raises(SettingError):
         Design(**settings)
+
+
+def test_a_cluster_that_is_there_already_is_used(tmp_path):
+    from distributed import LocalCluster
+
+    design = Design(samplers=("naive",), n_days=1, n_seeds=2)
+    there = LocalCluster(
+        n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
+    )
+    with there, engine.cluster(there.scheduler_address) as client:
+        assert client.scheduler.address == there.scheduler_address
+        engine.run(client, tmp_path, (site(),), design, quiet)
+    assert store.seasons(tmp_path).num_rows == 2

@@ -112,15 +112,20 @@ def _plant_layers(choices: Choices, shade_by: str, rows: tuple[int, int] | None)
         state, ages = states_of(choices), ages_of(choices)
         shade = maps.by_state(state) if shade_by == "state" else maps.by_age(ages)
         extra = maps.finds(grid, state)
-        names = texts.LEGEND_STATES
-        said = {1: names["found"], 0: names["clean"], -1: names["never"]}
-        note = [said[s] for s in state.tolist()]
+        note = state_notes(state)
     layers = [maps.plants(grid, shade, note)]
     if rows is not None and len(grid) > maps.POINTS_AT_MOST:
         line = grid.row_line[grid.row] + 1
         part = np.flatnonzero((line >= rows[0]) & (line <= rows[1]))[: maps.POINTS_AT_MOST]
         layers.append(maps.plants(grid, shade, note, part))
     return [*layers, *extra]
+
+
+def state_notes(state: cached.Array) -> list[str]:
+    """Return each plant's state in words."""
+    names = texts.LEGEND_STATES
+    said = {1: names["found"], 0: names["clean"], -1: names["never"]}
+    return [said[s] for s in state.tolist()]
 
 
 def route_layers(choices: Choices, route: Route, *, numbers: bool) -> list:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numba as nb
 import numpy as np
 
+from fieldmon.compiled import loop
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -18,10 +19,13 @@ if TYPE_CHECKING:
 
 # no plant is ever taken as certainly clean or certainly infested: evidence must be able to undo it
 _LEAST, _MOST = 1e-6, 1.0 - 1e-6
+_1, _2, _3 = np.uint32(1), np.uint32(2), np.uint32(3)
 # a look is heard as far as three plants away, and as long as it changes a chance by this
 _RINGS = 3
 # round a loop the same news arrives twice: no plant settles its neighbour more than this
 _CLOSEST = 0.9
+# how many finds beside finds the belief's own idea of clusters is worth; the most it grows a day
+_HABIT, _MORE = 3.0, 1.5
 _LEAST_SAY = 1e-6
 
 
@@ -100,27 +104,50 @@ def _learn(
 def overnight(chance: NDArray[np.float64], grid: PlantGrid, spread: Spread) -> NDArray[np.float64]:
     """Return the chance map ``(n,)`` of the next morning, neighbours taken as independent."""
     each = spread.rate_per_day
-    after = np.empty_like(chance)
-    _overnight(chance, after, grid.adjacent, (each, spread.to == "one", spread.arrivals_per_day))
+    after, spares = np.empty_like(chance), np.empty_like(chance)
+    _spare(chance, spares, grid.adjacent.start, (each, spread.to == "one"))
+    _overnight(chance, after, grid.adjacent, spares, spread.arrivals_per_day)
     return after
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
+def _spare(
+    chance: NDArray[np.float64],
+    spares: NDArray[np.float64],
+    start: NDArray[np.int32],
+    rule: tuple[float, bool],
+) -> None:
+    """Find the chance that a plant does not infest a given neighbour in a night."""
+    rate, one = rule
+    for i in range(chance.size):
+        share = rate / (start[i + 1] - start[i]) if one else rate
+        spares[i] = 1.0 - chance[i] * share
+
+
+@loop
 def _overnight(
     chance: NDArray[np.float64],
     after: NDArray[np.float64],
     adjacent: Csr,
-    rule: tuple[float, bool, float],
+    spares: NDArray[np.float64],
+    arrivals: float,
 ) -> None:
-    rate, one, arrivals = rule
     start, plant = adjacent
     for i in range(chance.size):
-        stays_clean = (1.0 - chance[i]) * (1.0 - arrivals)
-        for k in range(start[i], start[i + 1]):
-            j = plant[k]
-            share = rate / (start[j + 1] - start[j]) if one else rate
-            stays_clean *= 1.0 - chance[j] * share
-        after[i] = min(max(1.0 - stays_clean, _LEAST), _MOST)
+        # unsigned: an index that may be negative is checked for it
+        k, end = np.uint32(start[i]), np.uint32(start[i + 1])
+        clean = (1.0 - chance[i]) * (1.0 - arrivals)
+        if end - k == 4:  # most plants; a loop of unknown length costs twice this
+            clean *= spares[np.uint32(plant[k])]
+            clean *= spares[np.uint32(plant[k + _1])]
+            clean *= spares[np.uint32(plant[k + _2])]
+            clean *= spares[np.uint32(plant[k + _3])]
+        else:
+            for e in range(k, end):
+                clean *= spares[np.uint32(plant[e])]
+        infested = 1.0 - clean
+        infested = infested if infested < _MOST else _MOST  # noqa: FURB136 - min is slower
+        after[i] = infested if infested > _LEAST else _LEAST  # noqa: FURB136 - max is slower
 
 
 def pairs(
@@ -213,6 +240,7 @@ class Pairs:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
         mind = self.chance.copy(), self.both.copy()
         rule = learning.detection, learning.treated
+        _regroup(mind, self.grid.adjacent, plants, found, learning.detection)
         _learn_pairs(mind, self.grid.adjacent, plants, found, rule)
         return Pairs(self.grid, *mind)
 
@@ -366,6 +394,41 @@ def _back(adjacent: Csr, j: int, e: int) -> int:
         if adjacent.plant[back] == j:
             return back
     return e
+
+
+@nb.njit(cache=True, nogil=True)
+def _regroup(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    plants: NDArray[np.int32],
+    found: NDArray[np.bool_],
+    detection: float,
+) -> None:
+    """Learn from a day's looks beside its finds how much infested plants stand together.
+
+    What pairs have in common is scaled, all over the plot, by the finds beside finds: those there
+    were over those expected, both beyond what independent plants would give. A few expected
+    ones are added to both, so that a day of few finds changes little.
+    """
+    chance, both = mind
+    outcome = np.full(chance.size, -1, np.int8)
+    for k in range(plants.size):
+        outcome[plants[k]] = found[k]
+    seen, expected = _HABIT, _HABIT
+    for k in range(plants.size):
+        i = plants[k]
+        if not found[k]:
+            continue
+        for e in range(adjacent.start[i], adjacent.start[i + 1]):
+            j = adjacent.plant[e]
+            if outcome[j] >= 0:
+                seen += outcome[j] - detection * chance[j]
+                expected += detection * (both[e] / chance[i] - chance[j])
+    scale = min(max(seen, 0.0) / max(expected, _HABIT), _MORE)
+    for i in range(chance.size):
+        for e in range(adjacent.start[i], adjacent.start[i + 1]):
+            p, q = chance[i], chance[adjacent.plant[e]]
+            both[e] = _bounded(p * q + scale * (both[e] - p * q), p, q)
 
 
 @nb.njit(cache=True, nogil=True)

@@ -30,9 +30,10 @@ import shapely
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.geodata import guard, limits, reading
 from fieldmon.geodata.options import PlotOptions, RecordOptions, Upload
+from fieldmon.geodata.reported import FindingsOptions
 
-#: the clock of the reading process, and what ending it may take on a busy machine
-SECONDS = limits.READ_SECONDS + 3.0
+#: what the clock of the reading process allows on a busy machine, and what ending it may take
+SECONDS = limits.PATIENCE * limits.READ_SECONDS + 3.0
 _LARGEST_SEED = 200_000
 _NASTY_NUMBERS = (0, -1, 1, 0x7F, 0x80, 0xFF, 0x7FFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF)
 _NASTY_VALUES = (
@@ -87,6 +88,8 @@ def seeds(folder: Path) -> list[Seed]:
         parts = _uploads(case.source(room))
         if sum(len(part.data) for part in parts) <= _LARGEST_SEED:
             made.append(Seed(case.name, case.door, parts))
+            if case.door == "records":
+                made.append(Seed(case.name, "reported", parts))
     return [*made, *(Seed("raster", door, (_raster(folder),)) for door in ("plots", "layers"))]
 
 
@@ -287,6 +290,8 @@ def read(seed: Seed, parts: tuple[Upload, ...]) -> str:
     try:
         if seed.door == "layers":
             reading.list_layers(source)
+        elif seed.door == "reported":
+            reading.read_reported(source, FindingsOptions())
         elif seed.door == "records":
             places = awkward.Places((awkward.HOME,), awkward.ROWS)
             _check_places(reading.read_records(source, RecordOptions(), None, places).value.lonlat)
@@ -355,6 +360,8 @@ def fuzz(n_inputs: int, first: int = 0, seconds: float = np.inf) -> Tally:
             rng = np.random.default_rng(number)
             seed = corpus[number % len(corpus)]
             _one(number, seed, mutated(seed, rng), tally)
+            if (number - first) % 500 == 499:
+                sys.stderr.write(f"{number - first + 1} of {n_inputs}\n")
         guard.stop()
         left = [p for room in ("tmp", "home", "here") for p in (world / room).rglob("*")]
         tally.failures += [f"a file was left: {path.name}" for path in left]

@@ -158,7 +158,7 @@ def _compared(
     p = np.clip(np.concatenate(chances), _LEAST, 1.0 - _LEAST)
     y = np.concatenate(truths)
     suspicious = np.concatenate([c >= _SUSPICIOUS * c.max() for c in chances])
-    classes = np.where(suspicious, y[suspicious].mean(), y[~suspicious].mean())
+    classes = np.where(suspicious, _share(y[suspicious]), _share(y[~suspicious]))
     clean = np.array([each.chance_clean for each in ahead])
     inside = [o.low <= n <= o.high for o, n in zip(ahead, counts, strict=True)]
     return Calibration(
@@ -170,6 +170,10 @@ def _compared(
         *_reliability(clean, counts == 0, CLEAN_EDGES),
         seconds_a_day,
     )
+
+
+def _share(y: NDArray[np.bool_]) -> float:
+    return float(y.mean()) if len(y) else 0.0
 
 
 def _log_score(p: NDArray[np.float64], y: NDArray[np.bool_]) -> float:

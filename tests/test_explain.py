@@ -1,0 +1,55 @@
+"""What a day's stops are for, in words."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+from scenes import scene_on
+
+from fieldmon.explain import explain
+from fieldmon.planting import rectangle
+from fieldmon.samplers import NEVER, Adaptive
+from fieldmon.workday import plan_day
+
+GRID = rectangle(40, 30)
+
+
+def day(last=NEVER, today=12, hours=3.0):
+    last_inspected = np.full(len(GRID), NEVER, np.int32)
+    last_inspected[:] = last
+    return replace(scene_on(GRID, hours=hours, last_inspected=last_inspected), day=today)
+
+
+def counts(said):
+    return sum(int(re.match(r"\d+", sentence).group()) for sentence in said)
+
+
+def test_every_stop_is_told_once():
+    scene = day()
+    work = plan_day(scene, Adaptive())
+    finds = work.plant[[3, len(work) // 2]].astype(np.int32)
+    assert counts(explain(scene, work)) == len(work)
+    assert counts(explain(scene, work, finds, ["Monday", "Tuesday"])) == len(work)
+
+
+def test_stops_near_a_find_are_told_by_its_day_row_and_plant():
+    scene = day()
+    work = plan_day(scene, Adaptive())
+    find = work.plant[:1].astype(np.int32)
+    said = explain(scene, work, find, ["Tuesday"])[0]
+    row, number = int(find[0]) // 30 + 1, int(find[0]) % 30 + 1
+    assert re.fullmatch(rf"\d+ plants? around Tuesday's find in row {row}, plant {number}\.", said)
+
+
+def test_rows_are_told_by_how_long_they_were_not_inspected():
+    never = explain(day(), plan_day(day(), Adaptive()))
+    assert all(sentence.endswith("never inspected yet.") for sentence in never)
+    scene = day(last=3)
+    assert all("not inspected for 9 days" in s for s in explain(scene, plan_day(scene, Adaptive())))
+
+
+def test_a_day_without_stops_says_so():
+    scene = day(hours=0.001)
+    assert explain(scene, plan_day(scene, Adaptive())) == [
+        "No plant can be reached in the hours left."
+    ]

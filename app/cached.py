@@ -34,6 +34,7 @@ from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.season import Day, SeasonSettings, Start, days
 from fieldmon.spread import Spread
 
+from . import figures as day_figures
 from . import maps, texts
 from .comparing import Asked, Comparison
 
@@ -51,7 +52,9 @@ if TYPE_CHECKING:
     from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
     from fieldmon.geodata.raster_values import Backdrop, RasterOptions
     from fieldmon.planting import Planting
-    from fieldmon.project import Remark, Status
+    from fieldmon.project import Remark
+
+    from .figures import DayFigures, Known
 
     Array = NDArray[np.float64]
 
@@ -191,10 +194,34 @@ def season_route(path: str, revision: str, day: str, _season: Project) -> Array:
     return _season.kept_route(np.datetime64(day).item())
 
 
-@st.cache_resource(max_entries=400)
-def status(path: str, revision: str, day: str, _season: Project) -> Status:  # noqa: ARG001
-    """Return where a season stands on a day."""
-    return _season.status(np.datetime64(day).item())
+@st.cache_resource(max_entries=_FEW)
+def kept_figures(path: str, revision: str, _season: Project) -> dict[str, DayFigures]:  # noqa: ARG001
+    """Return the figures of a season's days on which something happened."""
+    return day_figures.kept(_season)
+
+
+def day_in_figures(path: str, revision: str, day: str, season: Project) -> DayFigures:
+    """Return a day of a season in figures."""
+    kept = kept_figures(path, revision, season)
+    return kept[day] if day in kept else _worked_out(path, revision, day, season)
+
+
+@st.cache_resource(max_entries=200)
+def _worked_out(path: str, revision: str, day: str, _season: Project) -> DayFigures:  # noqa: ARG001
+    return day_figures.of(_season, np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def known(path: str, revision: str, day: str, _season: Project) -> Known:  # noqa: ARG001
+    """Return what is known up to a day of a season."""
+    return day_figures.known(_season, np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def season_hot_spots(path: str, revision: str, day: str, _season: Project) -> HotSpots:  # noqa: ARG001
+    """Return where finds cluster on a day of a season."""
+    number = _season.setup.day(np.datetime64(day).item())
+    return hot_spots(_season.plot.grid, _season.history.states(number))
 
 
 @st.cache_resource(max_entries=_MAPS)

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.metrics import SeasonFigures
-    from fieldmon.project import Status
+
+    from .figures import DayFigures
 
 # Okabe & Ito's colours for the colour-blind
 _COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
@@ -91,13 +92,13 @@ def bands(
     return alt.layer(band, line).properties(height=320)
 
 
-def season_days(statuses: list[Status], axes: tuple[str, str, str]) -> alt.LayerChart:
+def season_days(days: list[DayFigures], axes: tuple[str, str, str]) -> alt.LayerChart:
     """Return plants inspected and found on each day of a season."""
     table = pd.DataFrame(
         {
-            "day": [str(s.on)[5:] for s in statuses],
-            "inspected": [s.inspected_today for s in statuses],
-            "found": [s.found_today for s in statuses],
+            "day": [str(s.on)[5:] for s in days],
+            "inspected": [s.inspected for s in days],
+            "found": [s.found for s in days],
         }
     )
     x = alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True))
@@ -115,14 +116,14 @@ def season_days(statuses: list[Status], axes: tuple[str, str, str]) -> alt.Layer
     return alt.layer(bars, found_).resolve_scale(y="independent").properties(height=220)
 
 
-def still_out(statuses: list[Status], axes: tuple[str, str]) -> alt.LayerChart:
+def still_out(days: list[DayFigures], axes: tuple[str, str]) -> alt.LayerChart:
     """Return the expected number of infested plants by day, with its interval."""
     table = pd.DataFrame(
         {
-            "day": [str(s.on)[5:] for s in statuses],
-            "expected": [s.outlook.expected for s in statuses],
-            "low": [s.outlook.low for s in statuses],
-            "high": [s.outlook.high for s in statuses],
+            "day": [str(s.on)[5:] for s in days],
+            "expected": [s.expected for s in days],
+            "low": [s.low for s in days],
+            "high": [s.high for s in days],
         }
     )
     base = alt.Chart(table).encode(

@@ -1,4 +1,4 @@
-"""Drawing on the plot by clicks or typed positions: gate, paths, no-go areas; with undo."""
+"""Changing the plot: rows by hand; gate, paths and no-go areas drawn by clicks or typed; undo."""
 
 from __future__ import annotations
 
@@ -19,6 +19,23 @@ if TYPE_CHECKING:
 
 _NAMES = {GATE: texts.DRAW_KINDS["gate"], PATH: texts.DRAW_KINDS["path"],
           NO_GO: texts.DRAW_KINDS["no_go"]}  # fmt: skip
+
+
+def rows() -> None:
+    """Show what was found of the rows, to be set by hand."""
+    with st.expander(texts.ROWS, expanded=True):
+        st.caption(texts.FOUND_ROWS)
+        for key, label, limits, help_ in (
+            ("row_bearing_deg", texts.BEARING, (0.0, 360.0, 0.5), texts.BEARING_HELP),
+            ("row_spacing_m", texts.ROW_SPACING, (0.1, 50.0, 0.1), texts.SPACING_HELP),
+            ("plant_spacing_m", texts.PLANT_SPACING, (0.1, 50.0, 0.1), texts.SPACING_HELP),
+        ):
+            low, high, step = limits
+            st.number_input(label, low, high, None, step, help=help_, key=key,
+                            persist_state="session")  # fmt: skip
+        st.number_input(texts.HEADLAND, 0.1, 50.0, 4.0, 0.5, key="headland_m",
+                        persist_state="session")  # fmt: skip
+        st.toggle(texts.BOTH_FACES, key="both_faces", persist_state="session")
 
 
 def tools(choices: Choices) -> None:

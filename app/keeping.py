@@ -157,7 +157,9 @@ def batches(choices: Choices) -> None:
                          args=(choices, batch.number))  # fmt: skip
 
 
-def statuses(choices: Choices) -> list:
-    """Return where the season stood on each day up to the one chosen."""
-    days = cached.days_of(choices.project, choices.on)[-60:]
-    return [cached.status(choices.key, choices.revision, day, choices.project) for day in days]
+def figures(choices: Choices) -> list:
+    """Return the days up to the one chosen on which something happened, and that one."""
+    own = (choices.key, choices.revision)
+    days = cached.kept_figures(*own, choices.project)
+    kept = [figures for day, figures in days.items() if day < choices.day]
+    return [*kept, cached.day_in_figures(*own, choices.day, choices.project)]

@@ -83,7 +83,7 @@ def spots_of(choices: Choices) -> HotSpots:
     """Return the hot spots of the chosen day: of findings in a season, else of records."""
     if choices.project is None:
         return cached.recorded_hot_spots(choices.key, choices.plot, choices.records)
-    return cached.status(choices.key, choices.revision, choices.day, choices.project).hot_spots
+    return cached.season_hot_spots(choices.key, choices.revision, choices.day, choices.project)
 
 
 def ages_of(choices: Choices) -> cached.Array:
@@ -112,15 +112,20 @@ def _plant_layers(choices: Choices, shade_by: str, rows: tuple[int, int] | None)
         state, ages = states_of(choices), ages_of(choices)
         shade = maps.by_state(state) if shade_by == "state" else maps.by_age(ages)
         extra = maps.finds(grid, state)
-        names = texts.LEGEND_STATES
-        said = {1: names["found"], 0: names["clean"], -1: names["never"]}
-        note = [said[s] for s in state.tolist()]
+        note = state_notes(state)
     layers = [maps.plants(grid, shade, note)]
     if rows is not None and len(grid) > maps.POINTS_AT_MOST:
         line = grid.row_line[grid.row] + 1
         part = np.flatnonzero((line >= rows[0]) & (line <= rows[1]))[: maps.POINTS_AT_MOST]
         layers.append(maps.plants(grid, shade, note, part))
     return [*layers, *extra]
+
+
+def state_notes(state: cached.Array) -> list[str]:
+    """Return each plant's state in words."""
+    names = texts.LEGEND_STATES
+    said = {1: names["found"], 0: names["clean"], -1: names["never"]}
+    return [said[s] for s in state.tolist()]
 
 
 def route_layers(choices: Choices, route: Route, *, numbers: bool) -> list:
@@ -168,7 +173,7 @@ def done_today(choices: Choices) -> None:
     """Say what was recorded of the day, if anything was."""
     if choices.project is None:
         return
-    now = cached.status(choices.key, choices.revision, choices.day, choices.project)
+    now = cached.known(choices.key, choices.revision, choices.day, choices.project)
     if now.inspected_today:
         st.info(texts.TODAY_DONE.format(inspected=now.inspected_today, found=now.found_today))
 
@@ -182,22 +187,23 @@ def changes(choices: Choices) -> list[str]:
     if day == 0:
         return [texts.CHANGED_FIRST]
     yesterday = choices.on - timedelta(days=1)
-    before = cached.status(choices.key, revision, str(yesterday), project)
-    now = cached.status(choices.key, revision, choices.day, project)
+    own = (choices.key, revision)
+    before = cached.day_in_figures(*own, str(yesterday), project)
+    now = cached.day_in_figures(*own, choices.day, project)
     on = choices.units.day(yesterday)
     said = [texts.CHANGED_NONE.format(day=on)]
-    if before.inspected_today:
-        said = [texts.CHANGED_FINDS.format(found=before.found_today,
-                                           inspected=before.inspected_today, day=on)]  # fmt: skip
-    diff = now.outlook.expected - before.outlook.expected
+    if before.inspected:
+        said = [texts.CHANGED_FINDS.format(found=before.found, inspected=before.inspected, day=on)]
+    diff = now.expected - before.expected
     said.append(
         texts.CHANGED_OUT.format(
-            now=now.outlook.expected, before=before.outlook.expected, diff=abs(diff),
-            sign="+" if diff >= 0 else "−",
+            now=now.expected, before=before.expected, diff=abs(diff), sign="+" if diff >= 0 else "−"
         )
-    )  # fmt: skip
-    if len(now.hot_spots) != len(before.hot_spots):
-        said.append(texts.CHANGED_HOT.format(now=len(now.hot_spots), before=len(before.hot_spots)))
+    )
+    spots = [len(cached.season_hot_spots(*own, day, project))
+             for day in (str(yesterday), choices.day)]  # fmt: skip
+    if spots[0] != spots[1]:
+        said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))
     rows = _risen(choices, str(yesterday))
     return [*said, texts.CHANGED_ROWS.format(rows=rows)] if rows else said
 

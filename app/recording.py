@@ -60,7 +60,7 @@ def _route(choices: Choices) -> None:
         index=pd.RangeIndex(1, len(plants) + 1, name="stop"),
     )
     with st.form("route_form", border=False):
-        st.caption(texts.RECORD_REST.format(n="..."))
+        st.caption(texts.RECORD_REST)
         st.number_input(texts.RECORD_STOPS, 0, len(plants), len(plants), key="stops_done")
         marked = st.data_editor(table, height=230, disabled=list(table.columns[:2]),
                                 key=f"marks {choices.day} {len(plants)}")  # fmt: skip

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.monitor import Today
-    from fieldmon.project import Status
     from fieldmon.robot import Robot
 
+    from .figures import DayFigures
     from .units import Units
 
 _WIDE = 900.0
@@ -46,7 +46,7 @@ class Facts:
     sampler: str
 
 
-def html(facts: Facts, today: Today, stops: pd.DataFrame, statuses: list[Status]) -> str:
+def html(facts: Facts, today: Today, stops: pd.DataFrame, days: list[DayFigures]) -> str:
     """Return the whole page."""
     title = escape(texts.REPORT_TITLE.format(name=facts.name, day=facts.day))
     parts = [
@@ -56,8 +56,8 @@ def html(facts: Facts, today: Today, stops: pd.DataFrame, statuses: list[Status]
         maps.chance_legend(),
         maps.state_legend(texts.LEGEND_STATES),
     ]
-    if statuses:
-        parts += [f"<h2>{texts.REPORT_SEASON}</h2>", _season(facts, statuses)]
+    if days:
+        parts += [f"<h2>{texts.REPORT_SEASON}</h2>", _season(facts, days)]
     parts += [f"<h2>{texts.REPORT_SETTINGS}</h2>", _pairs(_settings(facts))]
     if len(stops):
         table = stops.assign(**{texts.REPORT_TICK: "☐"})
@@ -142,13 +142,13 @@ def _settings(facts: Facts) -> dict[str, str]:
     }
 
 
-def _season(facts: Facts, statuses: list[Status]) -> str:
+def _season(facts: Facts, days: list[DayFigures]) -> str:
     heads = (texts.DATE, texts.VISITED_TODAY, texts.FOUND_TODAY, texts.EXPECTED_LEFT)
     rows = "".join(
-        f"<tr><td>{facts.units.day(s.on)}</td><td>{s.inspected_today}</td>"
-        f"<td>{s.found_today}</td><td>{s.outlook.expected:.1f} "
-        f"({s.outlook.low}-{s.outlook.high})</td></tr>"
-        for s in statuses
+        f"<tr><td>{facts.units.day(s.on)}</td><td>{s.inspected}</td>"
+        f"<td>{s.found}</td><td>{s.expected:.1f} "
+        f"({s.low}-{s.high})</td></tr>"
+        for s in days
     )
     head = "".join(f"<th>{escape(name)}</th>" for name in heads)
     return f"<table><tr>{head}</tr>{rows}</table>"

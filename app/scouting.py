@@ -17,9 +17,9 @@ from .keeping import CLEAN, FOUND, SKIPPED
 
 if TYPE_CHECKING:
     from fieldmon.monitor import Today
-    from fieldmon.project import Status
 
     from .choices import Choices
+    from .figures import Known
 
 __all__ = ["CLEAN", "FOUND", "SKIPPED"]
 SOURCE = "scout mode"
@@ -53,9 +53,9 @@ def give_out(choices: Choices) -> None:
         choices.project.plan(choices.on)
 
 
-def status(choices: Choices) -> Status:
-    """Return where the season stands today."""
-    return cached.status(choices.key, choices.revision, choices.day, choices.project)
+def status(choices: Choices) -> Known:
+    """Return what is known by now."""
+    return cached.known(choices.key, choices.revision, choices.day, choices.project)
 
 
 def next_step(choices: Choices, today: Today) -> Step:

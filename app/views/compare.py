@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from itertools import product
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from app import cached, charts, keeping, panels, texts, verdicts
-from app.comparing import Arm, Asked, Comparison, curve, outcomes
+from app import cached, charts, keeping, panels, texts, verdicts, ways
+from app.comparing import Comparison, curve, outcomes
 
 if TYPE_CHECKING:
     from app.choices import Choices
@@ -20,7 +19,7 @@ def show(choices: Choices) -> None:
     """Choose what to compare, and watch the results come."""
     st.subheader(f"{choices.name}: {texts.COMPARE}")
     st.caption(texts.COMPARE_INTRO)
-    asked = _asked(choices)
+    asked = ways.asked(choices)
     if not 1 <= len(asked.arms) <= MOST_ARMS:
         st.warning(texts.TOO_MANY.format(most=MOST_ARMS, n=len(asked.arms)))
         return
@@ -34,35 +33,6 @@ def show(choices: Choices) -> None:
     st.fragment(_results, run_every=1.0 if running.running else None)(
         choices, running, at_work=running.running
     )
-
-
-def _asked(choices: Choices) -> Asked:
-    left, middle, right = st.columns([2, 1, 1])
-    samplers = left.multiselect(
-        texts.ARM_SAMPLERS, list(texts.SAMPLERS), ["dynamic", "naive", "bouncy"], key="arms",
-        format_func=lambda name: texts.SAMPLERS[name].split(":")[0], persist_state="session",
-    )  # fmt: skip
-    own_hours, own_look = float(choices.robot.hours), int(choices.robot.look_s)
-    hours = middle.multiselect(
-        texts.ARM_HOURS, sorted({2.0, 4.0, 6.0, 8.0, 10.0, 12.0, own_hours}), [own_hours],
-        key=f"arm_hours {own_hours}",
-    )  # fmt: skip
-    looks = right.multiselect(
-        texts.ARM_LOOKS, sorted({20, 25, 30, 35, 40, 45, own_look}), [own_look],
-        key=f"arm_looks {own_look}",
-    )  # fmt: skip
-    arms = tuple(Arm(s, float(h), float(k)) for s, h, k in product(samplers, hours, looks))
-    columns = st.columns(4)
-    seeds = columns[0].number_input(texts.SEEDS, 1, 500, 20, help=texts.SEEDS_HELP, key="seeds")
-    n_days = columns[1].number_input(texts.DAYS, 2, 60, 25, key="n_days", persist_state="session")
-    share = columns[2].number_input(
-        texts.INFESTED, 0.1, 50.0, 2.0, 0.5, key="share", persist_state="session"
-    )
-    rate = columns[3].number_input(
-        texts.SPREAD, 0.0, 100.0, 10.0, 5.0, help=texts.SPREAD_HELP, key="rate",
-        persist_state="session",
-    )  # fmt: skip
-    return Asked(arms, int(n_days), share / 100, rate / 100, int(seeds))
 
 
 def _results(choices: Choices, running: Comparison, *, at_work: bool) -> None:

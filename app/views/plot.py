@@ -34,7 +34,7 @@ def show(choices: Choices) -> None:
     left, right = st.columns([3, 2])
     with right:
         if choices.project is None:
-            _rows()
+            drawing.rows()
             drawing.tools(choices)
         else:
             st.info(texts.FIXED)
@@ -45,22 +45,6 @@ def show(choices: Choices) -> None:
     with left:
         _figures(choices)
         _map(choices)
-
-
-def _rows() -> None:
-    with st.expander(texts.ROWS, expanded=True):
-        st.caption(texts.FOUND_ROWS)
-        for key, label, limits, help_ in (
-            ("row_bearing_deg", texts.BEARING, (0.0, 360.0, 0.5), texts.BEARING_HELP),
-            ("row_spacing_m", texts.ROW_SPACING, (0.1, 50.0, 0.1), texts.SPACING_HELP),
-            ("plant_spacing_m", texts.PLANT_SPACING, (0.1, 50.0, 0.1), texts.SPACING_HELP),
-        ):
-            low, high, step = limits
-            st.number_input(label, low, high, None, step, help=help_, key=key,
-                            persist_state="session")  # fmt: skip
-        st.number_input(texts.HEADLAND, 0.1, 50.0, 4.0, 0.5, key="headland_m",
-                        persist_state="session")  # fmt: skip
-        st.toggle(texts.BOTH_FACES, key="both_faces", persist_state="session")
 
 
 def _figures(choices: Choices) -> None:

@@ -18,13 +18,13 @@ def show(choices: Choices) -> None:
     st.subheader(f"{choices.name}: {texts.REPORT}")
     st.caption(texts.REPORT_INTRO)
     today = choices.today()
-    statuses = [] if choices.project is None else keeping.statuses(choices)
+    days = [] if choices.project is None else keeping.figures(choices)
     facts = report.Facts(
         choices.plot.field.name, choices.units.day(choices.day), choices.units,
         panels.chance_of(choices), panels.states_of(choices), choices.robot,
         texts.SAMPLERS[choices.sampler],
     )  # fmt: skip
-    page = report.html(facts, today, panels.stops(choices, today), statuses)
+    page = report.html(facts, today, panels.stops(choices, today), days)
     st.download_button(
         texts.REPORT_DOWNLOAD, page, f"report_{choices.day}.html", "text/html", type="primary",
         on_click="ignore",

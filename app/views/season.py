@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from app import charts, keeping, recording, texts
+from app import cached, charts, keeping, recording, texts
 
 if TYPE_CHECKING:
     from app.choices import Choices
-    from fieldmon.project import Status
+    from app.figures import DayFigures, Known
 
 
 def show(choices: Choices) -> None:
@@ -21,40 +21,40 @@ def show(choices: Choices) -> None:
         st.markdown(texts.NEEDS_SEASON)
         keeping.begin(choices)
         return
-    statuses = keeping.statuses(choices)
-    _figures(statuses[-1])
+    days = keeping.figures(choices)
+    known = cached.known(choices.key, choices.revision, choices.day, choices.project)
+    _figures(choices, days[-1], known)
     left, right = st.columns([1, 1])
     with left:
-        _charts(choices, statuses)
+        _charts(choices, days, known)
     with right:
         recording.show(choices)
         with st.expander(texts.BATCHES, expanded=True):
             keeping.batches(choices)
 
 
-def _figures(now: Status) -> None:
-    out = now.outlook
+def _figures(choices: Choices, now: DayFigures, known: Known) -> None:
+    plants = len(choices.plot.grid)
+    everything = known.found + now.expected
+    detected = 100.0 * known.found / everything if everything else 100.0
     with st.container(horizontal=True):
-        st.metric(texts.EXPECTED_LEFT, f"{out.expected:.1f} ({out.low}-{out.high})",
+        st.metric(texts.EXPECTED_LEFT, f"{now.expected:.1f} ({now.low}-{now.high})",
                   help=texts.EXPECTED_HELP, width="content")  # fmt: skip
-        st.metric(texts.FOUND_EVER, f"{now.found:,}", width="content")
-        st.metric(texts.DETECTED, f"{now.detection_pct:.0f} %", width="content")
-        st.metric(texts.INSPECTED_EVER, f"{now.inspected:,} / {now.plants:,}", width="content")
-        st.metric(texts.CLEAN_CHANCE, f"{out.chance_clean:.1%}", width="content")
+        st.metric(texts.FOUND_EVER, f"{known.found:,}", width="content")
+        st.metric(texts.DETECTED, f"{detected:.0f} %", width="content")
+        st.metric(texts.INSPECTED_EVER, f"{known.inspected:,} / {plants:,}", width="content")
+        st.metric(texts.CLEAN_CHANCE, f"{now.clean:.1%}", width="content")
 
 
-def _charts(choices: Choices, statuses: list[Status]) -> None:
+def _charts(choices: Choices, days: list[DayFigures], known: Known) -> None:
     axes = (texts.DATE_AXIS, texts.INSPECTED_AXIS, texts.FOUND_AXIS)
-    st.altair_chart(charts.season_days(statuses, axes), alt=texts.FOUND_AXIS)
-    st.altair_chart(
-        charts.still_out(statuses, (texts.DATE_AXIS, texts.OUT_AXIS)), alt=texts.OUT_AXIS
-    )
-    now, grid = statuses[-1], choices.plot.grid
+    st.altair_chart(charts.season_days(days, axes), alt=texts.FOUND_AXIS)
+    st.altair_chart(charts.still_out(days, (texts.DATE_AXIS, texts.OUT_AXIS)), alt=texts.OUT_AXIS)
     st.markdown(f"**{texts.ROW_AGES}**")
-    line = grid.row_line.astype(np.int64) + 1
-    never = len(set(line.tolist())) - len(set(line[~np.isnan(now.days_since)].tolist()))
+    line = choices.plot.grid.row_line.astype(np.int64) + 1
+    never = len(np.unique(line)) - len(np.unique(line[~np.isnan(known.days_since)]))
     st.altair_chart(
-        charts.row_ages(now.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE)),
+        charts.row_ages(known.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE)),
         alt=texts.ROW_AGES,
     )
-    st.caption(texts.NEVER_ROWS.format(n=never, all=len(set(line.tolist()))))
+    st.caption(texts.NEVER_ROWS.format(n=never, all=len(np.unique(line))))

@@ -38,8 +38,8 @@ ROBOT, SCOUT = "Robot", "Scout on foot"
 HOURS, LOOK = "Working hours", "Seconds at a plant"
 SAMPLER = "Who chooses the plants"
 SAMPLERS = {
-    "dynamic": "Dynamic: suspicious plants first",
     "adaptive": "Adaptive: the drive that should find most",
+    "dynamic": "Dynamic: suspicious plants first",
     "naive": "Naive: every plant, row by row",
     "bouncy": "Bouncy: every second plant",
     "snake": "Snake: up one side of an aisle, down the other",

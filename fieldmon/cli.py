@@ -217,7 +217,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     output: Outputs = None,
     observations: Records = None,
     feature: Feature = None,
-    sampler: Annotated[SamplerName, typer.Option(help="Who chooses.")] = SamplerName.DYNAMIC,
+    sampler: Annotated[SamplerName, typer.Option(help="Who chooses.")] = SamplerName.ADAPTIVE,
     every: Every = None,
     on: On = None,
     start: StartTime = "06:00",
@@ -345,7 +345,7 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     plot: MaybePlotFile = None,
     observations: Records = None,
     feature: Feature = None,
-    sampler: Annotated[SamplerName, typer.Option(help="Who chooses.")] = SamplerName.DYNAMIC,
+    sampler: Annotated[SamplerName, typer.Option(help="Who chooses.")] = SamplerName.ADAPTIVE,
     every: Every = None,
     on: Annotated[
         str | None, typer.Option("--begins", help="First day of the season, YYYY-MM-DD; today.")

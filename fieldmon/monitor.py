@@ -14,7 +14,7 @@ from fieldmon.planting import Planting, found_planting, grid_from_plants, lay
 from fieldmon.prior import PriorSettings, prior_chance
 from fieldmon.robot import Robot
 from fieldmon.route import route_of
-from fieldmon.samplers import NEVER, Dynamic, Sampler, Scene
+from fieldmon.samplers import NEVER, Adaptive, Sampler, Scene
 from fieldmon.workday import plan_day
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ class Plans:
     """
 
     robot: Robot = field(default_factory=Robot)
-    sampler: Sampler = field(default_factory=Dynamic)
+    sampler: Sampler = field(default_factory=Adaptive)
     prior: PriorSettings = field(default_factory=PriorSettings)
 
 

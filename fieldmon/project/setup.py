@@ -48,7 +48,7 @@ class Setup:
     begins: date
     starts: time = time(6)
     robot: Robot = field(default_factory=Robot)
-    sampler: str = "dynamic"
+    sampler: str = "adaptive"
     sampler_settings: dict[str, float] = field(default_factory=dict)
     prior: PriorSettings = field(default_factory=PriorSettings)
     beliefs: Beliefs = field(default_factory=Beliefs)

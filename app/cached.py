@@ -7,7 +7,9 @@ leaves out, beside a key that stands for them.
 
 from __future__ import annotations
 
+import io
 import threading
+import zipfile
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
@@ -17,29 +19,48 @@ import streamlit as st
 from fieldmon.aisles import Aisles
 from fieldmon.chance import Chance
 from fieldmon.geodata import guard, reading
+from fieldmon.geodata.findings import Finding, Severity
+from fieldmon.geodata.handoff import FORMATS
+from fieldmon.geodata.rasters import read_backdrop
 from fieldmon.hotspots import HotSpots, hot_spots, record_states
 from fieldmon.metrics import SeasonFigures, figures
 from fieldmon.monitor import Plans, Plot, Today, first_day
 from fieldmon.planting import rectangle
 from fieldmon.prior import start_infested
+from fieldmon.project import Project
+from fieldmon.project.store import get_meta
 from fieldmon.robot import Robot
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.season import Day, SeasonSettings, Start, days
 from fieldmon.spread import Spread
 
-from . import texts
+from . import figures as day_figures
+from . import maps, texts
+from .comparing import Asked, Comparison
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+    from datetime import date
     from pathlib import Path
 
+    from numpy.typing import NDArray
     from shapely import MultiLineString
 
     from fieldmon.field import Field, Observations
     from fieldmon.geodata.findings import Imported
+    from fieldmon.geodata.handoff import HandoffPlan
     from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
+    from fieldmon.geodata.raster_values import Backdrop, RasterOptions
     from fieldmon.planting import Planting
+    from fieldmon.project import Remark
+
+    from .figures import DayFigures, Known
+
+    Array = NDArray[np.float64]
 
 _FEW = 24
+# maps of many plants are megabytes each
+_MAPS = 60
 
 
 def digest(data: bytes) -> str:
@@ -124,6 +145,141 @@ def today(
 def recorded_hot_spots(key: str, _plot: Plot, _records: Observations) -> HotSpots:  # noqa: ARG001
     """Return where the records cluster."""
     return hot_spots(_plot.grid, record_states(_plot.grid, _records))
+
+
+# -- seasons that are kept
+
+
+def project(path: Path) -> Project:
+    """Open a season; all sessions share it, and each call of it reads what is new in the file."""
+    inode = path.stat().st_ino if path.is_file() else 0
+    return _project(path, inode)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def _project(path: Path, inode: int) -> Project:  # noqa: ARG001 - another file of the same name
+    return Project(path)
+
+
+def revision(season: Project) -> str:
+    """Return what changes with every change of a season, whoever made it."""
+    with season.store.reading() as db:
+        kept = get_meta(db, "revision")
+        counted = db.execute(
+            "SELECT count(*), max(fid), total(undone) FROM inspections WHERE plant IS NOT NULL"
+        ).fetchone()
+    return f"{kept} {counted}"
+
+
+@st.cache_resource(max_entries=_FEW)
+def remarks(path: str, _season: Project) -> tuple[Remark, ...]:  # noqa: ARG001
+    """Return what the imports had to say when a season began."""
+    return _season.remarks()
+
+
+def finding_of(remark: Remark) -> Finding:
+    """Return a kept remark as a finding, its remedy gone: the plants are laid."""
+    return Finding(Severity(remark.severity), remark.sentence, remark.feature)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def season_today(path: str, revision: str, day: str, _season: Project) -> Today:  # noqa: ARG001
+    """Return what is left of a season's day."""
+    return _season.plan(np.datetime64(day).item(), keep=False)
+
+
+@st.cache_resource(max_entries=_FEW)
+def season_route(path: str, revision: str, day: str, _season: Project) -> Array:  # noqa: ARG001
+    """Return the plants of the route that was given out for a day; empty if none was."""
+    return _season.kept_route(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_FEW)
+def kept_figures(path: str, revision: str, _season: Project) -> dict[str, DayFigures]:  # noqa: ARG001
+    """Return the figures of a season's days on which something happened."""
+    return day_figures.kept(_season)
+
+
+def day_in_figures(path: str, revision: str, day: str, season: Project) -> DayFigures:
+    """Return a day of a season in figures."""
+    kept = kept_figures(path, revision, season)
+    return kept[day] if day in kept else _worked_out(path, revision, day, season)
+
+
+@st.cache_resource(max_entries=200)
+def _worked_out(path: str, revision: str, day: str, _season: Project) -> DayFigures:  # noqa: ARG001
+    return day_figures.of(_season, np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def known(path: str, revision: str, day: str, _season: Project) -> Known:  # noqa: ARG001
+    """Return what is known up to a day of a season."""
+    return day_figures.known(_season, np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def season_hot_spots(path: str, revision: str, day: str, _season: Project) -> HotSpots:  # noqa: ARG001
+    """Return where finds cluster on a day of a season."""
+    number = _season.setup.day(np.datetime64(day).item())
+    return hot_spots(_season.plot.grid, _season.history.states(number))
+
+
+@st.cache_resource(max_entries=_MAPS)
+def evening(path: str, revision: str, day: str, _season: Project) -> Array:  # noqa: ARG001
+    """Return the chance map of a day after what was recorded of it."""
+    return _season.evening(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def morning(path: str, revision: str, day: str, _season: Project) -> Array:  # noqa: ARG001
+    """Return the chance map of a morning."""
+    return _season.morning(np.datetime64(day).item())
+
+
+def days_of(season: Project, until: date) -> list[str]:
+    """Return the days of a season from the first up to one, ISO."""
+    first = np.datetime64(season.setup.begins, "D")
+    return [str(day) for day in np.arange(first, np.datetime64(until, "D") + 1)]
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def handoff(key: str, name: str, _plan: HandoffPlan) -> tuple[str, bytes]:  # noqa: ARG001
+    """Return a day in one of the formats: its ending and bytes, several files as one zip."""
+    made = FORMATS[name].make(_plan)
+    if len(made) == 1:
+        return next(iter(made.items()))
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for ending, data in made.items():
+            archive.writestr(f"route{ending}", data)
+    return f".{name}.zip", packed.getvalue()
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Backdrop:  # noqa: ARG001
+    """Return a picture of the ground about a plot."""
+    return read_backdrop(_source, options, _near).value
+
+
+@st.cache_resource(max_entries=_MAPS)
+def layers(key: str, _make: Callable[[], list[maps.Layer]]) -> list[maps.Layer]:  # noqa: ARG001
+    """Return map layers, made once; `key` stands for all that they show."""
+    return _make()
+
+
+# -- simulated seasons
+
+
+@st.cache_resource(max_entries=8)
+def comparison(
+    key: str,  # noqa: ARG001
+    asked: Asked,
+    robot: Robot,
+    _plot: Plot,
+    _chance: Array,
+) -> Comparison:
+    """Return the comparison of these settings on this plot; it is at work or will be."""
+    return Comparison(asked, _plot, _chance, robot)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)

@@ -5,24 +5,32 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from datetime import date
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import streamlit as st
 
 from fieldmon import robot as robots
-from fieldmon.errors import ChoiceNeeded, FieldmonError
+from fieldmon.errors import FieldmonError
 from fieldmon.field import Field, Observations
-from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Upload
+from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.monitor import Plot, planting_of
+from fieldmon.planting import Planting
 
-from . import cached, texts
+from . import cached, files, seasons, texts
+from .edits import Edit, edited
+from .files import File, Heard
+from .units import AREAS_M2, DATES, LENGTHS, Units
 
 if TYPE_CHECKING:
-    from fieldmon.geodata.findings import Finding
+    from fieldmon.monitor import Today
+    from fieldmon.project import Project
     from fieldmon.robot import Robot
 
 SAMPLE = Path(__file__).resolve().parents[1] / "sample_data"
 LAST_SAMPLE_DAY = date(2026, 11, 16)
+#: what is put into cache keys for the sample estate's files
+_SAMPLE = "sample/"
+_DAY = "day {season}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,19 +43,43 @@ class Choices:
         Stands for the plot and the records in cache keys.
     plot, records
         The plot with its plants, and the records near it.
-    findings
+    heard
         What the imports had to say.
     robot, sampler, day
         Who inspects, who chooses, and for which day (ISO).
+    units
+        How numbers are written.
+    project
+        The season that is open, or None: nothing is kept then.
+    plot_key
+        Names the plot before anything was drawn on it.
     """
 
     key: str
     plot: Plot
     records: Observations
-    findings: tuple[Finding, ...]
+    heard: tuple[Heard, ...]
     robot: Robot
     sampler: str
     day: str
+    units: Units
+    project: Project | None = None
+    plot_key: str = ""
+
+    @property
+    def name(self) -> str:
+        """Return the plot's name, apart from the text around it, whatever its script."""
+        return texts.isolated(self.plot.field.name)
+
+    @property
+    def on(self) -> date:
+        """Return the day."""
+        return date.fromisoformat(self.day)
+
+    @property
+    def revision(self) -> str:
+        """Return what changes with everything that is recorded."""
+        return "" if self.project is None else cached.revision(self.project)
 
     @property
     def phone(self) -> bool:
@@ -55,168 +87,239 @@ class Choices:
         return "Mobi" in (st.context.headers.get("User-Agent") or "")
 
     @property
+    def dark(self) -> bool:
+        """Return whether the page is dark."""
+        return st.context.theme.get("type") == "dark"
+
+    @property
     def map_px(self) -> int:
         """Return the height of the map: half a phone's screen, more on a laptop."""
-        return 400 if self.phone else 500
+        return 400 if self.phone else 520
+
+    def today(self) -> Today:
+        """Return the planned day: what is left of it, once something of it was recorded."""
+        if self.project is not None:
+            return cached.season_today(self.key, self.revision, self.day, self.project)
+        return cached.today(self.key, self.day, self.robot, self.sampler, self.plot, self.records)
 
 
 @dataclass(frozen=True, eq=False)
-class _File:
-    """A file to read: what stands for it in keys, and where it is or its bytes."""
+class Chosen:
+    """The choices, or why there are none yet (neither: nothing was brought)."""
 
-    key: str
-    source: Path | Upload
+    choices: Choices | None = None
+    problem: FieldmonError | None = None
 
 
-def choose() -> Choices | None:
-    """Show the sidebar; return the choices, or None while there is no plot to show."""
+def choose() -> Chosen:
+    """Show the sidebar; return the choices, or the problem that keeps from them."""
     with st.sidebar:
-        files = _files()
-        if files is None:
-            return None
-        plot_file, record_file, plant_file = files
+        where = _where()
         try:
-            field, key, findings = _field(plot_file, plant_file)
-            plot, key = _plot(field, key)
-            records, heard, key = _records(record_file, plot, key)
-            robot, sampler, day = _work(record_file)
+            if where not in (texts.SAMPLE, texts.UPLOAD):
+                return Chosen(_open(where))
+            return Chosen(_unsaved(where))
         except FieldmonError as error:
-            _say(error)
-            return None
-    return Choices(key, plot, records, (*findings, *heard), robot, sampler, day)
+            return Chosen(problem=error)
+        finally:
+            _units()
 
 
-def _files() -> tuple[_File | None, _File | None, _File | None] | None:
-    where = st.segmented_control(
-        texts.PLOT_FROM, [texts.SAMPLE, texts.UPLOAD], default=texts.SAMPLE, key="where"
-    )
-    if where != texts.UPLOAD:
+def _where() -> str:
+    options = [texts.SAMPLE, texts.UPLOAD, *seasons.names()]
+    if "season" not in st.session_state:
+        st.session_state["season"] = st.query_params.get("season")
+    if st.session_state["season"] not in options:
+        st.session_state["season"] = texts.SAMPLE
+    chosen = st.selectbox(
+        texts.PLOT_FROM, options, key="season", help=texts.PLOT_FROM_HELP, filter_mode=None,
+        persist_state="session",
+    )  # fmt: skip
+    # the address leads back to the season after a reload, and to another person's screen
+    if chosen == texts.SAMPLE:
+        st.query_params.pop("season", None)
+    elif st.query_params.get("season") != chosen:
+        st.query_params["season"] = chosen
+    return chosen
+
+
+def open_season(name: str) -> None:
+    """Let the season of this name be open from the next run on (for callbacks)."""
+    st.session_state["season"] = name
+
+
+def _open(name: str) -> Choices:
+    project = cached.project(seasons.path_of(name))
+    setup, key = project.setup, str(project.path)
+    day = st.date_input(
+        texts.DATE, project.last_date(), min_value=setup.begins, key=_DAY.format(season=name),
+        persist_state="session", format=read_units().date_format,
+    )  # fmt: skip
+    heard = tuple(Heard(key, cached.finding_of(remark)) for remark in cached.remarks(key, project))
+    choices = Choices(
+        key, project.plot, project.observations, heard, setup.robot, setup.sampler, str(day),
+        read_units(), project, key,
+    )  # fmt: skip
+    _change(name, choices)
+    return choices
+
+
+def _change(name: str, choices: Choices) -> None:
+    """Show who works in the season that is open, and change it on demand."""
+    project = choices.project
+    with st.expander(texts.WHO):
+        setup = project.setup
+        key = f"{name} {setup.robot.hours} {setup.robot.look_s} {setup.sampler}"
+        hours = st.slider(texts.HOURS, 0.5, 16.0, setup.robot.hours, 0.5, key=f"hours {key}")
+        look = st.slider(texts.LOOK, 20, 60, int(setup.robot.look_s), 5, key=f"look {key}")
+        names = list(texts.SAMPLERS)
+        sampler = st.selectbox(
+            texts.SAMPLER, names, names.index(setup.sampler),
+            format_func=texts.SAMPLERS.__getitem__, key=f"sampler {key}",
+        )  # fmt: skip
+        robot = replace(setup.robot, hours=float(hours), look_s=float(look))
+        wanted = replace(setup, robot=robot, sampler=sampler)
+        if wanted != setup:
+            st.caption(texts.CHANGE_NOTE)
+            if st.button(texts.CHANGE, type="primary", key="change_setup"):
+                project.change(wanted, setup)
+                st.rerun()
+
+
+def _unsaved(where: str) -> Choices | None:
+    if where == texts.SAMPLE:
         st.caption(texts.SAMPLE_NOTE)
-        return _sample("paran_estate.zip"), _sample("mite_records.csv"), None
-    plot = _uploaded(st.file_uploader(texts.PLOT_FILE, key="plot_file"))
-    records = _uploaded(st.file_uploader(texts.RECORD_FILE, key="record_file"))
-    plants = _uploaded(st.file_uploader(texts.PLANT_FILE, key="plant_file"))
-    return None if plot is None and plants is None else (plot, records, plants)
+        plot_file, record_file, plant_file = (
+            _sample("paran_estate.zip"), _sample("mite_records.csv"), None,
+        )  # fmt: skip
+    else:
+        brought = files.brought()
+        kinds = (files.PLOT, files.RECORDS, files.PLANTS)
+        plot_file, record_file, plant_file = (brought.get(kind) for kind in kinds)
+        if plot_file is None and plant_file is None:
+            return None
+    plants, plant_key = _plants(plant_file)
+    field, plot_key, heard = _field(plot_file, plants, plant_key)
+    plot, key = _plot(field, plot_key, plants)
+    records, more, key = _records(record_file, plot, key)
+    robot, sampler, day = _work(where)
+    return Choices(
+        key, plot, records, (*heard, *more), robot, sampler, day, read_units(), None, plot_key
+    )
 
 
-def _sample(name: str) -> _File:
-    return _File(f"sample/{name}", SAMPLE / name)
+def _sample(name: str) -> File:
+    return File(_SAMPLE + name, SAMPLE / name)
 
 
-def _uploaded(file: Any) -> _File | None:  # noqa: ANN401 - Streamlit's class is private
+def _plants(file: File | None) -> tuple[cached.Array | None, str]:
     if file is None:
-        return None
-    data = file.getvalue()
-    return _File(cached.digest(data), Upload(file.name, data))
+        return None, ""
+    options = files.settled(file, ReadOptions())
+    return cached.measured_plants(file.key, options, file.source), f"{file.key}{options}"
 
 
 def _field(
-    plot_file: _File | None, plant_file: _File | None
-) -> tuple[Field | None, str, tuple[Finding, ...]]:
+    file: File | None, plants: cached.Array | None, plant_key: str
+) -> tuple[Field | None, str, tuple[Heard, ...]]:
     """Return the chosen field with its measured plants; None if there are plants only."""
-    plants, key = None, ""
-    if plant_file is not None:
-        options = _settled(plant_file, ReadOptions())
-        plants = cached.measured_plants(plant_file.key, options, plant_file.source)
-        key = f"{plant_file.key}{options}"
-    if plot_file is None:
-        st.session_state["plants"] = plants
-        return None, key, ()
-    options = _settled(plot_file, PlotOptions())
-    read = cached.plots(plot_file.key, options, plot_file.source)
+    if file is None:
+        return None, plant_key, ()
+    options = files.settled(file, PlotOptions())
+    read = cached.plots(file.key, options, file.source)
     names = [field.name for field in read.value]
-    name = st.selectbox(texts.WHICH_PLOT, names, key=f"feature {plot_file.key}")
-    field = read.value[names.index(name)]
+    number = st.selectbox(
+        texts.WHICH_PLOT, range(len(names)), format_func=names.__getitem__,
+        key=f"feature {file.key}", persist_state="session",
+    )  # fmt: skip
+    field = read.value[number or 0]
     if plants is not None:
         field = replace(field, plants=plants)
-    if plot_file.key.startswith("sample/"):
+    if file.key.startswith(_SAMPLE):
         field = replace(field, paths=cached.paths(_sample("tracks.geojson").source))
-    return field, f"{key}{plot_file.key}{options}{name}", read.findings
+    key = f"{plant_key}{file.key}{options}{number}"
+    heard = tuple(Heard(file.key, f) for f in read.findings if f.feature in (None, field.name))
+    return field, key, heard
 
 
-def _plot(field: Field | None, key: str) -> tuple[Plot, str]:
-    """Return the plot with its plants, as the row settings say."""
-    with st.expander(texts.ROWS):
-        bearing = st.number_input(
-            texts.BEARING, 0.0, 360.0, None, 0.5, help=texts.BEARING_HELP, key="bearing"
-        )
-        rows = st.number_input(
-            texts.ROW_SPACING, 0.1, 50.0, None, 0.1, help=texts.SPACING_HELP, key="rows"
-        )
-        plants = st.number_input(
-            texts.PLANT_SPACING, 0.1, 50.0, None, 0.1, help=texts.SPACING_HELP, key="plants_apart"
-        )
-        headland = st.number_input(texts.HEADLAND, 0.1, 50.0, 4.0, 0.5, key="headland")
-        both_faces = st.toggle(texts.BOTH_FACES, key="both_faces")
-    given = {
-        "row_bearing_deg": bearing,
-        "row_spacing_m": rows,
-        "plant_spacing_m": plants,
-        "headland_m": headland,
-        "faces": 2 if both_faces else None,
+def drawn(plot_key: str) -> tuple[Edit, ...]:
+    """Return what was drawn on a plot, in order."""
+    edits: tuple[Edit, ...] = st.session_state.get(f"edits {plot_key}", ())
+    return edits
+
+
+def draw(plot_key: str, edits: tuple[Edit, ...]) -> None:
+    """Keep what was drawn on a plot."""
+    st.session_state[f"edits {plot_key}"] = edits
+
+
+def row_settings() -> dict[str, float | None]:
+    """Return what was said about rows by hand; None: found, or as the file says."""
+    said = {
+        name: st.session_state.get(name)
+        for name in ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
     }
-    if field is None:
-        by_hand = {name: value for name, value in given.items() if value is not None}
-        from fieldmon.planting import Planting  # noqa: PLC0415 - only without a boundary
+    both = st.session_state.get("both_faces")
+    headland = st.session_state.get("headland_m") or 4.0
+    return {**said, "headland_m": headland, "faces": 2 if both else None}
 
-        planting = Planting(**by_hand)
-        return cached.plot_around(key, planting, st.session_state["plants"]), f"{key}{planting}"
+
+def _plot(field: Field | None, key: str, plants: cached.Array | None) -> tuple[Plot, str]:
+    """Return the plot with its plants, as the row settings say."""
+    given = row_settings()
+    if field is None:
+        planting = Planting(**{name: v for name, v in given.items() if v is not None})
+        return cached.plot_around(key, planting, plants), f"{key}{planting}"
+    edits = drawn(key)
     planting = planting_of(field, **given)
-    return cached.plot(key, planting, field), f"{key}{planting}"
+    key = f"{key}{edits}"
+    return cached.plot(key, planting, edited(field, edits)), f"{key}{planting}"
 
 
 def _records(
-    file: _File | None, plot: Plot, key: str
-) -> tuple[Observations, tuple[Finding, ...], str]:
+    file: File | None, plot: Plot, key: str
+) -> tuple[Observations, tuple[Heard, ...], str]:
     if file is None:
         return Observations.none(), (), key
-    options = _settled(file, RecordOptions())
+    options = files.settled(file, RecordOptions())
     key = f"{key}{file.key}{options}"
     read = cached.records(key, options, file.source, plot.field)
-    return read.value, read.findings, key
+    return read.value, tuple(Heard(file.key, finding) for finding in read.findings), key
 
 
-def _work(record_file: _File | None) -> tuple[Robot, str, str]:
+def _work(where: str) -> tuple[Robot, str, str]:
+    first = LAST_SAMPLE_DAY if where == texts.SAMPLE else "today"
+    day = st.date_input(
+        texts.DATE, first, key=_DAY.format(season=where), persist_state="session",
+        format=read_units().date_format,
+    )  # fmt: skip
     with st.expander(texts.WHO, expanded=True):
-        who = st.segmented_control(texts.WHO, [texts.ROBOT, texts.SCOUT], default=texts.ROBOT,
-                                   key="who", label_visibility="collapsed")  # fmt: skip
+        who = st.segmented_control(
+            texts.WHO, [texts.ROBOT, texts.SCOUT], default=texts.ROBOT, key="who", required=True,
+            label_visibility="collapsed", persist_state="session",
+        )  # fmt: skip
         base = robots.scout() if who == texts.SCOUT else robots.Robot()
-        hours = st.slider(texts.HOURS, 0.5, 16.0, base.hours, 0.5, key=f"hours {who}")
-        look = st.slider(texts.LOOK, 20, 60, int(base.look_s), 5, key=f"look {who}")
-        names = list(texts.SAMPLERS)
+        hours = st.slider(texts.HOURS, 0.5, 16.0, base.hours, 0.5, key=f"hours {who}",
+                          persist_state="session")  # fmt: skip
+        look = st.slider(texts.LOOK, 20, 60, int(base.look_s), 5, key=f"look {who}",
+                         persist_state="session")  # fmt: skip
         sampler = st.selectbox(
-            texts.SAMPLER, names, format_func=texts.SAMPLERS.__getitem__, key="sampler"
-        )
-        is_sample = record_file is not None and record_file.key.startswith("sample/")
-        day = st.date_input(
-            texts.DATE, LAST_SAMPLE_DAY if is_sample else "today", key=f"day {is_sample}"
-        )
+            texts.SAMPLER, list(texts.SAMPLERS), format_func=texts.SAMPLERS.__getitem__,
+            key="sampler", persist_state="session",
+        )  # fmt: skip
     return replace(base, hours=float(hours), look_s=float(look)), sampler, str(day)
 
 
-def _settled(file: _File, options: Any) -> Any:  # noqa: ANN401 - any of three options
-    """Return the options with what was answered for this file before."""
-    for option, value in st.session_state.get(f"answers {file.key}", ()):
-        options = options.choose(option, value)
-    st.session_state["asking"] = file.key
-    return options
+def _units() -> None:
+    with st.expander(texts.DISPLAY):
+        for key, label, options in (
+            ("length", texts.LENGTH, LENGTHS), ("area", texts.AREA, AREAS_M2),
+            ("date_like", texts.DATE_LIKE, DATES),
+        ):  # fmt: skip
+            st.selectbox(label, list(options), key=key, persist_state="session", filter_mode=None)
 
 
-def _say(error: FieldmonError) -> None:
-    """Show a problem as its sentence; where the file leaves a choice, ask for it."""
-    if not isinstance(error, ChoiceNeeded):
-        st.error(str(error))
-        return
-    st.warning(str(error))
-    asking = st.session_state.get("asking", "")
-    label = f"{texts.CHOOSE}: {error.option}"
-    if error.choices and error.option != "columns":
-        value = st.selectbox(label, error.choices, key=f"ask {asking} {error.option}")
-    else:
-        hint = ", ".join(error.choices)
-        value = st.text_input(label, placeholder="date=Datum", help=hint or None,
-                              key=f"ask {asking} {error.option}")  # fmt: skip
-    if st.button(texts.CHOOSE_BUTTON, key=f"use {asking} {error.option}") and value:
-        answers = st.session_state.get(f"answers {asking}", ())
-        st.session_state[f"answers {asking}"] = (*answers, (error.option, value))
-        st.rerun()
+def read_units() -> Units:
+    """Return how this session wants numbers written."""
+    chosen = {name: st.session_state.get(name) for name in ("length", "area", "date_like")}
+    return Units(**{name: value for name, value in chosen.items() if value})

@@ -7,6 +7,7 @@ import io
 import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import pydeck as pdk
@@ -24,7 +25,10 @@ if TYPE_CHECKING:
     from fieldmon.hotspots import HotSpots
     from fieldmon.route import Route
 
+    from .units import Units
+
 Colour = tuple[int, int, int]
+Layer = pdk.Layer
 
 # pale to dark, told apart without hue too
 CHANCE_FROM = (0.0, 0.01, 0.02, 0.05, 0.10, 0.25, 0.50)
@@ -34,12 +38,14 @@ CHANCE_COLOURS: tuple[Colour, ...] = (
 )
 FOUND: Colour = (213, 30, 30)
 CLEAN: Colour = (90, 160, 230)
-NEVER: Colour = (205, 205, 198)
+NEVER: Colour = (150, 150, 145)
 TRUTH: Colour = (0, 0, 0)
 ROUTE: Colour = (20, 80, 200)
+ROUTE_IN_DARK: Colour = (110, 220, 255)
 GATE: Colour = (0, 140, 90)
 HOT: Colour = (140, 40, 180)
 OUTLINE: Colour = (70, 80, 70)
+OUTLINE_IN_DARK: Colour = (190, 200, 190)
 
 # more plants than this travel as one picture
 POINTS_AT_MOST = 20_000
@@ -48,37 +54,82 @@ _ARROWS = 40
 _NUMBERS = 24
 _VIEW_PX, _PHONE_PX = (720, 480), (340, 380)
 _TILE_PX = 512
+# days since a plant was inspected: fresh is pale green, long ago is dark
+AGE_FROM = (0, 1, 3, 7, 14)
+AGE_COLOURS: tuple[Colour, ...] = (
+    (217, 240, 163), (120, 198, 121), (49, 163, 84), (0, 104, 55), (0, 50, 30),
+)  # fmt: skip
+_EMPTY = 30  # opacity of a plant that nobody looked at: an outline with next to nothing in it
+_LATTICE = 70
+# layers are not changed once made; their texts go when they do
+_WRITTEN: WeakKeyDictionary[Layer, str] = WeakKeyDictionary()
 
 
 class Deck(pdk.Deck):
-    """A deck whose JSON is written without white space: half the size, several times the speed."""
+    """A deck whose JSON has no white space, and whose layers are written once each.
+
+    Half the size and several times the speed; a layer that is shown again costs nothing.
+    """
 
     def to_json(self) -> str:
         """Return the deck as compact JSON."""
-        return json.dumps(self, sort_keys=True, default=default_serialize, separators=(",", ":"))
+        layers, self.layers = self.layers, []
+        try:
+            frame = _json(self)
+        finally:
+            self.layers = layers
+        texts = ",".join(_layer_json(layer) for layer in layers)
+        return frame.replace('"layers":[]', f'"layers":[{texts}]', 1)
+
+
+def _layer_json(layer: Layer) -> str:
+    text = _WRITTEN.get(layer)
+    if text is None:
+        text = _WRITTEN[layer] = _json(layer)
+    return text
+
+
+def _json(thing: object) -> str:
+    return json.dumps(thing, sort_keys=True, default=default_serialize, separators=(",", ":"))
 
 
 @dataclass(frozen=True)
 class Shade:
-    """A colour for every plant, ``(n, 3)`` uint8, and its rank: higher ranks win a pixel."""
+    """A colour for every plant, ``(n, 4)`` uint8, and its rank: higher ranks win a pixel."""
 
     colour: NDArray[np.uint8]
     rank: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, colours: list[tuple[int, ...]], rank: NDArray[np.integer]) -> Shade:
+        """Return the shade that takes each plant's colour by its rank; no opacity is full."""
+        table = np.array([(*c, 255) if len(c) == 3 else c for c in colours], np.uint8)
+        return cls(table[rank], rank.astype(np.int64))
 
 
 def by_chance(chance: NDArray[np.float64]) -> Shade:
     """Return plants shaded by their chance of infestation, in the legend's classes."""
     rank = np.searchsorted(CHANCE_FROM, chance, side="right") - 1
-    return Shade(np.array(CHANCE_COLOURS, np.uint8)[rank], rank)
+    return Shade.of(list(CHANCE_COLOURS), rank)
 
 
 def by_state(state: NDArray[np.int8]) -> Shade:
-    """Return plants shaded as found (1), clean (0) or never inspected (-1)."""
-    rank = state.astype(np.int64) + 1
-    return Shade(np.array([NEVER, CLEAN, FOUND], np.uint8)[rank], rank)
+    """Return plants shaded as found (1), clean (0) or never inspected (-1: an empty ring)."""
+    return Shade.of([(*NEVER, _EMPTY), CLEAN, FOUND], state.astype(np.int64) + 1)
 
 
-def deck(grid: PlantGrid, layers: list[pdk.Layer], *, phone: bool = False) -> Deck:
+def by_age(days: NDArray[np.integer]) -> Shade:
+    """Return plants shaded by the days since they were inspected; -1 (never): an empty ring."""
+    rank = np.searchsorted(AGE_FROM, days, side="right")
+    return Shade.of([(*NEVER, _EMPTY), *AGE_COLOURS], rank)
+
+
+def plain(n: int) -> Shade:
+    """Return n plants in one colour."""
+    return Shade.of([(90, 150, 90)], np.zeros(n, np.int64))
+
+
+def deck(grid: PlantGrid, layers: list[Layer], *, phone: bool = False) -> Deck:
     """Return the map of a plot; its first view depends on the plot and the device alone."""
     return Deck(
         layers=layers,
@@ -109,54 +160,79 @@ def view(grid: PlantGrid, *, phone: bool = False) -> pdk.ViewState:
     )
 
 
-def boundary(field: Field) -> pdk.Layer:
+def boundary(field: Field, *, dark: bool = False) -> Layer:
     """Return the plot's outline, holes and no-go areas."""
     rings = [
         {"path": np.round(shapely.get_coordinates(ring), 7).tolist()}
         for area in (field.boundary, field.no_go)
         for ring in shapely.get_rings(shapely.get_parts(area))
     ]
-    return pdk.Layer(
+    return Layer(
         "PathLayer",
         rings,
         id="boundary",
         get_path="path",
-        get_color=list(OUTLINE),
+        get_color=list(OUTLINE_IN_DARK if dark else OUTLINE),
         get_width=0.5,
         width_min_pixels=1.5,
     )
 
 
-def plants(grid: PlantGrid, shade: Shade, note: list[str]) -> pdk.Layer:
-    """Return the plants: points with a note each, or one picture if there are very many."""
-    if len(grid) > POINTS_AT_MOST:
+def plants(
+    grid: PlantGrid, shade: Shade, note: list[str], part: NDArray[np.intp] | None = None
+) -> Layer:
+    """Return the plants: points with a note each, or one picture if there are very many.
+
+    `part` names the plants to draw as points where the plot is too large to draw all.
+    """
+    if part is None and len(grid) > POINTS_AT_MOST:
         return _picture(grid, shade)
-    label = row_label(grid)
-    places = np.round(grid.lonlat(), 7).tolist()
+    which = np.arange(len(grid)) if part is None else part
+    label = row_label(grid, which)
     columns = zip(
-        places, shade.colour.tolist(), label.line.tolist(), label.number.tolist(), note, strict=True
-    )
+        np.round(grid.lonlat(which), 7).tolist(), shade.colour[which].tolist(),
+        label.line.tolist(), label.number.tolist(), which.tolist(), strict=True,
+    )  # fmt: skip
     rows = [
-        {"p": place, "c": colour, "t": f"row {line}, plant {number}<br>{text}"}
-        for place, colour, line, number, text in columns
+        {"p": place, "c": colour, "i": plant, "t": f"row {line}, plant {number}<br>{note[plant]}"}
+        for place, colour, line, number, plant in columns
     ]
-    return pdk.Layer(
+    return Layer(
         "ScatterplotLayer",
         rows,
-        id="plants",
+        id="plants" if part is None else "part",
         get_position="p",
         get_fill_color="c",
         get_radius=0.4 * min(grid.plant_spacing_m, grid.row_spacing_m),
         radius_min_pixels=1.5,
         stroked=True,
-        get_line_color=[120, 110, 90, 120],
+        get_line_color=[120, 110, 90, 140],
         line_width_min_pixels=0.5,
         get_line_width=0.05,
         pickable=True,
     )
 
 
-def _picture(grid: PlantGrid, shade: Shade) -> pdk.Layer:
+def finds(grid: PlantGrid, state: NDArray[np.int8]) -> list[Layer]:
+    """Return a dark ring with a pale rim round each find: told by shape, not by colour alone."""
+    here = np.round(grid.lonlat(np.flatnonzero(state == 1)), 7).tolist()
+    size = 0.55 * min(grid.plant_spacing_m, grid.row_spacing_m)
+    return [
+        _ring(f"finds{k}", here, size, (colour, pixels))
+        for k, (colour, pixels) in enumerate([((255, 255, 255), 4.5), ((20, 0, 0), 2.0)])
+    ]
+
+
+def _ring(name: str, places: list[list[float]], size_m: float, pen: tuple[Colour, float]) -> Layer:
+    colour, pixels = pen
+    return Layer(
+        "ScatterplotLayer", [{"p": p} for p in places], id=name, get_position="p",
+        get_radius=size_m, radius_min_pixels=4.5, filled=False, stroked=True,
+        get_line_color=list(colour), line_width_min_pixels=pixels, get_line_width=0.05,
+    )  # fmt: skip
+
+
+def _picture(grid: PlantGrid, shade: Shade) -> Layer:
     """Return the plants as one picture, the most important plant of each pixel on top."""
     low, high = grid.xy_m.min(axis=0), grid.xy_m.max(axis=0)
     step = np.array([grid.plant_spacing_m, grid.row_spacing_m])
@@ -166,14 +242,13 @@ def _picture(grid: PlantGrid, shade: Shade) -> pdk.Layer:
     column, line = np.floor((grid.xy_m - low) / step).astype(int).T
     image = np.zeros((tall, wide, 4), np.uint8)
     order = np.argsort(shade.rank, kind="stable")
-    image[tall - 1 - line[order], column[order], :3] = shade.colour[order]
-    image[tall - 1 - line[order], column[order], 3] = 255
+    image[tall - 1 - line[order], column[order]] = shade.colour[order]
     file = io.BytesIO()
     Image.fromarray(image).save(file, "PNG")
     right, top = low + step * [wide, tall]
     corners = [[low[0], low[1]], [low[0], top], [right, top], [right, low[1]]]
     uri = "data:image/png;base64," + base64.b64encode(file.getvalue()).decode()
-    return pdk.Layer(
+    return Layer(
         "BitmapLayer",
         None,
         id="plants",
@@ -183,23 +258,23 @@ def _picture(grid: PlantGrid, shade: Shade) -> pdk.Layer:
     )
 
 
-def route(the_route: Route, *, numbers: bool = True) -> list[pdk.Layer]:
+def route(the_route: Route, *, numbers: bool = True, dark: bool = False) -> list[Layer]:
     """Return the driven line with arrows in its direction, the gate, and stop numbers."""
     if not len(the_route):
         return []
-    colour = list(ROUTE)
+    colour = list(ROUTE_IN_DARK if dark else ROUTE)
     line = np.round(the_route.line_lonlat(), 7).tolist()
     gate = the_route.aisles.grid.frame.lonlat(the_route.aisles.gate_m)[0].tolist()
     layers = [
-        pdk.Layer(
+        Layer(
             "PathLayer", [{"path": line}], id="route", get_path="path", get_color=[*colour, 190],
             get_width=0.5, width_min_pixels=1.5,
         ),
-        pdk.Layer(
+        Layer(
             "PolygonLayer", _arrows(the_route), id="arrows", get_polygon="p",
             get_fill_color=colour, stroked=False,
         ),
-        pdk.Layer(
+        Layer(
             "ScatterplotLayer", [{"p": gate, "t": "gate: start and end"}], id="gate",
             get_position="p", get_radius=3, radius_min_pixels=7, filled=False, stroked=True,
             get_line_color=list(GATE), line_width_min_pixels=3, pickable=True,
@@ -208,14 +283,14 @@ def route(the_route: Route, *, numbers: bool = True) -> list[pdk.Layer]:
     return [*layers, *_numbers(the_route)] if numbers else layers
 
 
-def _numbers(the_route: Route) -> list[pdk.Layer]:
+def _numbers(the_route: Route) -> list[Layer]:
     n = len(the_route)
     every = max(1, int(np.ceil(n / _NUMBERS)))
     shown = np.unique(np.append(np.arange(0, n, every), n - 1))
     here = np.round(the_route.stops_lonlat()[shown], 7).tolist()
     rows = [{"p": p, "n": str(k + 1)} for p, k in zip(here, shown.tolist(), strict=True)]
     return [
-        pdk.Layer(
+        Layer(
             "TextLayer", rows, id="numbers", get_position="p", get_text="n", get_size=12,
             get_color=[10, 30, 90], background=True, get_background_color=[255, 255, 255, 220],
             background_padding=[3, 1],
@@ -244,7 +319,7 @@ def _arrows(the_route: Route) -> list[dict[str, Any]]:
     return [{"p": corner} for corner in lonlat.tolist()]
 
 
-def hot(grid: PlantGrid, spots: HotSpots) -> list[pdk.Layer]:
+def hot(grid: PlantGrid, spots: HotSpots) -> list[Layer]:
     """Return the outline of each hot spot's plants."""
     if not len(spots):
         return []
@@ -257,7 +332,7 @@ def hot(grid: PlantGrid, spots: HotSpots) -> list[pdk.Layer]:
         text = f"hot spot: {spots.found[k]} found of {spots.inspected[k]} inspected"
         rows.append({"p": corners, "t": text})
     return [
-        pdk.Layer(
+        Layer(
             "PolygonLayer", rows, id="hot", get_polygon="p", filled=True,
             get_fill_color=[*HOT, 20], stroked=True, get_line_color=list(HOT),
             line_width_min_pixels=3, get_line_width=0.4, pickable=True,
@@ -265,7 +340,19 @@ def hot(grid: PlantGrid, spots: HotSpots) -> list[pdk.Layer]:
     ]  # fmt: skip
 
 
-def records(observations: Observations) -> list[pdk.Layer]:
+def paths(field: Field) -> list[Layer]:
+    """Return the paths along which insects come in."""
+    rows = [
+        {"path": np.round(shapely.get_coordinates(line), 7).tolist(), "t": "path"}
+        for line in shapely.get_parts(field.paths)
+    ]
+    return [
+        Layer("PathLayer", rows, id="paths", get_path="path", get_color=[150, 110, 60, 160],
+              get_width=1.0, width_min_pixels=2)
+    ]  # fmt: skip
+
+
+def records(observations: Observations) -> list[Layer]:
     """Return the records: filled where pests were seen, empty where not."""
     rows = [
         {
@@ -281,7 +368,7 @@ def records(observations: Observations) -> list[pdk.Layer]:
         )
     ]
     return [
-        pdk.Layer(
+        Layer(
             "ScatterplotLayer", rows, id="records", get_position="p", get_fill_color="c",
             get_radius=1.2, radius_min_pixels=3, stroked=True, get_line_color=[*HOT, 170],
             line_width_min_pixels=1, pickable=True,
@@ -289,50 +376,172 @@ def records(observations: Observations) -> list[pdk.Layer]:
     ]  # fmt: skip
 
 
-def truth(grid: PlantGrid, infested: NDArray[np.bool_]) -> list[pdk.Layer]:
+def truth(grid: PlantGrid, infested: NDArray[np.bool_]) -> list[Layer]:
     """Return dots on plants that are infested, as only a simulation can know."""
     here = np.round(grid.lonlat(np.flatnonzero(infested)), 7).tolist()
     return [
-        pdk.Layer(
+        Layer(
             "ScatterplotLayer", [{"p": p, "t": "infested"} for p in here], id="truth",
             get_position="p", get_fill_color=list(TRUTH), get_radius=0.5, radius_min_pixels=2,
         )
     ]  # fmt: skip
 
 
-def scale(grid: PlantGrid) -> tuple[list[pdk.Layer], int]:
-    """Return a bar of a round number of metres under the plot, and that number."""
+def playback(the_route: Route, second: float, *, dark: bool = False) -> list[Layer]:
+    """Return the line driven up to a second of the day, the stops made, and the robot."""
+    if not len(the_route):
+        return []
+    line, at_s = the_route.line_lonlat(), the_route.line_s
+    gone = int(np.searchsorted(at_s, second, side="right"))
+    here = [float(np.interp(second, at_s, line[:, axis])) for axis in (0, 1)]
+    path = [*np.round(line[:gone], 7).tolist(), here]
+    done = the_route.leave_s <= second
+    colour = ROUTE_IN_DARK if dark else ROUTE
+    stops = np.round(the_route.stops_lonlat()[done], 7).tolist()
+    return [
+        Layer(
+            "PathLayer", [{"path": path}], id="trail", get_path="path",
+            get_color=[*colour, 230], get_width=0.6, width_min_pixels=2.5,
+        ),
+        Layer(
+            "ScatterplotLayer", [{"p": p} for p in stops], id="stops", get_position="p",
+            get_fill_color=[*colour, 150], get_radius=0.5, radius_min_pixels=2,
+        ),
+        Layer(
+            "ScatterplotLayer", [{"p": here, "t": "here"}], id="robot", get_position="p",
+            get_fill_color=[255, 210, 0], get_radius=1.5, radius_min_pixels=8, stroked=True,
+            get_line_color=[0, 0, 0], line_width_min_pixels=3, pickable=True,
+        ),
+    ]  # fmt: skip
+
+
+def places(lonlat: list[list[float]], name: str, colour: Colour, note: str) -> Layer:
+    """Return large rings about some positions: where one stands, what was tapped."""
+    rows = [{"p": p, "t": note} for p in lonlat]
+    return Layer(
+        "ScatterplotLayer", rows, id=name, get_position="p", get_radius=1.5, radius_min_pixels=11,
+        filled=True, get_fill_color=[*colour, 60], stroked=True, get_line_color=list(colour),
+        line_width_min_pixels=4, pickable=True,
+    )  # fmt: skip
+
+
+def drawing(points: tuple[tuple[float, float], ...]) -> list[Layer]:
+    """Return what is being drawn: its corners so far, joined."""
+    here = [list(point) for point in points]
+    return [
+        Layer(
+            "PathLayer", [{"path": here}] if len(here) > 1 else [], id="drawing", get_path="path",
+            get_color=list(GATE), width_min_pixels=3, get_width=0.4,
+        ),
+        places(here, "corners", GATE, "corner"),
+    ]  # fmt: skip
+
+
+def clickable(grid: PlantGrid) -> Layer:
+    """Return a lattice of places all over and around the plot, unseen, that can be clicked on."""
+    corners = grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m))
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    margin = 0.08 * (high - low)
+    lon, lat = (
+        np.linspace(a - m, b + m, _LATTICE) for a, b, m in zip(low, high, margin, strict=True)
+    )
+    step_m = 111_320.0 * float(lat[1] - lat[0])
+    rows = [{"p": [x, y], "t": f"{x}, {y}"} for x in lon.round(7).tolist()
+            for y in lat.round(7).tolist()]  # fmt: skip
+    return Layer(
+        "ScatterplotLayer", rows, id="clicks", get_position="p", get_radius=0.75 * step_m,
+        get_fill_color=[0, 0, 0, 2], pickable=True, auto_highlight=True,
+        highlight_color=[0, 140, 90, 120],
+    )  # fmt: skip
+
+
+def backdrop(uri: str, corners: list[list[float]]) -> Layer:
+    """Return a picture of the ground; corners from lower left over upper left, lon/lat."""
+    return Layer(
+        "BitmapLayer", None, id="backdrop", image=pdk.types.String(uri), bounds=corners,
+        opacity=0.8,
+    )  # fmt: skip
+
+
+def scale(grid: PlantGrid, units: Units, *, dark: bool = False) -> tuple[list[Layer], str]:
+    """Return a bar of a round length under the plot and a north arrow beside it; and its text."""
     corners = grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m))
     (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
     metres_deg = 111_320.0 * np.cos(np.deg2rad((south + north) / 2))
-    wide_m = (east - west) * metres_deg
-    bar_m = max(b for b in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000) if b <= max(wide_m / 4, 1))
-    y = south - (north - south) * 0.04
-    ends = [[float(west), float(y)], [float(west + bar_m / metres_deg), float(y)]]
-    middle = [(ends[0][0] + ends[1][0]) / 2, ends[0][1]]
+    bar_m, text = units.bar_m(max((east - west) * metres_deg / 4, 1.0))
+    ink = [235, 235, 235] if dark else [40, 40, 40]
+    y = float(south - (north - south) * 0.04)
+    ends = [[float(west), y], [float(west + bar_m / metres_deg), y]]
+    middle = [(ends[0][0] + ends[1][0]) / 2, y]
+    tip = float(max(north - south, (east - west) / 2)) * 0.07
+    side = tip * 0.28 * 111_320.0 / metres_deg
+    foot = [float(east), float(north)]
+    arrow = [[foot[0], foot[1] + tip], [foot[0] - side, foot[1]], [foot[0], foot[1] + tip * 0.25],
+             [foot[0] + side, foot[1]]]  # fmt: skip
     layers = [
-        pdk.Layer(
-            "PathLayer", [{"path": ends}], id="scale", get_path="path", get_color=[40, 40, 40],
+        Layer(
+            "PathLayer", [{"path": ends}], id="scale", get_path="path", get_color=ink,
             get_width=0.1, width_min_pixels=4,
         ),
-        pdk.Layer(
-            "TextLayer", [{"p": middle, "n": f"{bar_m} m"}], id="scale-text", get_position="p",
-            get_text="n", get_size=13, get_color=[40, 40, 40], get_alignment_baseline="'top'",
+        Layer(
+            "TextLayer", [{"p": middle, "n": text}], id="scale-text", get_position="p",
+            get_text="n", get_size=13, get_color=ink, get_alignment_baseline="'top'",
             get_pixel_offset=[0, 6],
         ),
+        Layer("PolygonLayer", [{"p": arrow}], id="north", get_polygon="p", get_fill_color=ink,
+              stroked=False),
+        Layer(
+            "TextLayer", [{"p": [foot[0], foot[1] + tip], "n": "N"}], id="north-text",
+            get_position="p", get_text="n", get_size=15, get_color=ink,
+            get_alignment_baseline="'bottom'", get_pixel_offset=[0, -2],
+        ),
     ]  # fmt: skip
-    return layers, bar_m
+    return layers, text
 
 
-def legend(items: list[tuple[Colour, str]]) -> str:
-    """Return coloured squares with their meaning, as HTML."""
-    squares = "".join(
-        f'<span style="white-space:nowrap;margin-right:14px"><span aria-hidden="true" '
-        f'style="display:inline-block;width:14px;height:14px;border:1px solid #777;'
-        f'vertical-align:-2px;margin-right:5px;background:rgb{colour}"></span>{text}</span>'
-        for colour, text in items
+def legend(items: list[tuple[Colour, str]], *, signs: tuple[str, ...] = ()) -> str:
+    """Return signs with their meaning, as HTML: squares, or ``"ring"``, ``"dot"``, ``"find"``."""
+    kinds = signs or ("square",) * len(items)
+    parts = "".join(
+        f'<span style="white-space:nowrap;margin-right:14px">{_sign(kind, colour)}{text}</span>'
+        for kind, (colour, text) in zip(kinds, items, strict=True)
     )
-    return f'<div style="line-height:1.9">{squares}</div>'
+    return f'<div style="line-height:1.9">{parts}</div>'
+
+
+def _sign(kind: str, colour: Colour) -> str:
+    shapes = {
+        "square": f'<rect x="1" y="1" width="14" height="14" fill="rgb{colour}" stroke="#777"/>',
+        "dot": f'<circle cx="8" cy="8" r="5" fill="rgb{colour}" stroke="#777"/>',
+        "ring": f'<circle cx="8" cy="8" r="5" fill="none" stroke="rgb{colour}" stroke-width="2"/>',
+        "find": f'<circle cx="8" cy="8" r="6.5" fill="#fff" stroke="#140000" stroke-width="2"/>'
+        f'<circle cx="8" cy="8" r="4" fill="rgb{colour}"/>',
+        "line": f'<rect x="0" y="6" width="16" height="4" fill="rgb{colour}"/>',
+        "outline": f'<rect x="2" y="2" width="12" height="12" rx="4" fill="none" '
+        f'stroke="rgb{colour}" stroke-width="3"/>',
+    }
+    return (
+        '<svg width="16" height="16" aria-hidden="true" '
+        f'style="vertical-align:-3px;margin-right:5px">{shapes[kind]}</svg>'
+    )
+
+
+def state_legend(names: dict[str, str]) -> str:
+    """Return the legend of the three states."""
+    items = [(FOUND, names["found"]), (CLEAN, names["clean"]), (NEVER, names["never"])]
+    return legend(items, signs=("find", "dot", "ring"))
+
+
+def age_legend(never: str, days: str) -> str:
+    """Return the legend of the days since the last inspection."""
+    tops = [*AGE_FROM[1:], None]
+    names = [
+        days.format(n=f"{low}-{top - 1}" if top and top - 1 > low else f"{low}" if top
+                    else f"{low}+")
+        for low, top in zip(AGE_FROM, tops, strict=True)
+    ]  # fmt: skip
+    items = [*zip(AGE_COLOURS, names, strict=True), (NEVER, never)]
+    return legend(items, signs=("square",) * len(names) + ("ring",))
 
 
 def chance_legend() -> str:

@@ -10,47 +10,70 @@ sys.path[:] = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolv
 if str(Path(__file__).resolve().parents[1]) not in sys.path:
     sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from app import cached, texts  # noqa: E402 - after the path is right
+from app import cached, keeping, texts  # noqa: E402 - after the path is right
 from app.choices import choose  # noqa: E402
-from app.views import prior_study, season, study, today  # noqa: E402
+from app.views import (  # noqa: E402
+    compare,
+    field,
+    plot,
+    prior_study,
+    report,
+    scout,
+    season,
+    simulate,
+    study,
+    today,
+)
+from fieldmon.errors import FieldmonError  # noqa: E402
 
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
-# Streamlit leaves a hand's breadth above the page, which a phone cannot spare
-st.html("<style>[data-testid=stMainBlockContainer]{padding-top:4rem;padding-bottom:3rem}</style>")
+# Streamlit leaves a hand's breadth above the page, which a phone cannot spare; names in Hebrew or
+# Arabic are set from the right, each by its own first letter
+st.html(
+    "<style>[data-testid=stMainBlockContainer]{padding-top:4rem;padding-bottom:3rem}"
+    "h1,h2,h3,[data-testid=stMarkdownContainer] p{unicode-bidi:plaintext}"
+    ".st-key-start_scouting a{border:1px solid rgba(128,128,128,.5);border-radius:.5rem;"
+    "min-height:2.5rem;padding:.25rem .75rem}</style>"
+)
 cached.warm()
 
 
-def page_today() -> None:
-    """Show today's plan."""
-    show(today.show)
+def page(show, title: str, icon: str, path: str) -> st.Page:  # noqa: ANN001 - a page's function
+    """Return a page that shows what was chosen, or how to begin."""
 
+    def run() -> None:
+        chosen = choose()
+        keeping.said()
+        if chosen.choices is None:
+            plot.bring(chosen.problem)
+            return
+        try:
+            show(chosen.choices)
+        except FieldmonError as error:
+            st.error(str(error))
 
-def page_season() -> None:
-    """Show a simulated season."""
-    show(season.show)
+    return st.Page(
+        run, title=title, icon=f":material/{icon}:", url_path=path, default=path == "today"
+    )
 
 
 def page_prior() -> None:
     """Show the study with prior information, on the chosen plot too."""
-    prior_study.show(choose())
+    prior_study.show(choose().choices)
 
 
-def show(page) -> None:  # noqa: ANN001 - a page's function
-    """Show a page for what was chosen, or how to begin."""
-    choices = choose()
-    if choices is None:
-        st.title(texts.TITLE)
-        st.markdown(texts.EMPTY)
-        return
-    page(choices)
-
-
+scouting = page(scout.show, texts.SCOUTING, "eco", "scout")
+st.session_state["scout_page"] = scouting
 st.navigation(
     [
-        st.Page(
-            page_today, title=texts.TODAY, icon=":material/route:", url_path="today", default=True
-        ),
-        st.Page(page_season, title=texts.SEASON, icon=":material/monitoring:", url_path="season"),
+        page(today.show, texts.TODAY, "route", "today"),
+        page(field.show, texts.MAP, "map", "map"),
+        scouting,
+        page(season.show, texts.SEASON, "calendar_month", "season"),
+        page(compare.show, texts.COMPARE, "balance", "compare"),
+        page(plot.show, texts.PLOT, "polyline", "plot"),
+        page(report.show, texts.REPORT, "print", "report"),
+        page(simulate.show, texts.SIMULATE, "bug_report", "simulate"),
         st.Page(study.show, title=texts.STUDY, icon=":material/science:", url_path="study"),
         st.Page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
     ],

@@ -11,6 +11,7 @@ import numba as nb
 import numpy as np
 import shapely
 
+from fieldmon.compiled import inlined
 from fieldmon.headland import Ways, row_lines, ways
 
 if TYPE_CHECKING:
@@ -173,7 +174,7 @@ def crosses_rows(grid: PlantGrid, line_xy_m: Float) -> bool:
     return bool(rows.query(steps, predicate="intersects").size)
 
 
-@nb.njit(cache=True, inline="always")
+@inlined
 def drive_m(ground: Ground, i: int, j: int) -> float:
     """Return the metres from plant i to plant j; -1 is the gate."""
     # written out: loops over the ends cost ten times as much

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numba as nb
 import numpy as np
 
+from fieldmon.compiled import loop
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 # no plant is ever taken as certainly clean or certainly infested: evidence must be able to undo it
 _LEAST, _MOST = 1e-6, 1.0 - 1e-6
+_1, _2, _3 = np.uint32(1), np.uint32(2), np.uint32(3)
 # a look is heard as far as three plants away, and as long as it changes a chance by this
 _RINGS = 3
 # round a loop the same news arrives twice: no plant settles its neighbour more than this
@@ -102,27 +104,50 @@ def _learn(
 def overnight(chance: NDArray[np.float64], grid: PlantGrid, spread: Spread) -> NDArray[np.float64]:
     """Return the chance map ``(n,)`` of the next morning, neighbours taken as independent."""
     each = spread.rate_per_day
-    after = np.empty_like(chance)
-    _overnight(chance, after, grid.adjacent, (each, spread.to == "one", spread.arrivals_per_day))
+    after, spares = np.empty_like(chance), np.empty_like(chance)
+    _spare(chance, spares, grid.adjacent.start, (each, spread.to == "one"))
+    _overnight(chance, after, grid.adjacent, spares, spread.arrivals_per_day)
     return after
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
+def _spare(
+    chance: NDArray[np.float64],
+    spares: NDArray[np.float64],
+    start: NDArray[np.int32],
+    rule: tuple[float, bool],
+) -> None:
+    """Find the chance that a plant does not infest a given neighbour in a night."""
+    rate, one = rule
+    for i in range(chance.size):
+        share = rate / (start[i + 1] - start[i]) if one else rate
+        spares[i] = 1.0 - chance[i] * share
+
+
+@loop
 def _overnight(
     chance: NDArray[np.float64],
     after: NDArray[np.float64],
     adjacent: Csr,
-    rule: tuple[float, bool, float],
+    spares: NDArray[np.float64],
+    arrivals: float,
 ) -> None:
-    rate, one, arrivals = rule
     start, plant = adjacent
     for i in range(chance.size):
-        stays_clean = (1.0 - chance[i]) * (1.0 - arrivals)
-        for k in range(start[i], start[i + 1]):
-            j = plant[k]
-            share = rate / (start[j + 1] - start[j]) if one else rate
-            stays_clean *= 1.0 - chance[j] * share
-        after[i] = min(max(1.0 - stays_clean, _LEAST), _MOST)
+        # unsigned: an index that may be negative is checked for it
+        k, end = np.uint32(start[i]), np.uint32(start[i + 1])
+        clean = (1.0 - chance[i]) * (1.0 - arrivals)
+        if end - k == 4:  # most plants; a loop of unknown length costs twice this
+            clean *= spares[np.uint32(plant[k])]
+            clean *= spares[np.uint32(plant[k + _1])]
+            clean *= spares[np.uint32(plant[k + _2])]
+            clean *= spares[np.uint32(plant[k + _3])]
+        else:
+            for e in range(k, end):
+                clean *= spares[np.uint32(plant[e])]
+        infested = 1.0 - clean
+        infested = infested if infested < _MOST else _MOST  # noqa: FURB136 - min is slower
+        after[i] = infested if infested > _LEAST else _LEAST  # noqa: FURB136 - max is slower
 
 
 def pairs(

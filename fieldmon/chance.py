@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numba as nb
 import numpy as np
 
+from fieldmon.compiled import inlined, loop
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -21,6 +22,11 @@ if TYPE_CHECKING:
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _MIX_2 = np.uint64(0x94D049BB133111EB)
+_POOL = 4
+_HASH, _HASH_TIMES = np.uint64(0x43B0D7E5), np.uint64(0x931E8875)
+_STATE, _STATE_TIMES = np.uint64(0x8B51F9DD), np.uint64(0x58F38DED)
+_MIX_LEFT, _MIX_RIGHT = np.uint64(0xCA01F9DD), np.uint64(0x4973F715)
+_LOW_32, _S16, _S32 = np.uint64(0xFFFFFFFF), np.uint64(16), np.uint64(32)
 _S11, _S27, _S30, _S31 = np.uint64(11), np.uint64(27), np.uint64(30), np.uint64(31)
 
 
@@ -46,13 +52,55 @@ class Chance:
 
     def key(self, name: str, *key: int) -> np.uint64:
         """Return 64 random bits that name a whole table of coins (see :func:`coin`)."""
-        return np.uint64(self._sequence(name, key).generate_state(1, np.uint64)[0])
+        words = _words(self.seed)
+        words += [0] * (_POOL - len(words))
+        for number in (zlib.crc32(name.encode()), *key):
+            words += _words(number)
+        return np.uint64(_first_state(np.array(words, np.uint64), np.empty(_POOL, np.uint64)))
 
     def _sequence(self, name: str, key: tuple[int, ...]) -> np.random.SeedSequence:
         return np.random.SeedSequence(self.seed, spawn_key=(zlib.crc32(name.encode()), *key))
 
 
-@nb.njit(cache=True, inline="always")
+def _words(number: int) -> list[int]:
+    """Return a number from 0 in words of 32 bits, the lowest first."""
+    words = [number & 0xFFFFFFFF]
+    while number := number >> 32:
+        words.append(number & 0xFFFFFFFF)
+    return words
+
+
+@loop
+def _first_state(words: NDArray[np.uint64], pool: NDArray[np.uint64]) -> np.uint64:
+    """Return the first 64 bits that `numpy.random.SeedSequence` makes of words of 32 bits.
+
+    The same algorithm (O'Neill 2015, "Developing a seed_seq alternative"), as a season asks for
+    three of them a day and numpy's costs as much as a night does.
+    """
+    factor = _HASH
+    for i in range(_POOL):
+        pool[i], factor = _hashed(words[i], factor, _HASH_TIMES)
+    for i in range(words.size):
+        for j in range(_POOL):
+            if i != j:
+                word = pool[i] if i < _POOL else words[i]
+                word, factor = _hashed(word, factor, _HASH_TIMES)
+                pool[j] = ((_MIX_LEFT * pool[j]) - (_MIX_RIGHT * word)) & _LOW_32
+                pool[j] ^= pool[j] >> _S16
+    low, factor = _hashed(pool[0], _STATE, _STATE_TIMES)
+    high, factor = _hashed(pool[1], factor, _STATE_TIMES)
+    return low | (high << _S32)
+
+
+@inlined
+def _hashed(word: np.uint64, factor: np.uint64, times: np.uint64) -> tuple[np.uint64, np.uint64]:
+    word ^= factor
+    factor = (factor * times) & _LOW_32
+    word = (word * factor) & _LOW_32
+    return word ^ (word >> _S16), factor
+
+
+@inlined
 def coin(key: np.uint64, i: int) -> float:
     """Return entry ``i`` of the table of uniform numbers in [0, 1) that ``key`` names.
 

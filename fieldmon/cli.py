@@ -10,25 +10,29 @@ from datetime import date, datetime
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeAlias
 
 import typer
 
-from fieldmon import cli_raster, cli_season, cli_study
+from fieldmon import cli_app, cli_raster, cli_season, cli_study
 from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from fieldmon.field import Field, Observations
+    from fieldmon.geodata.crews import Crew
     from fieldmon.geodata.findings import Finding, Imported
     from fieldmon.geodata.places import Places
+    from fieldmon.geodata.places import Plants as Measured
     from fieldmon.grid import PlantGrid
     from fieldmon.monitor import Plot
     from fieldmon.robot import Robot
     from fieldmon.samplers import Sampler
     from fieldmon.season import Start
 
+#: a file, and what was chosen about how to read it
+_Asked: TypeAlias = tuple[Path | None, list[str] | None]
 PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
 
 app = typer.Typer(
@@ -47,6 +51,7 @@ app = typer.Typer(
 
 app.add_typer(cli_study.app, name="study")
 cli_season.register(app)
+app.command(name="app")(cli_app.open_app)
 
 
 class SamplerName(StrEnum):
@@ -102,6 +107,14 @@ Plants = Annotated[
 Paths = Annotated[
     Path | None, typer.Option(help="Paths and roads from which insects enter (lines).")
 ]
+PlantsChoices = Annotated[
+    list[str] | None,
+    typer.Option("--plants-option", help="What the file of plants leaves open, as NAME=VALUE."),
+]
+PathsChoices = Annotated[
+    list[str] | None,
+    typer.Option("--paths-option", help="What the file of paths leaves open, as NAME=VALUE."),
+]
 Bearing = Annotated[
     float | None,
     typer.Option(help="Direction of the rows, degrees from north; found if not given."),
@@ -135,6 +148,10 @@ Outputs = Annotated[
         help="Route file to write, its format by its ending; repeat for several. "
         "route.geojson if none.",
     ),
+]
+EveryPlot = Annotated[
+    bool,
+    typer.Option("--all", help="Every plot of the file; --output is the folder of routes then."),
 ]
 On = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; today.")]
 FlagOnly = Annotated[
@@ -226,12 +243,15 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     layer: Layer = None,
     plot_option: Choices = None,
     record_option: RecordChoices = None,
+    plants_option: PlantsChoices = None,
+    paths_option: PathsChoices = None,
     risk: cli_raster.Risk = None,
     risk_option: cli_raster.RiskChoices = None,
     canopy: cli_raster.Canopy = None,
     canopy_below: cli_raster.CanopyBelow = None,
     canopy_option: cli_raster.CanopyChoices = None,
     chance_map: cli_raster.ChanceMap = None,
+    every_plot: EveryPlot = False,  # noqa: FBT002 - a flag
 ) -> None:
     """Plan today's route on a plot or in a season, and write it for whoever drives.
 
@@ -244,6 +264,10 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
 
     Example: fieldmon plan vines.zip --feature 3 --observations mites.csv --hours 6 -o route.geojson
     Example: fieldmon plan season.gpkg -o route.geojson
+    Example: fieldmon plan estate.zip --all --observations mites.csv -o routes
+
+    With --all, columns robot (robot or scout), hours, speed_km_h and look_s of the plot file say
+    who works on each plot; options given here go before them.
     """
     from fieldmon.geodata.routes import RouteNotes  # noqa: PLC0415
     from fieldmon.monitor import Plans, first_day  # noqa: PLC0415
@@ -254,7 +278,8 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     if now is not None:
         raise SettingError("--now needs a season (see fieldmon init), but this is a plot file.")
     day, begins = _day(on), _clock(start)
-    plans = Plans(_robot(scout, hours, look, speed, row_change, turn), _sampler(sampler, every))
+    robot = _robot(scout, hours, look, speed, row_change, turn)
+    plans = Plans(robot, _sampler(sampler, every))
     given = {
         "row_bearing_deg": bearing,
         "row_spacing_m": row_spacing,
@@ -262,15 +287,40 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         "headland_m": headland,
         "faces": 2 if both_faces else None,
     }
+    if every_plot:
+        if plot is None or any((plants, gate, feature, risk, canopy, chance_map)):
+            raise SettingError(
+                "--all plans every plot of one plot file: leave out --feature, --plants, --gate, "
+                "--risk, --canopy and --chance-map."
+            )
+        by_hand = {
+            "hours": hours,
+            "look_s": look,
+            "speed_m_s": speed and robot.speed_m_s,
+            "row_change_s": row_change,
+            "turn_180_s": turn,
+        }
+        who = (sampler, every, scout)
+        crews = _read_crews(plot, paths, crs, layer, plot_option)
+        records = _read_all_records(observations, record_option)
+        began = datetime.combine(day.astype(date), begins)
+        if output and (len(output) > 1 or output[0].suffix):
+            raise SettingError(
+                "With --all, --output must be one folder for the routes of all plots."
+            )
+        folder = output[0] if output else Path("routes")
+        _plan_all(crews, records, (who, by_hand, given), (folder, began))
+        return
     if plot is None:
-        laid = _around(plants, gate, given)
+        laid = _around(plants, plants_option, gate, given)
     else:
         fields = _read_plots(plot, feature, crs, layer, plot_option)
-        laid = _lay(_place(fields, plants, paths, gate, feature), given)
+        beside = (plants, plants_option), (paths, paths_option)
+        laid = _lay(_place(fields, *beside, gate, feature), given)
+    named = partial(_named, plot, crs, layer, plot_option, (plants, plants_option))
+    records = _read_records(observations, laid, record_option, named)
     laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
     at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
-    named = partial(_named, (plot, plants), crs, layer, plot_option)
-    records = _read_records(observations, laid, record_option, named)
     _hear(records, day)
     today = first_day(laid, records, day, plans, at_risk)
     route = today.route
@@ -324,6 +374,8 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     layer: Layer = None,
     plot_option: Choices = None,
     record_option: RecordChoices = None,
+    plants_option: PlantsChoices = None,
+    paths_option: PathsChoices = None,
     risk: cli_raster.Risk = None,
     risk_option: cli_raster.RiskChoices = None,
     canopy: cli_raster.Canopy = None,
@@ -361,14 +413,15 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     }
     with _noting() as notes:
         if plot is None:
-            laid = _around(plants, gate, given)
+            laid = _around(plants, plants_option, gate, given)
         else:
             fields = _read_plots(plot, feature, crs, layer, plot_option)
-            laid = _lay(_place(fields, plants, paths, gate, feature), given)
+            beside = (plants, plants_option), (paths, paths_option)
+            laid = _lay(_place(fields, *beside, gate, feature), given)
+        named = partial(_named, plot, crs, layer, plot_option, (plants, plants_option))
+        records = _read_records(observations, laid, record_option, named)
         laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
         at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
-        named = partial(_named, (plot, plants), crs, layer, plot_option)
-        records = _read_records(observations, laid, record_option, named)
     _hear(records, day)
     project = Project.create(season, laid, records, setup, cli_season.remarks(notes), at_risk)
     ahead = project.status(setup.begins).outlook
@@ -415,6 +468,8 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     layer: Layer = None,
     plot_option: Choices = None,
     record_option: RecordChoices = None,
+    plants_option: PlantsChoices = None,
+    paths_option: PathsChoices = None,
     risk: cli_raster.Risk = None,
     risk_option: cli_raster.RiskChoices = None,
     canopy: cli_raster.Canopy = None,
@@ -440,14 +495,15 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         "faces": 2 if both_faces else None,
     }
     if plot is None:
-        laid = _around(plants, gate, given)
+        laid = _around(plants, plants_option, gate, given)
     else:
         fields = _read_plots(plot, feature, crs, layer, plot_option)
-        laid = _lay(_place(fields, plants, paths, gate, feature), given)
+        beside = (plants, plants_option), (paths, paths_option)
+        laid = _lay(_place(fields, *beside, gate, feature), given)
+    named = partial(_named, plot, crs, layer, plot_option, (plants, plants_option))
+    records = _read_records(observations, laid, record_option, named)
     laid = cli_raster.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
     at_risk = cli_raster.risk_of(laid, risk, risk_option, _tell)
-    named = partial(_named, (plot, plants), crs, layer, plot_option)
-    records = _read_records(observations, laid, record_option, named)
     _hear(records, day)
     begin = _start(
         laid, first_day(laid, records, day, Plans(robot), at_risk).chance, infested, seed
@@ -461,46 +517,6 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
 
         write_whole(output, "\n".join([header, *rows, ""]).encode())
         typer.echo(f"Table written to {output}")
-
-
-@app.command(name="app")
-def open_app(
-    port: Annotated[int, typer.Option(help="Port on this machine.", min=1, max=65535)] = 8501,
-    address: Annotated[
-        str, typer.Option(help="Address to listen on; others may only see it beyond 127.0.0.1.")
-    ] = "127.0.0.1",
-    browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,  # noqa: FBT002
-) -> None:
-    """Open the app in the browser. It needs no internet; stop it with Ctrl-C."""
-    import importlib.util  # noqa: PLC0415
-    import socket  # noqa: PLC0415
-    import subprocess  # noqa: PLC0415
-
-    found = importlib.util.find_spec("app")
-    if found is None or found.origin is None:
-        raise SettingError("The app must be installed beside fieldmon, but it was not found.")
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((address, port))
-        except OSError as error:
-            raise SettingError(
-                f"Port {port} at {address} must be free, but it is not ({error.strerror}). "
-                "Close what uses it, or choose another with --port."
-            ) from error
-    typer.echo(f"fieldmon is at http://{address}:{port} (stop it with Ctrl-C)")
-    page = Path(found.origin).with_name("streamlit_app.py")
-    settings = {
-        "server.port": port,
-        "server.address": address,
-        "server.headless": not browser,
-        "browser.gatherUsageStats": False,
-        "client.showErrorDetails": "none",
-        "client.toolbarMode": "minimal",
-    }
-    flags = [f"--{name}={str(value).lower()}" for name, value in settings.items()]
-    command = [sys.executable, "-m", "streamlit", "run", str(page), *flags]
-    raise typer.Exit(subprocess.run(command, check=False).returncode)  # noqa: S603
 
 
 def _read_plots(
@@ -533,6 +549,76 @@ def _plots_of(
         return read_plots(path, _chosen(options, more))
 
 
+def _read_crews(
+    path: Path,
+    paths: Path | None,
+    crs: str | None,
+    layer: str | None,
+    more: list[str] | None,
+) -> list[tuple[Field, Crew]]:
+    """Return every plot of a file, and who works on it."""
+    from dataclasses import replace  # noqa: PLC0415
+
+    from fieldmon.geodata.options import PlotOptions, ReadOptions  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_crews, read_lines  # noqa: PLC0415
+
+    options = PlotOptions()
+    for name, value in (("crs", crs), ("layer", layer)):
+        if value is not None:
+            options = options.choose(name, value)
+    with _asking("--plot-option"):
+        read, crews = read_crews(path, _chosen(options, more))
+    _tell(read.findings, path, "--plot-option")
+    fields = read.value
+    if paths is not None:
+        lines = read_lines(paths, ReadOptions())
+        _tell(lines.findings, paths)
+        fields = tuple(replace(field, paths=lines.value) for field in fields)
+    return [(field, crews[field.name]) for field in fields]
+
+
+def _read_all_records(path: Path | None, more: list[str] | None) -> Observations:
+    """Return the records of all plots."""
+    from fieldmon.field import Observations  # noqa: PLC0415
+
+    if path is None:
+        return Observations.none()
+    from fieldmon.geodata.options import RecordOptions  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_records  # noqa: PLC0415
+
+    with _asking("--record-option"):
+        read = read_records(path, _chosen(RecordOptions(), more))
+    _tell(read.findings, path, "--record-option")
+    return read.value
+
+
+def _plan_all(
+    plots: list[tuple[Field, Crew]],
+    records: Observations,
+    ordered: tuple[tuple[SamplerName, int | None, bool], dict[str, Any], dict[str, Any]],
+    to: tuple[Path, datetime],
+) -> None:
+    """Plan every plot into a folder, given who chooses, the robot's settings and the planting's."""
+    import numpy as np  # noqa: PLC0415
+
+    from fieldmon import cli_batch  # noqa: PLC0415
+    from fieldmon.batch import Orders  # noqa: PLC0415
+    from fieldmon.samplers import EVERY  # noqa: PLC0415
+
+    (name, every, scout), robot, planting = ordered
+    folder, began = to
+    orders = Orders(
+        day=np.datetime64(began.date(), "D"),
+        sampler=name.value,
+        every=every if name.value in EVERY else None,
+        on_foot=scout,
+        robot={setting: value for setting, value in robot.items() if value is not None},
+        planting={setting: value for setting, value in planting.items() if value is not None},
+    )
+    _hear(records, orders.day)
+    cli_batch.plan_all(plots, orders, cli_batch.Day(records, folder, began))
+
+
 def _read_records(
     path: Path | None,
     plot: Plot,
@@ -562,26 +648,25 @@ def _read_records(
 
 
 def _named(
-    files: tuple[Path | None, Path | None],
+    plot: Path | None,
     crs: str | None,
     layer: str | None,
     more: list[str] | None,
+    plants: _Asked,
     grid: PlantGrid,
 ) -> Places:
     """Return the plots and plants of the command's files by their names."""
     from fieldmon.geodata.places import Places  # noqa: PLC0415
-    from fieldmon.geodata.reading import read_plants  # noqa: PLC0415
 
-    plot, plants = files
     # what these files have to say was said before
     fields = () if plot is None else _plots_of(plot, None, crs, layer, more).value
-    return Places.of(fields, grid, None if plants is None else read_plants(plants).value)
+    return Places.of(fields, grid, None if plants[0] is None else _read_plants(*plants).value)
 
 
 def _place(
     fields: tuple[Field, ...],
-    plants: Path | None,
-    paths: Path | None,
+    plants: _Asked,
+    paths: _Asked,
     gate: str | None,
     feature: str | None,
 ) -> Field:
@@ -589,7 +674,7 @@ def _place(
     from dataclasses import replace  # noqa: PLC0415
 
     from fieldmon.geodata.options import ReadOptions  # noqa: PLC0415
-    from fieldmon.geodata.reading import read_lines, read_plants  # noqa: PLC0415
+    from fieldmon.geodata.reading import read_lines  # noqa: PLC0415
 
     if len(fields) > 1 and feature is None:
         names = tuple(field.name for field in fields)
@@ -601,13 +686,14 @@ def _place(
             names,
         )
     field = fields[0]
-    if plants is not None:
-        measured = read_plants(plants, ReadOptions())
-        _tell(measured.findings, plants)
+    if plants[0] is not None:
+        measured = _read_plants(*plants)
+        _tell(measured.findings, plants[0], "--plants-option")
         field = replace(field, plants=measured.value.lonlat.copy())
-    if paths is not None:
-        lines = read_lines(paths, ReadOptions())
-        _tell(lines.findings, paths)
+    if paths[0] is not None:
+        with _asking("--paths-option"):
+            lines = read_lines(paths[0], _chosen(ReadOptions(), paths[1]))
+        _tell(lines.findings, paths[0], "--paths-option")
         field = replace(field, paths=lines.value)
     return field if gate is None else replace(field, gate=_lonlat(gate))
 
@@ -630,21 +716,33 @@ def _lay(field: Field, given: dict[str, float | None]) -> Plot:
     return plot
 
 
-def _around(plants: Path | None, gate: str | None, given: dict[str, float | None]) -> Plot:
-    """Return the plot of measured plants without a boundary."""
+def _read_plants(path: Path | None, more: list[str] | None) -> Imported[Measured]:
     from fieldmon.geodata.options import ReadOptions  # noqa: PLC0415
     from fieldmon.geodata.reading import read_plants  # noqa: PLC0415
+
+    if path is None:
+        raise SettingError("Give a plot file, or the positions of its plants with --plants FILE.")
+    with _asking("--plants-option"):
+        return read_plants(path, _chosen(ReadOptions(), more))
+
+
+def _around(
+    plants: Path | None,
+    plants_option: list[str] | None,
+    gate: str | None,
+    given: dict[str, float | None],
+) -> Plot:
+    """Return the plot of measured plants without a boundary."""
     from fieldmon.monitor import Plot  # noqa: PLC0415
     from fieldmon.planting import Planting  # noqa: PLC0415
 
-    if plants is None:
-        raise SettingError("Give a plot file, or the positions of its plants with --plants FILE.")
-    measured = read_plants(plants, ReadOptions())
-    _tell(measured.findings, plants)
+    measured = _read_plants(plants, plants_option)
+    _tell(measured.findings, plants, "--plants-option")
     by_hand = {name: value for name, value in given.items() if value is not None}
     lonlat = measured.value.lonlat.copy()
     planting = Planting(**by_hand)  # type: ignore[arg-type]
-    plot = Plot.around(plants.stem, lonlat, planting, None if gate is None else _lonlat(gate))
+    name = "plants" if plants is None else plants.stem
+    plot = Plot.around(name, lonlat, planting, None if gate is None else _lonlat(gate))
     _describe(plot)
     return plot
 

@@ -57,8 +57,8 @@ ChanceMap = Annotated[
 class Tell(Protocol):
     """Tells a person what an import has to say about a file, and keeps it where it is noted."""
 
-    def __call__(self, findings: Iterable[Finding], source: object = "", /) -> None:
-        """Tell findings about a source."""
+    def __call__(self, findings: Iterable[Finding], source: object = "", flag: str = "", /) -> None:
+        """Tell findings about a source; `flag` takes their remedies."""
 
 
 def without_missing(
@@ -82,7 +82,7 @@ def without_missing(
         f"{int(missing.sum())} of {len(missing)} plants are missing (canopy below {below:g})"
         + _unseen(values, "and count as there")
     )
-    tell([*read.findings, said], canopy)
+    tell([*read.findings, said], canopy, flag)
     return plot.without(missing) if missing.any() else plot
 
 
@@ -99,15 +99,16 @@ def risk_of(
     from fieldmon.geodata.findings import seen  # noqa: PLC0415
     from fieldmon.risk import risk_chance  # noqa: PLC0415
 
-    given = _pairs(more, "--risk-option")
+    flag = "--risk-option"
+    given = _pairs(more, flag)
     settings = _risk_settings(given)
-    read, how = _read(path, plot, given, "--risk-option")
+    read, how = _read(path, plot, given, flag)
     chance = risk_chance(read.value.of_plants(plot.grid, how or "mean"), settings)
     said = seen(
         f"Risk by {settings.meaning}: {np.nanmin(chance):.3g} to {np.nanmax(chance):.3g}, "
         f"{np.nanmean(chance):.3g} on average" + _unseen(chance, "and have no risk by it")
     )
-    tell([*read.findings, said], path)
+    tell([*read.findings, said], path, flag)
     return chance
 
 

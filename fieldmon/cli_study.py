@@ -8,22 +8,25 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon import cli_study_samplers
+from fieldmon import cli_study_run, cli_study_samplers
 from fieldmon.cli_study_prior import register as register_prior
 from fieldmon.errors import FileProblem
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-app = typer.Typer(no_args_is_help=True, help="Published experiments, made again.")
+app = typer.Typer(
+    no_args_is_help=True, help="Published experiments, made again, and studies of one's own."
+)
 register_prior(app)
 app.command("samplers")(cli_study_samplers.samplers)
 app.command("beliefs")(cli_study_samplers.beliefs)
+cli_study_run.register(app)
 
 
 @app.callback()
 def study() -> None:
-    """Make published experiments again."""
+    """Make published experiments again, or run a study of one's own plots."""
 
 
 @app.command("no-prior")

@@ -11,8 +11,9 @@ import typer
 from fieldmon.errors import ChoiceNeeded, FileProblem
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
+    from fieldmon.geodata.findings import Finding
     from fieldmon.thesis.with_prior.calibrate import Calibration
     from fieldmon.thesis.with_prior.sites import Site
     from fieldmon.thesis.with_prior.studies import Study
@@ -166,7 +167,9 @@ def _site(file: Path, feature: str | None, observations: Path | None) -> Site:
     from fieldmon.prior import PriorSettings, prior_chance  # noqa: PLC0415
     from fieldmon.thesis.with_prior.sites import Site  # noqa: PLC0415
 
-    fields = read_plots(file, PlotOptions(feature=feature)).value
+    read = read_plots(file, PlotOptions(feature=feature))
+    _say(read.findings)
+    fields = read.value
     if len(fields) > 1:
         names = tuple(field.name for field in fields)
         raise ChoiceNeeded(
@@ -178,11 +181,18 @@ def _site(file: Path, feature: str | None, observations: Path | None) -> Site:
     plot = Plot.of(fields[0])
     if observations is None:
         return Site(plot.field.name, plot.aisles, plot.field)
-    records = read_records(observations, near=plot.field).value
+    heard = read_records(observations, near=plot.field)
+    _say(heard.findings)
+    records = heard.value
     dated = records.day[~np.isnat(records.day)]
     last = dated.max() if dated.size else np.datetime64("today", "D")
     chance = prior_chance(plot.grid, plot.field, records, last, PriorSettings())
     return Site(plot.field.name, plot.aisles, plot.field, chance)
+
+
+def _say(findings: Iterable[Finding]) -> None:
+    for finding in findings:
+        typer.echo(str(finding), err=True)
 
 
 def _tell(study: Study) -> None:

@@ -172,7 +172,8 @@ def days(
         evening = infested.copy()
         evening[work.plant[work.found]] = False
         infested = night(aisles.grid, evening, settings.spread, chance.key("spread", number))
-        ever_infested += int(np.count_nonzero(infested & ~evening))
+        # nobody recovers at night
+        ever_infested += int(np.count_nonzero(infested)) - int(np.count_nonzero(evening))
         trail = work.plant if len(work) else trail
         at = GATE if robot.returns or not len(trail) else int(trail[-1])
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-import numba as nb
-
 from fieldmon.chance import coin
+from fieldmon.compiled import inlined, loop
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -69,7 +68,7 @@ def night(
     return after
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def _night(
     infested: NDArray[np.bool_],
     after: NDArray[np.bool_],
@@ -85,7 +84,7 @@ def _night(
             after[i] = True
 
 
-@nb.njit(cache=True, nogil=True)
+@inlined
 def _infect(
     i: int, after: NDArray[np.bool_], adjacent: Csr, rule: tuple[float, int], key: np.uint64
 ) -> None:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.chance import coin_table
+from fieldmon.chance import coin
+from fieldmon.compiled import loop
 from fieldmon.samplers.scene import travel_s
 
 if TYPE_CHECKING:
@@ -55,8 +56,17 @@ def work_day(scene: Scene, sampler: Sampler, would_find: NDArray[np.bool_]) -> W
 
 def outcomes(infested: NDArray[np.bool_], detection: float, key: np.uint64) -> NDArray[np.bool_]:
     """Draw ``(n,)`` what an inspection of each plant would find today: nothing on clean plants."""
-    found: NDArray[np.bool_] = infested & (coin_table(key, len(infested)) < detection)
+    found = np.empty(len(infested), np.bool_)
+    _look(infested, detection, key, found)
     return found
+
+
+@loop
+def _look(
+    infested: NDArray[np.bool_], detection: float, key: np.uint64, found: NDArray[np.bool_]
+) -> None:
+    for i in range(infested.size):
+        found[i] = infested[i] and coin(key, i) < detection
 
 
 def _end_s(scene: Scene, stops: Stops) -> float:

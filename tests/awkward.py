@@ -1335,3 +1335,30 @@ def a_prj_that_nobody_understands(folder):
 @case("plots", options=PlotOptions(crs="EPSG:2039"), says="doubtful: (.prj) cannot", at=CORNERS)
 def a_prj_that_nobody_understands_and_the_system_named(folder):
     return a_prj_that_nobody_understands(folder)
+
+
+@case("records", near=HOME, asks=("crs", "EPSG:28193"), refuses="0.1 km from the place nearby")
+def eastings_without_a_system_beside_a_plot_that_tells():
+    point = moved(Point(HERE[0]), 28193)
+    return placed(f"{point.x},{point.y}", "easting,northing")
+
+
+@case("plots", refuses="500 MB at most, but p.gpkg has 501 MB")
+def a_file_of_half_a_gigabyte(folder):
+    with (folder / "p.gpkg").open("wb") as file:
+        file.truncate(501_000_000)
+    return folder / "p.gpkg"
+
+
+@case("records", refuses="field larger than field limit (1000000)")
+def a_cell_of_a_million_letters():
+    return placed(f"30.36013,35.15013,{'x' * 1_000_001}", "lat,lon,remarks")
+
+
+@case("records", refuses="must be an Excel workbook, but it cannot be read")
+def a_workbook_whose_sheet_breaks_off(folder):
+    path = workbook(folder, [["lon", "lat", "date", "count"], RECORD])
+    with zipfile.ZipFile(path) as book:
+        parts = {name: book.read(name) for name in book.namelist()}
+    sheet = "xl/worksheets/sheet1.xml"
+    return zipped(parts | {sheet: parts[sheet][:300]}, "mites.xlsx")

@@ -1,5 +1,7 @@
 """Random streams: named, independent, and the same for everyone who asks."""
 
+import zlib
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -47,3 +49,10 @@ def test_coins_agree_with_the_published_splitmix64_sequence():
     # first outputs of SplitMix64 seeded with 0 (Vigna's splitmix64.c)
     expected = np.array([0xE220A8397B1DCDAF, 0x6E789E6AA1B965F4, 0x06C45D188009454F], np.uint64)
     assert coin_table(np.uint64(0), 3).tolist() == ((expected >> np.uint64(11)) / 2.0**53).tolist()
+
+
+@given(seed=st.integers(0, 2**140), key=st.lists(st.integers(0, 2**70), max_size=4), name=st.text())
+def test_a_key_is_what_numpys_seed_sequence_makes_of_seed_and_name(seed, key, name):
+    spawn_key = (zlib.crc32(name.encode()), *key)
+    (state,) = np.random.SeedSequence(seed, spawn_key=spawn_key).generate_state(1, np.uint64)
+    assert Chance(seed).key(name, *key) == state

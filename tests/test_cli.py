@@ -270,3 +270,43 @@ def test_parts_and_holes_are_planned_around(run, tmp_path):
     route = json.loads((tmp_path / "route.geojson").read_text(encoding="utf-8"))
     for stop in route["features"][1:]:
         assert shape.covers(Point(stop["geometry"]["coordinates"]))
+
+
+def test_records_that_name_rows_and_plants_or_plots_are_taken(run, tmp_path):
+    (tmp_path / "r.csv").write_text("row,plant,date,count\n3,7,2026-03-01,4\n99,1,2026-03-01,2\n")
+    words = ["plan", ZIP, "--feature", "Gate", "--date", "2026-03-02", "--hours", 1]
+    code, _, err, _ = run(*words, "--observations", "r.csv")
+    assert code == 0, err
+    assert "dropped: 1 record(s) name 1 plant(s) that are not known: 99/1." in err
+    (tmp_path / "p.csv").write_text("plot,date,count\nGATE,2026-03-01,4\nMoon,2026-03-01,2\n")
+    code, _, err, _ = run(*words, "--observations", "p.csv")
+    assert code == 0, err
+    assert "dropped: 1 record(s) name 1 plot(s) that are not known: Moon." in err
+    assert "1 record(s) are placed to" in err
+
+
+def test_a_finding_is_printed_with_its_remedy_and_the_remedy_works(run, tmp_path):
+    _, lon, lat, *_ = Path(MITES).read_text("utf-8").splitlines()[1].split(",")
+    (tmp_path / "r.csv").write_text(f"lon,lat,date,eggs\n{lon},{lat},03/04/2026,4\n")
+    words = ["plan", ZIP, "--feature", "Gate", "--date", "2026-05-02", "--hours", 1]
+    code, _, err, _ = run(*words, "--observations", "r.csv")
+    assert code == 0, err
+    assert "(Read month first: --record-option date_order=mdy)" in err
+    assert "(Take the count from eggs: --record-option columns=count=eggs)" in err
+    options = ["--record-option", "date_order=mdy", "--record-option", "columns=count=eggs"]
+    code, _, err, _ = run(*words, "--observations", "r.csv", *options)
+    assert code == 0, err
+    assert "guessed" not in err
+    assert "Counts are in column 'eggs'" in err
+
+
+def test_what_the_file_of_plants_leaves_open_is_asked_and_answered(run, tmp_path):
+    xy = [(214_000 + 2 * i, 474_400 + 4 * j) for j in range(8) for i in range(20)]
+    gpd.GeoSeries.from_xy(*zip(*xy, strict=True), crs=2039).to_file(tmp_path / "p.shp")
+    (tmp_path / "p.prj").unlink()
+    code, _, err, _ = run("plan", "--plants", "p.shp")
+    assert code == 2
+    assert "Answer with --plants-option crs=" in err
+    code, out, err, _ = run("plan", "--plants", "p.shp", "--plants-option", "crs=EPSG:2039")
+    assert code == 0, err
+    assert "160 plants in 8 rows" in out

@@ -119,6 +119,17 @@ def test_plants_under_a_low_canopy_are_not_planned_for(run, tmp_path):
     assert min(lon) > min(everywhere) + 2e-4
 
 
+def test_what_was_guessed_is_said_with_the_option_that_undoes_it(run, tmp_path):
+    risk = covariate(tmp_path / "risk.tif", -9999.0, 0.3)
+    code, _, err = run(*PLAN, "--risk", risk)
+    assert code == 0, err
+    assert "(They are values: --risk-option nodata=none)" in err
+    assert "have no value on the raster" in err
+    code, _, err = run(*PLAN, "--risk", risk, "--risk-option", "nodata=none")
+    assert code == 2
+    assert "must hold values in 0..1" in err
+
+
 def test_a_season_begins_with_rasters_and_maps_its_days(run, tmp_path):
     risk = covariate(tmp_path / "risk.tif", 0.0, 0.3)
     plot = [ESTATE / "paran_estate.zip", "--feature", "Nursery"]

@@ -51,6 +51,7 @@ def test_an_own_plot_is_played_from_its_records(run, tmp_path):  # noqa: F811
     assert code == 0, err
     assert {path.name for path in made} == {"prior_plot.csv", "prior_plot.html"}
     assert "Nursery: dynamic finds" in out
+    assert "seen:" in err
     seeded = table(tmp_path / "prior_plot.csv")
     assert run(*words)[0] == 0
     assert seeded != table(tmp_path / "prior_plot.csv")

@@ -1,4 +1,4 @@
-"""A simulated season on the plot, day by day, sampler beside sampler."""
+"""The season: found and inspected by day, what is still out there; recording and undoing."""
 
 from __future__ import annotations
 
@@ -7,106 +7,54 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from app import cached, charts, maps, texts
-from fieldmon.errors import FieldmonError
-from fieldmon.hotspots import hot_spots
-from fieldmon.route import route_of
-from fieldmon.samplers import NEVER, Scene
+from app import cached, charts, keeping, recording, texts
 
 if TYPE_CHECKING:
     from app.choices import Choices
-    from fieldmon.season import Day
+    from app.figures import DayFigures, Known
 
 
 def show(choices: Choices) -> None:
-    """Simulate, and show any day of any sampler on the map."""
-    st.subheader(f"{choices.plot.field.name}: {texts.SEASON}")
-    st.caption(texts.SEASON_INTRO)
-    numbers, names = _numbers(), _names(choices)
-    try:
-        today = cached.today(
-            choices.key, choices.day, choices.robot, choices.sampler, choices.plot, choices.records
-        )
-        seasons = {
-            name: cached.season(
-                f"{choices.key}{choices.day}", name, numbers, choices.robot, choices.plot,
-                today.chance,
-            )
-            for name in names
-        }  # fmt: skip
-    except FieldmonError as error:
-        st.error(str(error))
+    """Show where the season stands, and take in what was found."""
+    st.subheader(f"{choices.name}: {texts.SEASON}")
+    if choices.project is None:
+        st.markdown(texts.NEEDS_SEASON)
+        keeping.begin(choices)
         return
-    left, right = st.columns([2, 3])
-    with right:
-        name = st.segmented_control(
-            texts.SHOW_SAMPLER, names, default=choices.sampler, key=f"season_sampler {names}"
-        )
-        name = name or choices.sampler
-        number = st.slider(texts.SHOW_DAY, 1, numbers[0], min(5, numbers[0]), key="season_day")
-        _map(choices, seasons[name][0], number - 1)
+    days = keeping.figures(choices)
+    known = cached.known(choices.key, choices.revision, choices.day, choices.project)
+    _figures(choices, days[-1], known)
+    left, right = st.columns([1, 1])
     with left:
-        figures = {key: value[1] for key, value in seasons.items()}
-        st.altair_chart(charts.detection(figures, number, (texts.DAY_AXIS, texts.DETECTION_AXIS)))
-        _figures(seasons[name][0][number - 1])
-        st.altair_chart(charts.found(figures[name], (texts.DAY_AXIS, texts.FOUND_AXIS)))
+        _charts(choices, days, known)
+    with right:
+        recording.show(choices)
+        with st.expander(texts.BATCHES, expanded=True):
+            keeping.batches(choices)
 
 
-def _names(choices: Choices) -> list[str]:
-    usual = dict.fromkeys([choices.sampler, "naive", "bouncy", "dynamic"])
-    chosen = st.multiselect(
-        texts.COMPARED, list(texts.SAMPLERS), list(usual), max_selections=6, key="compared",
-        format_func=lambda name: texts.SAMPLERS[name].split(":")[0],
-    )  # fmt: skip
-    return list(dict.fromkeys([choices.sampler, *chosen]))
-
-
-def _numbers() -> tuple[int, float, float, int]:
-    columns = st.columns(4)
-    n_days = columns[0].number_input(texts.DAYS, 2, 60, 25, key="n_days")
-    share = columns[1].number_input(texts.INFESTED, 0.1, 50.0, 2.0, 0.5, key="share")
-    rate = columns[2].number_input(
-        texts.SPREAD, 0.0, 100.0, 10.0, 5.0, help=texts.SPREAD_HELP, key="rate"
-    )
-    seed = columns[3].number_input(texts.SEED, 0, 10_000, 1, help=texts.SEED_HELP, key="seed")
-    return int(n_days), share / 100, rate / 100, int(seed)
-
-
-def _figures(day: Day) -> None:
+def _figures(choices: Choices, now: DayFigures, known: Known) -> None:
+    plants = len(choices.plot.grid)
+    everything = known.found + now.expected
+    detected = 100.0 * known.found / everything if everything else 100.0
     with st.container(horizontal=True):
-        st.metric(texts.FOUND_SO_FAR, f"{day.detection_pct:.0f} %", width="content")
-        st.metric(texts.FOUND_TODAY, day.found, width="content")
-        st.metric(texts.LEFT, day.left, width="content")
-        st.metric(texts.VISITED_TODAY, f"{day.visited_pct:.0f} %", width="content")
+        st.metric(texts.EXPECTED_LEFT, f"{now.expected:.1f} ({now.low}-{now.high})",
+                  help=texts.EXPECTED_HELP, width="content")  # fmt: skip
+        st.metric(texts.FOUND_EVER, f"{known.found:,}", width="content")
+        st.metric(texts.DETECTED, f"{detected:.0f} %", width="content")
+        st.metric(texts.INSPECTED_EVER, f"{known.inspected:,} / {plants:,}", width="content")
+        st.metric(texts.CLEAN_CHANCE, f"{now.clean:.1%}", width="content")
 
 
-def _map(choices: Choices, season: list[Day], number: int) -> None:
-    grid, day = choices.plot.grid, season[number]
-    state = np.where(day.last_inspected >= 0, 0, -1).astype(np.int8)
-    for earlier in season[: number + 1]:
-        state[earlier.work.plant[earlier.work.found]] = 1
-    scene = Scene(
-        aisles=choices.plot.aisles, robot=choices.robot, chance=day.chance,
-        last_inspected=np.full(len(grid), NEVER, np.int32), seconds_left=choices.robot.day_s,
-    )  # fmt: skip
-    names = {1: texts.LEGEND_STATES["found"], 0: texts.LEGEND_STATES["clean"],
-             -1: texts.LEGEND_STATES["never"]}  # fmt: skip
-    layers = [
-        maps.boundary(choices.plot.field),
-        maps.plants(grid, maps.by_state(state), [names[s] for s in state.tolist()]),
-        *maps.route(route_of(scene, day.work), numbers=False),
-        *maps.hot(grid, hot_spots(grid, state)),
-    ]
-    if st.toggle(texts.SHOW_TRUTH, key="truth"):
-        left = day.infested.copy()
-        left[day.work.plant[day.work.found]] = False
-        layers += maps.truth(grid, left)
-    bar, bar_m = maps.scale(grid)
-    st.pydeck_chart(
-        maps.deck(grid, [*layers, *bar], phone=choices.phone),
-        height=choices.map_px,
-        key="season_map",
+def _charts(choices: Choices, days: list[DayFigures], known: Known) -> None:
+    axes = (texts.DATE_AXIS, texts.INSPECTED_AXIS, texts.FOUND_AXIS)
+    st.altair_chart(charts.season_days(days, axes), alt=texts.FOUND_AXIS)
+    st.altair_chart(charts.still_out(days, (texts.DATE_AXIS, texts.OUT_AXIS)), alt=texts.OUT_AXIS)
+    st.markdown(f"**{texts.ROW_AGES}**")
+    line = choices.plot.grid.row_line.astype(np.int64) + 1
+    never = len(np.unique(line)) - len(np.unique(line[~np.isnan(known.days_since)]))
+    st.altair_chart(
+        charts.row_ages(known.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE)),
+        alt=texts.ROW_AGES,
     )
-    colours = [(maps.FOUND, names[1]), (maps.CLEAN, names[0]), (maps.NEVER, names[-1])]
-    st.markdown(maps.legend(colours), unsafe_allow_html=True)
-    st.caption(" · ".join([texts.LEGEND_HOT, texts.LEGEND_TRUTH, texts.NORTH.format(m=bar_m)]))
+    st.caption(texts.NEVER_ROWS.format(n=never, all=len(np.unique(line))))

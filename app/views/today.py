@@ -1,112 +1,72 @@
-"""Today: the chance map, the route, and the figures to decide by."""
+"""Today: the chance map, the route, the figures to decide by, and what changed."""
 
 from __future__ import annotations
 
-from datetime import datetime, time
 from typing import TYPE_CHECKING
 
-import pandas as pd
 import streamlit as st
 
-from app import cached, maps, texts
-from fieldmon.errors import FieldmonError
+from app import keeping, maps, panels, texts
+from fieldmon.geodata.handoff import HandoffPlan
 from fieldmon.geodata.routes import RouteNotes, route_geojson
-from fieldmon.grid import row_label
-from fieldmon.prior import usable
 
 if TYPE_CHECKING:
-    import pydeck as pdk
-
     from app.choices import Choices
     from fieldmon.monitor import Today
-
-STARTS = time(6, 0)
 
 
 def show(choices: Choices) -> None:
     """Plan the day and show it."""
-    try:
-        today = cached.today(
-            choices.key, choices.day, choices.robot, choices.sampler, choices.plot, choices.records
-        )
-    except FieldmonError as error:
-        st.error(str(error))
-        return
-    st.subheader(choices.plot.field.name)
-    _figures(choices, today)
+    today = choices.today()
+    st.subheader(f"{choices.name} · {choices.units.day(choices.day)}")
+    panels.route_figures(choices, today)
+    panels.done_today(choices)
     if not len(today.route):
         st.warning(texts.NO_STOPS)
+    picture = st.container()
     shown = st.pills(
         texts.LAYERS, list(texts.LAYER_NAMES), format_func=texts.LAYER_NAMES.__getitem__,
         selection_mode="multi", default=["plants", "route", "numbers", "hot"], key="layers",
     )  # fmt: skip
-    layers, bar_m = _layers(choices, today, shown)
-    st.pydeck_chart(
-        maps.deck(choices.plot.grid, layers, phone=choices.phone), height=choices.map_px, key="map"
-    )
+    with picture:
+        panels.draw(choices, _layers(choices, today, shown), "map")
+    _hand_out(choices, today)
     st.markdown(f"**{texts.LEGEND_CHANCE}**{maps.chance_legend()}", unsafe_allow_html=True)
-    notes = [texts.LEGEND_ROUTE, texts.LEGEND_HOT, texts.LEGEND_RECORDS]
-    st.caption(" · ".join([*notes, texts.NORTH.format(m=bar_m)]))
-    _download(choices, today)
-    _findings(choices)
+    panels.captions([texts.LEGEND_ROUTE, texts.LEGEND_HOT, texts.LEGEND_RECORDS])
+    if choices.project is None:
+        keeping.begin(choices)
+    else:
+        st.markdown(f"**{texts.CHANGED}**")
+        st.markdown("\n".join(f"- {sentence}" for sentence in panels.changes(choices)))
+    if len(today.route):
+        with st.expander(texts.STOPS):
+            st.dataframe(panels.stops(choices, today), height=300)
 
 
-def _figures(choices: Choices, today: Today) -> None:
-    route, n = today.route, len(choices.plot.grid)
-    finds = route.expected_finds * choices.robot.detects
-    with st.container(horizontal=True):
-        st.metric(texts.PLANTS_TO_INSPECT, f"{len(route):,} / {n:,}", width="content")
-        st.metric(texts.TIME, f"{route.end_s / 3600:.1f} h", width="content")
-        st.metric(texts.DRIVE, f"{route.drive_m / 1000:.2f} km", width="content")
-        st.metric(texts.FINDS, f"{finds:.1f}", help=texts.FINDS_HELP, width="content")
-
-
-def _layers(choices: Choices, today: Today, shown: list[str]) -> tuple[list[pdk.Layer], int]:
-    grid = choices.plot.grid
-    layers = [maps.boundary(choices.plot.field)]
-    if "plants" in shown:
-        note = [f"{chance:.1%} chance" for chance in today.chance.tolist()]
-        layers.append(maps.plants(grid, maps.by_chance(today.chance), note))
+def _layers(choices: Choices, today: Today, shown: list[str]) -> list:
+    layers = panels.plant_layers(choices, "chance") if "plants" in shown else []
     if "route" in shown:
-        layers += maps.route(today.route, numbers="numbers" in shown)
+        layers = layers + panels.route_layers(choices, today.route, numbers="numbers" in shown)
     if "hot" in shown:
-        spots = cached.recorded_hot_spots(choices.key, choices.plot, choices.records)
-        layers += maps.hot(grid, spots)
-    if "records" in shown:
-        layers += maps.records(choices.records)
-    bar, bar_m = maps.scale(grid)
-    return [*layers, *bar], bar_m
+        layers = layers + maps.hot(choices.plot.grid, panels.spots_of(choices))
+    return layers + maps.records(choices.records) if "records" in shown else layers
 
 
-def _download(choices: Choices, today: Today) -> None:
+def _hand_out(choices: Choices, today: Today) -> None:
     if not len(today.route):
         return
-    start = datetime.combine(datetime.fromisoformat(choices.day), STARTS)
-    notes = RouteNotes(choices.plot.field.name, choices.sampler, start)
-    st.download_button(
-        texts.DOWNLOAD, route_geojson(today.route, notes), f"route_{choices.day}.geojson",
-        "application/geo+json", type="primary", on_click="ignore",
-    )  # fmt: skip
-    with st.expander(texts.STOPS):
-        label = row_label(choices.plot.grid, today.route.plant)
-        arrive = pd.Timestamp(start) + pd.to_timedelta(today.route.arrive_s.round(), unit="s")
-        table = pd.DataFrame(
-            {
-                "arrive": arrive.strftime("%H:%M:%S"),
-                "row": label.line,
-                "plant": label.number,
-                "chance %": (100 * today.route.chance).round(1),
-            },
-            index=pd.RangeIndex(1, len(today.route) + 1, name="stop"),
-        )
-        st.dataframe(table, height=300)
-
-
-def _findings(choices: Choices) -> None:
-    with st.expander(texts.FINDINGS):
-        for finding in choices.findings:
-            st.markdown(f"- **{finding.severity}**: {finding.sentence}")
-        for remark in usable(choices.records, pd.Timestamp(choices.day).to_numpy()).remarks():
-            st.markdown(f"- {remark}")
-        if not choices.findings:
-            st.markdown(texts.FINDINGS_NONE)
+    notes = RouteNotes(choices.plot.field.name, choices.sampler, panels.starts(choices, today))
+    with st.container(horizontal=True):
+        st.download_button(
+            texts.DOWNLOAD, route_geojson(today.route, notes), f"route_{choices.day}.geojson",
+            "application/geo+json", type="primary", on_click="ignore",
+        )  # fmt: skip
+        with st.popover(texts.OTHER_FORMATS):
+            panels.other_formats(choices, HandoffPlan(today.route, notes))
+        if choices.project is not None:
+            if st.button(texts.GIVE_OUT, help=texts.GIVE_OUT_HELP, key="give_out"):
+                choices.project.plan(choices.on)
+                st.toast(texts.GIVEN_OUT.format(day=choices.units.day(choices.day)))
+            with st.container(key="start_scouting", width="content"):
+                st.page_link(st.session_state["scout_page"], label=texts.START_SCOUTING,
+                         icon=":material/eco:")  # fmt: skip

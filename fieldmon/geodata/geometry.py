@@ -52,7 +52,7 @@ def _measured(geometry: shapely.Geometry) -> _Measured:
 
     The area between a parallel and the equator has a closed form on the ellipsoid (Snyder 1987,
     Map Projections, eq. 3-12), so that of a ring is one sum; sides count as straight in a map that
-    keeps areas, which for a side of 1 km is geodesic to a millimetre.
+    keeps areas, which for a side of 1 km is geodesic to some centimetres.
     """
     polygons = _polygons(geometry).geoms
     rings, polygon = shapely.get_rings(list(polygons), return_index=True)
@@ -113,36 +113,40 @@ def filled(line: shapely.Geometry) -> MultiPolygon:
 
 def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Finding]]:
     """Return one feature's lon/lat area as a valid MultiPolygon (empty where nothing is left)."""
-    findings: list[Finding] = []
-    whole = _polygons(area)
-    if not shapely.is_valid(whole):
-        whole, said = _repaired(whole, name)
-        findings.append(said)
-    kept, n_slivers = _without_slivers(whole)
-    if n_slivers:
+    drawn = _polygons(area)
+    whole, findings = drawn, []
+    if not shapely.is_valid(drawn):
+        why = _plain(shapely.is_valid_reason(drawn))
+        try:
+            whole = _polygons(shapely.make_valid(drawn, method="structure", keep_collapsed=False))
+        except GEOSException as bad:
+            said = f"The shape is broken ({why}) beyond repair: {bad}."
+            return MultiPolygon(), [dropped(said, name)]
+    measured = _measured(whole)
+    if whole is not drawn:
+        findings.append(_repaired(drawn, whole, measured, name, why))
+    is_wide = _is_wide(measured)
+    if not is_wide.all():
+        whole = MultiPolygon([p for p, wide in zip(whole.geoms, is_wide, strict=True) if wide])
         findings.append(
             dropped(
-                f"{n_slivers} part(s) too small or narrow for a plant were left out "
+                f"{int((~is_wide).sum())} part(s) too small or narrow for a plant were left out "
                 f"(under {_SLIVER_M2:g} m2 or {_SLIVER_WIDTH_M:g} m wide).",
                 name,
             )
         )
-    if not kept.is_empty:
-        findings += _questions(kept, name)
-    return kept, findings
+    if not whole.is_empty:
+        findings += _questions(float(measured.area_m2[is_wide].sum()), name)
+    return whole, findings
 
 
-def _repaired(area: MultiPolygon, name: str) -> tuple[MultiPolygon, Finding]:
-    """Return a valid area: parts that overlap become one, holes stay holes, lines vanish."""
-    why, before = _plain(shapely.is_valid_reason(area)), area_m2(area)
-    try:
-        valid = shapely.make_valid(area, method="structure", keep_collapsed=False)
-    except GEOSException as bad:
-        return MultiPolygon(), dropped(f"The shape is broken ({why}) beyond repair: {bad}.", name)
-    whole = _polygons(valid)
-    parts = "" if len(whole.geoms) == len(area.geoms) else f" in {len(whole.geoms)} part(s)"
-    change = f"{_amount(before)} as drawn, {_amount(area_m2(whole))}{parts} now"
-    return whole, repaired(f"The shape was not valid ({why}) and was repaired: {change}.", name)
+def _repaired(
+    drawn: MultiPolygon, whole: MultiPolygon, now: _Measured, name: str, why: str
+) -> Finding:
+    """Return what to say of an area made valid: parts that overlap are one, holes stay holes."""
+    parts = "" if len(whole.geoms) == len(drawn.geoms) else f" in {len(whole.geoms)} part(s)"
+    change = f"{_amount(area_m2(drawn))} as drawn, {_amount(now.area_m2.sum())}{parts} now"
+    return repaired(f"The shape was not valid ({why}) and was repaired: {change}.", name)
 
 
 def _polygons(geometry: shapely.Geometry) -> MultiPolygon:
@@ -154,17 +158,13 @@ def _polygons(geometry: shapely.Geometry) -> MultiPolygon:
     return MultiPolygon(list(kept))
 
 
-def _without_slivers(areas: MultiPolygon) -> tuple[MultiPolygon, int]:
-    area, perimeter = _measured(areas)
-    is_wide = (area >= _SLIVER_M2) & (2 * area / np.maximum(perimeter, 1e-9) >= _SLIVER_WIDTH_M)
-    if is_wide.all():
-        return areas, 0
-    kept = [part for part, good in zip(areas.geoms, is_wide, strict=True) if good]
-    return MultiPolygon(kept), len(areas.geoms) - len(kept)
+def _is_wide(measured: _Measured) -> NDArray[np.bool_]:
+    """Return which parts ``(n,)`` have room for a plant."""
+    width_m = 2 * measured.area_m2 / np.maximum(measured.perimeter_m, 1e-9)
+    return (measured.area_m2 >= _SLIVER_M2) & (width_m >= _SLIVER_WIDTH_M)
 
 
-def _questions(areas: MultiPolygon, name: str) -> list[Finding]:
-    area = area_m2(areas)
+def _questions(area: float, name: str) -> list[Finding]:
     if SMALLEST_M2 <= area <= LARGEST_M2:
         return []
     return [

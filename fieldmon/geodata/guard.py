@@ -17,7 +17,7 @@ import threading
 import time
 from contextlib import suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, NamedTuple
 
 from fieldmon.errors import FileProblem
 from fieldmon.geodata import limits
@@ -27,9 +27,6 @@ if sys.platform != "win32":
 
 #: files read before a process is replaced, so that nothing adds up in it
 _USES = 200
-#: real time over its own that a process may take, and the share of it that it must work
-_PATIENCE = 3.0
-_LEAST_SHARE = 0.05
 # GDAL reads these when it is loaded. Drivers that lead to other files or to the network are not
 # there at all, and a proxy that does not exist stands between the rest and the world.
 _SKIPPED = (
@@ -61,8 +58,8 @@ _ENVIRONMENT = {
 class _Clock(threading.Thread):
     """Ends a process that works for longer than it may, or sleeps.
 
-    What counts is the process's own time, or a busy machine would refuse good files; and real time
-    where it does nothing at all, or takes `_PATIENCE` times as long.
+    What counts is the process's own time, or a busy machine would refuse good files; real time
+    counts where it only sleeps, and where it takes `limits.PATIENCE` times as long.
     """
 
     def __init__(self, process: subprocess.Popen[bytes], seconds: float) -> None:
@@ -73,12 +70,17 @@ class _Clock(threading.Thread):
 
     def run(self) -> None:
         """Look at the process until it has answered."""
-        began, worked_s = time.monotonic(), _own_seconds(self._process.pid)
+        began = awake = time.monotonic()
+        first = seen = _work(self._process.pid)
         while not self._done.wait(min(0.1, self._seconds / 10)):
-            real_s = time.monotonic() - began
-            own_s = _own_seconds(self._process.pid) - worked_s
-            sleeps = real_s > self._seconds and not own_s > _LEAST_SHARE * real_s
-            if sleeps or own_s > self._seconds or real_s > _PATIENCE * self._seconds:
+            now, own = time.monotonic(), _work(self._process.pid)
+            if own.worked_s > seen.worked_s or own.waits_for_its_turn:
+                awake, seen = now, own
+            if (
+                own.worked_s - first.worked_s > self._seconds
+                or now - awake > self._seconds
+                or now - began > limits.PATIENCE * self._seconds
+            ):
                 self.is_late = True
                 self._process.kill()
                 return
@@ -88,14 +90,22 @@ class _Clock(threading.Thread):
         self._done.set()
 
 
-def _own_seconds(pid: int) -> float:
-    """Return the time a process has worked; NaN where the system does not tell."""
+class _Work(NamedTuple):
+    """How long a process has worked, and whether it would if it had a processor."""
+
+    worked_s: float
+    waits_for_its_turn: bool
+
+
+def _work(pid: int) -> _Work:
+    """Return the work of a process; nothing where the system does not tell."""
     try:
         after_name = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2]
     except OSError:
-        return float("nan")
-    user, system = after_name.split()[11:13]
-    return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+        return _Work(0.0, waits_for_its_turn=False)
+    state, *numbers = after_name.split()
+    ticks = int(numbers[10]) + int(numbers[11])
+    return _Work(ticks / os.sysconf("SC_CLK_TCK"), state in {"R", "D"})
 
 
 class Reader:

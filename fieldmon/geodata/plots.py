@@ -40,6 +40,14 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     return Imported(fields, (*found, *row_findings))
 
 
+def named_areas(layer: Layer, options: PlotOptions) -> tuple[Layer, list[str]]:
+    """Return the features of a layer that are plots, and the name of each."""
+    if layer.geometry is None:
+        return layer.take(np.arange(0)), []
+    areas, _ = _areas(layer)
+    return areas, plot_names(areas, options.name_column)[0]
+
+
 def _shapes(layer: Layer) -> NDArray[np.object_]:
     if layer.geometry is None:
         raise FileProblem(f"{layer.name} must hold shapes, but it is a plain table.")

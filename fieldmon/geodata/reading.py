@@ -8,9 +8,11 @@ stands in the findings. The file itself is opened in a process of its own (`guar
 from __future__ import annotations
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.errors import ChoiceNeeded
 from fieldmon.geodata import guard
 from fieldmon.geodata.nearby import of_plot
 from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from shapely import MultiLineString
 
     from fieldmon.field import Field, Observations
+    from fieldmon.geodata.crews import Crew
     from fieldmon.geodata.findings import Imported
     from fieldmon.geodata.layers import LayerInfo
     from fieldmon.geodata.places import Places, Plants
@@ -46,6 +49,16 @@ def read_plots(source: Source, options: PlotOptions | None = None) -> Imported[t
     return plots
 
 
+def read_crews(
+    source: Source, options: PlotOptions | None = None
+) -> tuple[Imported[tuple[Field, ...]], dict[str, Crew]]:
+    """Return the plots of a source as `read_plots`, and by name who works on each."""
+    read: tuple[Imported[tuple[Field, ...]], dict[str, Crew]] = _read(
+        "crews", source, options or PlotOptions()
+    )
+    return read
+
+
 def read_records(
     source: Source,
     options: RecordOptions | None = None,
@@ -65,7 +78,17 @@ def read_records(
     places
         Plots or plants that records may name instead of giving a position.
     """
-    records: Imported[Observations] = _read("records", source, options or RecordOptions(), places)
+    options = options or RecordOptions()
+    records: Imported[Observations]
+    try:
+        records = _read("records", source, options, places)
+    except ChoiceNeeded as question:
+        if question.option != "crs" or near is None or options.near is not None:
+            raise
+        # the plot tells which coordinate systems are likely: ask again with those
+        west, south, east, north = near.boundary.bounds
+        nearby = replace(options, near=((west + east) / 2, (south + north) / 2))
+        records = _read("records", source, nearby, places)
     if near is None:
         return records
     kept, more = of_plot(records.value, near)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import zipfile
 from collections import Counter
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import openpyxl
 
-from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.geodata import limits
 from fieldmon.geodata.columns import recognised
 from fieldmon.geodata.findings import Finding, dropped, seen
@@ -92,7 +91,8 @@ class _Workbook:
     def __exit__(self, kind: object, bad: BaseException | None, trace: object) -> None:
         if self.book is not None:
             self.book.close()
-        if isinstance(bad, (KeyError, ValueError, TypeError, AttributeError, zipfile.BadZipFile)):
+        # openpyxl reads as it goes, and lets through whatever its parsers of zip and XML raise
+        if isinstance(bad, Exception) and not isinstance(bad, FieldmonError | MemoryError):
             raise self._problem(bad) from bad
 
     def _problem(self, bad: BaseException) -> FileProblem:

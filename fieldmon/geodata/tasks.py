@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fieldmon.geodata.containers import Workroom
+from fieldmon.geodata.crews import crews_of
 from fieldmon.geodata.opening import layers_of, open_layer
-from fieldmon.geodata.plots import plots_of
+from fieldmon.geodata.plots import named_areas, plots_of
 from fieldmon.geodata.points_and_lines import lines_of, plants_of
 from fieldmon.geodata.records import records_of
 from fieldmon.geodata.reported import Reported, reported_of
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from shapely import MultiLineString
 
     from fieldmon.field import Field, Observations
+    from fieldmon.geodata.crews import Crew
     from fieldmon.geodata.findings import Imported
     from fieldmon.geodata.layers import LayerInfo
     from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
@@ -31,6 +33,14 @@ def layers(folder: str, source: Source) -> tuple[LayerInfo, ...]:
 def plots(folder: str, source: Source, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     """Return the plots of a source."""
     return plots_of(open_layer(source, options, Workroom(Path(folder))), options)
+
+
+def crews(
+    folder: str, source: Source, options: PlotOptions
+) -> tuple[Imported[tuple[Field, ...]], dict[str, Crew]]:
+    """Return the plots of a source, and who works on each."""
+    layer = open_layer(source, options, Workroom(Path(folder)))
+    return plots_of(layer, options), crews_of(*named_areas(layer, options))
 
 
 def records(

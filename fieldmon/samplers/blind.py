@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-import numba as nb
 import numpy as np
 
 from fieldmon.chance import coin, coin_table
+from fieldmon.compiled import loop
 from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
@@ -180,14 +180,14 @@ def _walked(
         scene.aisles.ground,
         scene.clock,
         stations,
-        (wanted, scene.last_inspected),
+        (wanted, scene.last_inspected.copy()),
         (*start, scene.at, scene.day, scene.key),
         stops,
     )
     return Stops(stops.plant[:k], stops.arrive_s[:k])
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def _walk(
     ground: Ground,
     clock: Clock,
@@ -196,9 +196,8 @@ def _walk(
     start: tuple[int, int, int, bool, int, int, np.uint64],
     stops: Stops,
 ) -> int:
-    wanted, last_inspected = plants
+    wanted, last = plants
     position, ahead, every, turns, at, today, key = start
-    last = last_inspected.copy()
     m = stations.start.size - 1
     now_s, k, skipped = 0.0, 0, 0
     while skipped < _MOST_SKIPPED * m:
@@ -225,7 +224,7 @@ def _walk(
     return k
 
 
-@nb.njit(cache=True)
+@loop
 def _next_here(
     ground: Ground,
     stations: Stations,
@@ -247,7 +246,7 @@ def _next_here(
     return found
 
 
-@nb.njit(cache=True)
+@loop
 def _turned(stations: Stations, last: NDArray[np.int32], ahead: int, step: int) -> int:
     """Return where a sweep goes on at the plot's end: least recently visited, then nearest."""
     m = stations.start.size - 1

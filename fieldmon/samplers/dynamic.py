@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-import numba as nb
 import numpy as np
 
+from fieldmon.compiled import inlined, loop
 from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
@@ -16,21 +16,35 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.aisles import Ground
-    from fieldmon.grid import Csr
+    from fieldmon.grid import Csr, PlantGrid
 
 # the upper bits of a positive float64 rise with it, in 8 steps an octave: 7 to 13 % each
 _LEVEL_BITS = 49
 _OCTAVE = 8
-_LEVELS = (1023 << 3) + 1  # the level of a chance of 1, plus one
 
 
 class _Open(NamedTuple):
-    """The open list: a flag per plant, and per row how many are open and between which."""
+    """The open list: a flag per plant, and per row how many are open and between which.
+
+    And room to count plants by how many levels they are below the most suspicious.
+    """
 
     flag: NDArray[np.bool_]
     n_open: NDArray[np.int64]
     low: NDArray[np.int64]
     high: NDArray[np.int64]
+    tally: NDArray[np.int64]
+
+    @classmethod
+    def on(cls, grid: PlantGrid, steps: int) -> _Open:
+        """Return an empty list, with room for so many levels."""
+        return cls(
+            np.zeros(len(grid), np.bool_),
+            np.zeros(grid.n_rows, np.int64),
+            grid.row_start[1:].copy(),
+            grid.row_start[:-1] - 1,
+            np.empty(steps, np.int64),
+        )
 
 
 @dataclass(frozen=True)
@@ -69,36 +83,30 @@ class Dynamic:
     def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
         """Return the stops of the rest of the day."""
         stops = scene.blank()
-        closed = scene.last_inspected == scene.day
+        steps = round(-_OCTAVE * math.log2(self.suspicious))
         k = _walk(
             scene.aisles.ground,
             scene.clock,
             (scene.grid.adjacent, scene.grid.lane_y_m, scene.chance.view(np.int64), would_find),
-            closed,
-            (scene.at, round(-_OCTAVE * math.log2(self.suspicious)), self.at_once),
+            (scene.last_inspected == scene.day, _Open.on(scene.grid, steps)),
+            (scene.at, steps, self.at_once),
             stops,
         )
         return Stops(stops.plant[:k], stops.arrive_s[:k])
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def _walk(
     ground: Ground,
     clock: Clock,
     plants: tuple[Csr, NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]],
-    closed: NDArray[np.bool_],
+    lists: tuple[NDArray[np.bool_], _Open],
     start: tuple[int, int, float],
     stops: Stops,
 ) -> int:
     at, steps, at_once = start
     adjacent, lane_y_m, chance_bits, would_find = plants
-    rows = ground.row_start.size - 1
-    opened = _Open(
-        np.zeros(closed.size, np.bool_),
-        np.zeros(rows, np.int64),
-        ground.row_start[1:].copy(),
-        ground.row_start[:-1] - 1,
-    )
+    closed, opened = lists
     now_s, k, left = 0.0, 0, 0
     while k < stops.plant.size:
         if left == 0:
@@ -124,7 +132,7 @@ def _walk(
     return k
 
 
-@nb.njit(cache=True)
+@inlined
 def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) -> int:
     """Put a plant on the open list; return how many joined it (0 or 1)."""
     if closed[plant] or opened.flag[plant]:
@@ -137,7 +145,7 @@ def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) 
     return 1
 
 
-@nb.njit(cache=True)
+@loop
 def _refill(
     ground: Ground,
     opened: _Open,
@@ -147,30 +155,34 @@ def _refill(
     """Open the suspicious plants that are not closed, `room` at most; return how many."""
     closed, chance_bits = plants
     room, steps = limits
-    tally = np.zeros(_LEVELS, np.int64)
-    top = np.int64(0)
+    most = np.int64(0)
     for plant in range(closed.size):
-        if not closed[plant]:
-            own = chance_bits[plant] >> _LEVEL_BITS
-            tally[own] += 1
-            top = max(top, own)
-    level, above = top, 0
-    while level > max(top - steps, np.int64(0)) and above + tally[level] < room:
-        above += tally[level]
-        level -= 1
+        if chance_bits[plant] > most and not closed[plant]:
+            most = chance_bits[plant]
+    top = most >> _LEVEL_BITS
+    opened.tally[:] = 0
+    for plant in range(closed.size):
+        below = top - (chance_bits[plant] >> _LEVEL_BITS)
+        if below < steps and not closed[plant]:
+            opened.tally[below] += 1
+    most_below = min(steps, int(top))
+    least, above = 0, 0
+    while least < most_below and above + opened.tally[least] < room:
+        above += opened.tally[least]
+        least += 1
     even = room - above
     joined = 0
     for plant in range(closed.size):
-        if closed[plant]:
+        below = top - (chance_bits[plant] >> _LEVEL_BITS)
+        if below > least or closed[plant]:
             continue
-        own = chance_bits[plant] >> _LEVEL_BITS
-        if own > level or (own == level and even > 0):
-            even -= own == level
+        if below < least or even > 0:
+            even -= below == least
             joined += _open(ground, opened, closed, plant)
     return joined
 
 
-@nb.njit(cache=True)
+@inlined
 def _nearest(
     ground: Ground, clock: Clock, opened: _Open, lane_y_m: NDArray[np.float64], at: int
 ) -> int:
@@ -198,7 +210,7 @@ def _nearest(
     return best
 
 
-@nb.njit(cache=True)
+@inlined
 def _nearest_in(
     ground: Ground, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
@@ -208,7 +220,7 @@ def _nearest_in(
     return _nearest_end(ground, clock, opened, at, row)
 
 
-@nb.njit(cache=True)
+@inlined
 def _nearest_end(
     ground: Ground, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
@@ -226,19 +238,23 @@ def _nearest_end(
     return (low, low_s) if low_s <= high_s else (high, high_s)
 
 
-@nb.njit(cache=True)
+@inlined
 def _nearest_along(
     ground: Ground, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
     """Return the open plant of a row in the same aisle that is reached first, and the seconds."""
     best, best_s = -1, np.inf
     start, end = ground.row_start[row], ground.row_start[row + 1]
-    middle = start + np.searchsorted(ground.x_m[start:end], ground.x_m[at])
+    middle = at
+    if row != ground.row[at]:
+        middle = start + np.searchsorted(ground.x_m[start:end], ground.x_m[at])
     for plant in range(middle, end):
         if opened.flag[plant]:
             best, best_s = plant, travel_s(ground, clock, at, plant)
             break
     for plant in range(middle - 1, start - 1, -1):
+        if (ground.x_m[at] - ground.x_m[plant]) / clock.speed_m_s >= best_s:
+            break
         if opened.flag[plant]:
             plant_s = travel_s(ground, clock, at, plant)
             if plant_s < best_s:

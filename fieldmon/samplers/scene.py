@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-import numba as nb
 import numpy as np
 
 from fieldmon.aisles import drive_m
+from fieldmon.compiled import inlined
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -128,7 +128,7 @@ class Sampler(Protocol):
         ...
 
 
-@nb.njit(cache=True, inline="always")
+@inlined
 def travel_s(ground: Ground, clock: Clock, i: int, j: int) -> float:
     """Return the seconds from plant (or gate) i to plant (or gate) j, without the stop itself."""
     seconds = drive_m(ground, i, j) / clock.speed_m_s
@@ -142,7 +142,7 @@ def travel_s(ground: Ground, clock: Clock, i: int, j: int) -> float:
     return seconds
 
 
-@nb.njit(cache=True)
+@inlined
 def can_visit(ground: Ground, clock: Clock, i: int, j: int, now_s: float) -> bool:
     """Tell whether plant j fits into the day after `now_s` at i, way back to the gate included."""
     end_s = now_s + travel_s(ground, clock, i, j) + clock.visit_s

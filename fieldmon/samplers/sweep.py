@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numba as nb
-import numpy as np
-
+from fieldmon.compiled import loop
 from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.aisles import Ground
@@ -60,14 +59,14 @@ def _sweep(scene: Scene, every: int) -> Stops:
     k = _walk(
         scene.aisles.ground,
         scene.clock,
-        (scene.grid.snake, scene.last_inspected),
+        (scene.grid.snake, scene.last_inspected.copy()),
         (scene.at, scene.resume, scene.day, every),
         stops,
     )
     return Stops(stops.plant[:k], stops.arrive_s[:k])
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def _walk(
     ground: Ground,
     clock: Clock,
@@ -75,10 +74,11 @@ def _walk(
     start: tuple[int, int, int, int],
     stops: Stops,
 ) -> int:
-    snake, last_inspected = plants
+    snake, last = plants
     at, after, today, every = start
-    last = last_inspected.copy()
-    left = np.count_nonzero(last != today)
+    left = 0
+    for day in last:
+        left += day != today
     position = _first(snake, last, every) if after < 0 else _place(snake, after) + every
     now_s, k = 0.0, 0
     while left > 0 and k < stops.plant.size:
@@ -100,7 +100,7 @@ def _walk(
     return k
 
 
-@nb.njit(cache=True)
+@loop
 def _first(snake: NDArray[np.int32], last: NDArray[np.int32], every: int) -> int:
     """Return where a new pass starts: at the first plant inspected least recently."""
     best = 0
@@ -110,7 +110,7 @@ def _first(snake: NDArray[np.int32], last: NDArray[np.int32], every: int) -> int
     return best
 
 
-@nb.njit(cache=True)
+@loop
 def _place(snake: NDArray[np.int32], plant: int) -> int:
     """Return where in the sweep a plant stands."""
     for position in range(snake.size):

@@ -14,12 +14,19 @@ SHOTS = Path(__file__).with_name("screenshots")
 
 
 @pytest.fixture(scope="session")
-def address(browser, tmp_path_factory):  # noqa: ARG001 - no server where there is no browser
+def served_seasons(tmp_path_factory):
+    """Return the folder in which the server of this run keeps its seasons."""
+    return tmp_path_factory.mktemp("served")
+
+
+@pytest.fixture(scope="session")
+def address(browser, served_seasons, tmp_path_factory):  # noqa: ARG001 - no browser, no server
     """Start the app by its command; return where it is."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser", "--port", str(port)]
+    command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser", "--port", str(port),
+               "--seasons", str(served_seasons)]  # fmt: skip
     log = tmp_path_factory.mktemp("app") / "log"
     with log.open("wb") as out:
         server = subprocess.Popen(command, stdout=out, stderr=out, start_new_session=True)
@@ -58,3 +65,22 @@ def page(browser, request):
     SHOTS.mkdir(exist_ok=True)
     page.screenshot(path=SHOTS / f"{request.node.name.replace('/', '_')}.png")
     context.close()
+
+
+@pytest.fixture(autouse=True)
+def seasons_folder(tmp_path_factory, monkeypatch):
+    """Let each test have a folder of seasons of its own."""
+    folder = tmp_path_factory.mktemp("seasons")
+    monkeypatch.setenv("FIELDMON_SEASONS", str(folder))
+    return folder
+
+
+@pytest.fixture(scope="session")
+def shared():
+    """Return the folder of real files beside the repository."""
+    folder = Path(__file__).resolve().parents[3] / "shared" / "data"
+    if not folder.is_dir():
+        if os.environ.get("FIELDMON_REQUIRE_DATA"):
+            pytest.fail(f"the real data folder {folder} must be here, but it is not")
+        pytest.skip(f"the real data folder {folder} is not on this machine")
+    return folder

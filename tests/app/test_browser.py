@@ -2,16 +2,22 @@
 
 import io
 import json
+import re
 from dataclasses import replace
+from datetime import date
 
+import geopandas as gpd
 import numpy as np
 import pytest
+from app_driving import zipped
 from PIL import Image
 
 from app import maps
+from fieldmon.field import Observations
 from fieldmon.geodata.options import PlotOptions, RecordOptions
 from fieldmon.geodata.reading import read_lines, read_plots, read_records
 from fieldmon.monitor import Plans, Plot, first_day
+from fieldmon.project import Project, Results, Setup
 
 PHONE = ((390, 844), "Mozilla/5.0 (Linux; Android 14) Chrome/150.0 Mobile Safari/537.36")
 MAP = "[data-testid=stDeckGlJsonChart]"
@@ -98,11 +104,14 @@ def test_plants_and_route_are_drawn_where_they_are(page, address):
 
 def test_nothing_is_asked_of_the_world(page, address):
     shown(page, address)
-    page.get_by_role("link", name="Season").click()
-    page.get_by_text("On the map").wait_for(timeout=120_000)
+    for name in ("Map", "Scout", "Season", "Compare", "Plot & records", "Report", "Simulate",
+                 "Study", "Today"):  # fmt: skip
+        page.get_by_role("link", name=name, exact=True).click()
+        page.wait_for_timeout(1500)
     still(page)
-    elsewhere = [url for url in page.requests if not url.startswith((address, "data:", "blob:"))]
-    assert elsewhere == []
+    assert len(page.requests) > 30
+    own = (address, address.replace("http", "ws"), "data:", "blob:", "about:")
+    assert [url for url in page.requests if not url.startswith(own)] == []
 
 
 def test_the_route_is_downloaded_and_read(page, address):
@@ -115,21 +124,132 @@ def test_the_route_is_downloaded_and_read(page, address):
     assert line == pytest.approx(today.route.line_lonlat(), abs=1e-8)
 
 
-def test_a_day_of_the_season_moves_the_map(page, address):
-    page.goto(f"{address}/season")
-    page.get_by_text("On the map").wait_for(timeout=120_000)
+def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address, served_seasons):
+    plot, _ = sample()
+    project = season(served_seasons / "States.gpkg", plot)
+    found, clean, never = (np.arange(k, len(plot.grid), 97) for k in (0, 31, 62))
+    plants, result = np.concatenate([found, clean]), np.repeat([1, 0], [len(found), len(clean)])
+    project.record(Results.of(plants, result, np.datetime64("2026-11-16")), "test")
+    page.goto(f"{address}/map?season=States")
     page.wait_for_selector(f"{MAP} canvas", timeout=120_000)
-    before = still(page)
-    slider = page.get_by_role("slider", name="Day")
-    slider.focus()
-    for _ in range(6):
-        slider.press("ArrowRight")
-    page.wait_for_timeout(1000)
-    after = still(page)
-    clean = [
-        (np.abs(image - np.array(maps.CLEAN)).max(axis=2) < 30).sum() for image in (before, after)
+    page.get_by_text("found, clean, never inspected", exact=True).click()
+    page.get_by_role("button", name="route", exact=True).click()
+    page.get_by_role("button", name="hot spots", exact=True).click()
+    image = still(page)
+    place = pixels(plot.grid, plot.grid.lonlat(), image.shape)
+    ring = (20, 0, 0)
+    for own, colour, others in (
+        (found, maps.FOUND, (maps.CLEAN,)),
+        (clean, maps.CLEAN, (maps.FOUND, ring)),
+        (never, None, (maps.FOUND, maps.CLEAN, ring)),
+    ):
+        if colour is not None:
+            assert np.mean([is_near(image, place[k], colour, reach=1) for k in own]) > 0.9
+        for other in others:
+            assert np.mean([is_near(image, place[k], other, reach=1) for k in own]) < 0.1
+    assert np.mean([is_near(image, place[k], ring, reach=6) for k in found]) > 0.9
+    flipped = image[::-1]
+    assert np.mean([is_near(flipped, place[k], maps.FOUND, reach=1) for k in found]) < 0.3
+
+
+def season(path, plot):
+    return Project.create(path, plot, Observations.none(), Setup(date(2026, 11, 16)))
+
+
+def test_a_day_begins_with_files_and_ends_with_tomorrows_route(page, address, shared, tmp_path):
+    parcels = gpd.read_file(next(shared.glob("parcels_orchards_vineyards/**/*lleida*.gpkg")))
+    own = parcels[(parcels.area > 8_000) & (parcels.area < 15_000)].head(1)
+    own = own.to_crs(25831).assign(name="מטע הדרים")[["name", "geometry"]]
+    lon, lat = own.to_crs(4326).geometry.iloc[0].representative_point().coords[0]
+    plot = {"name": "plot.zip", "mimeType": "", "buffer": zipped(tmp_path, own, without=".prj")}
+    mites = f"date;lat;lon;count\n14.11.2026;{lat:.6f};{lon:.6f};12\n"
+    page.goto(f"{address}/plot?season=My+own+files")
+    boxes = page.locator("[data-testid=stFileUploaderDropzoneInput]")
+    boxes.nth(0).wait_for(state="attached", timeout=60_000)
+    boxes.nth(0).set_input_files([plot])
+    page.get_by_text("The file leaves this open").wait_for(timeout=60_000)
+    ask = page.get_by_role("combobox", name="The file leaves this open: crs")
+    ask.fill("EPSG:25831")
+    ask.press("Enter")
+    page.get_by_role("button", name="Use this").click()
+    page.get_by_role("heading", name="מטע הדרים").wait_for(timeout=60_000)
+    box = {"name": "mites.csv", "mimeType": "", "buffer": mites.encode()}
+    boxes.nth(1).set_input_files([box])
+    page.get_by_text("1 of 1 records shown").wait_for(timeout=60_000)
+    title = page.get_by_role("heading", name="מטע הדרים").bounding_box()
+    assert title["width"] > 50
+    page.get_by_role("link", name="Today").click()
+    still(page)
+    first = stops(page)
+    assert len(first) > 10
+    page.get_by_label("Name of the season").fill("עונה 2026")
+    page.get_by_role("button", name="Begin the season").click()
+    page.get_by_text("has begun").wait_for(timeout=60_000)
+    assert stops(page) == first
+    page.get_by_role("link", name="Season").click()
+    box = page.get_by_role("spinbutton", name="Stops done")
+    box.wait_for(timeout=60_000)
+    box.fill("8")
+    box.press("Enter")
+    page.get_by_role("tabpanel").get_by_role("button", name="Record", exact=True).first.click()
+    page.get_by_text("8 recorded").wait_for(timeout=60_000)
+    page.reload()
+    page.get_by_role("link", name="Today").click()
+    page.get_by_text("8 plants inspected today so far").wait_for(timeout=60_000)
+    assert stops(page)[: len(first) - 8] == first[8:]
+
+
+def stops(page):
+    """Download the route and return its plants in order."""
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Download the route").click()
+    route = json.loads(download.value.path().read_text(encoding="utf-8"))
+    return [
+        f["properties"]["plant"] for f in route["features"] if f["properties"]["kind"] == "stop"
     ]
-    assert clean[1] > 1.1 * clean[0]
+
+
+def test_three_samplers_are_compared_while_the_page_stays_usable(page, address):
+    page.goto(f"{address}/compare")
+    seeds = page.get_by_role("spinbutton", name="Seasons each")
+    seeds.wait_for(timeout=120_000)
+    seeds.fill("60")
+    seeds.press("Enter")
+    page.get_by_role("button", name="Compare", exact=True).click()
+    page.get_by_text("seasons simulated").wait_for(timeout=60_000)
+    page.get_by_text(re.compile("is best|comes out best")).wait_for(timeout=60_000)
+    page.get_by_role("button", name="Stop").click()
+    page.get_by_role("button", name="Go on").wait_for(timeout=60_000)
+    done = page.get_by_text("of 180 seasons simulated").inner_text()
+    assert 3 <= int(done.split(" ")[0]) < 180
+
+
+@pytest.mark.parametrize("page", [PHONE], indirect=True)
+def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, served_seasons):
+    plot, _ = sample()
+    project = season(served_seasons / "Phone.gpkg", plot)
+    page.goto(f"{address}/scout?season=Phone")
+    place = page.locator("h2")
+    place.wait_for(timeout=120_000)
+    for name in ("Clean", "Found", "Could not inspect"):
+        button = page.get_by_role("button", name=name, exact=True)
+        size = button.bounding_box()
+        assert size["height"] >= 48
+        assert size["x"] + size["width"] <= 390
+        before = place.inner_text()
+        button.click()
+        page.wait_for_function("t => document.querySelector('h2')?.innerText !== t", arg=before,
+                               timeout=60_000)  # fmt: skip
+    assert project.history.inspections.result.tolist() == [0, 1, 2]
+    here = place.inner_text()
+    page.reload()
+    place.wait_for(timeout=60_000)
+    assert place.inner_text() == here
+    page.get_by_role("button", name="Undo").click()
+    page.wait_for_function("t => document.querySelector('h2')?.innerText !== t", arg=here,
+                           timeout=60_000)  # fmt: skip
+    assert project.history.inspections.result.tolist() == [0, 1]
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
 @pytest.mark.parametrize("page", [PHONE], indirect=True)

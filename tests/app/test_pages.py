@@ -1,60 +1,36 @@
 """Every page, driven without a browser."""
 
 import json
-import zipfile
-from io import BytesIO
-from pathlib import Path
 
-import geopandas as gpd
+import numpy as np
 import pytest
-from shapely import box
+from app_driving import (
+    PAGES,
+    go,
+    heading,
+    layer,
+    map_of,
+    metric,
+    opened,
+    press,
+    square,
+    texts_of,
+    upload,
+    zipped,
+)
+from rasterio.io import MemoryFile
+from rasterio.transform import from_bounds
 from streamlit.testing.v1 import AppTest
-
-ROOT = Path(__file__).resolve().parents[2]
-ESTATE = ROOT / "sample_data"
 
 
 @pytest.fixture
 def app():
-    return AppTest.from_file(str(ROOT / "app" / "streamlit_app.py"), default_timeout=120).run()
-
-
-def map_of(app):
-    return json.loads(app.get("deck_gl_json_chart")[0].proto.json)
-
-
-def layer(app, name):
-    return next((one for one in map_of(app)["layers"] if one["id"] == name), None)
-
-
-def metric(app, label):
-    return next(m.value for m in app.metric if m.label == label)
-
-
-def upload(app, **files):
-    app.segmented_control(key="where").set_value("My own files").run()
-    for key, (name, data) in files.items():
-        app.file_uploader(key=f"{key}_file").upload(name, data)
-    return app.run()
-
-
-def zipped(folder, plots):
-    plots.to_file(folder / "plot.shp")
-    data = BytesIO()
-    with zipfile.ZipFile(data, "w") as archive:
-        for part in folder.glob("plot.*"):
-            archive.write(part, part.name)
-    return data.getvalue()
-
-
-def square(size=0.001, name="square"):
-    shape = box(35.15, 30.36, 35.15 + size, 30.36 + size)
-    return gpd.GeoDataFrame([{"name": name, "geometry": shape}], crs="EPSG:4326")
+    return opened()
 
 
 def test_the_first_screen_shows_the_sample_estate_with_a_route(app):
     assert not app.exception
-    assert app.subheader[0].value == "Gate"
+    assert heading(app) == "Gate · 2026-11-16"
     n = len(layer(app, "plants")["data"])
     assert n > 3000
     assert len(layer(app, "route")["data"][0]["path"]) > 100
@@ -63,24 +39,41 @@ def test_the_first_screen_shows_the_sample_estate_with_a_route(app):
     assert app.get("download_button")
 
 
+@pytest.mark.parametrize("page", PAGES)
+def test_every_page_opens_on_the_sample_and_before_anything_was_brought(app, page):
+    go(app, page)
+    assert not app.exception
+    assert not app.error
+    assert texts_of(app)
+    app.selectbox(key="season").set_value("My own files").run()
+    assert not app.exception
+    assert "Bring a plot" in texts_of(app)
+
+
 def test_another_plot_is_another_map(app):
     n = len(layer(app, "plants")["data"])
-    app.selectbox(key="feature sample/paran_estate.zip").set_value("Terrace").run()
+    app.selectbox(key="feature sample/paran_estate.zip").set_value(1).run()
     assert not app.exception
-    assert app.subheader[0].value == "Terrace"
+    assert not heading(app).startswith("Gate")
     assert len(layer(app, "plants")["data"]) != n
 
 
-def test_shorter_hours_give_a_shorter_route(app):
+def test_shorter_hours_give_a_shorter_route_on_every_page(app):
     stops = int(metric(app, "Plants to inspect").split(" / ")[0])
     app.slider(key="hours Robot").set_value(3.0).run()
     assert int(metric(app, "Plants to inspect").split(" / ")[0]) < stops / 2
+    go(app, "map")
+    assert app.slider(key="hours Robot").value == 3.0
 
 
 def test_rows_can_be_turned_and_set_apart(app):
-    app.number_input(key="bearing").set_value(158.0).run()
-    app.number_input(key="rows").set_value(8.0).run()
+    go(app, "plot")
+    app.number_input(key="row_bearing_deg").set_value(158.0).run()
+    app.number_input(key="row_spacing_m").set_value(8.0).run()
     assert not app.exception
+    assert metric(app, "Row bearing") == "158.0°"
+    assert 1500 < len(layer(app, "plants")["data"]) < 2000
+    go(app, "today")
     assert 1500 < len(layer(app, "plants")["data"]) < 2000
 
 
@@ -99,68 +92,180 @@ def test_a_scout_is_planned_for_too(app):
 
 
 def test_too_short_a_day_is_said_in_a_sentence(app):
-    app.number_input(key="headland").set_value(40.0).run()
+    go(app, "plot")
+    app.number_input(key="headland_m").set_value(40.0).run()
     app.slider(key="hours Robot").set_value(0.5).run()
     assert not app.exception
 
 
-def test_a_season_is_simulated_and_its_day_slider_moves_the_map():
-    page = AppTest.from_function(season_page, default_timeout=120).run()
-    assert not page.exception
-    seen = [sum(p["c"] != [205, 205, 198] for p in layer(page, "plants")["data"])]
-    for day in (1, 12):
-        page.slider(key="season_day").set_value(day).run()
-        seen.append(sum(p["c"] != [205, 205, 198] for p in layer(page, "plants")["data"]))
-    assert seen[1] < seen[0] < seen[2]
-    assert layer(page, "truth") is None
-    page.toggle(key="truth").set_value(True).run()
-    assert layer(page, "truth") is not None
+def test_the_gate_and_areas_are_drawn_and_taken_back(app):
+    go(app, "plot")
+    plants = len(layer(app, "plants")["data"])
+    lon, lat = layer(app, "plants")["data"][plants // 2]["p"]
+    app.selectbox(key="draw_kind").set_value("no_go").run()
+    assert len(layer(app, "clicks")["data"]) > 1000
+    corners = [(lon, lat), (lon + 3e-4, lat), (lon + 3e-4, lat + 3e-4), (lon, lat + 3e-4)]
+    app.text_input(key="draw_typed").set_value(" ".join(f"{x},{y}" for x, y in corners)).run()
+    press(app, "Add")
+    assert len(layer(app, "corners")["data"]) == 4
+    press(app, "Finish")
+    assert not app.exception
+    left = len(layer(app, "plants")["data"])
+    assert left < plants - 20
+    press(app, "Undo the last one")
+    assert len(layer(app, "plants")["data"]) == plants
 
 
-def season_page():
-    from app.choices import choose
-    from app.views import season
+def test_an_area_that_crosses_itself_is_refused_in_a_sentence(app):
+    go(app, "plot")
+    app.selectbox(key="draw_kind").set_value("no_go").run()
+    app.text_input(key="draw_typed").set_value("35,30 35.1,30.1 35.1,30 35,30.1").run()
+    press(app, "Add")
+    press(app, "Finish")
+    assert "must not cross itself" in app.error[0].value
 
-    season.show(choose())
+
+def test_the_map_tells_three_states_apart_by_shape_and_the_history_of_a_plant(app):
+    go(app, "map")
+    app.radio(key="shade").set_value("state").run()
+    colours = {tuple(p["c"]) for p in layer(app, "plants")["data"]}
+    assert {c[3] for c in colours} == {30, 255}
+    finds = len(layer(app, "finds0")["data"])
+    assert finds == sum(p["c"][:3] == [213, 30, 30] for p in layer(app, "plants")["data"])
+    assert finds > 20
+    app.number_input(key="plant row").set_value(20).run()
+    assert "Chance of infestation now" in texts_of(app)
+    app.number_input(key="plant row").set_value(99_999).run()
+    assert not app.exception
+    assert "must be one of 1 to" in app.error[0].value
+
+
+def test_a_picture_of_the_ground_lies_under_the_plants_where_it_is(app):
+    west, south, east, north = 35.1, 30.3, 35.2, 30.4
+    with MemoryFile() as memory:
+        shape = {"width": 400, "height": 400, "count": 1, "dtype": "uint8", "driver": "GTiff"}
+        place = from_bounds(west, south, east, north, 400, 400)
+        with memory.open(**shape, crs="EPSG:4326", transform=place) as picture:
+            picture.write(np.full((1, 400, 400), 90, np.uint8))
+        data = memory.read()
+    go(app, "map")
+    app.pills(key="map_layers").set_value(["backdrop"]).run()
+    app.file_uploader(key="ground_file").upload("ground.tif", data).run()
+    assert not app.exception
+    assert map_of(app)["layers"][1]["id"] == "backdrop"
+    corners = np.array(layer(app, "backdrop")["bounds"])
+    plants = np.array([p["p"] for p in layer(app, "plants")["data"]])
+    assert (corners.min(axis=0) <= plants.min(axis=0)).all()
+    assert (corners.max(axis=0) >= plants.max(axis=0)).all()
+    app.file_uploader(key="ground_file").upload("ground.tif", b"no picture").run()
+    assert not app.exception
+    assert app.error
+    assert layer(app, "backdrop") is None
+
+
+def test_the_path_grows_as_the_day_is_played(app):
+    go(app, "map")
+    clock = "clock 2026-11-16"
+    lengths = []
+    for minute in (30, 200, 500):
+        app.slider(key=clock).set_value(minute).run()
+        lengths.append(len(layer(app, "trail")["data"][0]["path"]))
+    assert lengths == sorted(set(lengths))
+    app.button(key="play").click().run()
+    assert not app.exception
+    assert app.slider(key=clock).value >= 500
+
+
+def test_lengths_and_dates_are_written_as_the_person_wants(app):
+    app.selectbox(key="length").set_value("ft").run()
+    app.selectbox(key="date_like").set_value("16.11.2026").run()
+    assert heading(app) == "Gate · 16.11.2026"
+    assert metric(app, "Drive").endswith(" mi")
+    go(app, "plot")
+    app.selectbox(key="area").set_value("dunam").run()
+    assert metric(app, "Area").endswith("dunam")
+    assert metric(app, "Rows / plants apart") == "13.1 ft / 9.8 ft"
+
+
+def test_ways_of_working_are_compared_and_the_best_is_put_to_use(app):
+    go(app, "compare")
+    app.number_input(key="seeds").set_value(3)
+    app.number_input(key="n_days").set_value(4).run()
+    assert "press Compare" in texts_of(app)
+    app.button(key="run").click().run()
+    for _ in range(300):
+        if len(app.dataframe) and app.button(key="stop").disabled:
+            break
+        app.run()
+    assert not app.exception
+    table = app.dataframe[0].value
+    assert len(table) == 3
+    assert table["verdict"].iloc[0] == "★ best"
+    naive = next(b for b in app.selectbox if b.label == "On the map")
+    naive.set_value(next(o for o in naive.options if o.startswith("Naive"))).run()
+    press(app, "Use this way of working")
+    assert app.selectbox(key="sampler").value == "naive"
+
+
+def test_comparing_nothing_is_said_in_a_sentence(app):
+    go(app, "compare")
+    app.multiselect(key="arms").set_value([]).run()
+    assert not app.exception
+    assert "Choose fewer" in app.warning[0].value
+
+
+def test_the_report_holds_map_figures_settings_and_stops(app):
+    go(app, "report")
+    assert not app.exception
+    assert "Save as PDF" in texts_of(app)
+    assert app.get("download_button")
+
+
+def test_a_season_is_simulated_and_its_day_slider_moves_the_map(app):
+    go(app, "simulate")
+    inspected = []
+    for day in (1, 5, 12):
+        app.slider(key="season_day").set_value(day).run()
+        inspected.append(sum(p["c"][3] == 255 for p in layer(app, "plants")["data"]))
+    assert inspected == sorted(set(inspected))
+    assert layer(app, "truth") is None
+    app.toggle(key="truth").set_value(True).run()
+    assert layer(app, "truth") is not None
 
 
 def test_an_uploaded_plot_and_records_are_planned(app, tmp_path):
     mites = b"date,lon,lat,count\n2026-11-10,35.1505,30.3605,9\n"
-    upload(
-        app,
-        plot=("plot.zip", zipped(tmp_path, square(name="שדה"))),
-        record=("mites.csv", mites),
-    )
+    plot = zipped(tmp_path, square(name="שדה"))
+    upload(app, plot=("plot.zip", plot), record=("mites.csv", mites))
     assert not app.exception
-    assert app.subheader[0].value == "שדה"
+    assert heading(app).startswith("שדה")
+    go(app, "today")
     worst = max(layer(app, "plants")["data"], key=lambda p: float(p["t"].split("<br>")[1][:-8]))
     assert worst["p"] == pytest.approx([35.1505, 30.3605], abs=4e-5)
 
 
-def test_before_an_upload_the_page_says_what_to_bring(app):
-    app.segmented_control(key="where").set_value("My own files").run()
-    assert not app.exception
-    assert "Bring a plot" in app.markdown[0].value
+def test_one_session_does_not_see_the_files_of_another(app, tmp_path):
+    upload(app, plot=("plot.zip", zipped(tmp_path, square(name="secret"))))
+    assert heading(app).startswith("secret")
+    other = opened()
+    other.selectbox(key="season").set_value("My own files").run()
+    assert "Bring a plot" in texts_of(other)
 
 
 def test_a_missing_crs_is_asked_for_and_answered_by_button(app, tmp_path):
-    plots = square().to_crs(2039)
-    plots.to_file(tmp_path / "plot.shp")
-    (tmp_path / "plot.prj").unlink()
-    data = BytesIO()
-    with zipfile.ZipFile(data, "w") as archive:
-        for part in tmp_path.glob("plot.*"):
-            archive.write(part, part.name)
-    upload(app, plot=("plot.zip", data.getvalue()))
+    data = zipped(tmp_path, square().to_crs(2039), without=".prj")
+    upload(app, plot=("plot.zip", data))
     assert not app.exception
     assert "coordinate system" in app.warning[0].value
     ask = next(box for box in app.selectbox if box.label.endswith("crs"))
     assert "EPSG:2039" in ask.options
     ask.set_value("EPSG:2039").run()
-    app.button[0].click().run()
+    press(app, "Use this")
     assert not app.exception
     assert not app.warning
-    assert app.subheader[0].value == "square"
+    assert heading(app).startswith("square")
+    press(app, "Take back: crs = EPSG:2039")
+    assert "coordinate system" in app.warning[0].value
 
 
 @pytest.mark.parametrize(
@@ -174,28 +279,22 @@ def test_a_missing_crs_is_asked_for_and_answered_by_button(app, tmp_path):
 def test_a_bad_file_is_a_sentence(app, name, data, says):
     upload(app, plot=(name, data))
     assert not app.exception
-    shown = [message.value for message in [*app.error, *app.warning]]
-    assert any(says in text for text in shown)
+    assert any(says in message.value for message in [*app.error, *app.warning])
+    assert app.file_uploader(key="plot_file")
 
 
-def test_a_plot_too_small_for_a_plant_is_a_sentence(app, tmp_path):
-    upload(app, plot=("plot.zip", zipped(tmp_path, square(size=2e-5))))
-    assert not app.exception
-    assert "room for one plant" in app.error[0].value
-
-
-def test_records_that_are_all_elsewhere_are_a_sentence(app, tmp_path):
-    mites = b"date,lon,lat,count\n2026-11-10,8.0,49.0,9\n"
-    upload(app, plot=("plot.zip", zipped(tmp_path, square())), record=("mites.csv", mites))
-    assert not app.exception
-    assert "km" in app.error[0].value
-
-
-def test_very_many_plants_travel_as_one_picture(app, tmp_path):
+def test_a_plot_of_many_plants_travels_as_one_picture(app, tmp_path):
     upload(app, plot=("plot.zip", zipped(tmp_path, square(size=0.006))))
+    go(app, "today")
     assert not app.exception
     assert layer(app, "plants")["@@type"] == "BitmapLayer"
     assert len(json.dumps(map_of(app))) < 1_000_000
+    go(app, "map")
+    first, last = app.slider(key="rows_close").value
+    assert 0 < len(layer(app, "part")["data"]) < 20_000
+    assert all(
+        first <= int(p["t"].split(",")[0][4:]) <= last for p in layer(app, "part")["data"][::50]
+    )
 
 
 def test_the_study_page_makes_a_table_again():

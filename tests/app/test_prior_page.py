@@ -15,7 +15,7 @@ def page():
     from app.views import prior_study
 
     cached.warm()
-    prior_study.show(choose())
+    prior_study.show(choose().choices)
 
 
 @pytest.fixture

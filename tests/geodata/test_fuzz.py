@@ -1,5 +1,6 @@
 """Damaged files end in sentences; the long run is ``python tests/fuzz.py``."""
 
+import time
 from pathlib import Path
 
 import fuzz
@@ -45,9 +46,13 @@ GOOD = Upload("p.csv", b"lon,lat\n35.15,30.36\n35.16,30.36\n35.16,30.37\n")
 
 
 def test_a_reader_that_hangs_or_crashes_is_ended_and_the_next_file_is_read():
-    for task, said in (("time:sleep", "within"), ("os:_exit", "crash")):
+    for task, number, said in (
+        ("time:sleep", 20, "within"),
+        ("math:factorial", 3_000_000, "within"),
+        ("os:_exit", 1, "crash"),
+    ):
         with pytest.raises(fuzz.FileProblem, match=said):
-            guard.call(task, 20, seconds=0.5)
+            guard.call(task, number, seconds=0.5)
     assert len(reading.read_plots(GOOD).value) == 1
 
 
@@ -60,3 +65,24 @@ def test_a_reader_has_no_drivers_that_lead_elsewhere():
     drivers = set(guard.call("pyogrio:list_drivers"))
     assert "GPKG" in drivers
     assert not drivers & {"OGR_VRT", "WFS", "OAPIF", "HTTP", "CSW", "Elasticsearch", "GPSBabel"}
+
+
+class Process:
+    pid = 0
+
+    def kill(self):
+        self.killed_at = time.monotonic()
+
+
+@pytest.mark.parametrize(
+    ("waits", "at_least_s"),
+    [(False, 0.2), (True, 0.6)],
+    ids=["one that sleeps", "one kept from working by others"],
+)
+def test_a_reader_is_given_patience(monkeypatch, waits, at_least_s):
+    monkeypatch.setattr(guard, "_work", lambda _: guard._Work(0.0, waits))
+    began, process = time.monotonic(), Process()
+    clock = guard._Clock(process, 0.2)
+    clock.run()
+    assert clock.is_late
+    assert process.killed_at - began >= at_least_s

@@ -72,7 +72,7 @@ def test_a_process_killed_at_any_moment_leaves_a_whole_season(path):
     before, grew = state(path), 0
     for _ in range(KILLS):
         process = working(day_by_day, path)
-        time.sleep(rng.uniform(0.01, 4 * pace_s))
+        time.sleep(rng.uniform(0.01, 10 * pace_s))
         process.kill()
         process.join()
         now = state(path)

@@ -14,6 +14,9 @@ from fieldmon.thesis.with_prior.defaults import CALIBRATED
 from fieldmon.thesis.with_prior.published import Case
 from fieldmon.thesis.with_prior.runs import lucks, run_trials
 
+# 1 800 seasons for the first test: seconds on a free machine, minutes on a busy one
+pytestmark = pytest.mark.timeout(900)
+
 CASES = [
     *(Case(name, ha) for ha in SCENARIOS.values() for name in SAMPLERS),
     *(Case("dynamic", ha) for ha in SIZES_HA),

@@ -8,6 +8,7 @@ from scipy import stats
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.aisles import Aisles
+from fieldmon.belief import MeanField
 from fieldmon.chance import Chance
 from fieldmon.errors import SettingError
 from fieldmon.field import Field
@@ -115,7 +116,7 @@ def test_under_the_product_s_rules_a_season_is_the_product_s(name):
     site, chance = square(1.0), Chance(7)
     trial = Trial(name, PRODUCT)
     start = first_morning(site, PRODUCT.start, chance)
-    settings = SeasonSettings(n_days=6, spread=PRODUCT.spread)
+    settings = SeasonSettings(n_days=6, spread=PRODUCT.spread, believe=MeanField)
     theirs = list(days(site.aisles, trial.robot, sampler(name), start, settings, chance))
     ours = play(site, trial, Luck.of(chance, 6))
     assert ours[:, VISITED].tolist() == [len(day.work) for day in theirs]

@@ -6,14 +6,14 @@ from fieldmon.spread import Spread
 from fieldmon.thesis.with_prior.choices import OpenChoices, StartUp
 
 CALIBRATED = OpenChoices(
-    start=StartUp(share=0.005, margin_share=0.8, depth_m=5.0, cluster_size=4.0, recorded_share=0.2),
+    start=StartUp(share=0.005, margin_share=0.8, depth_m=5.0, cluster_size=4.0, recorded_share=0.1),
     spread=Spread(rate_per_day=0.3, to="all"),
     sources="left",
     missed_known=True,
     map_follows=False,
-    bouncy_rests=True,
+    bouncy_rests=False,
     counts="infestations",
     ends="season",
     stop_s=30.0,
-    row_change_s=600.0,
+    row_change_s=450.0,
 )

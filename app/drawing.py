@@ -1,0 +1,140 @@
+"""Changing the plot: rows by hand; gate, paths and no-go areas drawn by clicks or typed; undo."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.errors import FieldmonError
+
+from . import cached, keeping, maps, texts
+from .choices import draw, drawn
+from .edits import GATE, NO_GO, PATH, Edit, edited, points_of
+
+if TYPE_CHECKING:
+    from .choices import Choices
+    from .edits import Points
+
+_NAMES = {GATE: texts.DRAW_KINDS["gate"], PATH: texts.DRAW_KINDS["path"],
+          NO_GO: texts.DRAW_KINDS["no_go"]}  # fmt: skip
+
+
+def rows() -> None:
+    """Show what was found of the rows, to be set by hand."""
+    with st.expander(texts.ROWS, expanded=True):
+        st.caption(texts.FOUND_ROWS)
+        for key, label, limits, help_ in (
+            ("row_bearing_deg", texts.BEARING, (0.0, 360.0, 0.5), texts.BEARING_HELP),
+            ("row_spacing_m", texts.ROW_SPACING, (0.1, 50.0, 0.1), texts.SPACING_HELP),
+            ("plant_spacing_m", texts.PLANT_SPACING, (0.1, 50.0, 0.1), texts.SPACING_HELP),
+        ):
+            low, high, step = limits
+            st.number_input(label, low, high, None, step, help=help_, key=key,
+                            persist_state="session")  # fmt: skip
+        st.number_input(texts.HEADLAND, 0.1, 50.0, 4.0, 0.5, key="headland_m",
+                        persist_state="session")  # fmt: skip
+        st.toggle(texts.BOTH_FACES, key="both_faces", persist_state="session")
+
+
+def tools(choices: Choices) -> None:
+    """Show what can be drawn, and undo."""
+    with st.expander(texts.DRAW, expanded=bool(_kind() or drawn(choices.plot_key))):
+        st.caption(texts.DRAW_NOTE)
+        st.selectbox(texts.DRAW_KIND, list(texts.DRAW_KINDS), key="draw_kind", filter_mode=None,
+                     format_func=texts.DRAW_KINDS.__getitem__, on_change=_drop)  # fmt: skip
+        if _kind():
+            st.text_input(texts.DRAW_TYPED, key="draw_typed", placeholder="35.1503,30.3601")
+            st.button(texts.DRAW_ADD, key="draw_add", on_click=_add, args=(choices,))
+        if _points():
+            st.caption(texts.DRAW_POINTS.format(n=len(_points())))
+            with st.container(horizontal=True):
+                st.button(texts.DRAW_DONE, key="draw_done", type="primary", on_click=_finish,
+                          args=(choices,))  # fmt: skip
+                st.button(texts.DRAW_DROP, key="draw_drop", on_click=_drop)
+        made = drawn(choices.plot_key)
+        for edit in made:
+            st.caption(f"{_NAMES[edit.kind]}: {len(edit.lonlat)}")
+        if made:
+            st.button(texts.DRAW_UNDO, key="draw_undo", icon=":material/undo:", on_click=_undo,
+                      args=(choices,))  # fmt: skip
+
+
+def layers(choices: Choices) -> list:
+    """Return what is being drawn, the gate, paths, and, while drawing, what can be clicked on."""
+    field = choices.plot.field
+    shown = maps.paths(field)
+    if field.gate is not None:
+        shown.append(maps.places([list(field.gate)], "gate", maps.GATE, "gate"))
+    if not _kind():
+        return shown
+    return [*shown, *maps.drawing(_points()), maps.clickable(choices.plot.grid)]
+
+
+def plain_plants(choices: Choices) -> list:
+    """Return the plants in one colour, made once."""
+    grid = choices.plot.grid
+
+    def make() -> list:
+        shade = maps.plain(len(grid))
+        return [maps.plants(grid, shade, [""] * len(grid))]
+
+    return cached.layers(f"plain {choices.key}", make)
+
+
+def take(choices: Choices, tapped: dict | None) -> None:
+    """Take a click on the map as a point of what is being drawn."""
+    hits = (tapped or {}).get("clicks", []) if _kind() else []
+    if not hits:
+        return
+    point = (float(hits[0]["p"][0]), float(hits[0]["p"][1]))
+    if st.session_state.get("draw_last") != point:
+        st.session_state["draw_last"] = point
+        _put(choices, (point,))
+        st.rerun()
+
+
+def _kind() -> str:
+    kind: str = st.session_state.get("draw_kind", "")
+    return kind
+
+
+def _points() -> Points:
+    points: Points = st.session_state.get("draw_points", ())
+    return points
+
+
+def _put(choices: Choices, points: Points) -> None:
+    st.session_state["draw_points"] = (*_points(), *points)
+    if _kind() == GATE:
+        _finish(choices)
+
+
+def _add(choices: Choices) -> None:
+    try:
+        _put(choices, points_of(st.session_state.get("draw_typed", "")))
+        st.session_state["draw_typed"] = ""
+    except FieldmonError as error:
+        keeping.note("error", str(error))
+
+
+def _finish(choices: Choices) -> None:
+    """Keep what was drawn, if the plot can still be planted and driven with it."""
+    try:
+        made = (*drawn(choices.plot_key), Edit(_kind(), _points()))
+        check = partial(edited, choices.plot.field, made[-1:])
+        check().drivable()
+        draw(choices.plot_key, made)
+        _drop()
+    except FieldmonError as error:
+        keeping.note("error", str(error))
+
+
+def _drop() -> None:
+    st.session_state["draw_points"] = ()
+    st.session_state.pop("draw_last", None)
+
+
+def _undo(choices: Choices) -> None:
+    draw(choices.plot_key, drawn(choices.plot_key)[:-1])

@@ -1,0 +1,79 @@
+"""A season's days in figures, read from its file where it has them. No Streamlit in here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import date
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.history import FOUND
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.project import Project
+
+
+@dataclass(frozen=True)
+class DayFigures:
+    """A day after its work: inspected, found, and what is still expected out there."""
+
+    on: date
+    inspected: int
+    found: int
+    expected: float
+    low: int
+    high: int
+    clean: float
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """What is known up to a day: plants inspected and found, days since each row was seen (NaN)."""
+
+    inspected: int
+    found: int
+    inspected_today: int
+    found_today: int
+    days_since: NDArray[np.float64]
+
+
+def kept(project: Project) -> dict[str, DayFigures]:
+    """Return the figures of the days on which something happened, by ISO date, in order.
+
+    They stand in the season's file, written by each recording; to work them out anew takes
+    thousands of drawn fields a day.
+    """
+    with project.store.reading() as db:
+        rows = db.execute(
+            "SELECT date, inspected, found, expected_left, low, high, chance_clean "
+            "FROM days ORDER BY day"
+        ).fetchall()
+    return {day: DayFigures(date.fromisoformat(day), *more) for day, *more in rows}
+
+
+def of(project: Project, on: date) -> DayFigures:
+    """Return the figures of any day."""
+    now = project.status(on)
+    out = now.outlook
+    return DayFigures(
+        on, now.inspected_today, now.found_today, out.expected, out.low, out.high, out.chance_clean
+    )
+
+
+def known(project: Project, on: date) -> Known:
+    """Return what is known up to a day."""
+    day, grid, history = project.setup.day(on), project.plot.grid, project.history
+    done = history.inspections.before(day + 1).looked
+    today, state = done.on(day), history.states(day)
+    last = np.full(grid.n_rows, -1, np.int64)
+    np.maximum.at(last, grid.row[done.plant], done.day)
+    return Known(
+        inspected=int(np.count_nonzero(state >= 0)),
+        found=int(np.count_nonzero(state == 1)),
+        inspected_today=len(today),
+        found_today=int(np.count_nonzero(today.result == FOUND)),
+        days_since=np.where(last < 0, np.nan, day - last),
+    )

@@ -1,0 +1,296 @@
+"""Pieces that several pages show."""
+
+from __future__ import annotations
+
+from datetime import datetime, time, timedelta
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+import streamlit as st
+
+from fieldmon.field import ABSENT, PRESENT
+from fieldmon.geodata.handoff import FORMATS
+from fieldmon.grid import plant_at, row_label
+from fieldmon.hotspots import record_states
+from fieldmon.prior import usable
+
+from . import cached, maps, texts
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fieldmon.field import Observations
+    from fieldmon.geodata.handoff import HandoffPlan
+    from fieldmon.hotspots import HotSpots
+    from fieldmon.monitor import Today
+    from fieldmon.route import Route
+
+    from .choices import Choices
+
+STARTS = time(6, 0)
+_SEEN = {"found": PRESENT, "clean": ABSENT}
+
+
+def starts(choices: Choices, today: Today) -> datetime:
+    """Return the local time at which the planned route, or what is left of it, starts."""
+    begins = STARTS if choices.project is None else choices.project.setup.starts
+    gone = timedelta(seconds=today.scene.robot.day_s - today.scene.seconds_left)
+    return datetime.combine(choices.on, begins) + gone
+
+
+def stops(choices: Choices, today: Today) -> pd.DataFrame:
+    """Return the stops in order, as a table."""
+    label = row_label(choices.plot.grid, today.route.plant)
+    gone = pd.to_timedelta(today.route.arrive_s.round(), unit="s")
+    columns = {
+        texts.COLUMN_ARRIVE: (pd.Timestamp(starts(choices, today)) + gone).strftime("%H:%M:%S"),
+        texts.COLUMN_ROW: label.line,
+        texts.COLUMN_PLANT: label.number,
+        texts.COLUMN_CHANCE: (100 * today.route.chance).round(1),
+    }
+    return pd.DataFrame(columns, pd.RangeIndex(1, len(today.route) + 1, name="stop"))
+
+
+def other_formats(choices: Choices, plan: HandoffPlan) -> None:
+    """Offer the route in the formats of robots, phones and paper."""
+    name = st.selectbox(texts.FORMAT, list(FORMATS), key="format", filter_mode=None,
+                        format_func=lambda one: f"{one}: {FORMATS[one].reader}")  # fmt: skip
+    key = f"{choices.key} {choices.revision} {choices.day} {choices.robot} {choices.sampler}"
+    ending, data = cached.handoff(f"{name} {key}", name, plan)
+    st.download_button(
+        texts.DOWNLOAD_AS.format(reader=FORMATS[name].reader), data,
+        f"route_{choices.day}{ending}", key="download_format", on_click="ignore",
+    )  # fmt: skip
+
+
+def chance_of(choices: Choices) -> cached.Array:
+    """Return what is believed on the chosen day, after what was recorded of it."""
+    if choices.project is None:
+        return choices.today().chance
+    return cached.evening(choices.key, choices.revision, choices.day, choices.project)
+
+
+def states_of(choices: Choices) -> cached.Array:
+    """Return ``(n,)`` found (1), clean (0) or never inspected (-1); of records without a season."""
+    if choices.project is None:
+        return record_states(choices.plot.grid, choices.records)
+    return choices.project.history.states(choices.project.setup.day(choices.on))
+
+
+def spots_of(choices: Choices) -> HotSpots:
+    """Return the hot spots of the chosen day: of findings in a season, else of records."""
+    if choices.project is None:
+        return cached.recorded_hot_spots(choices.key, choices.plot, choices.records)
+    return cached.season_hot_spots(choices.key, choices.revision, choices.day, choices.project)
+
+
+def ages_of(choices: Choices) -> cached.Array:
+    """Return ``(n,)`` days since each plant was inspected; -1: never."""
+    if choices.project is None:
+        return np.full(len(choices.plot.grid), -1)
+    day = choices.project.setup.day(choices.on)
+    last = choices.project.history.last_inspected(day)
+    return np.where(last < 0, -1, day - last)
+
+
+def plant_layers(choices: Choices, shade_by: str, rows: tuple[int, int] | None = None) -> list:
+    """Return the plants' layers, made once for all that they depend on."""
+    key = f"{choices.key} {choices.revision} {choices.day} {choices.robot} {choices.sampler}"
+    make = partial(_plant_layers, choices, shade_by, rows)
+    return cached.layers(f"plants {shade_by} {rows} {key}", make)
+
+
+def _plant_layers(choices: Choices, shade_by: str, rows: tuple[int, int] | None) -> list:
+    grid = choices.plot.grid
+    extra = []
+    if shade_by == "chance":
+        chance = chance_of(choices)
+        shade, note = maps.by_chance(chance), [f"{c:.1%} chance" for c in chance.tolist()]
+    else:
+        state, ages = states_of(choices), ages_of(choices)
+        shade = maps.by_state(state) if shade_by == "state" else maps.by_age(ages)
+        extra = maps.finds(grid, state)
+        note = state_notes(state)
+    layers = [maps.plants(grid, shade, note)]
+    if rows is not None and len(grid) > maps.POINTS_AT_MOST:
+        line = grid.row_line[grid.row] + 1
+        part = np.flatnonzero((line >= rows[0]) & (line <= rows[1]))[: maps.POINTS_AT_MOST]
+        layers.append(maps.plants(grid, shade, note, part))
+    return [*layers, *extra]
+
+
+def state_notes(state: cached.Array) -> list[str]:
+    """Return each plant's state in words."""
+    names = texts.LEGEND_STATES
+    said = {1: names["found"], 0: names["clean"], -1: names["never"]}
+    return [said[s] for s in state.tolist()]
+
+
+def route_layers(choices: Choices, route: Route, *, numbers: bool) -> list:
+    """Return the route's layers, made once."""
+    shown = f"{choices.robot} {choices.sampler} {numbers} {choices.dark}"
+    key = f"route {choices.key} {choices.revision} {choices.day} {shown}"
+    return cached.layers(key, partial(maps.route, route, numbers=numbers, dark=choices.dark))
+
+
+def draw(choices: Choices, layers: list, key: str, *, tap: bool = False) -> object:
+    """Show a map with outline, scale and north; return what was tapped, if that is asked for."""
+    grid = choices.plot.grid
+    bar, text = maps.scale(grid, choices.units, dark=choices.dark)
+    route = next((layer for layer in layers if layer.id == "route"), None)
+    alt = texts.MAP_ALT.format(
+        name=choices.plot.field.name, plants=len(grid), finds=int((states_of(choices) == 1).sum()),
+        stops=0 if route is None else len(choices.today().route),
+    )  # fmt: skip
+    outline = maps.boundary(choices.plot.field, dark=choices.dark)
+    chart = st.pydeck_chart(
+        maps.deck(grid, [outline, *layers, *bar], phone=choices.phone),
+        height=choices.map_px, key=key, alt=alt, on_select="rerun" if tap else "ignore",
+    )  # fmt: skip
+    st.session_state["bar"] = text
+    return chart.selection.objects if tap else None
+
+
+def captions(parts: Sequence[str]) -> None:
+    """Show what the signs of the map last drawn mean."""
+    st.caption(" · ".join([*parts, texts.NORTH.format(bar=st.session_state["bar"])]))
+
+
+def route_figures(choices: Choices, today: Today) -> None:
+    """Show the figures to decide by."""
+    route, n = today.route, len(choices.plot.grid)
+    finds = route.expected_finds * choices.robot.detects
+    with st.container(horizontal=True):
+        st.metric(texts.PLANTS_TO_INSPECT, f"{len(route):,} / {n:,}", width="content")
+        st.metric(texts.TIME, f"{route.end_s / 3600:.1f} h", width="content")
+        st.metric(texts.DRIVE, choices.units.metres(route.drive_m), width="content")
+        st.metric(texts.FINDS, f"{finds:.1f}", help=texts.FINDS_HELP, width="content")
+
+
+def done_today(choices: Choices) -> None:
+    """Say what was recorded of the day, if anything was."""
+    if choices.project is None:
+        return
+    now = cached.known(choices.key, choices.revision, choices.day, choices.project)
+    if now.inspected_today:
+        st.info(texts.TODAY_DONE.format(inspected=now.inspected_today, found=now.found_today))
+
+
+def changes(choices: Choices) -> list[str]:
+    """Return sentences on what changed since yesterday."""
+    project, revision = choices.project, choices.revision
+    if project is None:
+        return []
+    day = project.setup.day(choices.on)
+    if day == 0:
+        return [texts.CHANGED_FIRST]
+    yesterday = choices.on - timedelta(days=1)
+    own = (choices.key, revision)
+    before = cached.day_in_figures(*own, str(yesterday), project)
+    now = cached.day_in_figures(*own, choices.day, project)
+    on = choices.units.day(yesterday)
+    said = [texts.CHANGED_NONE.format(day=on)]
+    if before.inspected:
+        said = [texts.CHANGED_FINDS.format(found=before.found, inspected=before.inspected, day=on)]
+    diff = now.expected - before.expected
+    said.append(
+        texts.CHANGED_OUT.format(
+            now=now.expected, before=before.expected, diff=abs(diff), sign="+" if diff >= 0 else "−"
+        )
+    )
+    spots = [len(cached.season_hot_spots(*own, day, project))
+             for day in (str(yesterday), choices.day)]  # fmt: skip
+    if spots[0] != spots[1]:
+        said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))
+    rows = _risen(choices, str(yesterday))
+    return [*said, texts.CHANGED_ROWS.format(rows=rows)] if rows else said
+
+
+def _risen(choices: Choices, yesterday: str) -> str:
+    """Return the three rows whose mean chance rose most over the night, in words."""
+    grid, project = choices.plot.grid, choices.project
+    line = grid.row_line[grid.row]
+    maps_ = [cached.morning(choices.key, choices.revision, day, project)
+             for day in (yesterday, choices.day)]  # fmt: skip
+    total = [np.bincount(line, chance) for chance in maps_]
+    rise = (total[1] - total[0]) / np.maximum(np.bincount(line), 1)
+    top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]
+    return ", ".join(f"{k + 1} (+{rise[k]:.1%})" for k in top)
+
+
+def history(choices: Choices, tapped: dict | None, key: str) -> None:
+    """Show what is known of the plant tapped, or of the one whose row and number are given."""
+    grid = choices.plot.grid
+    st.markdown(f"**{texts.HISTORY}**")
+    st.caption(texts.HISTORY_TAP)
+    hits = [hit for layer in (tapped or {}).values() for hit in layer if "i" in hit]
+    if hits and st.session_state.get(f"{key} seen") != hits[0]["i"]:
+        st.session_state[f"{key} seen"] = hits[0]["i"]
+        label = row_label(grid, np.array([min(hits[0]["i"], len(grid) - 1)]))
+        st.session_state[f"{key} row"] = int(label.line[0])
+        st.session_state[f"{key} plant"] = int(label.number[0])
+    row = st.number_input(texts.HISTORY_ROW, 1, None, 1, key=f"{key} row")
+    number = st.number_input(texts.HISTORY_PLANT, 1, None, 1, key=f"{key} plant")
+    plant = plant_at(grid, int(row), int(number))
+    now = first = chance_of(choices)
+    if choices.project is not None:
+        begins = str(choices.project.setup.begins)
+        first = cached.morning(choices.key, choices.revision, begins, choices.project)
+    st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
+    for line in _looks(choices, plant):
+        st.markdown(line)
+
+
+def _looks(choices: Choices, plant: int) -> list[str]:
+    project = choices.project
+    if project is None:
+        return [texts.HISTORY_NEVER]
+    done = project.history.inspections
+    own = np.flatnonzero(done.plant == plant)
+    lines = []
+    for k in own.tolist():
+        second = done.second[k]
+        at = "" if np.isnan(second) else f" {int(second) // 3600:02d}:{int(second) // 60 % 60:02d}"
+        day = choices.units.day(project.setup.date(int(done.day[k])))
+        result = texts.HISTORY_RESULTS[int(done.result[k])]
+        lines.append(texts.HISTORY_LINE.format(day=day, time=at, result=result))
+    return lines or [texts.HISTORY_NEVER]
+
+
+def meanings(spots: HotSpots) -> list[str]:
+    """Return what each hot spot means, in words."""
+    if not len(spots):
+        return [texts.HOT_NONE]
+    said = []
+    for k in range(min(len(spots), 8)):
+        p = float(spots.p[k])
+        chance = texts.CHANCE_P_SMALL if p < 1e-4 else texts.CHANCE_P.format(n=max(round(1 / p), 1))
+        said.append(
+            texts.HOT_MEANS.format(
+                found=spots.found[k], inspected=spots.inspected[k], plants=spots.plants[k],
+                expected=spots.expected[k], p=chance,
+            )
+        )  # fmt: skip
+    return said
+
+
+def remarks_on_records(choices: Choices) -> list[str]:
+    """Return what planning says about records it cannot use."""
+    return list(usable(choices.records, np.datetime64(choices.day)).remarks())
+
+
+def records_until(choices: Choices) -> tuple[Observations, str]:
+    """Show a slider over the days of the records; return those up to its day, and how many."""
+    records = choices.records
+    known = np.unique(records.day[~np.isnat(records.day)])
+    shown = records
+    if len(known) > 1:
+        first, last = (day.item() for day in (known[0], known[-1]))
+        until = st.slider(texts.RECORDS, first, last, last, key=f"until {first} {last}")
+        shown = records.take(np.isnat(records.day) | (records.day <= np.datetime64(until)))
+    if not len(records):
+        return records, ""
+    counts = {name: int((shown.present == value).sum()) for name, value in _SEEN.items()}
+    return shown, texts.RECORDS_SHOWN.format(shown=len(shown), all=len(records), **counts)

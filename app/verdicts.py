@@ -1,0 +1,77 @@
+"""What a comparison came to, in words and as a table. No Streamlit in here."""
+
+from __future__ import annotations
+
+from math import isnan
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from . import texts
+from .comparing import Estimate
+
+if TYPE_CHECKING:
+    from .comparing import Arm, Outcome
+
+
+def arm_name(sampler: str, hours: float, look_s: float) -> str:
+    """Return what to call a way of working."""
+    short = texts.SAMPLERS[sampler].split(":")[0]
+    return texts.ARM_NAME.format(sampler=short, hours=hours, look=look_s)
+
+
+def name(arm: Arm) -> str:
+    """Return what to call an arm of a comparison."""
+    return arm_name(arm.sampler, arm.hours, arm.look_s)
+
+
+def sentence(ranked: list[Outcome]) -> str:
+    """Return which way of working is best, and by how much."""
+    if len(ranked) == 1:
+        return ""
+    best, second = ranked[0], ranked[1]
+    names = {"best": name(best.arm), "second": name(second.arm)}
+    if not second.behind.low > 0:
+        return texts.VERDICT_TIED.format(**names)
+    return texts.VERDICT.format(
+        **names, loss=best.loss.mean, low=second.behind.low, high=second.behind.high,
+        percent=100 * second.behind.mean / second.loss.mean,
+    )  # fmt: skip
+
+
+def table(ranked: list[Outcome]) -> pd.DataFrame:
+    """Return what each way of working came to, the best first and marked."""
+    base = ranked[0].loss.mean
+    return pd.DataFrame(
+        {
+            texts.COLUMN_WAY: [name(o.arm) for o in ranked],
+            texts.COLUMN_LOSS: [_interval(o.loss, "{:,.0f}") for o in ranked],
+            texts.COLUMN_FOUND: [_interval(_share(o.detection_pct), "{:.1f} %") for o in ranked],
+            texts.COLUMN_VISITED: [f"{o.visited_pct:.1f} %" for o in ranked],
+            texts.COLUMN_HALF: ["-" if o.half_day is None else f"{o.half_day:g}" for o in ranked],
+            texts.COLUMN_VERDICT: [_word(o, base) for o in ranked],
+        }
+    )
+
+
+def _share(e: Estimate) -> Estimate:
+    """Return an estimate of a percentage within 0 to 100, which Student's t does not know of."""
+    return Estimate(e.mean, max(e.low, 0.0), min(e.high, 100.0))
+
+
+def _interval(e: Estimate, form: str) -> str:
+    if isnan(e.low):
+        return form.format(e.mean)
+    return f"{form.format(e.mean)} ({form.format(e.low)} .. {form.format(e.high)})"
+
+
+def _word(o: Outcome, base: float) -> str:
+    if o.behind is None:
+        return f"★ {texts.BEST}"
+    if isnan(o.behind.low):
+        return texts.ONE_SEASON
+    if not o.behind.low > 0:
+        return texts.NO_DIFFERENCE
+    percent = {name: 100 * getattr(o.behind, of) / base
+               for name, of in (("percent", "mean"), ("low", "low"), ("high", "high"))}  # fmt: skip
+    return texts.WORSE.format(**percent)

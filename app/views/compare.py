@@ -1,0 +1,60 @@
+"""Compare: which sampler, how many hours, how long at a plant, on this very plot."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from app import cached, charts, keeping, panels, texts, verdicts, ways
+from app.comparing import Comparison, curve, outcomes
+
+if TYPE_CHECKING:
+    from app.choices import Choices
+
+MOST_ARMS = 12
+
+
+def show(choices: Choices) -> None:
+    """Choose what to compare, and watch the results come."""
+    st.subheader(f"{choices.name}: {texts.COMPARE}")
+    st.caption(texts.COMPARE_INTRO)
+    asked = ways.asked(choices)
+    if not 1 <= len(asked.arms) <= MOST_ARMS:
+        st.warning(texts.TOO_MANY.format(most=MOST_ARMS, n=len(asked.arms)))
+        return
+    key = f"{choices.key} {choices.revision} {choices.day}"
+    running = cached.comparison(key, asked, choices.robot, choices.plot, panels.chance_of(choices))
+    with st.container(horizontal=True):
+        label = texts.GO_ON if 0 < running.done < running.total else texts.RUN
+        st.button(label, type="primary", key="run", on_click=running.start,
+                  disabled=running.running or running.done == running.total)  # fmt: skip
+        st.button(texts.STOP, key="stop", on_click=running.stop, disabled=not running.running)
+    st.fragment(_results, run_every=1.0 if running.running else None)(
+        choices, running, at_work=running.running
+    )
+
+
+def _results(choices: Choices, running: Comparison, *, at_work: bool) -> None:
+    if at_work and not running.running:
+        st.rerun()  # the buttons must know
+    if running.problem is not None:
+        st.error(str(running.problem))
+        return
+    progress = texts.COMPARE_PROGRESS.format(done=running.done, total=running.total)
+    st.progress(running.done / running.total, progress)
+    seasons = running.seasons()
+    ranked = outcomes(seasons)
+    if not ranked:
+        st.info(texts.COMPARE_EMPTY)
+        return
+    st.markdown(verdicts.sentence(ranked))
+    curves = {verdicts.name(arm): curve(walked) for arm, walked in seasons.items()}
+    st.altair_chart(charts.bands(curves, (texts.DAY_AXIS, texts.DETECTION_AXIS)),
+                    alt=texts.DETECTION_AXIS)  # fmt: skip
+    st.dataframe(verdicts.table(ranked), hide_index=True)
+    with st.container(horizontal=True, vertical_alignment="bottom"):
+        arm = st.selectbox(texts.SHOW_SAMPLER, [o.arm for o in ranked], format_func=verdicts.name,
+                           key=f"use_arm {running.asked.arms}", width=340)  # fmt: skip
+        st.button(texts.USE_THIS, key="use_this", on_click=keeping.use,
+                  args=(choices, arm.sampler, arm.hours, arm.look_s))  # fmt: skip

@@ -1,0 +1,82 @@
+"""A simulated season on the plot, day by day, sampler beside sampler."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import streamlit as st
+
+from app import cached, charts, maps, panels, texts, ways
+from fieldmon.hotspots import hot_spots
+from fieldmon.route import route_of
+from fieldmon.samplers import NEVER, Scene
+
+if TYPE_CHECKING:
+    from app.choices import Choices
+    from fieldmon.season import Day
+
+
+def show(choices: Choices) -> None:
+    """Simulate, and show any day of any sampler on the map."""
+    st.subheader(f"{choices.name}: {texts.SIMULATE}")
+    st.caption(texts.SEASON_INTRO)
+    *columns, last = st.columns(4)
+    numbers = ways.season(columns)
+    seed = last.number_input(texts.SEED, 0, 10_000, 1, help=texts.SEED_HELP, key="seed")
+    names = _names(choices)
+    chance, key = panels.chance_of(choices), f"{choices.key}{choices.revision}{choices.day}"
+    seasons = {
+        name: cached.season(key, name, (*numbers, int(seed)), choices.robot, choices.plot, chance)
+        for name in names
+    }
+    left, right = st.columns([2, 3])
+    with right:
+        name = st.segmented_control(
+            texts.SHOW_SAMPLER, names, default=choices.sampler, required=True,
+            key=f"season_sampler {names}",
+        )  # fmt: skip
+        number = st.slider(texts.SHOW_DAY, 1, numbers[0], min(5, numbers[0]), key="season_day")
+        _map(choices, seasons[name][0], number - 1)
+    with left:
+        figures = {key: value[1] for key, value in seasons.items()}
+        st.altair_chart(charts.detection(figures, number, (texts.DAY_AXIS, texts.DETECTION_AXIS)))
+        _figures(seasons[name][0][number - 1])
+        st.altair_chart(charts.found(figures[name], (texts.DAY_AXIS, texts.FOUND_AXIS)))
+
+
+def _names(choices: Choices) -> list[str]:
+    usual = dict.fromkeys([choices.sampler, "naive", "bouncy", "dynamic"])
+    chosen = st.multiselect(texts.COMPARED, list(texts.SAMPLERS), list(usual), key="compared",
+                            max_selections=6, format_func=ways.short)  # fmt: skip
+    return list(dict.fromkeys([choices.sampler, *chosen]))
+
+
+def _figures(day: Day) -> None:
+    with st.container(horizontal=True):
+        st.metric(texts.FOUND_SO_FAR, f"{day.detection_pct:.0f} %", width="content")
+        st.metric(texts.FOUND_TODAY, day.found, width="content")
+        st.metric(texts.LEFT, day.left, width="content")
+        st.metric(texts.VISITED_TODAY, f"{day.visited_pct:.0f} %", width="content")
+
+
+def _map(choices: Choices, season: list[Day], number: int) -> None:
+    grid, day = choices.plot.grid, season[number]
+    state = ways.seen_by(season, number)
+    scene = Scene(
+        aisles=choices.plot.aisles, robot=choices.robot, chance=day.chance,
+        last_inspected=np.full(len(grid), NEVER, np.int32), seconds_left=choices.robot.day_s,
+    )  # fmt: skip
+    layers = [
+        maps.plants(grid, maps.by_state(state), panels.state_notes(state)),
+        *maps.finds(grid, state),
+        *maps.route(route_of(scene, day.work), numbers=False),
+        *maps.hot(grid, hot_spots(grid, state)),
+    ]
+    if st.toggle(texts.SHOW_TRUTH, key="truth"):
+        left = day.infested.copy()
+        left[day.work.plant[day.work.found]] = False
+        layers += maps.truth(grid, left)
+    panels.draw(choices, layers, "season_map")
+    st.markdown(maps.state_legend(texts.LEGEND_STATES), unsafe_allow_html=True)
+    panels.captions([texts.LEGEND_HOT, texts.LEGEND_TRUTH])

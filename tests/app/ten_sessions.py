@@ -1,0 +1,115 @@
+"""Measure ten people at once on one server: seconds a click, and memory a person.
+
+Run it from the repository's root: ``python tests/app/ten_sessions.py [people] [clicks]``. It starts
+the app by its command on the sample estate; each person turns pages in an order of their own,
+over the protocol that browsers speak, all at the same time.
+"""
+
+import asyncio
+import os
+import random
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+from pathlib import Path
+
+import numpy as np
+import websockets
+from streamlit.proto.BackMsg_pb2 import BackMsg
+from streamlit.proto.ForwardMsg_pb2 import ForwardMsg
+from streamlit.util import calc_hash
+
+# people look at a page before they click again; mean seconds
+PAUSE_S = 2.0
+PAGES = ["", "map", "season", "compare", "plot", "report", "simulate", "scout"]
+
+
+async def click(line, page):
+    """Turn to a page; return the seconds until it is all there."""
+    message = BackMsg()
+    message.rerun_script.page_script_hash = calc_hash(page)
+    start = time.perf_counter()
+    await line.send(message.SerializeToString())
+    while True:
+        answer = ForwardMsg()
+        answer.ParseFromString(await line.recv())
+        if answer.WhichOneof("type") == "script_finished":
+            return time.perf_counter() - start
+
+
+async def person(port, number, clicks):
+    rng = random.Random(number)
+    address = f"ws://127.0.0.1:{port}/_stcore/stream"
+    async with websockets.connect(address, subprotocols=["streamlit"], max_size=None) as line:
+        first = await click(line, "")
+        taken = []
+        for _ in range(clicks):
+            await asyncio.sleep(rng.uniform(0, 2 * PAUSE_S))
+            taken.append(await click(line, rng.choice(PAGES)))
+        return first, taken
+
+
+def resident_mb(pid):
+    """Return the memory of a process and its children."""
+    mb = 0.0
+    for status in Path("/proc").glob("[0-9]*/status"):
+        try:
+            text = dict(
+                line.split(":", 1) for line in status.read_text().splitlines() if ":" in line
+            )
+        except OSError:
+            continue
+        if int(text["Pid"]) == pid or int(text["PPid"]) == pid:
+            mb += int(text.get("VmRSS", "0 kB").split()[0]) / 1024
+    return mb
+
+
+async def measure(port, server, people, clicks):
+    await person(port, 0, 2 * len(PAGES))
+    alone = await person(port, 1, clicks)
+    before = resident_mb(server.pid)
+    every = await asyncio.gather(*(person(port, k, clicks) for k in range(people)))
+    after = resident_mb(server.pid)
+    seconds = np.concatenate([one for _, one in every])
+    lines = [
+        f"alone:      median {np.median(alone[1]):.2f} s, slowest {max(alone[1]):.2f} s a click",
+        (
+            f"{people} at once: median {np.median(seconds):.2f} s, slowest {seconds.max():.2f} s a "
+            f"click, first page {max(f for f, _ in every):.2f} s"
+        ),
+        (
+            f"server:     {before:.0f} MB with one, {after:.0f} MB after {people}: "
+            f"{(after - before) / people:.1f} MB a person"
+        ),
+        f"load of this machine: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores",
+    ]
+    sys.stdout.write("\n".join(lines) + "\n")
+
+
+def main():
+    people, clicks = (int(a) for a in (sys.argv[1:] + ["10", "12"][len(sys.argv) - 1 :]))
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser", "--port",
+                   str(port), "--seasons", folder]  # fmt: skip
+        server = subprocess.Popen(command, stdout=subprocess.DEVNULL, start_new_session=True)
+        try:
+            for _ in range(600):
+                try:
+                    urllib.request.urlopen(f"http://127.0.0.1:{port}/_stcore/health", timeout=1)
+                    break
+                except OSError:
+                    time.sleep(0.1)
+            asyncio.run(measure(port, server, people, clicks))
+        finally:
+            os.killpg(server.pid, 15)
+            server.wait(20)
+
+
+if __name__ == "__main__":
+    main()

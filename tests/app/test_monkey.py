@@ -1,0 +1,116 @@
+"""A thousand clicks by somebody who reads nothing: no page may fail.
+
+The suite clicks 120 times; ``FIELDMON_MONKEY=1000`` clicks as often as it says (seeded alike).
+"""
+
+import os
+import random
+from datetime import date
+
+import pytest
+from app_driving import PAGES, begun, go, opened
+
+from app import texts
+
+CLICKS = int(os.environ.get("FIELDMON_MONKEY", "120"))
+# a comparison of 500 seasons or a table of the thesis takes minutes, as it should
+SMALL = {"seeds": 3, "n_days": 5, "study_replicates": 3}
+NASTY = [
+    "",
+    " ",
+    "x",
+    "35.1501,30.3601",
+    "35,30 36,31 36,30",
+    "../../x",
+    "שדה",
+    "<b>1</b>",
+    "9" * 400,
+]
+FILES = {
+    "plot_file": [("a.zip", b"no"), ("a.geojson", b"{}"), ("a.kml", b"<kml/>")],
+    "record_file": [("a.csv", b"lon,lat,date\n35.15,30.36,2026-01-01\n"), ("a.csv", b"\xff\xfe")],
+    "plant_file": [("a.csv", b"lon,lat\n35.15,30.36\n35.1501,30.36\n"), ("a.csv", b"")],
+    "findings_file": [("f.csv", b"row,plant,found\n1,1,yes\n"), ("f.geojson", b"[1]")],
+}
+
+
+# what can be chosen, by key; other boxes are chosen from by place
+CHOICES = {
+    "shade": list(texts.SHADES),
+    "who": [texts.ROBOT, texts.SCOUT],
+    "one_result": [0, 1, 2],
+    "layers": list(texts.LAYER_NAMES),
+    "map_layers": list(texts.MAP_LAYERS),
+    "arms": list(texts.SAMPLERS),
+    "compared": list(texts.SAMPLERS),
+}
+DAYS = [date(2026, 11, 16), date(2026, 11, 17), date(2026, 12, 24), date(2026, 11, 20)]
+NUMBERS = ("slider", "number_input")
+KINDS = ("button", "selectbox", "multiselect", "toggle", "radio", "text_input", "date_input",
+         "pills", "segmented_control", "file_uploader", "checkbox", *NUMBERS)  # fmt: skip
+
+
+def widgets(app):
+    found = [(kind, one) for kind in KINDS for one in getattr(app, kind)]
+    return [(kind, one) for kind, one in found if not one.disabled]
+
+
+def poke(rng, kind, widget):
+    """Do something with a widget that a person could do; return what."""
+    key = widget.key or widget.label
+    if kind == "button":
+        widget.click()
+        return f"click {key}"
+    if kind == "file_uploader":
+        value = rng.choice(FILES[key])
+        widget.upload(*value)
+        return f"upload {key} {value[0]}"
+    if kind == "selectbox":
+        place = rng.randrange(len(widget.options))
+        widget.select_index(place)
+        return f"choose {key} {widget.options[place]}"
+    value = wanted(rng, kind, widget, key)
+    widget.set_value(value)
+    return f"{kind} {key} = {value!r}"
+
+
+def wanted(rng, kind, widget, key):
+    if kind in NUMBERS:
+        return number(rng, widget, key)
+    if kind in {"toggle", "checkbox"}:
+        return rng.random() < 0.5
+    if kind == "text_input":
+        return rng.choice(NASTY)
+    if kind == "date_input":
+        return rng.choice(DAYS)
+    if key not in CHOICES:
+        return widget.value
+    several = kind in {"pills", "multiselect"}
+    return rng.sample(CHOICES[key], rng.randrange(4)) if several else rng.choice(CHOICES[key])
+
+
+def number(rng, widget, key):
+    if isinstance(widget.value, date):
+        return widget.value
+    low = 0 if widget.min is None else widget.min
+    high = min(10**6 if widget.max is None else widget.max, SMALL.get(key, 10**6))
+    step = widget.step or 1
+    value = type(low)(low + step * rng.randrange(max(1, int((high - low) / step) + 1)))
+    return (value, high) if isinstance(widget.value, (list, tuple)) else value
+
+
+@pytest.mark.timeout(60 + 10 * CLICKS)
+def test_random_clicks_raise_nothing():
+    rng = random.Random(20261121)
+    app = begun(opened())
+    done = []
+    for _ in range(CLICKS):
+        if rng.random() < 0.12:
+            page = rng.choice(PAGES)
+            done.append(f"go {page}")
+            go(app, page)
+        else:
+            done.append(poke(rng, *rng.choice(widgets(app))))
+            app.run()
+        assert not app.exception, "\n".join([*done[-12:], str(app.exception[0].message)])
+    assert len(set(done)) > CLICKS / 3

@@ -1,0 +1,208 @@
+"""A season in the app: begun, scouted, recorded, undone, come back to."""
+
+from datetime import date
+
+import numpy as np
+import pytest
+from app_driving import begun, go, heading, layer, metric, opened, press, texts_of
+
+from fieldmon.errors import SettingError
+from fieldmon.project import Project
+
+
+@pytest.fixture
+def app():
+    return begun(opened())
+
+
+@pytest.fixture
+def season(seasons_folder):
+    return lambda: Project(seasons_folder / "Gate 2026.gpkg")
+
+
+def tap(app, key):
+    app.button(key=key).click().run()
+    assert not app.exception
+    assert not app.error
+
+
+def test_a_season_begins_and_is_found_again_by_a_new_session(app, season):
+    assert "has begun" in app.success[0].value
+    assert app.selectbox(key="season").value == "Gate 2026"
+    assert season().setup.begins == date(2026, 11, 16)
+    assert season().remarks()
+    again = opened("Gate 2026")
+    assert heading(again) == "Gate · 2026-11-16"
+    assert "first day of the season" in texts_of(again)
+    assert layer(again, "plants")["data"] == layer(app, "plants")["data"]
+
+
+def test_a_season_is_never_begun_over_another_and_its_name_stays_in_the_folder(app, season):
+    before = season().path.read_bytes()
+    for name, says in (("Gate 2026", "new file"), ("../up", "name must be"), ("", "name must be")):
+        app.selectbox(key="season").set_value("Sample estate").run()
+        begun(app, name)
+        assert not app.exception
+        assert says in app.error[0].value
+    assert season().path.read_bytes() == before
+    assert [p.name for p in season().path.parent.iterdir()] == ["Gate 2026.gpkg"]
+
+
+@pytest.mark.parametrize("page", ["map", "season", "compare", "plot", "report", "scout"])
+def test_every_page_opens_on_a_season(app, page):
+    go(app, page)
+    assert not app.exception
+    assert not app.error
+
+
+def test_each_tap_of_the_scout_is_kept_at_once_and_the_route_goes_on(app, season):
+    go(app, "scout")
+    route = season().kept_route(date(2026, 11, 16))
+    assert len(route) > 100
+    tap(app, "scout_clean")
+    app.number_input(key="scout_count").set_value(7)
+    tap(app, "scout_found")
+    tap(app, "scout_skip")
+    done = season().history.inspections
+    assert done.plant[:2].tolist() == route[:2].tolist()
+    assert done.result.tolist() == [0, 1, 2]
+    assert (np.diff(done.second) > 0).all()
+    assert app.number_input(key="scout_count").value is None
+
+
+def test_a_reload_of_the_page_goes_on_where_the_scout_stood(app):
+    go(app, "scout")
+    for key in ("scout_clean", "scout_found"):
+        tap(app, key)
+    again = opened("Gate 2026")
+    go(again, "scout")
+    assert again.markdown[0].value == app.markdown[0].value
+
+
+def test_the_scout_takes_the_last_tap_back(app, season):
+    go(app, "scout")
+    tap(app, "scout_clean")
+    before = app.markdown[0].value
+    tap(app, "scout_found")
+    assert app.markdown[0].value != before
+    tap(app, "scout_undo")
+    assert app.markdown[0].value == before
+    assert season().history.inspections.result.tolist() == [0]
+
+
+def test_found_plants_and_clean_ones_show_on_the_map(app):
+    go(app, "scout")
+    tap(app, "scout_found")
+    tap(app, "scout_clean")
+    assert len(layer(app, "finds0")["data"]) == 1
+    shown = [p["c"] for p in layer(app, "plants")["data"]]
+    assert sum(c == [213, 30, 30, 255] for c in shown) == 1
+    assert sum(c == [90, 160, 230, 255] for c in shown) == 1
+
+
+def test_one_plant_is_recorded_and_undone_on_the_season_page(app, season):
+    go(app, "season")
+    app.number_input(key="one_row").set_value(3)
+    app.number_input(key="one_plant").set_value(4)
+    app.segmented_control(key="one_result").set_value(1)
+    next(b for b in app.button if b.label == "Record" and "one_plant" in b.proto.form_id).click()
+    app.run()
+    assert "1 recorded" in app.success[0].value
+    (plant,) = season().history.inspections.plant
+    label = season().label
+    assert (label.line[plant], label.number[plant]) == (3, 4)
+    assert metric(app, "Found") == "1"
+    press(app, "Undo")
+    assert metric(app, "Found") == "0"
+    assert not len(season().history.inspections)
+
+
+def test_a_file_of_findings_is_recorded_once(app, season):
+    go(app, "season")
+    table = b"row,number,found,count\n1,1,yes,3\n1,2,no,\n2,5,,\n"
+    for says in ("2 recorded, 0 known", "0 recorded, 2 known"):
+        app.file_uploader(key="findings_file").upload("found.csv", table).run()
+        app.button(key="record_file").click().run()
+        assert says in app.success[0].value
+    assert season().history.inspections.result.tolist() == [1, 0]
+
+
+@pytest.mark.parametrize("data", [b"a,b\n1,2\n", b"row,number,found\n999,1,yes\n", b"\x00\x01"])
+def test_a_file_that_does_not_fit_is_a_sentence(app, season, data):
+    go(app, "season")
+    app.file_uploader(key="findings_file").upload("found.csv", data).run()
+    app.button(key="record_file").click().run()
+    assert not app.exception
+    (said,) = [*app.error, *app.success]
+    assert "found must" in said.value or "found.csv" in said.value or "0 recorded" in said.value
+    assert not len(season().history.inspections)
+
+
+def test_days_in_the_app_give_the_digits_of_the_same_days_without_it(app, season, tmp_path):
+    mine = season()
+    twin = Project.create(tmp_path / "twin.gpkg", mine.plot, mine.observations, mine.setup)
+    for day in (16, 17, 18):
+        on = date(2026, 11, day)
+        app.date_input(key="day Gate 2026").set_value(on).run()
+        go(app, "season")
+        app.number_input(key="stops_done").set_value(30)
+        next(b for b in app.button if b.label == "Record" and "route" in b.proto.form_id).click()
+        app.run()
+        assert not app.exception
+        record_clean(twin, on, 30)
+        assert season().morning(on).tolist() == twin.morning(on).tolist()
+        assert season().evening(on).tolist() == twin.evening(on).tolist()
+        rest = [one.plan(on, keep=False).route.plant.tolist() for one in (season(), twin)]
+        assert rest[0] == rest[1]
+    go(app, "today")
+    assert "30 plants inspected" in texts_of(app)
+    assert "Still infested, as expected" in texts_of(app)
+
+
+def record_clean(project, on, n):
+    from fieldmon.project import Results
+
+    plants = project.plan(on, keep=False).route.plant[:n]
+    project.record(Results.of(plants, np.zeros(n, np.int8), np.datetime64(on)), "twin")
+
+
+def test_other_hours_are_used_from_now_on_when_asked_for(app, season):
+    hours = next(s for s in app.slider if s.label == "Working hours")
+    hours.set_value(4.0).run()
+    assert season().setup.robot.hours == 12.0
+    press(app, "Use from now on")
+    assert season().setup.robot.hours == 4.0
+    assert int(metric(app, "Plants to inspect").split(" / ")[0]) < 300
+
+
+def test_a_treatment_lowers_what_is_expected(app):
+    go(app, "season")
+    before = float(metric(app, "Still infested").split(" ")[0])
+    next(b for b in app.button if b.label == "Note the treatment").click()
+    app.run()
+    assert not app.error
+    assert float(metric(app, "Still infested").split(" ")[0]) < 0.2 * before
+
+
+def test_two_windows_on_one_season_see_each_other(app):
+    other = opened("Gate 2026")
+    go(app, "scout")
+    tap(app, "scout_found")
+    go(other, "season")
+    assert metric(other, "Found") == "1"
+
+
+def test_a_season_that_is_gone_leaves_the_sample(app, season):
+    season().path.unlink()
+    app.run()
+    assert not app.exception
+    assert app.selectbox(key="season").value == "Sample estate"
+
+
+def test_names_that_lead_out_of_the_folder_are_refused(seasons_folder):
+    from app import seasons
+
+    for name in ("..", "../x", "a/b", "a\\b", "", ".hidden", "x" * 90):
+        with pytest.raises(SettingError):
+            seasons.path_of(name)
+    assert seasons.path_of("מטע 2026").parent == seasons_folder

@@ -28,5 +28,5 @@ def loop(function: F) -> F:
 
 def inlined(function: F) -> F:
     """Compile a function likewise, to be copied into the loops that call it."""
-    compiled: F = nb.njit(inline="always", **_BARE)(function)
+    compiled: F = nb.njit(forceinline=True, **_BARE)(function)
     return compiled

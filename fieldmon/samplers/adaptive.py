@@ -11,10 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-import numba as nb
 import numpy as np
 
 from fieldmon.belief import Near, look, near, pairs
+from fieldmon.compiled import loop, part
 from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.aisles import Ground
-    from fieldmon.grid import Csr
+    from fieldmon.grid import Csr, PlantGrid
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
@@ -49,6 +49,7 @@ class _Mind(NamedTuple):
     both: Float
     worth: Float
     detects: float
+    treats: bool
     near: Near
     behind: Int
 
@@ -87,6 +88,20 @@ class _Piece(NamedTuple):
     seconds: float
 
 
+class _Along(NamedTuple):
+    """What the plants from one on to an end of its row come to, up to the `last` of them.
+
+    ``fetch_...``: the same for going only as far as pays, to `turn`, and back.
+    """
+
+    net: float
+    seconds: float
+    last: int
+    fetch_net: float
+    fetch_seconds: float
+    turn: int
+
+
 @dataclass(frozen=True)
 class Adaptive:
     """Take the drive through the rows with the most expected finds for its time.
@@ -117,47 +132,73 @@ class Adaptive:
 
     def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
         """Return the stops of the rest of the day."""
-        stops = scene.blank()
+        stops, n = scene.blank(), len(scene.chance)
         both = scene.both
         if both is None:
             both = pairs(scene.chance, scene.grid, self.beside_find)
+        mind = _Mind(
+            np.maximum(scene.chance, _LEAST),
+            both.copy(),
+            np.zeros(n),
+            scene.robot.detects,
+            True,
+            near(n),
+            np.full(n, _NOWHERE),
+        )
+        closed = scene.last_inspected == scene.day
+        _begin(scene.grid.adjacent, scene.chance, closed, self.spares, mind)
         k = _walk(
             scene.aisles.ground,
             scene.clock,
-            (scene.grid.adjacent, scene.chance, both, would_find),
-            scene.last_inspected == scene.day,
-            (scene.at, self.spares, scene.robot.detects),
+            (scene.grid.adjacent, would_find),
+            (mind, _rows(scene.grid), _onward(scene.grid.n_rows)),
+            scene.at,
             stops,
         )
         return Stops(stops.plant[:k], stops.arrive_s[:k])
 
 
-@nb.njit(cache=True, nogil=True)
+def _rows(grid: PlantGrid) -> _Rows:
+    """Return room for what each way of driving each row comes to; nothing is worked out yet."""
+    shape = (grid.n_rows, _WAYS)
+    return _Rows(
+        np.zeros(shape),
+        np.zeros(shape),
+        np.full(shape, _NOWHERE),
+        np.zeros(len(grid)),
+        np.ones(grid.n_rows, np.bool_),
+    )
+
+
+def _onward(n_rows: int) -> _Onward:
+    """Return room for the best rests of the day."""
+    shape = (2, n_rows, 2)
+    return _Onward(
+        np.zeros(shape),
+        np.zeros(shape),
+        np.full(shape, _NOWHERE),
+        np.zeros(shape),
+        np.zeros(shape),
+        np.full(shape, _NOWHERE),
+    )
+
+
+@loop
 def _walk(
     ground: Ground,
     clock: Clock,
-    plants: tuple[Csr, Float, Float, NDArray[np.bool_]],
-    closed: NDArray[np.bool_],
-    start: tuple[int, float, float],
+    plants: tuple[Csr, NDArray[np.bool_]],
+    work: tuple[_Mind, _Rows, _Onward],
+    at: int,
     stops: Stops,
 ) -> int:
-    adjacent, chance, both, would_find = plants
-    at, spares, detects = start
-    mind = _mind(adjacent, chance, both, closed, spares, detects)
-    n_rows = ground.row_start.size - 1
-    rows = _Rows(
-        np.zeros((n_rows, _WAYS)),
-        np.zeros((n_rows, _WAYS)),
-        np.full((n_rows, _WAYS), _NOWHERE),
-        np.zeros(closed.size),
-        np.ones(n_rows, np.bool_),
-    )
-    onward = _onward(n_rows)
+    adjacent, would_find = plants
+    mind, rows, _ = work
     now_s, k = 0.0, 0
-    price = _first_price(ground, clock, adjacent, (mind, rows, onward), at)
+    price = _first_price(ground, clock, work, at)
     while k < stops.plant.size:
         here = (at, price, clock.seconds_left - now_s)
-        price, piece = _plan_on(ground, clock, adjacent, (mind, rows, onward), here)
+        price, piece = _plan_on(ground, clock, work, here)
         before = k
         while piece.row >= 0 and k < stops.plant.size:
             plant = _next_in(ground, clock, mind, piece, (at, price))
@@ -176,7 +217,7 @@ def _walk(
     return k
 
 
-@nb.njit(cache=True)
+@part
 def _visit(
     ground: Ground, clock: Clock, stops: Stops, move: tuple[int, int, int], now_s: float
 ) -> tuple[float, int, int]:
@@ -187,43 +228,23 @@ def _visit(
     return arrive_s + clock.visit_s, plant, k + 1
 
 
-@nb.njit(cache=True)
-def _mind(
-    adjacent: Csr,
-    chance: Float,
-    both: Float,
-    closed: NDArray[np.bool_],
-    spares: float,
-    detects: float,
-) -> _Mind:
-    worth, behind = np.zeros(chance.size), np.full(chance.size, _NOWHERE)
+@loop
+def _begin(
+    adjacent: Csr, chance: Float, closed: NDArray[np.bool_], spares: float, mind: _Mind
+) -> None:
+    """Find what a chance is worth at each plant, and each plant's place beside the one before."""
     for i in range(chance.size):
         first, end = adjacent.start[i], adjacent.start[i + 1]
         clean = 0.0
         for e in range(first, end):
             clean += 1.0 - chance[adjacent.plant[e]]
             if adjacent.plant[e] == i - 1:
-                behind[i] = e
+                mind.behind[i] = e
         if not closed[i]:
-            worth[i] = detects * (1.0 + spares * clean / max(end - first, 1))
-    believed = np.maximum(chance, _LEAST)
-    return _Mind(believed, both.copy(), worth, detects, near(chance.size), behind)
+            mind.worth[i] = mind.detects * (1.0 + spares * clean / max(end - first, 1))
 
 
-@nb.njit(cache=True)
-def _onward(n_rows: int) -> _Onward:
-    shape = (2, n_rows, 2)
-    return _Onward(
-        np.zeros(shape),
-        np.zeros(shape),
-        np.full(shape, _NOWHERE),
-        np.zeros(shape),
-        np.zeros(shape),
-        np.full(shape, _NOWHERE),
-    )
-
-
-@nb.njit(cache=True)
+@part
 def _look(
     ground: Ground,
     adjacent: Csr,
@@ -234,13 +255,13 @@ def _look(
     """Close a plant and let what was seen teach about those near it."""
     i, found = result
     believed = mind.chance, mind.both
-    n = look(believed, adjacent, (i, found), (mind.detects, True), mind.near)
+    n = look(believed, adjacent, (i, found), (mind.detects, mind.treats), mind.near)
     mind.worth[i] = 0.0
     for t in range(n):
         rows.stale[ground.row[mind.near.plant[t]]] = True
 
 
-@nb.njit(cache=True)
+@part
 def _next_in(
     ground: Ground, clock: Clock, mind: _Mind, piece: _Piece, state: tuple[int, float]
 ) -> int:
@@ -261,7 +282,7 @@ def _next_in(
     return _NOWHERE
 
 
-@nb.njit(cache=True)
+@part
 def _best_left(ground: Ground, clock: Clock, mind: _Mind, at: int, now_s: float) -> int:
     """Return the plant with the most worth for its time that still fits into the day, or -1."""
     best, best_rate = _NOWHERE, 0.0
@@ -275,11 +296,10 @@ def _best_left(ground: Ground, clock: Clock, mind: _Mind, at: int, now_s: float)
     return best
 
 
-@nb.njit(cache=True)
+@part
 def _first_price(
     ground: Ground,
     clock: Clock,
-    adjacent: Csr,
     work: tuple[_Mind, _Rows, _Onward],
     at: int,
 ) -> float:
@@ -290,11 +310,11 @@ def _first_price(
         high = max(high, mind.worth[i] * mind.chance[i])
     high /= clock.visit_s
     low = high * 1e-7
-    if _plan_at(ground, clock, adjacent, work, (at, low)).seconds <= clock.seconds_left:
+    if _plan_at(ground, clock, work, (at, low)).seconds <= clock.seconds_left:
         return low
     for _ in range(_BISECTIONS):
         middle = np.sqrt(low * high)
-        if _plan_at(ground, clock, adjacent, work, (at, middle)).seconds > clock.seconds_left:
+        if _plan_at(ground, clock, work, (at, middle)).seconds > clock.seconds_left:
             low = middle
         else:
             high = middle
@@ -303,11 +323,10 @@ def _first_price(
     return float(high)
 
 
-@nb.njit(cache=True)
+@part
 def _plan_on(
     ground: Ground,
     clock: Clock,
-    adjacent: Csr,
     work: tuple[_Mind, _Rows, _Onward],
     state: tuple[int, float, float],
 ) -> tuple[float, _Piece]:
@@ -315,7 +334,7 @@ def _plan_on(
     at, price, left_s = state
     rows = work[1]
     trend = 0
-    piece = _replan(ground, clock, adjacent, work, (at, price))
+    piece = _replan(ground, clock, work, (at, price))
     for _ in range(_TRIES):
         if piece.seconds > left_s and trend >= 0:
             trend, price = 1, price * _STEP
@@ -324,33 +343,31 @@ def _plan_on(
         else:
             break
         rows.stale[:] = True
-        piece = _replan(ground, clock, adjacent, work, (at, price))
+        piece = _replan(ground, clock, work, (at, price))
     return price, piece
 
 
-@nb.njit(cache=True)
+@part
 def _row_of(ground: Ground, at: int) -> int:
     """Return the row of a plant, -1 for the gate; of one integer type, as numba wants it."""
     return 0 + ground.row[at] if at >= 0 else _NOWHERE
 
 
-@nb.njit(cache=True)
+@part
 def _plan_at(
     ground: Ground,
     clock: Clock,
-    adjacent: Csr,
     work: tuple[_Mind, _Rows, _Onward],
     state: tuple[int, float],
 ) -> _Piece:
     work[1].stale[:] = True
-    return _replan(ground, clock, adjacent, work, state)
+    return _replan(ground, clock, work, state)
 
 
-@nb.njit(cache=True)
+@part
 def _replan(
     ground: Ground,
     clock: Clock,
-    adjacent: Csr,
     work: tuple[_Mind, _Rows, _Onward],
     state: tuple[int, float],
 ) -> _Piece:
@@ -360,21 +377,20 @@ def _replan(
     own = _row_of(ground, at)
     for row in range(rows.stale.size):
         if rows.stale[row]:
-            _value_row(ground, clock, adjacent, (mind, rows), (row, price))
+            _value_row(ground, clock, (mind, rows), (row, price))
             rows.stale[row] = False
-    _go(ground, clock, rows, onward, (0, own, price))
-    _go(ground, clock, rows, onward, (1, own, price))
+    for down in range(2):
+        _go(ground, clock, rows, onward, (down, own, price))
     if at < 0:
         _, seconds, onto = _leave(ground, clock, onward, 2 * (rows.stale.size), price)
         return _first_piece(rows, onward, onto, seconds)
     return _from_row(ground, clock, (mind, rows, onward), (at, price))
 
 
-@nb.njit(cache=True)
+@part
 def _value_row(
     ground: Ground,
     clock: Clock,
-    adjacent: Csr,
     work: tuple[_Mind, _Rows],
     state: tuple[int, float],
 ) -> None:
@@ -397,12 +413,12 @@ def _value_row(
     rows.last[row] = _NOWHERE
     if previous < 0:
         return
-    _in_and_out(ground, clock, rows, (row, 2, price))
-    _in_and_out(ground, clock, rows, (row, 3, price))
+    for way in range(2, _WAYS):
+        _in_and_out(ground, clock, rows, (row, way, price))
     _through(ground, clock, rows, row, price)
 
 
-@nb.njit(cache=True)
+@part
 def _after_clean(mind: _Mind, i: int) -> float:
     """Return the chance of plant i once the one before it was looked at and seemed clean."""
     p, e = mind.chance[i], mind.behind[i]
@@ -413,7 +429,7 @@ def _after_clean(mind: _Mind, i: int) -> float:
     return float((p - mind.detects * c) / max(1.0 - mind.detects * q, _LEAST))
 
 
-@nb.njit(cache=True)
+@part
 def _in_and_out(ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int, float]) -> None:
     """Value a row that is left by the end it was entered by, as far in as pays best."""
     row, way, price = state
@@ -433,7 +449,7 @@ def _in_and_out(ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int
             rows.seconds[row, way] = drive_s + n * clock.visit_s
 
 
-@nb.njit(cache=True)
+@part
 def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) -> None:
     """Value a row that is driven from end to end, either way."""
     gains, n, low, high = 0.0, 0, _NOWHERE, _NOWHERE
@@ -450,7 +466,7 @@ def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) 
         rows.last[row, way] = high if way == 0 else low
 
 
-@nb.njit(cache=True)
+@part
 def _go(
     ground: Ground,
     clock: Clock,
@@ -487,7 +503,7 @@ def _go(
                     onward.way[down, row, end] = way
 
 
-@nb.njit(cache=True)
+@part
 def _after(
     ground: Ground, clock: Clock, onward: _Onward, place: tuple[int, int, int], price: float
 ) -> None:
@@ -512,7 +528,7 @@ def _after(
     onward.to[down, row, end] = to
 
 
-@nb.njit(cache=True)
+@part
 def _leave(
     ground: Ground, clock: Clock, onward: _Onward, here: int, price: float
 ) -> tuple[float, float, tuple[int, int, int]]:
@@ -533,7 +549,7 @@ def _leave(
     return best, best_s, onto
 
 
-@nb.njit(cache=True)
+@part
 def _first_piece(
     rows: _Rows, onward: _Onward, onto: tuple[int, int, int], seconds: float
 ) -> _Piece:
@@ -544,7 +560,7 @@ def _first_piece(
     return _Piece(row, end, rows.last[row, way], seconds)
 
 
-@nb.njit(cache=True)
+@part
 def _from_row(
     ground: Ground,
     clock: Clock,
@@ -561,37 +577,43 @@ def _from_row(
     row = _row_of(ground, at)
     best = -np.inf
     piece = _Piece(_NOWHERE, 0, _NOWHERE, 0.0)
-    ahead = np.empty((2, 2))
-    fetch = np.empty((2, 2))
-    last, turn = np.empty(2, np.int64), np.empty(2, np.int64)
     for end in range(2):
-        gains, n, farthest = 0.0, 0, _NOWHERE
-        fetch[end, 0], fetch[end, 1], turn[end] = 0.0, 0.0, _NOWHERE
-        i = at - 1 if end == 0 else at + 1
-        while ground.row_start[row] <= i < ground.row_start[row + 1]:
-            if rows.gain[i] > 0.0:
-                gains += rows.gain[i]
-                n += 1
-                farthest = i
-                way_s = 2.0 * abs(ground.x_m[i] - ground.x_m[at]) / clock.speed_m_s
-                if gains - price * way_s > fetch[end, 0]:
-                    fetch[end, 0], turn[end] = gains - price * way_s, i
-                    fetch[end, 1] = way_s + n * clock.visit_s
-            i = i - 1 if end == 0 else i + 1
-        out_s = abs(ground.end_x_m[row, end] - ground.x_m[at]) / clock.speed_m_s
-        ahead[end, 0], ahead[end, 1] = gains - price * out_s, out_s + n * clock.visit_s
-        last[end] = farthest
-    for end in range(2):
+        that_way = _along(ground, clock, rows, (at, row, end), price)
+        other_way = _along(ground, clock, rows, (at, row, 1 - end), price)
         net, seconds, onto = _leave(ground, clock, onward, 2 * row + end, price)
-        net += ahead[end, 0] + fetch[1 - end, 0]
-        seconds += ahead[end, 1] + fetch[1 - end, 1]
+        net += that_way.net + other_way.fetch_net
+        seconds += that_way.seconds + other_way.fetch_seconds
         if net <= best:
             continue
         best = net
-        if turn[1 - end] >= 0:
-            piece = _Piece(row, end, turn[1 - end], seconds)
-        elif last[end] >= 0:
-            piece = _Piece(row, 1 - end, last[end], seconds)
+        if other_way.turn >= 0:
+            piece = _Piece(row, end, other_way.turn, seconds)
+        elif that_way.last >= 0:
+            piece = _Piece(row, 1 - end, that_way.last, seconds)
         else:
             piece = _first_piece(rows, onward, onto, seconds)
     return piece
+
+
+@part
+def _along(
+    ground: Ground, clock: Clock, rows: _Rows, place: tuple[int, int, int], price: float
+) -> _Along:
+    """Return what the rest of a row comes to, from a plant to an end."""
+    at, row, end = place
+    gains, n, farthest = 0.0, 0, _NOWHERE
+    fetch_net, fetch_s, turn = 0.0, 0.0, _NOWHERE
+    i = at - 1 if end == 0 else at + 1
+    while ground.row_start[row] <= i < ground.row_start[row + 1]:
+        if rows.gain[i] > 0.0:
+            gains += rows.gain[i]
+            n += 1
+            farthest = i
+            way_s = 2.0 * abs(ground.x_m[i] - ground.x_m[at]) / clock.speed_m_s
+            if gains - price * way_s > fetch_net:
+                fetch_net, turn = gains - price * way_s, i
+                fetch_s = way_s + n * clock.visit_s
+        i = i - 1 if end == 0 else i + 1
+    out_s = abs(ground.end_x_m[row, end] - ground.x_m[at]) / clock.speed_m_s
+    net, seconds = gains - price * out_s, out_s + n * clock.visit_s
+    return _Along(net, seconds, farthest, fetch_net, fetch_s, turn)

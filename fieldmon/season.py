@@ -144,10 +144,10 @@ class _Mornings:
     Most of a season's time goes into it, and half of the samplers do not read it.
     """
 
-    def __init__(self, first: Belief, learning: Learning, spread: Spread) -> None:
+    def __init__(self, first: Callable[[], Belief], learning: Learning, spread: Spread) -> None:
         self._first, self._learning, self._spread = first, learning, spread
         self._works: list[Workday] = []
-        self._last = 0, first
+        self._last: tuple[int, Belief] | None = None
 
     def add(self, work: Workday) -> None:
         """Hear of the next day's work."""
@@ -155,7 +155,9 @@ class _Mornings:
 
     def on(self, number: int) -> Belief:
         """Return the belief of a morning, from the last one asked for if that was before."""
-        day, belief = self._last if self._last[0] <= number else (0, self._first)
+        day, belief = self._last or (0, self._first())
+        if day > number:
+            day, belief = 0, self._first()
         for work in self._works[day:number]:
             learnt = belief.learn(work.plant, work.found, self._learning)
             belief = learnt.overnight(self._spread)
@@ -181,7 +183,7 @@ def days(
     learning = settings.learning or Learning(detection=robot.detects)
     believed = settings.believed_spread or settings.spread
     infested, blind = start.infested.copy(), getattr(sampler, "blind", False)
-    mornings = _Mornings(settings.believe(aisles.grid, start.chance), learning, believed)
+    mornings = _Mornings(lambda: settings.believe(aisles.grid, start.chance), learning, believed)
     last_inspected = np.full(len(infested), NEVER, np.int32)
     ever_infested, ever_found = int(np.count_nonzero(infested)), 0
     trail, at = np.empty(0, np.int32), GATE

@@ -55,13 +55,17 @@ class _Mind(NamedTuple):
 
 
 class _Rows(NamedTuple):
-    """What each way of driving each row comes to, ``(r, 4)``, and each plant's gain ``(n,)``."""
+    """What each way of driving each row comes to, ``(r, 4)``, and each plant's gain ``(n,)``.
+
+    `pays` is room for the plants of one row with a gain.
+    """
 
     net: Float
     seconds: Float
     last: Int
     gain: Float
     stale: NDArray[np.bool_]
+    pays: Int
 
 
 class _Onward(NamedTuple):
@@ -167,6 +171,7 @@ def _rows(grid: PlantGrid) -> _Rows:
         np.full(shape, _NOWHERE),
         np.zeros(len(grid)),
         np.ones(grid.n_rows, np.bool_),
+        np.empty(len(grid), np.int64),
     )
 
 
@@ -402,7 +407,7 @@ def _value_row(
     row, price = state
     first, end = ground.row_start[row], ground.row_start[row + 1]
     toll = price * clock.visit_s
-    previous = _NOWHERE
+    previous, n = _NOWHERE, 0
     for i in range(first, end):
         gain = mind.worth[i] * mind.chance[i] - toll
         if gain > 0.0 and previous == i - 1 and previous >= 0:
@@ -410,12 +415,14 @@ def _value_row(
         rows.gain[i] = max(gain, 0.0)
         if gain > 0.0:
             previous = i
+            rows.pays[n] = i
+            n += 1
     rows.last[row] = _NOWHERE
-    if previous < 0:
+    if n == 0:
         return
     for way in range(2, _WAYS):
-        _in_and_out(ground, clock, rows, (row, way, price))
-    _through(ground, clock, rows, row, price)
+        _in_and_out(ground, clock, rows, (row, way, n), price)
+    _through(ground, clock, rows, (row, n), price)
 
 
 @part
@@ -430,40 +437,38 @@ def _after_clean(mind: _Mind, i: int) -> float:
 
 
 @part
-def _in_and_out(ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int, float]) -> None:
+def _in_and_out(
+    ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int, int], price: float
+) -> None:
     """Value a row that is left by the end it was entered by, as far in as pays best."""
-    row, way, price = state
-    first, end = ground.row_start[row], ground.row_start[row + 1]
+    row, way, n = state
     entry_m = ground.end_x_m[row, way - 2]
-    rows.net[row, way] = -np.inf
-    gains, n = 0.0, 0
-    for k in range(end - first):
-        i = first + k if way == 2 else end - 1 - k
-        if rows.gain[i] <= 0.0:
-            continue
+    best, best_s, last = -np.inf, 0.0, _NOWHERE
+    gains = 0.0
+    for k in range(n):
+        i = rows.pays[k] if way == 2 else rows.pays[n - 1 - k]
         gains += rows.gain[i]
-        n += 1
         drive_s = 2.0 * abs(ground.x_m[i] - entry_m) / clock.speed_m_s
-        if gains - price * drive_s > rows.net[row, way]:
-            rows.net[row, way], rows.last[row, way] = gains - price * drive_s, i
-            rows.seconds[row, way] = drive_s + n * clock.visit_s
+        net = gains - price * drive_s
+        if net > best:
+            best, best_s, last = net, drive_s + (k + 1) * clock.visit_s, i
+    rows.net[row, way], rows.seconds[row, way], rows.last[row, way] = best, best_s, last
 
 
 @part
-def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) -> None:
+def _through(
+    ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int], price: float
+) -> None:
     """Value a row that is driven from end to end, either way."""
-    gains, n, low, high = 0.0, 0, _NOWHERE, _NOWHERE
-    for i in range(ground.row_start[row], ground.row_start[row + 1]):
-        if rows.gain[i] > 0.0:
-            gains += rows.gain[i]
-            n += 1
-            low = i if low < 0 else low
-            high = i
+    row, n = state
+    gains = 0.0
+    for k in range(n):
+        gains += rows.gain[rows.pays[k]]
     drive_s = (ground.end_x_m[row, 1] - ground.end_x_m[row, 0]) / clock.speed_m_s
     for way in range(2):
         rows.net[row, way] = gains - price * drive_s
         rows.seconds[row, way] = drive_s + n * clock.visit_s
-        rows.last[row, way] = high if way == 0 else low
+        rows.last[row, way] = rows.pays[n - 1] if way == 0 else rows.pays[0]
 
 
 @part

@@ -57,7 +57,8 @@ class _Mind(NamedTuple):
 class _Rows(NamedTuple):
     """What each way of driving each row comes to, ``(r, 4)``, and each plant's gain ``(n,)``.
 
-    `pays` is room for the plants of one row with a gain.
+    `pays` is room for the plants of one row with a gain, `most` the most that a plant of each row
+    is worth, -1 where that has changed.
     """
 
     net: Float
@@ -66,6 +67,7 @@ class _Rows(NamedTuple):
     gain: Float
     stale: NDArray[np.bool_]
     pays: Int
+    most: Float
 
 
 class _Onward(NamedTuple):
@@ -172,6 +174,7 @@ def _rows(grid: PlantGrid) -> _Rows:
         np.zeros(len(grid)),
         np.ones(grid.n_rows, np.bool_),
         np.empty(len(grid), np.int64),
+        np.full(grid.n_rows, -1.0),
     )
 
 
@@ -214,7 +217,7 @@ def _walk(
             if would_find[plant] or plant == piece.last:
                 break
         if k == before:
-            plant = _best_left(ground, clock, mind, at, now_s)
+            plant = _best_left(ground, clock, (mind, rows), at, now_s)
             if plant < 0:
                 break
             now_s, at, k = _visit(ground, clock, stops, (at, plant, k), now_s)
@@ -263,7 +266,9 @@ def _look(
     n = look(believed, adjacent, (i, found), (mind.detects, mind.treats), mind.near)
     mind.worth[i] = 0.0
     for t in range(n):
-        rows.stale[ground.row[mind.near.plant[t]]] = True
+        row = ground.row[mind.near.plant[t]]
+        rows.stale[row], rows.most[row] = True, -1.0
+    rows.most[ground.row[i]] = -1.0
 
 
 @part
@@ -288,16 +293,22 @@ def _next_in(
 
 
 @part
-def _best_left(ground: Ground, clock: Clock, mind: _Mind, at: int, now_s: float) -> int:
+def _best_left(
+    ground: Ground, clock: Clock, work: tuple[_Mind, _Rows], at: int, now_s: float
+) -> int:
     """Return the plant with the most worth for its time that still fits into the day, or -1."""
+    mind, rows = work
     best, best_rate = _NOWHERE, 0.0
-    for i in range(mind.worth.size):
-        most = mind.worth[i] * mind.chance[i]
-        if most <= best_rate * clock.visit_s:
+    for row in range(rows.stale.size):
+        if _most_in(ground, mind, rows, row) <= best_rate * clock.visit_s:
             continue
-        rate = most / (travel_s(ground, clock, at, i) + clock.visit_s)
-        if rate > best_rate and can_visit(ground, clock, at, i, now_s):
-            best, best_rate = i, rate
+        for i in range(ground.row_start[row], ground.row_start[row + 1]):
+            most = mind.worth[i] * mind.chance[i]
+            if most <= best_rate * clock.visit_s:
+                continue
+            rate = most / (travel_s(ground, clock, at, i) + clock.visit_s)
+            if rate > best_rate and can_visit(ground, clock, at, i, now_s):
+                best, best_rate = i, rate
     return best
 
 
@@ -407,6 +418,11 @@ def _value_row(
     row, price = state
     first, end = ground.row_start[row], ground.row_start[row + 1]
     toll = price * clock.visit_s
+    if _most_in(ground, mind, rows, row) <= toll:
+        if rows.last[row, 0] >= 0:
+            rows.gain[first:end] = 0.0
+            rows.last[row] = _NOWHERE
+        return
     previous, n = _NOWHERE, 0
     for i in range(first, end):
         gain = mind.worth[i] * mind.chance[i] - toll
@@ -417,12 +433,20 @@ def _value_row(
             previous = i
             rows.pays[n] = i
             n += 1
-    rows.last[row] = _NOWHERE
-    if n == 0:
-        return
     for way in range(2, _WAYS):
         _in_and_out(ground, clock, rows, (row, way, n), price)
     _through(ground, clock, rows, (row, n), price)
+
+
+@part
+def _most_in(ground: Ground, mind: _Mind, rows: _Rows, row: int) -> float:
+    """Return the most that a plant of a row is worth."""
+    if rows.most[row] < 0.0:
+        most = 0.0
+        for i in range(ground.row_start[row], ground.row_start[row + 1]):
+            most = max(most, mind.worth[i] * mind.chance[i])
+        rows.most[row] = most
+    return float(rows.most[row])
 
 
 @part

@@ -75,6 +75,8 @@ class _Onward(NamedTuple):
 
     ``way`` is how the row is driven, or -1 where it is passed by; ``to`` the lane end
     (2 row + end) after it, or -1 for home. ``left_...``: the same once the row is done.
+    ``next_s`` ``(2, r, 2, 6, 2)`` are the seconds to the ends of the next lanes in line, and
+    ``home_s`` ``(r, 2)`` those to the gate.
     """
 
     net: Float
@@ -83,6 +85,8 @@ class _Onward(NamedTuple):
     left_net: Float
     left_seconds: Float
     to: Int
+    next_s: Float
+    home_s: Float
 
 
 class _Piece(NamedTuple):
@@ -153,11 +157,13 @@ class Adaptive:
         )
         closed = scene.last_inspected == scene.day
         _begin(scene.grid.adjacent, scene.chance, closed, self.spares, mind)
+        onward = _onward(scene.grid.n_rows)
+        _measure(scene.aisles.ground, scene.clock, onward.next_s, onward.home_s)
         k = _walk(
             scene.aisles.ground,
             scene.clock,
             (scene.grid.adjacent, would_find),
-            (mind, _rows(scene.grid), _onward(scene.grid.n_rows)),
+            (mind, _rows(scene.grid), onward),
             scene.at,
             stops,
         )
@@ -188,6 +194,8 @@ def _onward(n_rows: int) -> _Onward:
         np.zeros(shape),
         np.zeros(shape),
         np.full(shape, _NOWHERE),
+        np.empty((*shape, _REACH, 2)),
+        np.empty((n_rows, 2)),
     )
 
 
@@ -250,6 +258,29 @@ def _begin(
                 mind.behind[i] = e
         if not closed[i]:
             mind.worth[i] = mind.detects * (1.0 + spares * clean / max(end - first, 1))
+
+
+@loop
+def _measure(ground: Ground, clock: Clock, next_s: Float, home_s: Float) -> None:
+    """Find the seconds from every lane end to the next lanes in line, and to the gate.
+
+    In the table of all ways each of them stands far from the last: it is read once a day.
+    """
+    n_rows, gate = home_s.shape[0], ground.between_m.shape[0] - 1
+    for row in range(n_rows):
+        for end in range(2):
+            here = 2 * row + end
+            home_m = ground.between_m[here, gate]
+            home_s[row, end] = home_m / clock.speed_m_s if clock.returns else 0.0
+            for k in range(2 * _REACH):
+                other = row + k - _REACH if k < _REACH else row + k - _REACH + 1
+                if not 0 <= other < n_rows:
+                    continue
+                # from _REACH rows before to _REACH rows after, this one left out
+                down, step = (1, row - other - 1) if k < _REACH else (0, other - row - 1)
+                for other_end in range(2):
+                    way_m = ground.between_m[here, 2 * other + other_end]
+                    next_s[down, row, end, step, other_end] = way_m / clock.speed_m_s
 
 
 @part
@@ -396,7 +427,7 @@ def _replan(
             _value_row(ground, clock, (mind, rows), (row, price))
             rows.stale[row] = False
     for down in range(2):
-        _go(ground, clock, rows, onward, (down, own, price))
+        _go(clock, rows, onward, (down, own, price))
     if at < 0:
         _, seconds, onto = _leave(ground, clock, onward, 2 * (rows.stale.size), price)
         return _first_piece(rows, onward, onto, seconds)
@@ -497,7 +528,6 @@ def _through(
 
 @part
 def _go(
-    ground: Ground,
     clock: Clock,
     rows: _Rows,
     onward: _Onward,
@@ -509,7 +539,7 @@ def _go(
     for place in range(n_rows):
         row = place if down else n_rows - 1 - place
         for end in range(2):
-            _after(ground, clock, onward, (down, row, end), price)
+            _after(onward, (down, row, end), price)
         for end in range(2):
             onward.net[down, row, end] = onward.left_net[down, row, end]
             onward.seconds[down, row, end] = onward.left_seconds[down, row, end]
@@ -533,22 +563,18 @@ def _go(
 
 
 @part
-def _after(
-    ground: Ground, clock: Clock, onward: _Onward, place: tuple[int, int, int], price: float
-) -> None:
+def _after(onward: _Onward, place: tuple[int, int, int], price: float) -> None:
     """Find the best rest of the day after a row: home, or to one of the next rows in line."""
     down, row, end = place
-    here = 2 * row + end
-    gate = ground.between_m.shape[0] - 1
     n_rows = onward.net.shape[1]
-    best_s = ground.between_m[here, gate] / clock.speed_m_s if clock.returns else 0.0
+    best_s = onward.home_s[row, end]
     best, to = -price * best_s, _NOWHERE
-    for k in range(1, _REACH + 1):
-        other = row - k if down else row + k
+    for k in range(_REACH):
+        other = row - 1 - k if down else row + 1 + k
         if not 0 <= other < n_rows:
             break
         for other_end in range(2):
-            way_s = ground.between_m[here, 2 * other + other_end] / clock.speed_m_s
+            way_s = onward.next_s[down, row, end, k, other_end]
             net = onward.net[down, other, other_end] - price * way_s
             if net > best:
                 best, to = net, 2 * other + other_end
@@ -567,6 +593,8 @@ def _leave(
     best, onto = -price * best_s, (0, _NOWHERE, 0)
     for row in range(onward.net.shape[1]):
         for end in range(2):
+            if onward.way[0, row, end] < 0 and onward.way[1, row, end] < 0:
+                continue
             way_s = ground.between_m[here, 2 * row + end] / clock.speed_m_s
             for down in range(2):
                 if onward.way[down, row, end] < 0:

@@ -36,6 +36,8 @@ _NOWHERE = -1
 # the price moves in steps of a tenth, and stays while the plan fills this much of the hours left
 _STEP, _FULL, _TRIES = 1.1, 0.9, 2
 _BISECTIONS = 24
+# a bound stays one however its sum is rounded
+_NEARLY = 1.0 - 1e-9
 
 
 class _Mind(NamedTuple):
@@ -225,7 +227,7 @@ def _walk(
             if would_find[plant] or plant == piece.last:
                 break
         if k == before:
-            plant = _best_left(ground, clock, (mind, rows), at, now_s)
+            plant = _best_left(ground, clock, work, at, now_s)
             if plant < 0:
                 break
             now_s, at, k = _visit(ground, clock, stops, (at, plant, k), now_s)
@@ -325,13 +327,17 @@ def _next_in(
 
 @part
 def _best_left(
-    ground: Ground, clock: Clock, work: tuple[_Mind, _Rows], at: int, now_s: float
+    ground: Ground, clock: Clock, work: tuple[_Mind, _Rows, _Onward], at: int, now_s: float
 ) -> int:
     """Return the plant with the most worth for its time that still fits into the day, or -1."""
-    mind, rows = work
+    mind, rows, onward = work
     best, best_rate = _NOWHERE, 0.0
     for row in range(rows.stale.size):
-        if _most_in(ground, mind, rows, row) <= best_rate * clock.visit_s:
+        least_s = _least_s(ground, clock, at, row)
+        home_s = min(onward.home_s[row, 0], onward.home_s[row, 1])
+        if now_s + least_s + clock.visit_s + home_s > clock.seconds_left:
+            continue
+        if _most_in(ground, mind, rows, row) <= best_rate * (least_s + clock.visit_s):
             continue
         for i in range(ground.row_start[row], ground.row_start[row + 1]):
             most = mind.worth[i] * mind.chance[i]
@@ -341,6 +347,19 @@ def _best_left(
             if rate > best_rate and can_visit(ground, clock, at, i, now_s):
                 best, best_rate = i, rate
     return best
+
+
+@part
+def _least_s(ground: Ground, clock: Clock, at: int, row: int) -> float:
+    """Return seconds that it takes at least from a place to any plant of a row."""
+    own = _row_of(ground, at)
+    if own < 0 or ground.corridor[own] == ground.corridor[row]:
+        return 0.0
+    least_m = np.inf
+    for end in range(2):
+        for other_end in range(2):
+            least_m = min(least_m, ground.between_m[2 * own + end, 2 * row + other_end])
+    return float((least_m / clock.speed_m_s + clock.row_change_s) * _NEARLY)
 
 
 @part

@@ -36,6 +36,8 @@ _NOWHERE = -1
 # the price moves in steps of a tenth, and stays while the plan fills this much of the hours left
 _STEP, _FULL, _TRIES = 1.1, 0.9, 2
 _BISECTIONS = 24
+# plants in line that are looked at together: do any of them pay?
+_BLOCK = 32
 # a bound stays one however its sum is rounded
 _NEARLY = 1.0 - 1e-9
 
@@ -59,8 +61,8 @@ class _Mind(NamedTuple):
 class _Rows(NamedTuple):
     """What each way of driving each row comes to, ``(r, 4)``, and each plant's gain ``(n,)``.
 
-    `pays` is room for the plants of one row with a gain, `most` the most that a plant of each row
-    is worth, -1 where that has changed.
+    `pays` is room for the plants of one row with a gain, `most` the most that a plant of each
+    `_BLOCK` in line is worth, -1 where that has changed.
     """
 
     net: Float
@@ -182,7 +184,7 @@ def _rows(grid: PlantGrid) -> _Rows:
         np.zeros(len(grid)),
         np.ones(grid.n_rows, np.bool_),
         np.empty(len(grid), np.int64),
-        np.full(grid.n_rows, -1.0),
+        np.full(len(grid) // _BLOCK + 1, -1.0),
     )
 
 
@@ -299,9 +301,8 @@ def _look(
     n = look(believed, adjacent, (i, found), (mind.detects, mind.treats), mind.near)
     mind.worth[i] = 0.0
     for t in range(n):
-        row = ground.row[mind.near.plant[t]]
-        rows.stale[row], rows.most[row] = True, -1.0
-    rows.most[ground.row[i]] = -1.0
+        near_it = mind.near.plant[t]
+        rows.stale[ground.row[near_it]], rows.most[near_it // _BLOCK] = True, -1.0
 
 
 @part
@@ -337,15 +338,17 @@ def _best_left(
         home_s = min(onward.home_s[row, 0], onward.home_s[row, 1])
         if now_s + least_s + clock.visit_s + home_s > clock.seconds_left:
             continue
-        if _most_in(ground, mind, rows, row) <= best_rate * (least_s + clock.visit_s):
-            continue
-        for i in range(ground.row_start[row], ground.row_start[row + 1]):
-            most = mind.worth[i] * mind.chance[i]
-            if most <= best_rate * clock.visit_s:
+        first, end = ground.row_start[row], ground.row_start[row + 1]
+        for block in range(first // _BLOCK, (end - 1) // _BLOCK + 1):
+            if _most_in(mind, rows, block) <= best_rate * (least_s + clock.visit_s):
                 continue
-            rate = most / (travel_s(ground, clock, at, i) + clock.visit_s)
-            if rate > best_rate and can_visit(ground, clock, at, i, now_s):
-                best, best_rate = i, rate
+            for i in range(max(first, block * _BLOCK), min(end, (block + 1) * _BLOCK)):
+                most = mind.worth[i] * mind.chance[i]
+                if most <= best_rate * clock.visit_s:
+                    continue
+                rate = most / (travel_s(ground, clock, at, i) + clock.visit_s)
+                if rate > best_rate and can_visit(ground, clock, at, i, now_s):
+                    best, best_rate = i, rate
     return best
 
 
@@ -468,35 +471,38 @@ def _value_row(
     row, price = state
     first, end = ground.row_start[row], ground.row_start[row + 1]
     toll = price * clock.visit_s
-    if _most_in(ground, mind, rows, row) <= toll:
-        if rows.last[row, 0] >= 0:
-            rows.gain[first:end] = 0.0
-            rows.last[row] = _NOWHERE
-        return
+    if rows.last[row, 0] >= 0:
+        rows.gain[first:end] = 0.0
+        rows.last[row] = _NOWHERE
     previous, n = _NOWHERE, 0
-    for i in range(first, end):
-        gain = mind.worth[i] * mind.chance[i] - toll
-        if gain > 0.0 and previous == i - 1 and previous >= 0:
-            gain = mind.worth[i] * _after_clean(mind, i) - toll
-        rows.gain[i] = max(gain, 0.0)
-        if gain > 0.0:
-            previous = i
-            rows.pays[n] = i
-            n += 1
+    for block in range(first // _BLOCK, (end - 1) // _BLOCK + 1):
+        if _most_in(mind, rows, block) <= toll:
+            continue
+        for i in range(max(first, block * _BLOCK), min(end, (block + 1) * _BLOCK)):
+            gain = mind.worth[i] * mind.chance[i] - toll
+            if gain > 0.0 and previous == i - 1 and previous >= 0:
+                gain = mind.worth[i] * _after_clean(mind, i) - toll
+            if gain > 0.0:
+                rows.gain[i] = gain
+                previous = i
+                rows.pays[n] = i
+                n += 1
+    if n == 0:
+        return
     for way in range(2, _WAYS):
         _in_and_out(ground, clock, rows, (row, way, n), price)
     _through(ground, clock, rows, (row, n), price)
 
 
 @part
-def _most_in(ground: Ground, mind: _Mind, rows: _Rows, row: int) -> float:
-    """Return the most that a plant of a row is worth."""
-    if rows.most[row] < 0.0:
+def _most_in(mind: _Mind, rows: _Rows, block: int) -> float:
+    """Return the most that a plant of a block is worth."""
+    if rows.most[block] < 0.0:
         most = 0.0
-        for i in range(ground.row_start[row], ground.row_start[row + 1]):
+        for i in range(block * _BLOCK, min((block + 1) * _BLOCK, mind.worth.size)):
             most = max(most, mind.worth[i] * mind.chance[i])
-        rows.most[row] = most
-    return float(rows.most[row])
+        rows.most[block] = most
+    return float(rows.most[block])
 
 
 @part

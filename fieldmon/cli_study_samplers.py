@@ -28,6 +28,9 @@ def samplers(
         Path | None,
         typer.Option(help="Folder with the public plant maps: finds a look on these instead."),
     ] = None,
+    tune: Annotated[
+        bool, typer.Option("--tune", help="Search Dynamic's open choices instead (ten minutes).")
+    ] = False,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV) and report (HTML).")
     ] = Path(),
@@ -51,6 +54,9 @@ def samplers(
         raise FileProblem(f"The folder {output} must exist, but it does not. Make it first.")
     if maps is not None:
         _on_maps(maps, output)
+        return
+    if tune:
+        _tune()
         return
     cells = all_cells() if full else usual_cells()
     if cell:
@@ -114,6 +120,25 @@ def beliefs(
     page = output / "beliefs.html"
     write_whole(page, report_html(made, about).encode())
     typer.echo(f"Written: {page}")
+
+
+def _tune() -> None:
+    """Print what each of Dynamic's open choices loses."""
+    from fieldmon.comparison.tuning import CHOICES, SEEDS, losses, tuning_cells  # noqa: PLC0415
+
+    made = []
+    with typer.progressbar(
+        losses(tuning_cells(), SEEDS),
+        length=len(CHOICES),
+        label="Choices",
+        file=sys.stderr,
+        show_eta=True,
+        width=40,
+    ) as bar:
+        for choice, loss in bar:
+            made.append((loss, *choice))
+    for loss, suspicious, at_once in sorted(made):
+        typer.echo(f"{loss:8.1f} infested plant-days: {suspicious = }, {at_once = }")
 
 
 def _on_maps(folder: Path, output: Path) -> None:

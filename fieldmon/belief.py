@@ -36,7 +36,7 @@ class Learning:
     Parameters
     ----------
     detection
-        Chance that an inspection finds what is there.
+        Chance that an inspection finds what is there; ``(k,)`` for each where they differ.
     beside_find
         Chance that a plant next to a find is infested too, whatever was believed before
         (infestations come in clusters; our choice).
@@ -44,16 +44,21 @@ class Learning:
         Whether a find is destroyed at once (the thesis's rule), or only flagged.
     """
 
-    detection: float = 0.84
+    detection: float | NDArray[np.float64] = 0.84
     beside_find: float = 0.3
     treated: bool = True
 
     def __post_init__(self) -> None:
         for name in ("detection", "beside_find"):
-            if not 0.0 <= getattr(self, name) <= 1.0:
+            values = np.atleast_1d(getattr(self, name))
+            if not ((values >= 0.0) & (values <= 1.0)).all():
                 raise SettingError(
                     f"{name} must be a chance in 0..1, but it is {getattr(self, name)}."
                 )
+
+    def detects(self, looks: int) -> NDArray[np.float64]:
+        """Return the detection of each of so many looks, ``(k,)``."""
+        return np.array(np.broadcast_to(self.detection, looks), np.float64)
 
 
 def learn(
@@ -69,7 +74,7 @@ def learn(
     d; a find settles the plant and raises its neighbours to at least `beside_find`.
     """
     after = chance.copy()
-    rule = (learning.detection, learning.beside_find, learning.treated)
+    rule = (learning.detects(len(plants)), learning.beside_find, learning.treated)
     _learn(after, grid.adjacent, plants, found, rule)
     return after
 
@@ -80,9 +85,9 @@ def _learn(
     adjacent: Csr,
     plants: NDArray[np.int32],
     found: NDArray[np.bool_],
-    rule: tuple[float, float, bool],
+    rule: tuple[NDArray[np.float64], float, bool],
 ) -> None:
-    d, beside_find, treated = rule
+    detects, beside_find, treated = rule
     inspected = np.zeros(after.size, np.bool_)
     for k in range(plants.size):
         i = plants[k]
@@ -90,7 +95,7 @@ def _learn(
         if found[k]:
             after[i] = _LEAST if treated else _MOST
         else:
-            p = after[i]
+            p, d = after[i], detects[k]
             after[i] = min(max(p * (1.0 - d) / (1.0 - p * d), _LEAST), _MOST)
     for k in range(plants.size):
         if not found[k]:
@@ -239,8 +244,8 @@ class Pairs:
     ) -> Pairs:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
         mind = self.chance.copy(), self.both.copy()
-        rule = learning.detection, learning.treated
-        _regroup(mind, self.grid.adjacent, plants, found, learning.detection)
+        rule = learning.detects(len(plants)), learning.treated
+        _regroup(mind, self.grid.adjacent, plants, found, rule[0])
         _learn_pairs(mind, self.grid.adjacent, plants, found, rule)
         return Pairs(self.grid, *mind)
 
@@ -402,7 +407,7 @@ def _regroup(
     adjacent: Csr,
     plants: NDArray[np.int32],
     found: NDArray[np.bool_],
-    detection: float,
+    detects: NDArray[np.float64],
 ) -> None:
     """Learn from a day's looks beside its finds how much infested plants stand together.
 
@@ -411,9 +416,9 @@ def _regroup(
     ones are added to both, so that a day of few finds changes little.
     """
     chance, both = mind
-    outcome = np.full(chance.size, -1, np.int8)
+    outcome, detection = np.full(chance.size, -1, np.int8), np.zeros(chance.size)
     for k in range(plants.size):
-        outcome[plants[k]] = found[k]
+        outcome[plants[k]], detection[plants[k]] = found[k], detects[k]
     seen, expected = _HABIT, _HABIT
     for k in range(plants.size):
         i = plants[k]
@@ -422,8 +427,8 @@ def _regroup(
         for e in range(adjacent.start[i], adjacent.start[i + 1]):
             j = adjacent.plant[e]
             if outcome[j] >= 0:
-                seen += outcome[j] - detection * chance[j]
-                expected += detection * (both[e] / chance[i] - chance[j])
+                seen += outcome[j] - detection[j] * chance[j]
+                expected += detection[j] * (both[e] / chance[i] - chance[j])
     scale = min(max(seen, 0.0) / max(expected, _HABIT), _MORE)
     for i in range(chance.size):
         for e in range(adjacent.start[i], adjacent.start[i + 1]):
@@ -437,11 +442,12 @@ def _learn_pairs(
     adjacent: Csr,
     plants: NDArray[np.int32],
     found: NDArray[np.bool_],
-    rule: tuple[float, bool],
+    rule: tuple[NDArray[np.float64], bool],
 ) -> None:
+    detects, treated = rule
     touched = near(mind[0].size)
     for k in range(plants.size):
-        look(mind, adjacent, (plants[k], found[k]), rule, touched)
+        look(mind, adjacent, (plants[k], found[k]), (detects[k], treated), touched)
 
 
 @nb.njit(cache=True, nogil=True)

@@ -81,7 +81,7 @@ def route_of(scene: Scene, work: Workday) -> Route:
     Its seconds are those the workday charged; its line is the one whose length they were charged
     for, leg by leg: from where the robot stands to each stop, and back to the gate if it returns.
     """
-    leave_s = work.arrive_s + scene.robot.visit_s
+    leave_s = work.arrive_s + work.stop_s
     line_m, leg_end = _line(scene, work)
     arrivals = np.append(work.arrive_s, work.end_s)[: len(leg_end)]
     return Route(

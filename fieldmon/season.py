@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +11,7 @@ from fieldmon.belief import Learning, Pairs
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.samplers.scene import GATE, NEVER, Scene
 from fieldmon.spread import Spread, night
-from fieldmon.workday import outcomes, work_day
+from fieldmon.workday import looks_of, luck, work_day
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -145,6 +145,8 @@ def days(
     _check(aisles, start)
     learning = settings.learning or Learning(detection=robot.detects)
     believed = settings.believed_spread or settings.spread
+    looks = looks_of(robot, sampler)
+    choosing = len(looks.detects) > 1
     infested, belief = start.infested.copy(), settings.believe(aisles.grid, start.chance)
     last_inspected = np.full(len(infested), NEVER, np.int32)
     ever_infested, ever_found = int(np.count_nonzero(infested)), 0
@@ -162,13 +164,14 @@ def days(
             trail=trail,
             key=chance.key("sampler", number),
         )
-        luck = outcomes(infested, robot.detects, chance.key("inspect", number))
-        work = work_day(scene, sampler, luck)
+        drawn = luck(infested, looks, chance.key("inspect", number))
+        work = work_day(scene, sampler, drawn if choosing else drawn > 0)
         last_inspected = last_inspected.copy()
         last_inspected[work.plant] = number
         ever_found += int(np.count_nonzero(work.found))
         yield Day(number, work, infested, belief.chance, last_inspected, ever_infested, ever_found)
-        belief = belief.learn(work.plant, work.found, learning).overnight(believed)
+        taught = replace(learning, detection=work.detects) if choosing else learning
+        belief = belief.learn(work.plant, work.found, taught).overnight(believed)
         evening = infested.copy()
         evening[work.plant[work.found]] = False
         infested = night(aisles.grid, evening, settings.spread, chance.key("spread", number))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numba as nb
 import numpy as np
 
-from fieldmon.compiled import loop
+from fieldmon.compiled import inlined, loop
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -245,15 +245,19 @@ class Pairs:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
         mind = self.chance.copy(), self.both.copy()
         rule = learning.detects(len(plants)), learning.treated
-        _regroup(mind, self.grid.adjacent, plants, found, rule[0])
-        _learn_pairs(mind, self.grid.adjacent, plants, found, rule)
+        seen = np.full(len(self.chance), -1, np.int8), np.zeros(len(self.chance))
+        _regroup(mind, self.grid.adjacent, (plants, found, rule[0]), seen)
+        _learn_pairs(mind, self.grid.adjacent, (plants, found), rule, near(len(self.chance)))
         return Pairs(self.grid, *mind)
 
     def overnight(self, spread: Spread) -> Pairs:
         """Return what is believed the next morning."""
         after = np.empty_like(self.chance), np.empty_like(self.both)
         rule = spread.rate_per_day, spread.to == "one", spread.arrivals_per_day
-        _overnight_pairs((self.chance, self.both), after, self.grid.adjacent, rule)
+        n, e = len(self.chance), len(self.both)
+        most = int(np.diff(self.grid.adjacent.start).max(initial=0))
+        room = np.empty(n), np.empty(n), np.empty(e), np.empty(most), np.empty(most)
+        _overnight_pairs((self.chance, self.both), after, self.grid.adjacent, rule, room)
         return Pairs(self.grid, *after)
 
     def treated(self, left: NDArray[np.float64]) -> Pairs:
@@ -272,13 +276,12 @@ class Near(NamedTuple):
     after: NDArray[np.float64]
 
 
-@nb.njit(cache=True, nogil=True)
 def near(n: int) -> Near:
     """Return such room for `n` plants."""
     return Near(np.empty(n, np.int64), np.zeros(n, np.int64), np.empty(n))
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def look(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
@@ -318,7 +321,7 @@ def look(
     return n
 
 
-@nb.njit(cache=True)
+@loop
 def _tell(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
@@ -349,7 +352,7 @@ def _tell(
     return n
 
 
-@nb.njit(cache=True)
+@loop
 def _keep_company(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
@@ -376,14 +379,14 @@ def _keep_company(
         both[e] = both[_back(adjacent, j, e)] = c
 
 
-@nb.njit(cache=True, inline="always")
+@inlined
 def _bounded(both: float, p: float, q: float) -> float:
     """Return the chance of both of two plants, within what their own chances p and q allow."""
     apart = p * q
     return max(min(both, apart + _CLOSEST * (min(p, q) - apart)), p + q - 1.0, 0.0)
 
 
-@nb.njit(cache=True, inline="always")
+@inlined
 def _told(p: float, q: float, both: float, after: float) -> float:
     """Return the chance of a plant, q until now, when its neighbour's goes from p to `after`."""
     c = _bounded(both, p, q)
@@ -391,7 +394,7 @@ def _told(p: float, q: float, both: float, after: float) -> float:
     return min(max(told, _LEAST), _MOST)
 
 
-@nb.njit(cache=True, inline="always")
+@inlined
 def _back(adjacent: Csr, j: int, e: int) -> int:
     """Return where the pair of plant j at place e stands in the list of the other plant."""
     k = adjacent.plant[e]
@@ -401,13 +404,12 @@ def _back(adjacent: Csr, j: int, e: int) -> int:
     return e
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def _regroup(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
-    plants: NDArray[np.int32],
-    found: NDArray[np.bool_],
-    detects: NDArray[np.float64],
+    looks: tuple[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]],
+    by_plant: tuple[NDArray[np.int8], NDArray[np.float64]],
 ) -> None:
     """Learn from a day's looks beside its finds how much infested plants stand together.
 
@@ -416,7 +418,8 @@ def _regroup(
     ones are added to both, so that a day of few finds changes little.
     """
     chance, both = mind
-    outcome, detection = np.full(chance.size, -1, np.int8), np.zeros(chance.size)
+    plants, found, detects = looks
+    outcome, detection = by_plant
     for k in range(plants.size):
         outcome[plants[k]], detection[plants[k]] = found[k], detects[k]
     seen, expected = _HABIT, _HABIT
@@ -436,39 +439,39 @@ def _regroup(
             both[e] = _bounded(p * q + scale * (both[e] - p * q), p, q)
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def _learn_pairs(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
-    plants: NDArray[np.int32],
-    found: NDArray[np.bool_],
+    looks: tuple[NDArray[np.int32], NDArray[np.bool_]],
     rule: tuple[NDArray[np.float64], bool],
+    touched: Near,
 ) -> None:
+    plants, found = looks
     detects, treated = rule
-    touched = near(mind[0].size)
     for k in range(plants.size):
         look(mind, adjacent, (plants[k], found[k]), (detects[k], treated), touched)
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def _overnight_pairs(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     after: tuple[NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
     rule: tuple[float, bool, float],
+    room: tuple[NDArray[np.float64], ...],
 ) -> None:
     chance, both = mind
     rate, one, arrivals = rule
     start, plant = adjacent
     # chance that a clean plant stays so, whatever beside it, and what beside each of its plants
-    stays, spared = np.empty(chance.size), np.empty(both.size)
-    close, twice = np.empty(chance.size), 1.0 - (1.0 - rate) ** 2
+    close, stays, spared, beside, share = room
+    twice = 1.0 - (1.0 - rate) ** 2
     for i in range(chance.size):
         close[i] = 0.0
         for e in range(start[i], start[i + 1]):
             close[i] += both[e] / chance[i]
         close[i] /= max(start[i + 1] - start[i], 1)
-    beside, share = np.empty(64), np.empty(64)
     for i in range(chance.size):
         first, degree = start[i], start[i + 1] - start[i]
         weight, kin = 0.0, 0.0
@@ -479,9 +482,9 @@ def _overnight_pairs(
             weight += beside[k]
             kin += beside[k] * close[j] ** 2
         kin = kin / weight if weight > 0.0 else 0.0
-        stays[i] = (1.0 - arrivals) * _spared(beside[:degree], share, kin, -1)
+        stays[i] = (1.0 - arrivals) * _spared(beside, share, (degree, -1), kin)
         for k in range(degree):
-            spared[first + k] = (1.0 - arrivals) * _spared(beside[:degree], share, kin, k)
+            spared[first + k] = (1.0 - arrivals) * _spared(beside, share, (degree, k), kin)
         after[0][i] = min(max(1.0 - (1.0 - chance[i]) * stays[i], _LEAST), _MOST)
     for i in range(chance.size):
         for e in range(start[i], start[i + 1]):
@@ -495,23 +498,29 @@ def _overnight_pairs(
             after[1][e] = min(max(c, least), after[0][i], after[0][j])
 
 
-@nb.njit(cache=True)
-def _spared(beside: NDArray[np.float64], share: NDArray[np.float64], kin: float, but: int) -> float:
-    """Return the chance that none of a plant's neighbours infects it, neighbour `but` aside.
+@loop
+def _spared(
+    beside: NDArray[np.float64],
+    share: NDArray[np.float64],
+    which: tuple[int, int],
+    kin: float,
+) -> float:
+    """Return the chance that none of a plant's first neighbours infects it, one (or -1) aside.
 
     Neighbours of a clean plant are infested together: there is an infestation beside it with the
     chance g, and if so each neighbour belongs to it with the chance beside / g, so that where
     one does another does with the chance `kin`. Independent neighbours are the case of g = 1.
     """
+    degree, but = which
     most = 0.0
-    for k in range(beside.size):
+    for k in range(degree):
         if k != but:
             most = max(most, beside[k])
     if most <= 0.0:
         return 1.0
     g = most / max(kin, most)
     spared = 1.0
-    for k in range(beside.size):
+    for k in range(degree):
         if k != but:
             spared *= 1.0 - share[k] * beside[k] / g
     return 1.0 - g * (1.0 - spared)

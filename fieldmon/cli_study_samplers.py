@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -12,6 +13,8 @@ from fieldmon.errors import FileProblem, SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+_SAVED_EVERY_S = 15.0
 
 
 def samplers(
@@ -71,10 +74,16 @@ def samplers(
         length=len(ahead), label="Seasons", file=sys.stderr, show_eta=True, width=40
     ) as bar:
         bar.update(len(done & set(ahead)))
-        for outcomes in run(cells, range(seeds), done):
-            made += outcomes
+        saved = monotonic()
+        try:
+            for outcomes in run(cells, range(seeds), done):
+                made += outcomes
+                bar.update(1)
+                if monotonic() > saved + _SAVED_EVERY_S:
+                    write_whole(table, csv_text(made).encode())
+                    saved = monotonic()
+        finally:
             write_whole(table, csv_text(made).encode())
-            bar.update(1)
     wanted = set(ahead)
     shown = [outcome for outcome in made if (outcome.cell, outcome.seed) in wanted]
     for sentence in sentences(shown):

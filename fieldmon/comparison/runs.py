@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 ADAPTIVE, WORDED, TUNED = "adaptive", "dynamic, as worded", "dynamic, tuned"
 NO_TRAVEL, CLAIRVOYANT = "no travel", "clairvoyant"
-SOME = 5
+SOME = 10
 _FAST = 1e6
 
 

@@ -10,12 +10,12 @@ each row is passed by, driven through, or entered and left by the same end.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-import numba as nb
 import numpy as np
 
 from fieldmon.belief import Near, look, near, pairs
+from fieldmon.compiled import inlined, loop
 from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Looks, Scene, Stops, travel_s
 
@@ -67,6 +67,13 @@ class _Rows(NamedTuple):
     stop_s: Float
     stale: NDArray[np.bool_]
 
+    @classmethod
+    def of(cls, n: int, n_rows: int) -> _Rows:
+        """Return room for so many plants and rows."""
+        ways = n_rows, _WAYS
+        last, stale = np.full(ways, _NOWHERE), np.ones(n_rows, np.bool_)
+        return cls(np.zeros(ways), np.zeros(ways), last, np.zeros(n), np.zeros(n), stale)
+
 
 class _Onward(NamedTuple):
     """The best rest of the day from a lane end, going up (0) or down (1) the plot, ``(2, r, 2)``.
@@ -82,6 +89,30 @@ class _Onward(NamedTuple):
     left_seconds: Float
     to: Int
 
+    @classmethod
+    def of(cls, n_rows: int) -> _Onward:
+        """Return room for so many rows."""
+        net, seconds, left_net, left_seconds = np.zeros((4, 2, n_rows, 2))
+        way, to = np.full((2, 2, n_rows, 2), _NOWHERE)
+        return cls(net, seconds, way, left_net, left_seconds, to)
+
+
+class _Either(NamedTuple):
+    """What each direction along the robot's own row comes to, ``(2,)``: while finding a piece."""
+
+    ahead: Float
+    ahead_s: Float
+    fetch: Float
+    fetch_s: Float
+    last: Int
+    turn: Int
+
+    @classmethod
+    def blank(cls) -> _Either:
+        """Return room."""
+        none = np.full(2, _NOWHERE)
+        return cls(np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2), none, none.copy())
+
 
 class _Piece(NamedTuple):
     """The first piece of a plan: plants of one row up to `last`; what the plan comes to."""
@@ -90,6 +121,9 @@ class _Piece(NamedTuple):
     first_end: int
     last: int
     seconds: float
+
+
+_Work: TypeAlias = tuple[_Mind, _Rows, _Onward, Looks, _Either]
 
 
 @dataclass(frozen=True)
@@ -144,52 +178,52 @@ class Adaptive:
         both = scene.both
         if both is None:
             both = pairs(scene.chance, scene.grid, self.beside_find)
+        n, n_rows = len(scene.chance), scene.grid.n_rows
+        mind = _Mind(
+            np.maximum(scene.chance, _LEAST),
+            both.copy(),
+            np.zeros(n),
+            near(n),
+            np.full(n, _NOWHERE),
+        )
         k = _walk(
             scene.aisles.ground,
             scene.clock,
-            (scene.grid.adjacent, scene.chance, both, would_find.view(np.uint8)),
-            (scene.last_inspected == scene.day, looks),
-            (scene.at, self.spares),
-            Stops(stops.plant, stops.arrive_s, taken),
+            (scene.grid.adjacent, mind, would_find.view(np.uint8)),
+            (_Rows.of(n, n_rows), _Onward.of(n_rows), looks, _Either.blank()),
+            (scene.at, self.spares, scene.last_inspected == scene.day),
+            (stops.plant, stops.arrive_s, taken),
         )
         return Stops(stops.plant[:k], stops.arrive_s[:k], taken[:k])
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def _walk(
     ground: Ground,
     clock: Clock,
-    plants: tuple[Csr, Float, Float, NDArray[np.uint8]],
-    day: tuple[NDArray[np.bool_], Looks],
-    start: tuple[int, float],
-    stops: Stops,
+    plants: tuple[Csr, _Mind, NDArray[np.uint8]],
+    room: tuple[_Rows, _Onward, Looks, _Either],
+    start: tuple[int, float, NDArray[np.bool_]],
+    stops: tuple[NDArray[np.int32], Float, NDArray[np.uint8]],
 ) -> int:
-    adjacent, chance, both, would_find = plants
-    at, spares = start
-    closed, looks = day
-    mind = _mind(adjacent, chance, both, closed, spares)
-    n_rows = ground.row_start.size - 1
-    rows = _Rows(
-        np.zeros((n_rows, _WAYS)),
-        np.zeros((n_rows, _WAYS)),
-        np.full((n_rows, _WAYS), _NOWHERE),
-        np.zeros(closed.size),
-        np.zeros(closed.size),
-        np.ones(n_rows, np.bool_),
-    )
-    onward = _onward(n_rows)
+    adjacent, mind, would_find = plants
+    rows, onward, looks, either = room
+    at, spares, closed = start
+    plant_at, _, look_at = stops
+    _worths(adjacent, mind, closed, spares)
+    work = mind, rows, onward, looks, either
     now_s, k = 0.0, 0
-    price = _first_price(ground, clock, (mind, rows, onward, looks), at)
-    while k < stops.plant.size:
+    price = _first_price(ground, clock, work, at)
+    while k < plant_at.size:
         here = (at, price, clock.seconds_left - now_s)
-        price, piece = _plan_on(ground, clock, (mind, rows, onward, looks), here)
+        price, piece = _plan_on(ground, clock, work, here)
         before = k
-        while piece.row >= 0 and k < stops.plant.size:
+        while piece.row >= 0 and k < plant_at.size:
             plant, look = _next_in(ground, (mind, looks), piece, (at, price))
             if plant < 0 or not _fits(ground, clock, (at, plant), looks.stop_s[look], now_s):
                 break
             now_s = _visit(ground, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
-            stops.look[k], at, k = look, plant, k + 1
+            look_at[k], at, k = look, plant, k + 1
             found = 0 < would_find[plant] <= look + 1
             _look(ground, adjacent, mind, rows, (plant, found, looks.detects[look]))
             if found or plant == piece.last:
@@ -199,17 +233,17 @@ def _walk(
             if plant < 0:
                 break
             now_s = _visit(ground, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
-            stops.look[k], at, k = look, plant, k + 1
+            look_at[k], at, k = look, plant, k + 1
             found = 0 < would_find[plant] <= look + 1
             _look(ground, adjacent, mind, rows, (plant, found, looks.detects[look]))
     return k
 
 
-@nb.njit(cache=True)
+@loop
 def _visit(
     ground: Ground,
     clock: Clock,
-    stops: Stops,
+    stops: tuple[NDArray[np.int32], Float, NDArray[np.uint8]],
     move: tuple[int, int, int],
     times: tuple[float, float],
 ) -> float:
@@ -217,11 +251,11 @@ def _visit(
     at, plant, k = move
     now_s, stop_s = times
     arrive_s = now_s + travel_s(ground, clock, at, plant)
-    stops.plant[k], stops.arrive_s[k] = plant, arrive_s
+    stops[0][k], stops[1][k] = plant, arrive_s
     return arrive_s + stop_s
 
 
-@nb.njit(cache=True)
+@loop
 def _fits(ground: Ground, clock: Clock, move: tuple[int, int], stop_s: float, now_s: float) -> bool:
     """Tell whether a stop of so long fits into the day, way back to the gate included."""
     at, plant = move
@@ -231,7 +265,7 @@ def _fits(ground: Ground, clock: Clock, move: tuple[int, int], stop_s: float, no
     return bool(end_s <= clock.seconds_left)
 
 
-@nb.njit(cache=True, inline="always")
+@inlined
 def _best_look(looks: Looks, worth: float, chance: float, price: float) -> tuple[float, int]:
     """Return what the best look gains at a price, and which it is."""
     best, look = -np.inf, 0
@@ -242,42 +276,22 @@ def _best_look(looks: Looks, worth: float, chance: float, price: float) -> tuple
     return best, look
 
 
-@nb.njit(cache=True)
-def _mind(
-    adjacent: Csr,
-    chance: Float,
-    both: Float,
-    closed: NDArray[np.bool_],
-    spares: float,
-) -> _Mind:
-    worth, behind = np.zeros(chance.size), np.full(chance.size, _NOWHERE)
+@loop
+def _worths(adjacent: Csr, mind: _Mind, closed: NDArray[np.bool_], spares: float) -> None:
+    """Work out what a find would be worth, and where each plant's pair with the last one stands."""
+    chance = mind.chance
     for i in range(chance.size):
         first, end = adjacent.start[i], adjacent.start[i + 1]
         clean = 0.0
         for e in range(first, end):
             clean += 1.0 - chance[adjacent.plant[e]]
             if adjacent.plant[e] == i - 1:
-                behind[i] = e
+                mind.behind[i] = e
         if not closed[i]:
-            worth[i] = 1.0 + spares * clean / max(end - first, 1)
-    believed = np.maximum(chance, _LEAST)
-    return _Mind(believed, both.copy(), worth, near(chance.size), behind)
+            mind.worth[i] = 1.0 + spares * clean / max(end - first, 1)
 
 
-@nb.njit(cache=True)
-def _onward(n_rows: int) -> _Onward:
-    shape = (2, n_rows, 2)
-    return _Onward(
-        np.zeros(shape),
-        np.zeros(shape),
-        np.full(shape, _NOWHERE),
-        np.zeros(shape),
-        np.zeros(shape),
-        np.full(shape, _NOWHERE),
-    )
-
-
-@nb.njit(cache=True)
+@loop
 def _look(
     ground: Ground,
     adjacent: Csr,
@@ -294,7 +308,7 @@ def _look(
         rows.stale[ground.row[mind.near.plant[t]]] = True
 
 
-@nb.njit(cache=True)
+@loop
 def _next_in(
     ground: Ground, work: tuple[_Mind, Looks], piece: _Piece, state: tuple[int, float]
 ) -> tuple[int, int]:
@@ -317,7 +331,7 @@ def _next_in(
     return _NOWHERE, 0
 
 
-@nb.njit(cache=True)
+@loop
 def _best_left(
     ground: Ground, clock: Clock, work: tuple[_Mind, Looks], at: int, now_s: float
 ) -> tuple[int, int]:
@@ -339,11 +353,11 @@ def _best_left(
     return best, taken
 
 
-@nb.njit(cache=True)
+@loop
 def _first_price(
     ground: Ground,
     clock: Clock,
-    work: tuple[_Mind, _Rows, _Onward, Looks],
+    work: _Work,
     at: int,
 ) -> float:
     """Return the price of a second at which the plan just fills the day."""
@@ -368,11 +382,11 @@ def _first_price(
     return float(high)
 
 
-@nb.njit(cache=True)
+@loop
 def _plan_on(
     ground: Ground,
     clock: Clock,
-    work: tuple[_Mind, _Rows, _Onward, Looks],
+    work: _Work,
     state: tuple[int, float, float],
 ) -> tuple[float, _Piece]:
     """Return the price that suits the seconds left, a few steps from the last, and the plan."""
@@ -392,32 +406,32 @@ def _plan_on(
     return price, piece
 
 
-@nb.njit(cache=True)
+@loop
 def _row_of(ground: Ground, at: int) -> int:
     """Return the row of a plant, -1 for the gate; of one integer type, as numba wants it."""
     return 0 + ground.row[at] if at >= 0 else _NOWHERE
 
 
-@nb.njit(cache=True)
+@loop
 def _plan_at(
     ground: Ground,
     clock: Clock,
-    work: tuple[_Mind, _Rows, _Onward, Looks],
+    work: _Work,
     state: tuple[int, float],
 ) -> _Piece:
     work[1].stale[:] = True
     return _replan(ground, clock, work, state)
 
 
-@nb.njit(cache=True)
+@loop
 def _replan(
     ground: Ground,
     clock: Clock,
-    work: tuple[_Mind, _Rows, _Onward, Looks],
+    work: _Work,
     state: tuple[int, float],
 ) -> _Piece:
     """Return the first piece of the best plan at a price."""
-    mind, rows, onward, looks = work
+    mind, rows, onward, looks, _ = work
     at, price = state
     own = _row_of(ground, at)
     for row in range(rows.stale.size):
@@ -429,10 +443,10 @@ def _replan(
     if at < 0:
         _, seconds, onto = _leave(ground, clock, onward, 2 * (rows.stale.size), price)
         return _first_piece(rows, onward, onto, seconds)
-    return _from_row(ground, clock, (mind, rows, onward, looks), (at, price))
+    return _from_row(ground, clock, work, at, price)
 
 
-@nb.njit(cache=True)
+@loop
 def _value_row(
     ground: Ground,
     clock: Clock,
@@ -463,7 +477,7 @@ def _value_row(
     _through(ground, clock, rows, row, price)
 
 
-@nb.njit(cache=True)
+@loop
 def _after_clean(mind: _Mind, i: int, detects: float) -> float:
     """Return the chance of plant i once the one before it was looked at and seemed clean."""
     p, e = mind.chance[i], mind.behind[i]
@@ -474,7 +488,7 @@ def _after_clean(mind: _Mind, i: int, detects: float) -> float:
     return float((p - detects * c) / max(1.0 - detects * q, _LEAST))
 
 
-@nb.njit(cache=True)
+@loop
 def _in_and_out(ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int, float]) -> None:
     """Value a row that is left by the end it was entered by, as far in as pays best."""
     row, way, price = state
@@ -494,7 +508,7 @@ def _in_and_out(ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int
             rows.seconds[row, way] = drive_s + looking_s
 
 
-@nb.njit(cache=True)
+@loop
 def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) -> None:
     """Value a row that is driven from end to end, either way."""
     gains, looking_s, low, high = 0.0, 0.0, _NOWHERE, _NOWHERE
@@ -511,7 +525,7 @@ def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) 
         rows.last[row, way] = high if way == 0 else low
 
 
-@nb.njit(cache=True)
+@loop
 def _go(
     ground: Ground,
     clock: Clock,
@@ -548,7 +562,7 @@ def _go(
                     onward.way[down, row, end] = way
 
 
-@nb.njit(cache=True)
+@loop
 def _after(
     ground: Ground, clock: Clock, onward: _Onward, place: tuple[int, int, int], price: float
 ) -> None:
@@ -573,7 +587,7 @@ def _after(
     onward.to[down, row, end] = to
 
 
-@nb.njit(cache=True)
+@loop
 def _leave(
     ground: Ground, clock: Clock, onward: _Onward, here: int, price: float
 ) -> tuple[float, float, tuple[int, int, int]]:
@@ -594,7 +608,7 @@ def _leave(
     return best, best_s, onto
 
 
-@nb.njit(cache=True)
+@loop
 def _first_piece(
     rows: _Rows, onward: _Onward, onto: tuple[int, int, int], seconds: float
 ) -> _Piece:
@@ -605,54 +619,55 @@ def _first_piece(
     return _Piece(row, end, rows.last[row, way], seconds)
 
 
-@nb.njit(cache=True)
-def _from_row(
-    ground: Ground,
-    clock: Clock,
-    work: tuple[_Mind, _Rows, _Onward, Looks],
-    state: tuple[int, float],
-) -> _Piece:
+@loop
+def _from_row(ground: Ground, clock: Clock, work: _Work, at: int, price: float) -> _Piece:
     """Return the first piece of the best plan from the middle of a row.
 
     The row is left by either end, with the plants that way; before that, plants the other way
     are fetched as far as they pay.
     """
-    _, rows, onward, _ = work
-    at, price = state
+    _, rows, onward, _, either = work
     row = _row_of(ground, at)
+    for end in range(2):
+        _along(ground, clock, rows, either, (at, end, price))
     best = -np.inf
     piece = _Piece(_NOWHERE, 0, _NOWHERE, 0.0)
-    ahead = np.empty((2, 2))
-    fetch = np.empty((2, 2))
-    last, turn = np.empty(2, np.int64), np.empty(2, np.int64)
-    for end in range(2):
-        gains, looking_s, farthest = 0.0, 0.0, _NOWHERE
-        fetch[end, 0], fetch[end, 1], turn[end] = 0.0, 0.0, _NOWHERE
-        i = at - 1 if end == 0 else at + 1
-        while ground.row_start[row] <= i < ground.row_start[row + 1]:
-            if rows.gain[i] > 0.0:
-                gains += rows.gain[i]
-                looking_s += rows.stop_s[i]
-                farthest = i
-                way_s = 2.0 * abs(ground.x_m[i] - ground.x_m[at]) / clock.speed_m_s
-                if gains - price * way_s > fetch[end, 0]:
-                    fetch[end, 0], turn[end] = gains - price * way_s, i
-                    fetch[end, 1] = way_s + looking_s
-            i = i - 1 if end == 0 else i + 1
-        out_s = abs(ground.end_x_m[row, end] - ground.x_m[at]) / clock.speed_m_s
-        ahead[end, 0], ahead[end, 1] = gains - price * out_s, out_s + looking_s
-        last[end] = farthest
     for end in range(2):
         net, seconds, onto = _leave(ground, clock, onward, 2 * row + end, price)
-        net += ahead[end, 0] + fetch[1 - end, 0]
-        seconds += ahead[end, 1] + fetch[1 - end, 1]
+        net += either.ahead[end] + either.fetch[1 - end]
+        seconds += either.ahead_s[end] + either.fetch_s[1 - end]
         if net <= best:
             continue
         best = net
-        if turn[1 - end] >= 0:
-            piece = _Piece(row, end, turn[1 - end], seconds)
-        elif last[end] >= 0:
-            piece = _Piece(row, 1 - end, last[end], seconds)
+        if either.turn[1 - end] >= 0:
+            piece = _Piece(row, end, either.turn[1 - end], seconds)
+        elif either.last[end] >= 0:
+            piece = _Piece(row, 1 - end, either.last[end], seconds)
         else:
             piece = _first_piece(rows, onward, onto, seconds)
     return piece
+
+
+@loop
+def _along(
+    ground: Ground, clock: Clock, rows: _Rows, either: _Either, state: tuple[int, int, float]
+) -> None:
+    """Value one direction along a row: all the way out, and there and back as far as it pays."""
+    at, end, price = state
+    row = _row_of(ground, at)
+    gains, looking_s, farthest = 0.0, 0.0, _NOWHERE
+    either.fetch[end], either.fetch_s[end], either.turn[end] = 0.0, 0.0, _NOWHERE
+    i = at - 1 if end == 0 else at + 1
+    while ground.row_start[row] <= i < ground.row_start[row + 1]:
+        if rows.gain[i] > 0.0:
+            gains += rows.gain[i]
+            looking_s += rows.stop_s[i]
+            farthest = i
+            way_s = 2.0 * abs(ground.x_m[i] - ground.x_m[at]) / clock.speed_m_s
+            if gains - price * way_s > either.fetch[end]:
+                either.fetch[end], either.turn[end] = gains - price * way_s, i
+                either.fetch_s[end] = way_s + looking_s
+        i = i - 1 if end == 0 else i + 1
+    out_s = abs(ground.end_x_m[row, end] - ground.x_m[at]) / clock.speed_m_s
+    either.ahead[end], either.ahead_s[end] = gains - price * out_s, out_s + looking_s
+    either.last[end] = farthest

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -136,7 +136,7 @@ class Scene:
 class Sampler(Protocol):
     """Decides which plants come next."""
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+    def walk(self, scene: Scene, would_find: NDArray[Any]) -> Stops:
         """Return the stops from here to the end of the day.
 
         ``would_find`` (n,) says of each plant whether an inspection today would find it infested.

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from fieldmon.belief import Near, look, near, pairs
-from fieldmon.compiled import inlined, loop
+from fieldmon.belief import Company, Near, closeness, look, meet, near, pairs, regroup
+from fieldmon.compiled import inlined, loop, part
 from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Looks, Scene, Stops, travel_s
 
@@ -38,13 +38,16 @@ _NOWHERE = -1
 # the price moves in steps of a tenth, and stays while the plan fills this much of the hours left
 _STEP, _FULL, _TRIES = 1.1, 0.9, 2
 _BISECTIONS = 24
+# how much closer or less close infested plants must stand than thought to think again
+_NOTABLE = 0.1
 
 
 class _Mind(NamedTuple):
     """What is believed during the day.
 
     `worth` is of a find, 0 once inspected; `behind` is where in `both` each plant
-    stands with the one before it in its row, -1 if there is none.
+    stands with the one before it in its row, -1 if there is none. `dawn_...`: before the first
+    look; `company` is what the looks since say of it, and `scale` ``(1,)`` what was made of that.
     """
 
     chance: Float
@@ -52,6 +55,10 @@ class _Mind(NamedTuple):
     worth: Float
     near: Near
     behind: Int
+    dawn_chance: Float
+    dawn_both: Float
+    company: Company
+    scale: Float
 
 
 class _Rows(NamedTuple):
@@ -185,6 +192,10 @@ class Adaptive:
             np.zeros(n),
             near(n),
             np.full(n, _NOWHERE),
+            np.maximum(scene.chance, _LEAST),
+            both.copy(),
+            Company.none(n),
+            np.ones(1),
         )
         k = _walk(
             scene.aisles.ground,
@@ -215,6 +226,7 @@ def _walk(
     now_s, k = 0.0, 0
     price = _first_price(ground, clock, work, at)
     while k < plant_at.size:
+        _regroup(adjacent, mind, rows)
         here = (at, price, clock.seconds_left - now_s)
         price, piece = _plan_on(ground, clock, work, here)
         before = k
@@ -239,7 +251,7 @@ def _walk(
     return k
 
 
-@loop
+@part
 def _visit(
     ground: Ground,
     clock: Clock,
@@ -255,7 +267,7 @@ def _visit(
     return arrive_s + stop_s
 
 
-@loop
+@part
 def _fits(ground: Ground, clock: Clock, move: tuple[int, int], stop_s: float, now_s: float) -> bool:
     """Tell whether a stop of so long fits into the day, way back to the gate included."""
     at, plant = move
@@ -276,7 +288,7 @@ def _best_look(looks: Looks, worth: float, chance: float, price: float) -> tuple
     return best, look
 
 
-@loop
+@part
 def _worths(adjacent: Csr, mind: _Mind, closed: NDArray[np.bool_], spares: float) -> None:
     """Work out what a find would be worth, and where each plant's pair with the last one stands."""
     chance = mind.chance
@@ -291,7 +303,7 @@ def _worths(adjacent: Csr, mind: _Mind, closed: NDArray[np.bool_], spares: float
             mind.worth[i] = 1.0 + spares * clean / max(end - first, 1)
 
 
-@loop
+@part
 def _look(
     ground: Ground,
     adjacent: Csr,
@@ -303,12 +315,24 @@ def _look(
     i, found, detects = result
     believed = mind.chance, mind.both
     n = look(believed, adjacent, (i, found), (detects, True), mind.near)
+    meet((mind.dawn_chance, mind.dawn_both), adjacent, (i, found, detects), mind.company)
     mind.worth[i] = 0.0
     for t in range(n):
         rows.stale[ground.row[mind.near.plant[t]]] = True
 
 
-@loop
+@part
+def _regroup(adjacent: Csr, mind: _Mind, rows: _Rows) -> None:
+    """Take to heart how much infested plants stand together, once it differs enough."""
+    scale = closeness(mind.company)
+    if abs(scale - mind.scale[0]) < _NOTABLE * mind.scale[0]:
+        return
+    regroup((mind.chance, mind.both), adjacent, scale / max(mind.scale[0], _LEAST))
+    mind.scale[0] = scale
+    rows.stale[:] = True
+
+
+@part
 def _next_in(
     ground: Ground, work: tuple[_Mind, Looks], piece: _Piece, state: tuple[int, float]
 ) -> tuple[int, int]:
@@ -331,7 +355,7 @@ def _next_in(
     return _NOWHERE, 0
 
 
-@loop
+@part
 def _best_left(
     ground: Ground, clock: Clock, work: tuple[_Mind, Looks], at: int, now_s: float
 ) -> tuple[int, int]:
@@ -353,7 +377,7 @@ def _best_left(
     return best, taken
 
 
-@loop
+@part
 def _first_price(
     ground: Ground,
     clock: Clock,
@@ -382,7 +406,7 @@ def _first_price(
     return float(high)
 
 
-@loop
+@part
 def _plan_on(
     ground: Ground,
     clock: Clock,
@@ -406,13 +430,13 @@ def _plan_on(
     return price, piece
 
 
-@loop
+@part
 def _row_of(ground: Ground, at: int) -> int:
     """Return the row of a plant, -1 for the gate; of one integer type, as numba wants it."""
     return 0 + ground.row[at] if at >= 0 else _NOWHERE
 
 
-@loop
+@part
 def _plan_at(
     ground: Ground,
     clock: Clock,
@@ -423,7 +447,7 @@ def _plan_at(
     return _replan(ground, clock, work, state)
 
 
-@loop
+@part
 def _replan(
     ground: Ground,
     clock: Clock,
@@ -446,7 +470,7 @@ def _replan(
     return _from_row(ground, clock, work, at, price)
 
 
-@loop
+@part
 def _value_row(
     ground: Ground,
     clock: Clock,
@@ -477,7 +501,7 @@ def _value_row(
     _through(ground, clock, rows, row, price)
 
 
-@loop
+@part
 def _after_clean(mind: _Mind, i: int, detects: float) -> float:
     """Return the chance of plant i once the one before it was looked at and seemed clean."""
     p, e = mind.chance[i], mind.behind[i]
@@ -488,7 +512,7 @@ def _after_clean(mind: _Mind, i: int, detects: float) -> float:
     return float((p - detects * c) / max(1.0 - detects * q, _LEAST))
 
 
-@loop
+@part
 def _in_and_out(ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int, float]) -> None:
     """Value a row that is left by the end it was entered by, as far in as pays best."""
     row, way, price = state
@@ -508,7 +532,7 @@ def _in_and_out(ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int
             rows.seconds[row, way] = drive_s + looking_s
 
 
-@loop
+@part
 def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) -> None:
     """Value a row that is driven from end to end, either way."""
     gains, looking_s, low, high = 0.0, 0.0, _NOWHERE, _NOWHERE
@@ -525,7 +549,7 @@ def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) 
         rows.last[row, way] = high if way == 0 else low
 
 
-@loop
+@part
 def _go(
     ground: Ground,
     clock: Clock,
@@ -562,7 +586,7 @@ def _go(
                     onward.way[down, row, end] = way
 
 
-@loop
+@part
 def _after(
     ground: Ground, clock: Clock, onward: _Onward, place: tuple[int, int, int], price: float
 ) -> None:
@@ -587,7 +611,7 @@ def _after(
     onward.to[down, row, end] = to
 
 
-@loop
+@part
 def _leave(
     ground: Ground, clock: Clock, onward: _Onward, here: int, price: float
 ) -> tuple[float, float, tuple[int, int, int]]:
@@ -608,7 +632,7 @@ def _leave(
     return best, best_s, onto
 
 
-@loop
+@part
 def _first_piece(
     rows: _Rows, onward: _Onward, onto: tuple[int, int, int], seconds: float
 ) -> _Piece:
@@ -619,7 +643,7 @@ def _first_piece(
     return _Piece(row, end, rows.last[row, way], seconds)
 
 
-@loop
+@part
 def _from_row(ground: Ground, clock: Clock, work: _Work, at: int, price: float) -> _Piece:
     """Return the first piece of the best plan from the middle of a row.
 
@@ -648,7 +672,7 @@ def _from_row(ground: Ground, clock: Clock, work: _Work, at: int, price: float) 
     return piece
 
 
-@loop
+@part
 def _along(
     ground: Ground, clock: Clock, rows: _Rows, either: _Either, state: tuple[int, int, float]
 ) -> None:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.chance import coin, coin_table
-from fieldmon.compiled import loop
+from fieldmon.compiled import loop, part
 from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
@@ -136,7 +136,7 @@ def _one_by_one(grid: PlantGrid) -> Stations:
     n = len(grid)
     of = np.empty(n, np.int32)
     of[grid.snake] = np.arange(n, dtype=np.int32)
-    return Stations(np.arange(n + 1, dtype=np.int32), grid.snake, of)
+    return _stations(np.arange(n + 1, dtype=np.int32), grid.snake, of)
 
 
 @lru_cache(maxsize=4)
@@ -154,7 +154,14 @@ def _face_to_face(grid: PlantGrid) -> Stations:
     start = np.append(np.flatnonzero(new), n).astype(np.int32)
     of = np.empty(n, np.int32)
     of[order] = (np.cumsum(new) - 1).astype(np.int32)
-    return Stations(start, order.astype(np.int32), of)
+    return _stations(start, order.astype(np.int32), of)
+
+
+def _stations(*arrays: NDArray[np.int32]) -> Stations:
+    """Return stations that are only read, so that sweeps are compiled once for all of them."""
+    for array in arrays:
+        array.flags.writeable = False
+    return Stations(*arrays)
 
 
 def _sweep(scene: Scene, stations: Stations, every: int) -> Stops:
@@ -224,7 +231,7 @@ def _walk(
     return k
 
 
-@loop
+@part
 def _next_here(
     ground: Ground,
     stations: Stations,
@@ -246,7 +253,7 @@ def _next_here(
     return found
 
 
-@loop
+@part
 def _turned(stations: Stations, last: NDArray[np.int32], ahead: int, step: int) -> int:
     """Return where a sweep goes on at the plot's end: least recently visited, then nearest."""
     m = stations.start.size - 1

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 
 from fieldmon.aisles import drive_m
-from fieldmon.compiled import inlined
+from fieldmon.compiled import inlined, loop
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -168,6 +168,15 @@ def travel_s(ground: Ground, clock: Clock, i: int, j: int) -> float:
         return seconds + clock.row_change_s
     if ground.side[a] != ground.side[b]:
         return seconds + clock.turn_180_s
+    return seconds
+
+
+@loop
+def driven_s(ground: Ground, clock: Clock, places: NDArray[np.int64]) -> float:
+    """Return the seconds of driving from place to place ``(k,)``, plants or the gate."""
+    seconds = 0.0
+    for k in range(1, places.size):
+        seconds += travel_s(ground, clock, places[k - 1], places[k])
     return seconds
 
 

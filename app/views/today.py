@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from app import keeping, maps, panels, texts
+from app import keeping, maps, panels, remembered, texts
 from fieldmon.geodata.handoff import HandoffPlan
 from fieldmon.geodata.routes import RouteNotes, route_geojson
 
@@ -24,9 +24,10 @@ def show(choices: Choices) -> None:
     if not len(today.route):
         st.warning(texts.NO_STOPS)
     picture = st.container()
-    shown = st.pills(
-        texts.LAYERS, list(texts.LAYER_NAMES), format_func=texts.LAYER_NAMES.__getitem__,
-        selection_mode="multi", default=["plants", "route", "numbers", "hot"], key="layers",
+    shown = remembered.show(
+        st.pills, texts.LAYERS, list(texts.LAYER_NAMES), key="layers",
+        default=["plants", "route", "numbers", "hot"],
+        format_func=texts.LAYER_NAMES.__getitem__, selection_mode="multi",
     )  # fmt: skip
     with picture:
         panels.draw(choices, _layers(choices, today, shown), "map")

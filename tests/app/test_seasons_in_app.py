@@ -37,6 +37,17 @@ def test_a_season_begins_and_is_found_again_by_a_new_session(app, season):
     assert layer(again, "plants")["data"] == layer(app, "plants")["data"]
 
 
+def test_the_first_click_after_a_reload_stays_in_the_season(app):
+    go(app, "map")
+    assert app.selectbox(key="season").value == "Gate 2026"
+    again = opened("Gate 2026")
+    for page in ("season", "study", "today"):
+        go(again, page)
+    assert again.selectbox(key="season").value == "Gate 2026"
+    assert "first day of the season" in texts_of(again)
+    assert again.query_params["season"] == "Gate 2026"
+
+
 def test_a_season_is_never_begun_over_another_and_its_name_stays_in_the_folder(app, season):
     before = season().path.read_bytes()
     for name, says in (("Gate 2026", "new file"), ("../up", "name must be"), ("", "name must be")):

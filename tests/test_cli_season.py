@@ -174,7 +174,7 @@ def test_a_damaged_season_is_salvaged(run, season):  # noqa: F811
         (["plan", "season.gpkg", "--date", BEGINS, "--now", "23:00"], "long enough"),
         (["init", "season.gpkg", str(ESTATE), "--feature", "1"], "never overwritten"),
         (["status", "none.gpkg"], "there is none"),
-        (["status", str(RECORDS)], "season"),
+        (["status", str(RECORDS)], "must be the file of a season"),
         (["undo", "season.gpkg"], "nothing"),
         (["undo", "season.gpkg", "--batch", "1", "--inspection", "1"], "not both"),
         (["treat", "season.gpkg", "--efficacy", "5"], "0..1"),

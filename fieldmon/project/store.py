@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 KIND = "season"
 # another window's transaction takes well under a second; a backup program may hold the file longer
 _PATIENCE_S = 30.0
-_APPLICATION_AT = 68
+_MAGIC, _APPLICATION_AT = b"SQLite format 3\x00", 68
 
 
 def is_season(path: str | Path) -> bool:
@@ -30,7 +30,7 @@ def is_season(path: str | Path) -> bool:
     except OSError:
         return False
     mark = head[_APPLICATION_AT : _APPLICATION_AT + 4]
-    if not head.startswith(b"SQLite format 3\x00") or int.from_bytes(mark) != APPLICATION_ID:
+    if not head.startswith(_MAGIC) or int.from_bytes(mark) != APPLICATION_ID:
         return False
     try:
         with closing(_connect(Path(path))) as db:
@@ -52,6 +52,11 @@ class Store:
             raise FileProblem(
                 f"{path} must be the file of a season, but there is none. "
                 "Check the name, or begin one with: fieldmon init"
+            )
+        if not _begins_as_database(self.path):
+            raise FileProblem(
+                f"{path} must be the file of a season (a GeoPackage), but it does not begin as "
+                "one. Check the name; if it was a season, go back to a copy of it."
             )
         with self.reading() as db:
             version = _version(db)
@@ -132,6 +137,18 @@ def get_meta(db: sqlite3.Connection, key: str) -> str | None:
     """Return what was noted about the file, or None."""
     row = db.execute("SELECT value FROM fieldmon WHERE key = ?", (key,)).fetchone()
     return None if row is None else str(row[0])
+
+
+def _begins_as_database(path: Path) -> bool:
+    """Tell whether SQLite would open a file; it takes an empty one for an empty database."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(len(_MAGIC))
+    except OSError as error:
+        raise FileProblem(
+            f"{path} must be readable, but it is not ({error.strerror}). Check its permissions."
+        ) from error
+    return not head or head == _MAGIC
 
 
 def _connect(path: Path) -> sqlite3.Connection:

@@ -33,7 +33,7 @@ st.html(
     "<style>[data-testid=stMainBlockContainer]{padding-top:4rem;padding-bottom:3rem}"
     "h1,h2,h3,[data-testid=stMarkdownContainer] p{unicode-bidi:plaintext}"
     ".st-key-start_scouting a{border:1px solid rgba(128,128,128,.5);border-radius:.5rem;"
-    "min-height:2.5rem;padding:.25rem .75rem}</style>"
+    "min-height:2.5rem;padding:.25rem .75rem;margin:0}</style>"
 )
 cached.warm()
 

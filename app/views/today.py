@@ -37,8 +37,11 @@ def show(choices: Choices) -> None:
     if choices.project is None:
         keeping.begin(choices)
     else:
-        st.markdown(f"**{texts.CHANGED}**")
-        st.markdown("\n".join(f"- {sentence}" for sentence in panels.changes(choices)))
+        for title, said in ((texts.WHY, panels.reasons(choices, today)),
+                            (texts.CHANGED, panels.changes(choices))):  # fmt: skip
+            if said:
+                st.markdown(f"**{title}**")
+                st.markdown("\n".join(f"- {sentence}" for sentence in said))
     if len(today.route):
         with st.expander(texts.STOPS):
             st.dataframe(panels.stops(choices, today), height=300)

@@ -1,5 +1,6 @@
 """A season in the app: begun, scouted, recorded, undone, come back to."""
 
+import re
 import shutil
 from datetime import date
 
@@ -122,6 +123,17 @@ def test_found_plants_and_clean_ones_show_on_the_map(app):
     shown = [p["c"] for p in layer(app, "plants")["data"]]
     assert sum(c == [213, 30, 30, 255] for c in shown) == 1
     assert sum(c == [90, 160, 230, 255] for c in shown) == 1
+
+
+def test_today_says_why_it_goes_where_it_goes(app):
+    assert "never inspected yet" in texts_of(app)
+    go(app, "scout")
+    place = app.markdown[0].value.lower()
+    tap(app, "scout_found")
+    go(app, "today")
+    why = next(m.value for m in app.markdown if "around today's find" in m.value)
+    row, plant = (int(n) for n in re.findall(r"find in row (\d+), plant (\d+)", why)[0])
+    assert f"row {row} · plant {plant}" in place
 
 
 def test_one_plant_is_recorded_and_undone_on_the_season_page(app, season):

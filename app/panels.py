@@ -10,9 +10,11 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
+from fieldmon.explain import explain
 from fieldmon.field import ABSENT, PRESENT
 from fieldmon.geodata.handoff import FORMATS
 from fieldmon.grid import plant_at, row_label
+from fieldmon.history import FOUND
 from fieldmon.hotspots import record_states
 from fieldmon.prior import usable
 
@@ -30,6 +32,8 @@ if TYPE_CHECKING:
     from .choices import Choices
 
 STARTS = time(6, 0)
+# reasons for a route that are told one by one
+_REASONS = 8
 _SEEN = {"found": PRESENT, "clean": ABSENT}
 
 
@@ -206,6 +210,21 @@ def changes(choices: Choices) -> list[str]:
         said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))
     rows = _risen(choices, str(yesterday))
     return [*said, texts.CHANGED_ROWS.format(rows=rows)] if rows else said
+
+
+def reasons(choices: Choices, today: Today) -> list[str]:
+    """Return what the stops of the day are for, in sentences."""
+    project = choices.project
+    if project is None or not len(today.route):
+        return []
+    setup, done = project.setup, project.history.inspections
+    now = setup.day(choices.on)
+    lately = (done.result == FOUND) & (done.day <= now) & (done.day > now - 7)
+    finds = dict(zip(done.plant[lately].tolist(), done.day[lately].tolist(), strict=True))
+    on = [texts.WHY_TODAY if d == now else f"{setup.date(d):%A}" for d in finds.values()]
+    said = explain(today.scene, today.work, np.array([*finds], np.int32), on)
+    more = len(said) - _REASONS
+    return said if more < 2 else [*said[:_REASONS], texts.WHY_MORE.format(n=more)]
 
 
 def _risen(choices: Choices, yesterday: str) -> str:

@@ -30,7 +30,7 @@ _HABIT, _MORE = 3.0, 1.5
 _LEAST_SAY = 1e-6
 # correlation of neighbours before anything was found beside a find: where clusters are believed
 # in more, single infested plants cost more looks, and the other way round; it is learnt soon
-_COMPANY = 0.25
+COMPANY = 0.25
 # rows of the room for the plants beside one: chance that each infects it; that it does not
 # where there is an infestation beside it; and that with the most infested one left out
 _SHARED, _FREE, _FREE_BUT = 0, 1, 2
@@ -164,7 +164,7 @@ def _overnight(
 
 
 def pairs(
-    chance: NDArray[np.float64], grid: PlantGrid, company: float = _COMPANY
+    chance: NDArray[np.float64], grid: PlantGrid, company: float = COMPANY
 ) -> NDArray[np.float64]:
     """Return the chance that both of two plants side by side are infested, ``(e,)``.
 
@@ -242,7 +242,7 @@ class Pairs:
     both: NDArray[np.float64]
 
     @classmethod
-    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = _COMPANY) -> Pairs:
+    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = COMPANY) -> Pairs:
         """Begin with a chance map, see :func:`pairs`."""
         chance = np.clip(chance, _LEAST, _MOST)
         return cls(grid, chance, pairs(chance, grid, company))

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numba as nb
 import numpy as np
 
-from fieldmon.belief import pairs
+from fieldmon.belief import COMPANY, pairs
 from fieldmon.chance import Chance, coin
 from fieldmon.outlook import Outlook, draw_fields
 from fieldmon.spread import night
@@ -43,7 +43,7 @@ class Ensemble:
     steps: int = 0
 
     @classmethod
-    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = 0.5) -> Ensemble:
+    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = COMPANY) -> Ensemble:
         """Draw fields from a chance map, see :func:`fieldmon.belief.pairs`."""
         fields = np.zeros((_FIELDS, len(grid)), np.bool_)
         believed = chance, pairs(chance, grid, company)

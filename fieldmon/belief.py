@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from fieldmon.compiled import loop, part
+from fieldmon.compiled import inlined, loop, part
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -388,14 +388,14 @@ def _keep_company(
         both[e] = both[_back(adjacent, j, e)] = c
 
 
-@part
+@inlined
 def _bounded(both: float, p: float, q: float) -> float:
     """Return the chance of both of two plants, within what their own chances p and q allow."""
     apart = p * q
     return max(min(both, apart + _CLOSEST * (min(p, q) - apart)), p + q - 1.0, 0.0)
 
 
-@part
+@inlined
 def _told(p: float, q: float, both: float, after: float) -> float:
     """Return the chance of a plant, q until now, when its neighbour's goes from p to `after`."""
     c = _bounded(both, p, q)
@@ -403,7 +403,7 @@ def _told(p: float, q: float, both: float, after: float) -> float:
     return min(max(told, _LEAST), _MOST)
 
 
-@part
+@inlined
 def _back(adjacent: Csr, j: int, e: int) -> int:
     """Return where the pair of plant j at place e stands in the list of the other plant."""
     k = adjacent.plant[e]
@@ -559,7 +559,7 @@ def _spare_pairs(
         morning[i] = min(max(1.0 - (1.0 - chance[i]) * stays, _LEAST), _MOST)
 
 
-@part
+@inlined
 def _spared(free: NDArray[np.float64], degree: int, g: float, but: int) -> float:
     """Return the chance that none of a plant's neighbours infects it, neighbour `but` aside.
 

@@ -123,18 +123,32 @@ def test_a_plant_that_is_hardly_suspected_is_not_worth_a_long_way():
     assert 29 * 30 + 29 not in work.plant
 
 
-def test_the_plants_beside_a_find_are_inspected_those_in_its_row_at_once():
+def test_the_plants_beside_finds_are_inspected_those_in_their_row_at_once():
     scene = scene_with(np.full(N, 0.01), company=0.6)
     calm = plan_day(scene, Adaptive())
     k = len(calm) // 3
     find = int(calm.plant[k])
     found = np.zeros(N, bool)
-    found[find] = True
+    found[find - 1 : find + 2] = True
     start, other = GRID.adjacent
     beside = set(other[start[find] : start[find + 1]].tolist()) - set(calm.plant[:k].tolist())
     work = work_day(scene, Adaptive(), found)
     assert beside <= set(work.plant.tolist())
     assert {find - 1, find + 1} & beside <= set(work.plant[k + 1 : k + 8].tolist())
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_where_finds_stand_alone_it_soon_finds_as_many_as_a_sweep(seed):
+    """Clusters are believed in and there are none: learnt from the first finds, the same day."""
+    start, other = GRID.adjacent
+    rng = np.random.default_rng(seed)
+    alone = np.zeros(N, bool)
+    for plant in rng.permutation(N):
+        if not alone[other[start[plant] : start[plant + 1]]].any():
+            alone[plant] = rng.random() < 0.15
+    scene = scene_with(np.full(N, 0.1), hours=6.0, company=0.6)
+    work, sweep = (work_day(scene, s, alone) for s in (Adaptive(), Naive()))
+    assert work.found.sum() >= 0.9 * sweep.found.sum()
 
 
 @pytest.mark.parametrize("bad", [{"spares": -1.0}, {"spares": np.inf}, {"beside_find": 1.5}])

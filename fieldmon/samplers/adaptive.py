@@ -64,7 +64,8 @@ class _Mind(NamedTuple):
 class _Rows(NamedTuple):
     """What each way of driving each row comes to, ``(r, 4)``.
 
-    And what each plant gains at the price, and the seconds of its look, ``(n,)``.
+    And what each plant gains at the price, and the seconds of its look, ``(n,)``; `pays` is room
+    for the plants of one row with a gain.
     """
 
     net: Float
@@ -73,13 +74,15 @@ class _Rows(NamedTuple):
     gain: Float
     stop_s: Float
     stale: NDArray[np.bool_]
+    pays: Int
 
     @classmethod
     def of(cls, n: int, n_rows: int) -> _Rows:
         """Return room for so many plants and rows."""
         ways = n_rows, _WAYS
         last, stale = np.full(ways, _NOWHERE), np.ones(n_rows, np.bool_)
-        return cls(np.zeros(ways), np.zeros(ways), last, np.zeros(n), np.zeros(n), stale)
+        gain, stop_s, pays = np.zeros(n), np.zeros(n), np.empty(n, np.int64)
+        return cls(np.zeros(ways), np.zeros(ways), last, gain, stop_s, stale, pays)
 
 
 class _Onward(NamedTuple):
@@ -484,7 +487,7 @@ def _value_row(
     mind, rows, looks = work
     row, price = state
     first, end = ground.row_start[row], ground.row_start[row + 1]
-    previous, before = _NOWHERE, 0
+    previous, before, n = _NOWHERE, 0, 0
     for i in range(first, end):
         gain, taken = _best_look(looks, mind.worth[i], mind.chance[i], price)
         if gain > 0.0 and previous == i - 1 and previous >= 0:
@@ -493,12 +496,14 @@ def _value_row(
         rows.gain[i], rows.stop_s[i] = max(gain, 0.0), looks.stop_s[taken]
         if gain > 0.0:
             previous, before = i, taken
+            rows.pays[n] = i
+            n += 1
     rows.last[row] = _NOWHERE
-    if previous < 0:
+    if n == 0:
         return
-    _in_and_out(ground, clock, rows, (row, 2, price))
-    _in_and_out(ground, clock, rows, (row, 3, price))
-    _through(ground, clock, rows, row, price)
+    for way in range(2, _WAYS):
+        _in_and_out(ground, clock, rows, (row, way, n), price)
+    _through(ground, clock, rows, (row, n), price)
 
 
 @part
@@ -513,40 +518,40 @@ def _after_clean(mind: _Mind, i: int, detects: float) -> float:
 
 
 @part
-def _in_and_out(ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int, float]) -> None:
+def _in_and_out(
+    ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int, int], price: float
+) -> None:
     """Value a row that is left by the end it was entered by, as far in as pays best."""
-    row, way, price = state
-    first, end = ground.row_start[row], ground.row_start[row + 1]
+    row, way, n = state
     entry_m = ground.end_x_m[row, way - 2]
-    rows.net[row, way] = -np.inf
+    best, best_s, last = -np.inf, 0.0, _NOWHERE
     gains, looking_s = 0.0, 0.0
-    for k in range(end - first):
-        i = first + k if way == 2 else end - 1 - k
-        if rows.gain[i] <= 0.0:
-            continue
+    for k in range(n):
+        i = rows.pays[k] if way == 2 else rows.pays[n - 1 - k]
         gains += rows.gain[i]
         looking_s += rows.stop_s[i]
         drive_s = 2.0 * abs(ground.x_m[i] - entry_m) / clock.speed_m_s
-        if gains - price * drive_s > rows.net[row, way]:
-            rows.net[row, way], rows.last[row, way] = gains - price * drive_s, i
-            rows.seconds[row, way] = drive_s + looking_s
+        net = gains - price * drive_s
+        if net > best:
+            best, best_s, last = net, drive_s + looking_s, i
+    rows.net[row, way], rows.seconds[row, way], rows.last[row, way] = best, best_s, last
 
 
 @part
-def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) -> None:
+def _through(
+    ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int], price: float
+) -> None:
     """Value a row that is driven from end to end, either way."""
-    gains, looking_s, low, high = 0.0, 0.0, _NOWHERE, _NOWHERE
-    for i in range(ground.row_start[row], ground.row_start[row + 1]):
-        if rows.gain[i] > 0.0:
-            gains += rows.gain[i]
-            looking_s += rows.stop_s[i]
-            low = i if low < 0 else low
-            high = i
+    row, n = state
+    gains, looking_s = 0.0, 0.0
+    for k in range(n):
+        gains += rows.gain[rows.pays[k]]
+        looking_s += rows.stop_s[rows.pays[k]]
     drive_s = (ground.end_x_m[row, 1] - ground.end_x_m[row, 0]) / clock.speed_m_s
     for way in range(2):
         rows.net[row, way] = gains - price * drive_s
         rows.seconds[row, way] = drive_s + looking_s
-        rows.last[row, way] = high if way == 0 else low
+        rows.last[row, way] = rows.pays[n - 1] if way == 0 else rows.pays[0]
 
 
 @part

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -50,6 +50,7 @@ class Snake:
         N; 1 inspects every plant.
     """
 
+    blind: ClassVar[bool] = True
     every: int = 1
 
     def __post_init__(self) -> None:
@@ -63,6 +64,8 @@ class Snake:
 @dataclass(frozen=True)
 class SnakeRandom:
     """The snake with N drawn anew, 1 to 4, at every stop: algorithm 3 of the thesis."""
+
+    blind: ClassVar[bool] = True
 
     def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
@@ -82,6 +85,7 @@ class Neighbor:
         Every N-th stop.
     """
 
+    blind: ClassVar[bool] = True
     every: int = 1
 
     def __post_init__(self) -> None:
@@ -95,6 +99,8 @@ class Neighbor:
 @dataclass(frozen=True)
 class NeighborRandom:
     """The neighbor sampler with N drawn anew, 1 to 4, at every stop: algorithm 5 of the thesis."""
+
+    blind: ClassVar[bool] = True
 
     def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
@@ -111,6 +117,7 @@ class RandomShare:
         N; the share is 1/N, rounded down, but one plant at least.
     """
 
+    blind: ClassVar[bool] = True
     every: int = 3
 
     def __post_init__(self) -> None:
@@ -118,7 +125,7 @@ class RandomShare:
 
     def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
         """Return the day's draw from the start of the plot."""
-        n = len(scene.chance)
+        n = len(scene.grid)
         drawn = np.argsort(coin_table(scene.key, n))[: max(n // self.every, 1)]
         wanted = np.zeros(n, np.bool_)
         wanted[drawn] = True
@@ -166,7 +173,7 @@ def _stations(*arrays: NDArray[np.int32]) -> Stations:
 
 def _sweep(scene: Scene, stations: Stations, every: int) -> Stops:
     """Return the stops of a sweep that goes on where the last day ended, in its direction."""
-    wanted = np.ones(len(scene.chance), np.bool_)
+    wanted = np.ones(len(scene.grid), np.bool_)
     before = stations.of[scene.trail]
     if scene.resume < 0:
         return _walked(scene, stations, wanted, (0, 1, every, True))

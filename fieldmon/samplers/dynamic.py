@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compiled import loop, part
+from fieldmon.compiled import inlined, loop, part
 from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
@@ -132,7 +132,7 @@ def _walk(
     return k
 
 
-@part
+@inlined
 def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) -> int:
     """Put a plant on the open list; return how many joined it (0 or 1)."""
     if closed[plant] or opened.flag[plant]:
@@ -182,7 +182,7 @@ def _refill(
     return joined
 
 
-@part
+@inlined
 def _nearest(
     ground: Ground, clock: Clock, opened: _Open, lane_y_m: NDArray[np.float64], at: int
 ) -> int:
@@ -210,7 +210,7 @@ def _nearest(
     return best
 
 
-@part
+@inlined
 def _nearest_in(
     ground: Ground, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
@@ -220,7 +220,7 @@ def _nearest_in(
     return _nearest_end(ground, clock, opened, at, row)
 
 
-@part
+@inlined
 def _nearest_end(
     ground: Ground, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
@@ -238,7 +238,7 @@ def _nearest_end(
     return (low, low_s) if low_s <= high_s else (high, high_s)
 
 
-@part
+@inlined
 def _nearest_along(
     ground: Ground, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:

@@ -129,12 +129,16 @@ class Scene:
 
     def room(self, stop_s: float) -> Stops:
         """Return room for as many stops of at least `stop_s` each."""
-        room = min(len(self.chance), int(self.seconds_left // stop_s) + 1)
+        room = min(len(self.grid), int(self.seconds_left // stop_s) + 1)
         return Stops(np.empty(room, np.int32), np.empty(room, np.float64))
 
 
 class Sampler(Protocol):
-    """Decides which plants come next."""
+    """Decides which plants come next.
+
+    One that reads neither ``chance`` nor ``both`` of a scene may say so by ``blind = True``: what
+    is believed is then not worked out for it.
+    """
 
     def walk(self, scene: Scene, would_find: NDArray[Any]) -> Stops:
         """Return the stops from here to the end of the day.

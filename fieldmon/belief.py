@@ -171,11 +171,20 @@ def pairs(
     In the order of ``grid.adjacent``. `company` is the correlation of the two: about the chance
     that a plant beside an infested one is infested too, where few are.
     """
-    start, other = grid.adjacent
-    one = np.repeat(np.arange(len(chance)), np.diff(start))
-    p, q = chance[one], chance[other]
-    both = p * q + company * np.sqrt(p * (1.0 - p) * q * (1.0 - q))
-    return np.minimum(both, np.minimum(p, q))
+    both = np.empty(len(grid.adjacent.plant))
+    _pairs(np.ascontiguousarray(chance), grid.adjacent, company, both)
+    return both
+
+
+@loop
+def _pairs(
+    chance: NDArray[np.float64], adjacent: Csr, company: float, both: NDArray[np.float64]
+) -> None:
+    for i in range(chance.size):
+        for e in range(adjacent.start[i], adjacent.start[i + 1]):
+            p, q = chance[i], chance[adjacent.plant[e]]
+            together = p * q + company * np.sqrt(p * (1.0 - p) * q * (1.0 - q))
+            both[e] = min(together, p, q)
 
 
 class Belief(Protocol):

@@ -65,7 +65,8 @@ class _Rows(NamedTuple):
     """What each way of driving each row comes to, ``(r, 4)``.
 
     And what each plant gains at the price, and the seconds of its look, ``(n,)``; `pays` is room
-    for the plants of one row with a gain.
+    for the plants of one row with a gain, `most` the most that a find in each row is expected to
+    be worth, -1 where that has changed.
     """
 
     net: Float
@@ -75,6 +76,7 @@ class _Rows(NamedTuple):
     stop_s: Float
     stale: NDArray[np.bool_]
     pays: Int
+    most: Float
 
     @classmethod
     def of(cls, n: int, n_rows: int) -> _Rows:
@@ -82,7 +84,8 @@ class _Rows(NamedTuple):
         ways = n_rows, _WAYS
         last, stale = np.full(ways, _NOWHERE), np.ones(n_rows, np.bool_)
         gain, stop_s, pays = np.zeros(n), np.zeros(n), np.empty(n, np.int64)
-        return cls(np.zeros(ways), np.zeros(ways), last, gain, stop_s, stale, pays)
+        most = np.full(n_rows, -1.0)
+        return cls(np.zeros(ways), np.zeros(ways), last, gain, stop_s, stale, pays, most)
 
 
 class _Onward(NamedTuple):
@@ -244,7 +247,7 @@ def _walk(
             if found or plant == piece.last:
                 break
         if k == before:
-            plant, look = _best_left(ground, clock, (mind, looks), at, now_s)
+            plant, look = _best_left(ground, clock, (mind, rows, looks), at, now_s)
             if plant < 0:
                 break
             now_s = _visit(ground, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
@@ -321,7 +324,9 @@ def _look(
     meet((mind.dawn_chance, mind.dawn_both), adjacent, (i, found, detects), mind.company)
     mind.worth[i] = 0.0
     for t in range(n):
-        rows.stale[ground.row[mind.near.plant[t]]] = True
+        row = ground.row[mind.near.plant[t]]
+        rows.stale[row], rows.most[row] = True, -1.0
+    rows.most[ground.row[i]] = -1.0
 
 
 @part
@@ -360,23 +365,26 @@ def _next_in(
 
 @part
 def _best_left(
-    ground: Ground, clock: Clock, work: tuple[_Mind, Looks], at: int, now_s: float
+    ground: Ground, clock: Clock, work: tuple[_Mind, _Rows, Looks], at: int, now_s: float
 ) -> tuple[int, int]:
     """Return the plant with the most worth for its time that still fits into the day, or -1.
 
     And the look it gets.
     """
-    mind, looks = work
+    mind, rows, looks = work
     best, best_rate, taken = _NOWHERE, 0.0, 0
-    for i in range(mind.worth.size):
-        # nothing takes less than no time to reach: most plants need no way worked out
-        if looks.detects[-1] * mind.worth[i] * mind.chance[i] <= best_rate * looks.stop_s[0]:
+    for row in range(rows.stale.size):
+        if looks.detects[-1] * _most_in(ground, mind, rows, row) <= best_rate * looks.stop_s[0]:
             continue
-        way_s = travel_s(ground, clock, at, i)
-        for k in range(looks.stop_s.size):
-            rate = looks.detects[k] * mind.worth[i] * mind.chance[i] / (way_s + looks.stop_s[k])
-            if rate > best_rate and _fits(ground, clock, (at, i), looks.stop_s[k], now_s):
-                best, best_rate, taken = i, rate, k
+        for i in range(ground.row_start[row], ground.row_start[row + 1]):
+            # nothing takes less than no time to reach: most plants need no way worked out
+            if looks.detects[-1] * mind.worth[i] * mind.chance[i] <= best_rate * looks.stop_s[0]:
+                continue
+            way_s = travel_s(ground, clock, at, i)
+            for k in range(looks.stop_s.size):
+                rate = looks.detects[k] * mind.worth[i] * mind.chance[i] / (way_s + looks.stop_s[k])
+                if rate > best_rate and _fits(ground, clock, (at, i), looks.stop_s[k], now_s):
+                    best, best_rate, taken = i, rate, k
     return best, taken
 
 
@@ -487,6 +495,11 @@ def _value_row(
     mind, rows, looks = work
     row, price = state
     first, end = ground.row_start[row], ground.row_start[row + 1]
+    if _best_look(looks, 1.0, _most_in(ground, mind, rows, row), price)[0] <= 0.0:
+        if rows.last[row, 0] >= 0:
+            rows.gain[first:end] = 0.0
+            rows.last[row] = _NOWHERE
+        return
     previous, before, n = _NOWHERE, 0, 0
     for i in range(first, end):
         gain, taken = _best_look(looks, mind.worth[i], mind.chance[i], price)
@@ -498,12 +511,23 @@ def _value_row(
             previous, before = i, taken
             rows.pays[n] = i
             n += 1
-    rows.last[row] = _NOWHERE
-    if n == 0:
+    if n == 0:  # by a hair
+        rows.last[row] = _NOWHERE
         return
     for way in range(2, _WAYS):
         _in_and_out(ground, clock, rows, (row, way, n), price)
     _through(ground, clock, rows, (row, n), price)
+
+
+@part
+def _most_in(ground: Ground, mind: _Mind, rows: _Rows, row: int) -> float:
+    """Return the most that a find in a row is expected to be worth."""
+    if rows.most[row] < 0.0:
+        most = 0.0
+        for i in range(ground.row_start[row], ground.row_start[row + 1]):
+            most = max(most, mind.worth[i] * mind.chance[i])
+        rows.most[row] = most
+    return float(rows.most[row])
 
 
 @part

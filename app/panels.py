@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from .choices import Choices
 
 STARTS = time(6, 0)
-# reasons for a route that are told one by one
-_REASONS = 8
 _SEEN = {"found": PRESENT, "clean": ABSENT}
 
 
@@ -222,9 +220,7 @@ def reasons(choices: Choices, today: Today) -> list[str]:
     lately = (done.result == FOUND) & (done.day <= now) & (done.day > now - 7)
     finds = dict(zip(done.plant[lately].tolist(), done.day[lately].tolist(), strict=True))
     on = [texts.WHY_TODAY if d == now else f"{setup.date(d):%A}" for d in finds.values()]
-    said = explain(today.scene, today.work, np.array([*finds], np.int32), on)
-    more = len(said) - _REASONS
-    return said if more < 2 else [*said[:_REASONS], texts.WHY_MORE.format(n=more)]
+    return explain(today.scene, today.work, np.array([*finds], np.int32), on)
 
 
 def _risen(choices: Choices, yesterday: str) -> str:

@@ -30,7 +30,7 @@ from fieldmon.prior import start_infested
 from fieldmon.project import Project
 from fieldmon.project.store import get_meta
 from fieldmon.robot import Robot
-from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers import sampler
 from fieldmon.season import Day, SeasonSettings, Start, days
 from fieldmon.spread import Spread
 
@@ -76,7 +76,8 @@ def warm() -> threading.Thread:
         guard.warm()
         grid = rectangle(3, 3)
         start = Start(np.ones(9, np.bool_), np.full(9, 0.1))
-        for name in SAMPLERS:
+        # in the order in which they are offered: the first screen waits for the first of them
+        for name in texts.SAMPLERS:
             settings = SeasonSettings(n_days=2)
             list(days(Aisles.of(grid), Robot(), sampler(name), start, settings, Chance(0)))
 

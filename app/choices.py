@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from datetime import date
+from datetime import date, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.monitor import Plot, planting_of
 from fieldmon.planting import Planting
 
-from . import cached, files, seasons, texts
+from . import cached, files, remembered, seasons, texts
 from .edits import Edit, edited
 from .files import File, Heard
 from .units import AREAS_M2, DATES, LENGTHS, Units
@@ -31,6 +31,8 @@ LAST_SAMPLE_DAY = date(2026, 11, 16)
 #: what is put into cache keys for the sample estate's files
 _SAMPLE = "sample/"
 _DAY = "day {season}"
+# also the word in the address
+_WHERE = "season"
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,33 +129,32 @@ def choose() -> Chosen:
 
 def _where() -> str:
     options = [texts.SAMPLE, texts.UPLOAD, *seasons.names()]
-    if "season" not in st.session_state:
-        st.session_state["season"] = st.query_params.get("season")
-    if st.session_state["season"] not in options:
-        st.session_state["season"] = texts.SAMPLE
-    chosen = st.selectbox(
-        texts.PLOT_FROM, options, key="season", help=texts.PLOT_FROM_HELP, filter_mode=None,
-        persist_state="session",
+    remembered.first(_WHERE, st.query_params.get(_WHERE))
+    if remembered.value(_WHERE) not in options:
+        st.session_state[_WHERE] = texts.SAMPLE
+    chosen = remembered.show(
+        st.selectbox, texts.PLOT_FROM, options, key=_WHERE, help=texts.PLOT_FROM_HELP,
+        filter_mode=None,
     )  # fmt: skip
     # the address leads back to the season after a reload, and to another person's screen
     if chosen == texts.SAMPLE:
-        st.query_params.pop("season", None)
-    elif st.query_params.get("season") != chosen:
-        st.query_params["season"] = chosen
+        st.query_params.pop(_WHERE, None)
+    elif st.query_params.get(_WHERE) != chosen:
+        st.query_params[_WHERE] = chosen
     return chosen
 
 
 def open_season(name: str) -> None:
     """Let the season of this name be open from the next run on (for callbacks)."""
-    st.session_state["season"] = name
+    st.session_state[_WHERE] = name
 
 
 def _open(name: str) -> Choices:
     project = cached.project(seasons.path_of(name))
     setup, key = project.setup, str(project.path)
-    day = st.date_input(
-        texts.DATE, project.last_date(), min_value=setup.begins, key=_DAY.format(season=name),
-        persist_state="session", format=read_units().date_format,
+    day = remembered.show(
+        st.date_input, texts.DATE, min_value=setup.begins, key=_DAY.format(season=name),
+        default=project.last_date(), format=read_units().date_format,
     )  # fmt: skip
     heard = tuple(Heard(key, cached.finding_of(remark)) for remark in cached.remarks(key, project))
     choices = Choices(
@@ -228,9 +229,9 @@ def _field(
     options = files.settled(file, PlotOptions())
     read = cached.plots(file.key, options, file.source)
     names = [field.name for field in read.value]
-    number = st.selectbox(
-        texts.WHICH_PLOT, range(len(names)), format_func=names.__getitem__,
-        key=f"feature {file.key}", persist_state="session",
+    number = remembered.show(
+        st.selectbox, texts.WHICH_PLOT, range(len(names)), format_func=names.__getitem__,
+        key=f"feature {file.key}", default=0,
     )  # fmt: skip
     field = read.value[number or 0]
     if plants is not None:
@@ -256,11 +257,11 @@ def draw(plot_key: str, edits: tuple[Edit, ...]) -> None:
 def row_settings() -> dict[str, float | None]:
     """Return what was said about rows by hand; None: found, or as the file says."""
     said = {
-        name: st.session_state.get(name)
+        name: remembered.value(name)
         for name in ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
     }
-    both = st.session_state.get("both_faces")
-    headland = st.session_state.get("headland_m") or 4.0
+    both = remembered.value("both_faces")
+    headland = remembered.value("headland_m") or 4.0
     return {**said, "headland_m": headland, "faces": 2 if both else None}
 
 
@@ -288,24 +289,24 @@ def _records(
 
 
 def _work(where: str) -> tuple[Robot, str, str]:
-    first = LAST_SAMPLE_DAY if where == texts.SAMPLE else "today"
-    day = st.date_input(
-        texts.DATE, first, key=_DAY.format(season=where), persist_state="session",
+    first = LAST_SAMPLE_DAY if where == texts.SAMPLE else datetime.now().astimezone().date()
+    day = remembered.show(
+        st.date_input, texts.DATE, key=_DAY.format(season=where), default=first,
         format=read_units().date_format,
     )  # fmt: skip
     with st.expander(texts.WHO, expanded=True):
-        who = st.segmented_control(
-            texts.WHO, [texts.ROBOT, texts.SCOUT], default=texts.ROBOT, key="who", required=True,
-            label_visibility="collapsed", persist_state="session",
+        who = remembered.show(
+            st.segmented_control, texts.WHO, [texts.ROBOT, texts.SCOUT], key="who",
+            default=texts.ROBOT, required=True, label_visibility="collapsed",
         )  # fmt: skip
         base = robots.scout() if who == texts.SCOUT else robots.Robot()
-        hours = st.slider(texts.HOURS, 0.5, 16.0, base.hours, 0.5, key=f"hours {who}",
-                          persist_state="session")  # fmt: skip
-        look = st.slider(texts.LOOK, 20, 60, int(base.look_s), 5, key=f"look {who}",
-                         persist_state="session")  # fmt: skip
-        sampler = st.selectbox(
-            texts.SAMPLER, list(texts.SAMPLERS), format_func=texts.SAMPLERS.__getitem__,
-            key="sampler", persist_state="session",
+        hours = remembered.show(st.slider, texts.HOURS, 0.5, 16.0, step=0.5, key=f"hours {who}",
+                                default=base.hours)  # fmt: skip
+        look = remembered.show(st.slider, texts.LOOK, 20, 60, step=5, key=f"look {who}",
+                               default=int(base.look_s))  # fmt: skip
+        sampler = remembered.show(
+            st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), key="sampler",
+            default=next(iter(texts.SAMPLERS)), format_func=texts.SAMPLERS.__getitem__,
         )  # fmt: skip
     return replace(base, hours=float(hours), look_s=float(look)), sampler, str(day)
 
@@ -316,10 +317,11 @@ def _units() -> None:
             ("length", texts.LENGTH, LENGTHS), ("area", texts.AREA, AREAS_M2),
             ("date_like", texts.DATE_LIKE, DATES),
         ):  # fmt: skip
-            st.selectbox(label, list(options), key=key, persist_state="session", filter_mode=None)
+            remembered.show(st.selectbox, label, list(options), key=key,
+                            default=next(iter(options)), filter_mode=None)  # fmt: skip
 
 
 def read_units() -> Units:
     """Return how this session wants numbers written."""
-    chosen = {name: st.session_state.get(name) for name in ("length", "area", "date_like")}
+    chosen = {name: remembered.value(name) for name in ("length", "area", "date_like")}
     return Units(**{name: value for name, value in chosen.items() if value})

@@ -9,7 +9,7 @@ import streamlit as st
 
 from fieldmon.errors import FieldmonError
 
-from . import cached, keeping, maps, texts
+from . import cached, keeping, maps, remembered, texts
 from .choices import draw, drawn
 from .edits import GATE, NO_GO, PATH, Edit, edited, points_of
 
@@ -31,11 +31,10 @@ def rows() -> None:
             ("plant_spacing_m", texts.PLANT_SPACING, (0.1, 50.0, 0.1), texts.SPACING_HELP),
         ):
             low, high, step = limits
-            st.number_input(label, low, high, None, step, help=help_, key=key,
-                            persist_state="session")  # fmt: skip
-        st.number_input(texts.HEADLAND, 0.1, 50.0, 4.0, 0.5, key="headland_m",
-                        persist_state="session")  # fmt: skip
-        st.toggle(texts.BOTH_FACES, key="both_faces", persist_state="session")
+            remembered.show(st.number_input, label, low, high, None, step, help=help_, key=key)
+        remembered.show(st.number_input, texts.HEADLAND, 0.1, 50.0, step=0.5, key="headland_m",
+                        default=4.0)  # fmt: skip
+        remembered.show(st.toggle, texts.BOTH_FACES, key="both_faces", default=False)
 
 
 def tools(choices: Choices) -> None:

@@ -10,9 +10,11 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
+from fieldmon.explain import explain
 from fieldmon.field import ABSENT, PRESENT
 from fieldmon.geodata.handoff import FORMATS
 from fieldmon.grid import plant_at, row_label
+from fieldmon.history import FOUND
 from fieldmon.hotspots import record_states
 from fieldmon.prior import usable
 
@@ -161,7 +163,7 @@ def captions(parts: Sequence[str]) -> None:
 def route_figures(choices: Choices, today: Today) -> None:
     """Show the figures to decide by."""
     route, n = today.route, len(choices.plot.grid)
-    finds = route.expected_finds * choices.robot.detects
+    finds = route.expected_found
     with st.container(horizontal=True):
         st.metric(texts.PLANTS_TO_INSPECT, f"{len(route):,} / {n:,}", width="content")
         st.metric(texts.TIME, f"{route.end_s / 3600:.1f} h", width="content")
@@ -206,6 +208,19 @@ def changes(choices: Choices) -> list[str]:
         said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))
     rows = _risen(choices, str(yesterday))
     return [*said, texts.CHANGED_ROWS.format(rows=rows)] if rows else said
+
+
+def reasons(choices: Choices, today: Today) -> list[str]:
+    """Return what the stops of the day are for, in sentences."""
+    project = choices.project
+    if project is None or not len(today.route):
+        return []
+    setup, done = project.setup, project.history.inspections
+    now = setup.day(choices.on)
+    lately = (done.result == FOUND) & (done.day <= now) & (done.day > now - 7)
+    finds = dict(zip(done.plant[lately].tolist(), done.day[lately].tolist(), strict=True))
+    on = [texts.WHY_TODAY if d == now else f"{setup.date(d):%A}" for d in finds.values()]
+    return explain(today.scene, today.work, np.array([*finds], np.int32), on)
 
 
 def _risen(choices: Choices, yesterday: str) -> str:

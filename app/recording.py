@@ -59,7 +59,8 @@ def _route(choices: Choices) -> None:
         },
         index=pd.RangeIndex(1, len(plants) + 1, name="stop"),
     )
-    with st.form("route_form", border=False):
+    # Enter after typing a number must not record: the button under it would record as many again
+    with st.form("route_form", border=False, enter_to_submit=False):
         st.caption(texts.RECORD_REST)
         st.number_input(texts.RECORD_STOPS, 0, len(plants), len(plants), key="stops_done")
         marked = st.data_editor(table, height=230, disabled=list(table.columns[:2]),

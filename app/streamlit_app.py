@@ -10,7 +10,7 @@ sys.path[:] = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolv
 if str(Path(__file__).resolve().parents[1]) not in sys.path:
     sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from app import cached, keeping, texts  # noqa: E402 - after the path is right
+from app import cached, keeping, remembered, texts  # noqa: E402 - after the path is right
 from app.choices import choose  # noqa: E402
 from app.views import (  # noqa: E402
     compare,
@@ -33,7 +33,7 @@ st.html(
     "<style>[data-testid=stMainBlockContainer]{padding-top:4rem;padding-bottom:3rem}"
     "h1,h2,h3,[data-testid=stMarkdownContainer] p{unicode-bidi:plaintext}"
     ".st-key-start_scouting a{border:1px solid rgba(128,128,128,.5);border-radius:.5rem;"
-    "min-height:2.5rem;padding:.25rem .75rem}</style>"
+    "min-height:2.5rem;padding:.25rem .75rem;margin:0}</style>"
 )
 cached.warm()
 
@@ -64,7 +64,9 @@ def page_prior() -> None:
 
 scouting = page(scout.show, texts.SCOUTING, "eco", "scout")
 st.session_state["scout_page"] = scouting
-st.navigation(
+# a click may end the first run of a page before its sidebar is there
+remembered.first("season", st.query_params.get("season"))
+turned = st.navigation(
     [
         page(today.show, texts.TODAY, "route", "today"),
         page(field.show, texts.MAP, "map", "map"),
@@ -78,4 +80,6 @@ st.navigation(
         st.Page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
     ],
     position="top",
-).run()
+)
+remembered.turn(turned.url_path)
+turned.run()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from . import texts
+from . import remembered, texts
 from .comparing import Arm, Asked
 
 if TYPE_CHECKING:
@@ -27,9 +27,9 @@ def short(name: str) -> str:
 def asked(choices: Choices) -> Asked:
     """Show what can be compared; return what is asked for."""
     left, middle, right = st.columns([2, 1, 1])
-    samplers = left.multiselect(
-        texts.ARM_SAMPLERS, list(texts.SAMPLERS), ["dynamic", "naive", "bouncy"], key="arms",
-        format_func=short, persist_state="session",
+    samplers = remembered.show(
+        left.multiselect, texts.ARM_SAMPLERS, list(texts.SAMPLERS), key="arms",
+        default=["adaptive", "dynamic", "naive"], format_func=short,
     )  # fmt: skip
     own_hours, own_look = float(choices.robot.hours), int(choices.robot.look_s)
     hours = middle.multiselect(
@@ -48,12 +48,11 @@ def asked(choices: Choices) -> Asked:
 
 def season(columns: list) -> tuple[int, float, float]:
     """Show what a simulated season is like: days, share infested at the start, spread a night."""
-    keep = {"persist_state": "session"}
-    n_days = columns[0].number_input(texts.DAYS, 2, 60, 25, key="n_days", **keep)
-    share = columns[1].number_input(texts.INFESTED, 0.1, 50.0, 2.0, 0.5, key="share", **keep)
-    rate = columns[2].number_input(
-        texts.SPREAD, 0.0, 100.0, 10.0, 5.0, help=texts.SPREAD_HELP, key="rate", **keep
-    )
+    show, (first, second, third) = remembered.show, columns
+    n_days = show(first.number_input, texts.DAYS, 2, 60, key="n_days", default=25)
+    share = show(second.number_input, texts.INFESTED, 0.1, 50.0, step=0.5, key="share", default=2.0)
+    rate = show(third.number_input, texts.SPREAD, 0.0, 100.0, step=5.0, key="rate", default=10.0,
+                help=texts.SPREAD_HELP)  # fmt: skip
     return int(n_days), share / 100, rate / 100
 
 

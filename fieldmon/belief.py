@@ -28,6 +28,9 @@ _CLOSEST = 0.9
 # how many finds beside finds the belief's own idea of clusters is worth; the most it grows a day
 _HABIT, _MORE = 3.0, 1.5
 _LEAST_SAY = 1e-6
+# correlation of neighbours before anything was found beside a find: where clusters are believed
+# in more, single infested plants cost more looks, and the other way round; it is learnt soon
+COMPANY = 0.25
 # rows of the room for the plants beside one: chance that each infects it; that it does not
 # where there is an infestation beside it; and that with the most infested one left out
 _SHARED, _FREE, _FREE_BUT = 0, 1, 2
@@ -40,7 +43,7 @@ class Learning:
     Parameters
     ----------
     detection
-        Chance that an inspection finds what is there.
+        Chance that an inspection finds what is there; ``(k,)`` for each where they differ.
     beside_find
         Chance that a plant next to a find is infested too, whatever was believed before
         (infestations come in clusters; our choice).
@@ -48,16 +51,21 @@ class Learning:
         Whether a find is destroyed at once (the thesis's rule), or only flagged.
     """
 
-    detection: float = 0.84
+    detection: float | NDArray[np.float64] = 0.84
     beside_find: float = 0.3
     treated: bool = True
 
     def __post_init__(self) -> None:
         for name in ("detection", "beside_find"):
-            if not 0.0 <= getattr(self, name) <= 1.0:
+            values = np.atleast_1d(getattr(self, name))
+            if not ((values >= 0.0) & (values <= 1.0)).all():
                 raise SettingError(
                     f"{name} must be a chance in 0..1, but it is {getattr(self, name)}."
                 )
+
+    def detects(self, looks: int) -> NDArray[np.float64]:
+        """Return the detection of each of so many looks, ``(k,)``."""
+        return np.array(np.broadcast_to(self.detection, looks), np.float64)
 
 
 def learn(
@@ -73,7 +81,7 @@ def learn(
     d; a find settles the plant and raises its neighbours to at least `beside_find`.
     """
     after = chance.copy()
-    rule = (learning.detection, learning.beside_find, learning.treated)
+    rule = (learning.detects(len(plants)), learning.beside_find, learning.treated)
     inspected = np.zeros(after.size, np.bool_)
     _learn((after, inspected), grid.adjacent, plants, found, rule)
     return after
@@ -85,17 +93,17 @@ def _learn(
     adjacent: Csr,
     plants: NDArray[np.int32],
     found: NDArray[np.bool_],
-    rule: tuple[float, float, bool],
+    rule: tuple[NDArray[np.float64], float, bool],
 ) -> None:
     after, inspected = plot
-    d, beside_find, treated = rule
+    detects, beside_find, treated = rule
     for k in range(plants.size):
         i = plants[k]
         inspected[i] = True
         if found[k]:
             after[i] = _LEAST if treated else _MOST
         else:
-            p = after[i]
+            p, d = after[i], detects[k]
             after[i] = min(max(p * (1.0 - d) / (1.0 - p * d), _LEAST), _MOST)
     for k in range(plants.size):
         if not found[k]:
@@ -156,7 +164,7 @@ def _overnight(
 
 
 def pairs(
-    chance: NDArray[np.float64], grid: PlantGrid, company: float = 0.5
+    chance: NDArray[np.float64], grid: PlantGrid, company: float = COMPANY
 ) -> NDArray[np.float64]:
     """Return the chance that both of two plants side by side are infested, ``(e,)``.
 
@@ -243,7 +251,7 @@ class Pairs:
     both: NDArray[np.float64]
 
     @classmethod
-    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = 0.5) -> Pairs:
+    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = COMPANY) -> Pairs:
         """Begin with a chance map, see :func:`pairs`."""
         chance = np.clip(chance, _LEAST, _MOST)
         return cls(grid, chance, pairs(chance, grid, company))
@@ -253,12 +261,9 @@ class Pairs:
     ) -> Pairs:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
         mind = self.chance.copy(), self.both.copy()
-        looks = plants, found
-        outcome = np.full(len(self.chance), -1, np.int8)
-        outcome[plants] = found
-        _regroup(mind, self.grid.adjacent, looks, outcome, learning.detection)
-        rule = learning.detection, learning.treated
-        _learn_pairs(mind, self.grid.adjacent, looks, rule, near(len(self.chance)))
+        looks = plants, found, learning.detects(len(plants))
+        _regroup(mind, self.grid.adjacent, looks, Company.none(len(self.chance)))
+        _learn_pairs(mind, self.grid.adjacent, looks, learning.treated, near(len(self.chance)))
         return Pairs(self.grid, *mind)
 
     def overnight(self, spread: Spread) -> Pairs:
@@ -417,34 +422,69 @@ def _back(adjacent: Csr, j: int, e: int) -> int:
     return e
 
 
-@loop
-def _regroup(
-    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
-    adjacent: Csr,
-    looks: tuple[NDArray[np.int32], NDArray[np.bool_]],
-    outcome: NDArray[np.int8],
-    detection: float,
-) -> None:
-    """Learn from a day's looks beside its finds how much infested plants stand together.
+class Company(NamedTuple):
+    """What a day's looks tell of how much infested plants stand together.
 
-    What pairs have in common is scaled, all over the plot, by the finds beside finds: those there
-    were over those expected, both beyond what independent plants would give. A few expected
-    ones are added to both, so that a day of few finds changes little. `outcome` ``(n,)`` is 1 for
-    a find, 0 for none, -1 where nobody looked.
+    Parameters
+    ----------
+    outcome
+        ``(n,)`` 1 for a find, 0 for none, -1 where nobody looked.
+    detects
+        ``(n,)`` the detection of that look.
+    finds
+        ``(2,)`` finds beside finds: those there were, and those expected, both beyond what
+        independent plants would give. A few expected ones are added to both, so that a day of
+        few finds changes little.
     """
-    chance, both = mind
-    plants, found = looks
-    seen, expected = _HABIT, _HABIT
-    for k in range(plants.size):
-        i = plants[k]
-        if not found[k]:
+
+    outcome: NDArray[np.int8]
+    detects: NDArray[np.float64]
+    finds: NDArray[np.float64]
+
+    @classmethod
+    def none(cls, n: int) -> Company:
+        """Return what is known of `n` plants before anybody looked."""
+        return cls(np.full(n, -1, np.int8), np.zeros(n), np.full(2, _HABIT))
+
+
+@part
+def meet(
+    dawn: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    result: tuple[int, bool, float],
+    company: Company,
+) -> None:
+    """Note a look (plant, found, detection), and what it says beside other looks of the day.
+
+    `dawn` is ``chance (n,)`` and ``both (e,)`` as believed before the first of them.
+    """
+    chance, both = dawn
+    i, found, detects = result
+    company.outcome[i], company.detects[i] = found, detects
+    for e in range(adjacent.start[i], adjacent.start[i + 1]):
+        j = adjacent.plant[e]
+        if company.outcome[j] < 0:
             continue
-        for e in range(adjacent.start[i], adjacent.start[i + 1]):
-            j = adjacent.plant[e]
-            if outcome[j] >= 0:
-                seen += outcome[j] - detection * chance[j]
-                expected += detection * (both[e] / chance[i] - chance[j])
-    scale = min(max(seen, 0.0) / max(expected, _HABIT), _MORE)
+        if found:
+            company.finds[0] += company.outcome[j] - company.detects[j] * chance[j]
+            company.finds[1] += company.detects[j] * (both[e] / chance[i] - chance[j])
+        if company.outcome[j] == 1:
+            company.finds[0] += found - detects * chance[i]
+            company.finds[1] += detects * (both[e] / chance[j] - chance[i])
+
+
+@part
+def closeness(company: Company) -> float:
+    """Return by how much infested plants stand closer together than believed at dawn."""
+    return float(min(max(company.finds[0], 0.0) / max(company.finds[1], _HABIT), _MORE))
+
+
+@part
+def regroup(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]], adjacent: Csr, scale: float
+) -> None:
+    """Scale what pairs have in common, all over the plot."""
+    chance, both = mind
     for i in range(chance.size):
         for e in range(adjacent.start[i], adjacent.start[i + 1]):
             p, q = chance[i], chance[adjacent.plant[e]]
@@ -452,16 +492,30 @@ def _regroup(
 
 
 @loop
+def _regroup(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    looks: tuple[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]],
+    company: Company,
+) -> None:
+    """Learn from a day's looks beside its finds how much infested plants stand together."""
+    plants, found, detects = looks
+    for k in range(plants.size):
+        meet(mind, adjacent, (_0 + plants[k], found[k], detects[k]), company)
+    regroup(mind, adjacent, closeness(company))
+
+
+@loop
 def _learn_pairs(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
-    looks: tuple[NDArray[np.int32], NDArray[np.bool_]],
-    rule: tuple[float, bool],
+    looks: tuple[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]],
+    treated: bool,  # noqa: FBT001 - a rule, in a compiled loop
     touched: Near,
 ) -> None:
-    plants, found = looks
+    plants, found, detects = looks
     for k in range(plants.size):
-        look(mind, adjacent, (_0 + plants[k], found[k]), rule, touched)
+        look(mind, adjacent, (_0 + plants[k], found[k]), (detects[k], treated), touched)
 
 
 @loop

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _AROUND = 3.0
 # rows that lie this near are one block, and more blocks than this are told together
 _GAP, _BLOCKS = 2, 6
+# more finds than this, and one, are told together
+_FINDS = 5
 
 
 def explain(
@@ -43,13 +45,25 @@ def explain(
         return ["No plant can be reached in the hours left."]
     finds = np.empty(0, np.int32) if finds is None else finds
     near = _nearest_find(scene, work.plant, finds)
+    return _told_finds(scene, near, finds, found_on) + _blocks(scene, work.plant[near < 0])
+
+
+def _told_finds(
+    scene: Scene, near: NDArray[np.intp], finds: NDArray[np.int32], found_on: Sequence[str]
+) -> list[str]:
+    """Return a sentence for each find with plants to look at around it, the most plants first."""
+    which, count = np.unique(near[near >= 0], return_counts=True)
+    order = np.argsort(-count, kind="stable")
+    few = order if len(order) <= _FINDS + 1 else order[:_FINDS]
     said = []
-    for find in dict.fromkeys(near[near >= 0].tolist()):
+    for find, around in zip(which[few].tolist(), count[few].tolist(), strict=True):
         line, number = (int(part[0]) for part in row_label(scene.grid, finds[[find]]))
         when = f"{found_on[find]}'s find" if len(found_on) else "the find"
-        count = _plants(int(np.count_nonzero(near == find)))
-        said.append(f"{count} around {when} in row {line}, plant {number}.")
-    return said + _blocks(scene, work.plant[near < 0])
+        said.append(f"{_plants(around)} around {when} in row {line}, plant {number}.")
+    if len(few) == len(order):
+        return said
+    rest = order[_FINDS:]
+    return [*said, f"{_plants(int(count[rest].sum()))} around {len(rest)} other finds."]
 
 
 def _nearest_find(

@@ -10,12 +10,16 @@ import numpy as np
 
 from fieldmon.belief import pairs
 from fieldmon.chance import coin
+from fieldmon.compiled import inlined, loop
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.grid import Csr, PlantGrid
+
+    Floats = NDArray[np.float64]
+    _Table = tuple[NDArray[np.int64], NDArray[np.int64], Floats, Floats, Floats]
 
 _DRAWS = 400
 
@@ -72,39 +76,29 @@ def outlook(
         raise SettingError(f"'sure' must be a chance between 0 and 1, but it is {sure}.")
     if both is None:
         both = pairs(chance, grid)
-    counts = np.empty(_DRAWS)
-    clean = _draw(chance, both, grid.adjacent, key, counts)
+    table = _table(chance, both, grid.adjacent)
+    drawn = np.empty(_DRAWS, np.int64)
+    _draw(table, key, np.zeros(len(chance), np.bool_), drawn)
+    clean = float(np.exp(np.log1p(-table[-1]).sum()))  # the same chain draws no infested plant
     expected = float(chance.sum())
     # round the loops of a lattice the drawn fields are a little off the map: put right together
-    counts *= expected / max(float(counts.mean()), 1e-9)
+    counts = drawn * (expected / max(float(drawn.mean()), 1e-9))
     low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
     return Outlook(expected, int(np.floor(low)), int(np.ceil(high)), clean)
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def _draw(
-    chance: NDArray[np.float64],
-    both: NDArray[np.float64],
-    adjacent: Csr,
-    key: np.uint64,
-    counts: NDArray[np.float64],
-) -> float:
-    """Draw fields plant after plant, each given its neighbours drawn before; count the infested.
-
-    Returns the chance that the same chain draws no infested plant at all.
-    """
-    n = chance.size
-    drawn = np.zeros(n, np.bool_)
-    log_clean = 0.0
-    for i in range(n):
-        log_clean += np.log1p(-_given(chance, both, adjacent, drawn, i))
+    table: _Table, key: np.uint64, drawn: NDArray[np.bool_], counts: NDArray[np.int64]
+) -> None:
+    """Draw fields plant after plant, each given its neighbours drawn before; count the infested."""
+    n = drawn.size
     for k in range(counts.size):
         total = 0
         for i in range(n):
-            drawn[i] = coin(key, k * n + i) < _given(chance, both, adjacent, drawn, i)
+            drawn[i] = coin(key, k * n + i) < _given(table, drawn, i)
             total += drawn[i]
         counts[k] = total
-    return float(np.exp(log_clean))
 
 
 @nb.njit(cache=True, nogil=True)
@@ -116,31 +110,54 @@ def draw_fields(
 ) -> None:
     """Draw whole fields ``(m, n)`` in place from ``chance (n,)`` and ``both (e,)``."""
     chance, both = believed
+    table = _table(chance, both, adjacent)
     for k in range(fields.shape[0]):
         for i in range(chance.size):
-            given = _given(chance, both, adjacent, fields[k], i)
-            fields[k, i] = coin(key, k * chance.size + i) < given
+            fields[k, i] = coin(key, k * chance.size + i) < _given(table, fields[k], i)
 
 
 @nb.njit(cache=True)
-def _given(
-    chance: NDArray[np.float64],
-    both: NDArray[np.float64],
-    adjacent: Csr,
-    drawn: NDArray[np.bool_],
-    i: int,
-) -> float:
+def _table(chance: NDArray[np.float64], both: NDArray[np.float64], adjacent: Csr) -> _Table:
+    """Return what a neighbour of lower number does to each plant's odds: drawn hundreds of times.
+
+    Start of each plant's neighbours, the neighbours, the factor of an infested and of a clean one,
+    the odds without any, and the chance if all are clean.
+    """
+    n = chance.size
+    start = np.zeros(n + 1, np.int64)
+    plant = np.empty(adjacent.plant.size, np.int64)
+    factor = np.empty((adjacent.plant.size, 2))
+    odds = chance / (1.0 - chance)
+    alone = np.empty(n)
+    at = 0
+    for i in range(n):
+        p, given = chance[i], odds[i]
+        for e in range(adjacent.start[i], adjacent.start[i + 1]):
+            j = adjacent.plant[e]
+            if j > i:
+                continue
+            q = chance[j]
+            c = min(both[e], p, q)
+            plant[at] = j
+            factor[at, 0] = (1.0 - c / p) / max(1.0 - (q - c) / (1.0 - p), 1e-9)
+            factor[at, 1] = (c / p) / max((q - c) / (1.0 - p), 1e-9)
+            given *= factor[at, 0]
+            at += 1
+        start[i + 1] = at
+        alone[i] = min(given / (1.0 + given), 1.0 - 1e-9)
+    return start, plant[:at], factor[:at], odds, alone
+
+
+@inlined
+def _given(table: _Table, drawn: NDArray[np.bool_], i: int) -> float:
     """Return the chance of plant i given its neighbours of lower number."""
-    p = chance[i]
-    odds = p / (1.0 - p)
-    for e in range(adjacent.start[i], adjacent.start[i + 1]):
-        j = adjacent.plant[e]
-        if j > i:
-            continue
-        q = chance[j]
-        c = min(both[e], p, q)
-        if drawn[j]:
-            odds *= (c / p) / max((q - c) / (1.0 - p), 1e-9)
-        else:
-            odds *= (1.0 - c / p) / max(1.0 - (q - c) / (1.0 - p), 1e-9)
-    return float(min(odds / (1.0 + odds), 1.0 - 1e-9))
+    start, plant, factor, odds, alone = table
+    infested = 0
+    for e in range(start[i], start[i + 1]):
+        infested += drawn[plant[e]]
+    if infested == 0:
+        return float(alone[i])
+    given = odds[i]
+    for e in range(start[i], start[i + 1]):
+        given *= factor[e, int(drawn[plant[e]])]
+    return float(min(given / (1.0 + given), 1.0 - 1e-9))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +11,7 @@ from fieldmon.belief import Learning, Pairs
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.samplers.scene import GATE, NEVER, Scene
 from fieldmon.spread import Spread, night
-from fieldmon.workday import outcomes, work_day
+from fieldmon.workday import looks_of, luck, work_day
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -144,8 +144,10 @@ class _Mornings:
     Most of a season's time goes into it, and half of the samplers do not read it.
     """
 
-    def __init__(self, first: Callable[[], Belief], learning: Learning, spread: Spread) -> None:
-        self._first, self._learning, self._spread = first, learning, spread
+    def __init__(
+        self, first: Callable[[], Belief], taught: Callable[[Workday], Learning], spread: Spread
+    ) -> None:
+        self._first, self._taught, self._spread = first, taught, spread
         self._works: list[Workday] = []
         self._last: tuple[int, Belief] | None = None
 
@@ -159,7 +161,7 @@ class _Mornings:
         if day > number:
             day, belief = 0, self._first()
         for work in self._works[day:number]:
-            learnt = belief.learn(work.plant, work.found, self._learning)
+            learnt = belief.learn(work.plant, work.found, self._taught(work))
             belief = learnt.overnight(self._spread)
         self._last = number, belief
         return belief
@@ -182,8 +184,14 @@ def days(
     _check(aisles, start)
     learning = settings.learning or Learning(detection=robot.detects)
     believed = settings.believed_spread or settings.spread
-    infested, blind = start.infested.copy(), getattr(sampler, "blind", False)
-    mornings = _Mornings(lambda: settings.believe(aisles.grid, start.chance), learning, believed)
+    looks, blind = looks_of(robot, sampler), getattr(sampler, "blind", False)
+    choosing = len(looks.detects) > 1
+    infested = start.infested.copy()
+
+    def taught(work: Workday) -> Learning:
+        return replace(learning, detection=work.detects) if choosing else learning
+
+    mornings = _Mornings(lambda: settings.believe(aisles.grid, start.chance), taught, believed)
     last_inspected = np.full(len(infested), NEVER, np.int32)
     ever_infested, ever_found = int(np.count_nonzero(infested)), 0
     trail, at = np.empty(0, np.int32), GATE
@@ -201,8 +209,8 @@ def days(
             trail=trail,
             key=chance.key("sampler", number),
         )
-        luck = outcomes(infested, robot.detects, chance.key("inspect", number))
-        work = work_day(scene, sampler, luck)
+        drawn = luck(infested, looks, chance.key("inspect", number))
+        work = work_day(scene, sampler, drawn if choosing else drawn > 0)
         last_inspected = last_inspected.copy()
         last_inspected[work.plant] = number
         ever_found += int(np.count_nonzero(work.found))

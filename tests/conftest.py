@@ -16,9 +16,11 @@ settings.register_profile(
 settings.load_profile("fieldmon")
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-# software drawing, and no name in the world but this machine's
+# software drawing: Mesa's, which keeps compiled shaders, or else the browser's own, some seconds
+# slower for every map; and no name in the world but this machine's
 FLAGS = [
-    *["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+    *["--no-sandbox", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"],
+    *["--enable-unsafe-swiftshader", "--disable-smooth-scrolling"],
     *["--disable-background-networking", "--disable-component-update", "--no-first-run"],
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 ]

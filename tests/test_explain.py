@@ -41,6 +41,18 @@ def test_stops_near_a_find_are_told_by_its_day_row_and_plant():
     assert re.fullmatch(rf"\d+ plants? around Tuesday's find in row {row}, plant {number}\.", said)
 
 
+def test_many_finds_are_told_together_the_most_plants_first():
+    scene = day()
+    work = plan_day(scene, Adaptive())
+    finds = work.plant[::4].astype(np.int32)
+    said = explain(scene, work, finds)
+    assert counts(said) == len(work)
+    around = [int(s.split()[0]) for s in said if "around the find in row" in s]
+    assert len(around) == 5
+    assert around == sorted(around, reverse=True)
+    assert re.fullmatch(r"\d+ plants around \d+ other finds\.", said[5])
+
+
 def test_rows_are_told_by_how_long_they_were_not_inspected():
     never = explain(day(), plan_day(day(), Adaptive()))
     assert all(sentence.endswith("never inspected yet.") for sentence in never)

@@ -25,10 +25,11 @@ def promises_hold(scene, work):
     assert not (scene.last_inspected[work.plant] == scene.day).any()
     assert work.end_s <= scene.seconds_left + 1e-6, "the day is longer than its hours"
     now, at = 0.0, scene.at
-    for plant, arrive_s in zip(work.plant.tolist(), work.arrive_s.tolist(), strict=True):
+    stops = zip(work.plant.tolist(), work.arrive_s.tolist(), work.stop_s.tolist(), strict=True)
+    for plant, arrive_s, stop_s in stops:
         now += charged_s(scene, at, plant)
         assert arrive_s == pytest.approx(now, abs=1e-6), "time charged is not time driven"
-        now += scene.robot.look_s + scene.robot.stop_s
+        now += stop_s
         at = plant
     if scene.robot.returns and len(work):
         now += charged_s(scene, at, GATE)

@@ -48,7 +48,8 @@ def test_all_samplers_meet_the_same_insects():
     mornings = [season(name)[0].infested for name in NAMES]
     assert all((mornings[0] == other).all() for other in mornings)
     blind = Robot(hours=2.0, detection=0.0)
-    ends = [season(name, blind)[-1].infested for name in NAMES]
+    # who chooses how long to look needs a robot that says what looking longer brings
+    ends = [season(name, blind)[-1].infested for name in NAMES if name != "adaptive-looks"]
     assert all((ends[0] == other).all() for other in ends)
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from app import grounds, maps, panels, playing, texts
+from app import grounds, maps, panels, playing, remembered, texts
 
 if TYPE_CHECKING:
     from app.choices import Choices
@@ -17,12 +17,12 @@ def show(choices: Choices) -> None:
     st.subheader(f"{choices.name}: {texts.MAP}")
     left, right = st.columns([3, 1])
     with right:
-        shade = st.radio(texts.SHADE_BY, list(texts.SHADES), key="shade",
-                         format_func=texts.SHADES.__getitem__, persist_state="session")  # fmt: skip
+        shade = remembered.show(st.radio, texts.SHADE_BY, list(texts.SHADES), key="shade",
+                                default="chance", format_func=texts.SHADES.__getitem__)  # fmt: skip
         names = dict(texts.MAP_LAYERS)
-        shown = st.pills(
-            texts.LAYERS, list(names), format_func=names.__getitem__, selection_mode="multi",
-            default=["route", "hot"], key="map_layers", wrap=True, persist_state="session",
+        shown = remembered.show(
+            st.pills, texts.LAYERS, list(names), key="map_layers", default=["route", "hot"],
+            format_func=names.__getitem__, selection_mode="multi", wrap=True,
         )  # fmt: skip
         rows = _rows(choices)
         if "backdrop" in shown:

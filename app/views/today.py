@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from app import keeping, maps, panels, texts
+from app import keeping, maps, panels, remembered, texts
 from fieldmon.geodata.handoff import HandoffPlan
 from fieldmon.geodata.routes import RouteNotes, route_geojson
 
@@ -24,9 +24,10 @@ def show(choices: Choices) -> None:
     if not len(today.route):
         st.warning(texts.NO_STOPS)
     picture = st.container()
-    shown = st.pills(
-        texts.LAYERS, list(texts.LAYER_NAMES), format_func=texts.LAYER_NAMES.__getitem__,
-        selection_mode="multi", default=["plants", "route", "numbers", "hot"], key="layers",
+    shown = remembered.show(
+        st.pills, texts.LAYERS, list(texts.LAYER_NAMES), key="layers",
+        default=["plants", "route", "numbers", "hot"],
+        format_func=texts.LAYER_NAMES.__getitem__, selection_mode="multi",
     )  # fmt: skip
     with picture:
         panels.draw(choices, _layers(choices, today, shown), "map")
@@ -36,8 +37,11 @@ def show(choices: Choices) -> None:
     if choices.project is None:
         keeping.begin(choices)
     else:
-        st.markdown(f"**{texts.CHANGED}**")
-        st.markdown("\n".join(f"- {sentence}" for sentence in panels.changes(choices)))
+        for title, said in ((texts.WHY, panels.reasons(choices, today)),
+                            (texts.CHANGED, panels.changes(choices))):  # fmt: skip
+            if said:
+                st.markdown(f"**{title}**")
+                st.markdown("\n".join(f"- {sentence}" for sentence in said))
     if len(today.route):
         with st.expander(texts.STOPS):
             st.dataframe(panels.stops(choices, today), height=300)

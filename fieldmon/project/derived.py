@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -122,10 +123,11 @@ def _write_states(
         [None if h < 0 else h + 1 for h in spots.of_plant.tolist()],
         strict=True,
     )
-    db.executemany(
-        "INSERT OR REPLACE INTO plant_state (fid, chance, state, last_inspected, hot_spot) "
-        "VALUES (?, ?, ?, ?, ?)",
-        rows,
-    )
+    # a tap changes what is known of a few plants: only these are written
+    columns = "fid, chance, state, last_inspected, hot_spot"
+    before = db.execute(f"SELECT {columns} FROM plant_state ORDER BY fid").fetchall()  # noqa: S608 - ours
+    changed = [row for row, old in zip_longest(rows, before) if row != old]
+    marks = ", ".join("?" * 5)
+    db.executemany(f"REPLACE INTO plant_state ({columns}) VALUES ({marks})", changed)  # noqa: S608
     for table in (schema.PLANT_STATE, schema.CHANCE, schema.DAYS):
         touch(db, table.name)

@@ -1,28 +1,30 @@
 """Adaptive: the drive that is expected to find most in the hours left, planned anew after a find.
 
 The hours have a price: a plant is worth its stop, and a row its drive, only if what is expected
-there is worth more than the seconds cost. The price is set so that the day is just filled. At a
-given price the best drive through the rows, one after the other up or down the plot, is found by
-dynamic programming: each row is passed by, driven through, or entered and left by the same end.
+there is worth more than the seconds cost; and of several looks it gets the one that is worth most
+more than it costs. The price is set so that the day is just filled. At a given price the best
+drive through the rows, one after the other up or down the plot, is found by dynamic programming:
+each row is passed by, driven through, or entered and left by the same end.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from fieldmon.belief import Near, look, near, pairs
-from fieldmon.compiled import loop, part
+from fieldmon.belief import Company, Near, closeness, look, meet, near, pairs, regroup
+from fieldmon.compiled import inlined, loop, part
 from fieldmon.errors import SettingError
-from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
+from fieldmon.samplers.scene import Clock, Looks, Scene, Stops, travel_s
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.aisles import Ground
-    from fieldmon.grid import Csr, PlantGrid
+    from fieldmon.grid import Csr
+    from fieldmon.robot import Robot
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
@@ -36,42 +38,54 @@ _NOWHERE = -1
 # the price moves in steps of a tenth, and stays while the plan fills this much of the hours left
 _STEP, _FULL, _TRIES = 1.1, 0.9, 2
 _BISECTIONS = 24
-# plants in line that are looked at together: do any of them pay?
-_BLOCK = 32
-# a bound stays one however its sum is rounded
-_NEARLY = 1.0 - 1e-9
+# how much closer or less close infested plants must stand than thought to think again
+_NOTABLE = 0.1
 
 
 class _Mind(NamedTuple):
     """What is believed during the day.
 
-    `worth` is per chance of infestation, 0 once inspected; `behind` is where in `both` each plant
-    stands with the one before it in its row, -1 if there is none.
+    `worth` is of a find, 0 once inspected; `behind` is where in `both` each plant
+    stands with the one before it in its row, -1 if there is none. `dawn_...`: before the first
+    look; `company` is what the looks since say of it, and `scale` ``(1,)`` what was made of that.
     """
 
     chance: Float
     both: Float
     worth: Float
-    detects: float
-    treats: bool
     near: Near
     behind: Int
+    dawn_chance: Float
+    dawn_both: Float
+    company: Company
+    scale: Float
 
 
 class _Rows(NamedTuple):
-    """What each way of driving each row comes to, ``(r, 4)``, and each plant's gain ``(n,)``.
+    """What each way of driving each row comes to, ``(r, 4)``.
 
-    `pays` is room for the plants of one row with a gain, `most` the most that a plant of each
-    `_BLOCK` in line is worth, -1 where that has changed.
+    And what each plant gains at the price, and the seconds of its look, ``(n,)``; `pays` is room
+    for the plants of one row with a gain, `most` the most that a find in each row is expected to
+    be worth, -1 where that has changed.
     """
 
     net: Float
     seconds: Float
     last: Int
     gain: Float
+    stop_s: Float
     stale: NDArray[np.bool_]
     pays: Int
     most: Float
+
+    @classmethod
+    def of(cls, n: int, n_rows: int) -> _Rows:
+        """Return room for so many plants and rows."""
+        ways = n_rows, _WAYS
+        last, stale = np.full(ways, _NOWHERE), np.ones(n_rows, np.bool_)
+        gain, stop_s, pays = np.zeros(n), np.zeros(n), np.empty(n, np.int64)
+        most = np.full(n_rows, -1.0)
+        return cls(np.zeros(ways), np.zeros(ways), last, gain, stop_s, stale, pays, most)
 
 
 class _Onward(NamedTuple):
@@ -79,8 +93,6 @@ class _Onward(NamedTuple):
 
     ``way`` is how the row is driven, or -1 where it is passed by; ``to`` the lane end
     (2 row + end) after it, or -1 for home. ``left_...``: the same once the row is done.
-    ``next_s`` ``(2, r, 2, 6, 2)`` are the seconds to the ends of the next lanes in line, and
-    ``home_s`` ``(r, 2)`` those to the gate.
     """
 
     net: Float
@@ -89,8 +101,30 @@ class _Onward(NamedTuple):
     left_net: Float
     left_seconds: Float
     to: Int
-    next_s: Float
-    home_s: Float
+
+    @classmethod
+    def of(cls, n_rows: int) -> _Onward:
+        """Return room for so many rows."""
+        net, seconds, left_net, left_seconds = np.zeros((4, 2, n_rows, 2))
+        way, to = np.full((2, 2, n_rows, 2), _NOWHERE)
+        return cls(net, seconds, way, left_net, left_seconds, to)
+
+
+class _Either(NamedTuple):
+    """What each direction along the robot's own row comes to, ``(2,)``: while finding a piece."""
+
+    ahead: Float
+    ahead_s: Float
+    fetch: Float
+    fetch_s: Float
+    last: Int
+    turn: Int
+
+    @classmethod
+    def blank(cls) -> _Either:
+        """Return room."""
+        none = np.full(2, _NOWHERE)
+        return cls(np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2), none, none.copy())
 
 
 class _Piece(NamedTuple):
@@ -102,18 +136,7 @@ class _Piece(NamedTuple):
     seconds: float
 
 
-class _Along(NamedTuple):
-    """What the plants from one on to an end of its row come to, up to the `last` of them.
-
-    ``fetch_...``: the same for going only as far as pays, to `turn`, and back.
-    """
-
-    net: float
-    seconds: float
-    last: int
-    fetch_net: float
-    fetch_seconds: float
-    turn: int
+_Work: TypeAlias = tuple[_Mind, _Rows, _Onward, Looks, _Either]
 
 
 @dataclass(frozen=True)
@@ -131,10 +154,14 @@ class Adaptive:
         How much more than itself a find is worth where all plants beside it are clean.
     beside_find
         Chance that a plant next to a find is infested, where the belief says nothing of pairs.
+    chooses_look
+        Whether it decides at each plant how long to look, by the robot's table of viewpoints;
+        if not, it looks as long as the robot is set to.
     """
 
     spares: float = 0.5
     beside_find: float = 0.5
+    chooses_look: bool = False
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.spares < np.inf:
@@ -144,115 +171,133 @@ class Adaptive:
                 f"Adaptive's beside_find must be a chance in 0..1, but it is {self.beside_find}."
             )
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+    def looks(self, robot: Robot) -> Looks:
+        """Return the looks to choose from; raise `SettingError` if the robot's table is unknown."""
+        if not self.chooses_look:
+            return Looks(np.array([robot.visit_s]), np.array([robot.detects]))
+        if robot.detection is not None:
+            raise SettingError(
+                "A robot must state what each time of looking detects (viewpoints) if the sampler "
+                f"is to choose, but its detection is given outright ({robot.detection})."
+            )
+        seconds, detects = np.array(robot.viewpoints.steps).T
+        return Looks(robot.stop_s + seconds, detects)
+
+    def walk(self, scene: Scene, would_find: NDArray[np.bool_] | NDArray[np.uint8]) -> Stops:
         """Return the stops of the rest of the day."""
-        stops, n = scene.blank(), len(scene.chance)
+        looks = self.looks(scene.robot)
+        stops = scene.room(float(looks.stop_s[0]))
+        taken = np.zeros(len(stops.plant), np.uint8)
         both = scene.both
         if both is None:
             both = pairs(scene.chance, scene.grid, self.beside_find)
+        n, n_rows = len(scene.chance), scene.grid.n_rows
         mind = _Mind(
             np.maximum(scene.chance, _LEAST),
             both.copy(),
             np.zeros(n),
-            scene.robot.detects,
-            True,
             near(n),
             np.full(n, _NOWHERE),
+            np.maximum(scene.chance, _LEAST),
+            both.copy(),
+            Company.none(n),
+            np.ones(1),
         )
-        closed = scene.last_inspected == scene.day
-        _begin(scene.grid.adjacent, scene.chance, closed, self.spares, mind)
-        onward = _onward(scene.grid.n_rows)
-        _measure(scene.aisles.ground, scene.clock, onward.next_s, onward.home_s)
         k = _walk(
             scene.aisles.ground,
             scene.clock,
-            (scene.grid.adjacent, would_find),
-            (mind, _rows(scene.grid), onward),
-            scene.at,
-            stops,
+            (scene.grid.adjacent, mind, would_find.view(np.uint8)),
+            (_Rows.of(n, n_rows), _Onward.of(n_rows), looks, _Either.blank()),
+            (scene.at, self.spares, scene.last_inspected == scene.day),
+            (stops.plant, stops.arrive_s, taken),
         )
-        return Stops(stops.plant[:k], stops.arrive_s[:k])
-
-
-def _rows(grid: PlantGrid) -> _Rows:
-    """Return room for what each way of driving each row comes to; nothing is worked out yet."""
-    shape = (grid.n_rows, _WAYS)
-    return _Rows(
-        np.zeros(shape),
-        np.zeros(shape),
-        np.full(shape, _NOWHERE),
-        np.zeros(len(grid)),
-        np.ones(grid.n_rows, np.bool_),
-        np.empty(len(grid), np.int64),
-        np.full(len(grid) // _BLOCK + 1, -1.0),
-    )
-
-
-def _onward(n_rows: int) -> _Onward:
-    """Return room for the best rests of the day."""
-    shape = (2, n_rows, 2)
-    return _Onward(
-        np.zeros(shape),
-        np.zeros(shape),
-        np.full(shape, _NOWHERE),
-        np.zeros(shape),
-        np.zeros(shape),
-        np.full(shape, _NOWHERE),
-        np.empty((*shape, _REACH, 2)),
-        np.empty((n_rows, 2)),
-    )
+        return Stops(stops.plant[:k], stops.arrive_s[:k], taken[:k])
 
 
 @loop
 def _walk(
     ground: Ground,
     clock: Clock,
-    plants: tuple[Csr, NDArray[np.bool_]],
-    work: tuple[_Mind, _Rows, _Onward],
-    at: int,
-    stops: Stops,
+    plants: tuple[Csr, _Mind, NDArray[np.uint8]],
+    room: tuple[_Rows, _Onward, Looks, _Either],
+    start: tuple[int, float, NDArray[np.bool_]],
+    stops: tuple[NDArray[np.int32], Float, NDArray[np.uint8]],
 ) -> int:
-    adjacent, would_find = plants
-    mind, rows, _ = work
+    adjacent, mind, would_find = plants
+    rows, onward, looks, either = room
+    at, spares, closed = start
+    plant_at, _, look_at = stops
+    _worths(adjacent, mind, closed, spares)
+    work = mind, rows, onward, looks, either
     now_s, k = 0.0, 0
     price = _first_price(ground, clock, work, at)
-    while k < stops.plant.size:
+    while k < plant_at.size:
+        _regroup(adjacent, mind, rows)
         here = (at, price, clock.seconds_left - now_s)
         price, piece = _plan_on(ground, clock, work, here)
         before = k
-        while piece.row >= 0 and k < stops.plant.size:
-            plant = _next_in(ground, clock, mind, piece, (at, price))
-            if plant < 0 or not can_visit(ground, clock, at, plant, now_s):
+        while piece.row >= 0 and k < plant_at.size:
+            plant, look = _next_in(ground, (mind, looks), piece, (at, price))
+            if plant < 0 or not _fits(ground, clock, (at, plant), looks.stop_s[look], now_s):
                 break
-            now_s, at, k = _visit(ground, clock, stops, (at, plant, k), now_s)
-            _look(ground, adjacent, mind, rows, (plant, would_find[plant]))
-            if would_find[plant] or plant == piece.last:
+            now_s = _visit(ground, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
+            look_at[k], at, k = look, plant, k + 1
+            found = 0 < would_find[plant] <= look + 1
+            _look(ground, adjacent, mind, rows, (plant, found, looks.detects[look]))
+            if found or plant == piece.last:
                 break
         if k == before:
-            plant = _best_left(ground, clock, work, at, now_s)
+            plant, look = _best_left(ground, clock, (mind, rows, looks), at, now_s)
             if plant < 0:
                 break
-            now_s, at, k = _visit(ground, clock, stops, (at, plant, k), now_s)
-            _look(ground, adjacent, mind, rows, (plant, would_find[plant]))
+            now_s = _visit(ground, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
+            look_at[k], at, k = look, plant, k + 1
+            found = 0 < would_find[plant] <= look + 1
+            _look(ground, adjacent, mind, rows, (plant, found, looks.detects[look]))
     return k
 
 
 @part
 def _visit(
-    ground: Ground, clock: Clock, stops: Stops, move: tuple[int, int, int], now_s: float
-) -> tuple[float, int, int]:
-    """Write down a stop; return the time after it, the place, and the number of stops."""
+    ground: Ground,
+    clock: Clock,
+    stops: tuple[NDArray[np.int32], Float, NDArray[np.uint8]],
+    move: tuple[int, int, int],
+    times: tuple[float, float],
+) -> float:
+    """Write down a stop; return the time after it."""
     at, plant, k = move
+    now_s, stop_s = times
     arrive_s = now_s + travel_s(ground, clock, at, plant)
-    stops.plant[k], stops.arrive_s[k] = plant, arrive_s
-    return arrive_s + clock.visit_s, plant, k + 1
+    stops[0][k], stops[1][k] = plant, arrive_s
+    return arrive_s + stop_s
 
 
-@loop
-def _begin(
-    adjacent: Csr, chance: Float, closed: NDArray[np.bool_], spares: float, mind: _Mind
-) -> None:
-    """Find what a chance is worth at each plant, and each plant's place beside the one before."""
+@part
+def _fits(ground: Ground, clock: Clock, move: tuple[int, int], stop_s: float, now_s: float) -> bool:
+    """Tell whether a stop of so long fits into the day, way back to the gate included."""
+    at, plant = move
+    end_s = now_s + travel_s(ground, clock, at, plant) + stop_s
+    if clock.returns:
+        end_s += travel_s(ground, clock, plant, -1)
+    return bool(end_s <= clock.seconds_left)
+
+
+@inlined
+def _best_look(looks: Looks, worth: float, chance: float, price: float) -> tuple[float, int]:
+    """Return what the best look gains at a price, and which it is."""
+    best, look = -np.inf, 0
+    for k in range(looks.stop_s.size):
+        gain = looks.detects[k] * worth * chance - price * looks.stop_s[k]
+        if gain > best:
+            best, look = gain, k
+    return best, look
+
+
+@part
+def _worths(adjacent: Csr, mind: _Mind, closed: NDArray[np.bool_], spares: float) -> None:
+    """Work out what a find would be worth, and where each plant's pair with the last one stands."""
+    chance = mind.chance
     for i in range(chance.size):
         first, end = adjacent.start[i], adjacent.start[i + 1]
         clean = 0.0
@@ -261,30 +306,7 @@ def _begin(
             if adjacent.plant[e] == i - 1:
                 mind.behind[i] = e
         if not closed[i]:
-            mind.worth[i] = mind.detects * (1.0 + spares * clean / max(end - first, 1))
-
-
-@loop
-def _measure(ground: Ground, clock: Clock, next_s: Float, home_s: Float) -> None:
-    """Find the seconds from every lane end to the next lanes in line, and to the gate.
-
-    In the table of all ways each of them stands far from the last: it is read once a day.
-    """
-    n_rows, gate = home_s.shape[0], ground.between_m.shape[0] - 1
-    for row in range(n_rows):
-        for end in range(2):
-            here = 2 * row + end
-            home_m = ground.between_m[here, gate]
-            home_s[row, end] = home_m / clock.speed_m_s if clock.returns else 0.0
-            for k in range(2 * _REACH):
-                other = row + k - _REACH if k < _REACH else row + k - _REACH + 1
-                if not 0 <= other < n_rows:
-                    continue
-                # from _REACH rows before to _REACH rows after, this one left out
-                down, step = (1, row - other - 1) if k < _REACH else (0, other - row - 1)
-                for other_end in range(2):
-                    way_m = ground.between_m[here, 2 * other + other_end]
-                    next_s[down, row, end, step, other_end] = way_m / clock.speed_m_s
+            mind.worth[i] = 1.0 + spares * clean / max(end - first, 1)
 
 
 @part
@@ -293,23 +315,37 @@ def _look(
     adjacent: Csr,
     mind: _Mind,
     rows: _Rows,
-    result: tuple[int, bool],
+    result: tuple[int, bool, float],
 ) -> None:
     """Close a plant and let what was seen teach about those near it."""
-    i, found = result
+    i, found, detects = result
     believed = mind.chance, mind.both
-    n = look(believed, adjacent, (i, found), (mind.detects, mind.treats), mind.near)
+    n = look(believed, adjacent, (i, found), (detects, True), mind.near)
+    meet((mind.dawn_chance, mind.dawn_both), adjacent, (i, found, detects), mind.company)
     mind.worth[i] = 0.0
     for t in range(n):
-        near_it = mind.near.plant[t]
-        rows.stale[ground.row[near_it]], rows.most[near_it // _BLOCK] = True, -1.0
+        row = ground.row[mind.near.plant[t]]
+        rows.stale[row], rows.most[row] = True, -1.0
+    rows.most[ground.row[i]] = -1.0
+
+
+@part
+def _regroup(adjacent: Csr, mind: _Mind, rows: _Rows) -> None:
+    """Take to heart how much infested plants stand together, once it differs enough."""
+    scale = closeness(mind.company)
+    if abs(scale - mind.scale[0]) < _NOTABLE * mind.scale[0]:
+        return
+    regroup((mind.chance, mind.both), adjacent, scale / max(mind.scale[0], _LEAST))
+    mind.scale[0] = scale
+    rows.stale[:] = True
 
 
 @part
 def _next_in(
-    ground: Ground, clock: Clock, mind: _Mind, piece: _Piece, state: tuple[int, float]
-) -> int:
-    """Return the next plant of a piece that is worth its stop, from where the robot is, or -1."""
+    ground: Ground, work: tuple[_Mind, Looks], piece: _Piece, state: tuple[int, float]
+) -> tuple[int, int]:
+    """Return the next plant of a piece that is worth its stop and the look it gets, or -1, 0."""
+    mind, looks = work
     at, price = state
     up = piece.first_end == 0
     if at >= 0 and ground.row[at] == piece.row:
@@ -320,64 +356,53 @@ def _next_in(
         i = ground.row_start[piece.row + 1] - 1
     step = 1 if up else -1
     while (i <= piece.last) if up else (i >= piece.last):
-        if mind.worth[i] * mind.chance[i] > price * clock.visit_s:
-            return int(i)
+        gain, taken = _best_look(looks, mind.worth[i], mind.chance[i], price)
+        if gain > 0.0:
+            return int(i), taken
         i += step
-    return _NOWHERE
+    return _NOWHERE, 0
 
 
 @part
 def _best_left(
-    ground: Ground, clock: Clock, work: tuple[_Mind, _Rows, _Onward], at: int, now_s: float
-) -> int:
-    """Return the plant with the most worth for its time that still fits into the day, or -1."""
-    mind, rows, onward = work
-    best, best_rate = _NOWHERE, 0.0
+    ground: Ground, clock: Clock, work: tuple[_Mind, _Rows, Looks], at: int, now_s: float
+) -> tuple[int, int]:
+    """Return the plant with the most worth for its time that still fits into the day, or -1.
+
+    And the look it gets.
+    """
+    mind, rows, looks = work
+    best, best_rate, taken = _NOWHERE, 0.0, 0
     for row in range(rows.stale.size):
-        least_s = _least_s(ground, clock, at, row)
-        home_s = min(onward.home_s[row, 0], onward.home_s[row, 1])
-        if now_s + least_s + clock.visit_s + home_s > clock.seconds_left:
+        if looks.detects[-1] * _most_in(ground, mind, rows, row) <= best_rate * looks.stop_s[0]:
             continue
-        first, end = ground.row_start[row], ground.row_start[row + 1]
-        for block in range(first // _BLOCK, (end - 1) // _BLOCK + 1):
-            if _most_in(mind, rows, block) <= best_rate * (least_s + clock.visit_s):
+        for i in range(ground.row_start[row], ground.row_start[row + 1]):
+            # nothing takes less than no time to reach: most plants need no way worked out
+            if looks.detects[-1] * mind.worth[i] * mind.chance[i] <= best_rate * looks.stop_s[0]:
                 continue
-            for i in range(max(first, block * _BLOCK), min(end, (block + 1) * _BLOCK)):
-                most = mind.worth[i] * mind.chance[i]
-                if most <= best_rate * clock.visit_s:
-                    continue
-                rate = most / (travel_s(ground, clock, at, i) + clock.visit_s)
-                if rate > best_rate and can_visit(ground, clock, at, i, now_s):
-                    best, best_rate = i, rate
-    return best
-
-
-@part
-def _least_s(ground: Ground, clock: Clock, at: int, row: int) -> float:
-    """Return seconds that it takes at least from a place to any plant of a row."""
-    own = _row_of(ground, at)
-    if own < 0 or ground.corridor[own] == ground.corridor[row]:
-        return 0.0
-    least_m = np.inf
-    for end in range(2):
-        for other_end in range(2):
-            least_m = min(least_m, ground.between_m[2 * own + end, 2 * row + other_end])
-    return float((least_m / clock.speed_m_s + clock.row_change_s) * _NEARLY)
+            way_s = travel_s(ground, clock, at, i)
+            for k in range(looks.stop_s.size):
+                rate = looks.detects[k] * mind.worth[i] * mind.chance[i] / (way_s + looks.stop_s[k])
+                if rate > best_rate and _fits(ground, clock, (at, i), looks.stop_s[k], now_s):
+                    best, best_rate, taken = i, rate, k
+    return best, taken
 
 
 @part
 def _first_price(
     ground: Ground,
     clock: Clock,
-    work: tuple[_Mind, _Rows, _Onward],
+    work: _Work,
     at: int,
 ) -> float:
     """Return the price of a second at which the plan just fills the day."""
-    mind = work[0]
-    high = _LEAST
-    for i in range(mind.worth.size):
-        high = max(high, mind.worth[i] * mind.chance[i])
-    high /= clock.visit_s
+    mind, looks = work[0], work[3]
+    high = 0.0
+    for k in range(looks.stop_s.size):
+        most = _LEAST
+        for i in range(mind.worth.size):
+            most = max(most, looks.detects[k] * mind.worth[i] * mind.chance[i])
+        high = max(high, most / looks.stop_s[k])
     low = high * 1e-7
     if _plan_at(ground, clock, work, (at, low)).seconds <= clock.seconds_left:
         return low
@@ -396,7 +421,7 @@ def _first_price(
 def _plan_on(
     ground: Ground,
     clock: Clock,
-    work: tuple[_Mind, _Rows, _Onward],
+    work: _Work,
     state: tuple[int, float, float],
 ) -> tuple[float, _Piece]:
     """Return the price that suits the seconds left, a few steps from the last, and the plan."""
@@ -426,7 +451,7 @@ def _row_of(ground: Ground, at: int) -> int:
 def _plan_at(
     ground: Ground,
     clock: Clock,
-    work: tuple[_Mind, _Rows, _Onward],
+    work: _Work,
     state: tuple[int, float],
 ) -> _Piece:
     work[1].stale[:] = True
@@ -437,57 +462,57 @@ def _plan_at(
 def _replan(
     ground: Ground,
     clock: Clock,
-    work: tuple[_Mind, _Rows, _Onward],
+    work: _Work,
     state: tuple[int, float],
 ) -> _Piece:
     """Return the first piece of the best plan at a price."""
-    mind, rows, onward = work
+    mind, rows, onward, looks, _ = work
     at, price = state
     own = _row_of(ground, at)
     for row in range(rows.stale.size):
         if rows.stale[row]:
-            _value_row(ground, clock, (mind, rows), (row, price))
+            _value_row(ground, clock, (mind, rows, looks), (row, price))
             rows.stale[row] = False
-    for down in range(2):
-        _go(clock, rows, onward, (down, own, price))
+    _go(ground, clock, rows, onward, (0, own, price))
+    _go(ground, clock, rows, onward, (1, own, price))
     if at < 0:
         _, seconds, onto = _leave(ground, clock, onward, 2 * (rows.stale.size), price)
         return _first_piece(rows, onward, onto, seconds)
-    return _from_row(ground, clock, (mind, rows, onward), (at, price))
+    return _from_row(ground, clock, work, at, price)
 
 
 @part
 def _value_row(
     ground: Ground,
     clock: Clock,
-    work: tuple[_Mind, _Rows],
+    work: tuple[_Mind, _Rows, Looks],
     state: tuple[int, float],
 ) -> None:
     """Work out what each way of driving a row comes to at a price.
 
     Of neighbours in the row the second counts as it will be after a clean look at the first.
     """
-    mind, rows = work
+    mind, rows, looks = work
     row, price = state
     first, end = ground.row_start[row], ground.row_start[row + 1]
-    toll = price * clock.visit_s
-    if rows.last[row, 0] >= 0:
-        rows.gain[first:end] = 0.0
+    if _best_look(looks, 1.0, _most_in(ground, mind, rows, row), price)[0] <= 0.0:
+        if rows.last[row, 0] >= 0:
+            rows.gain[first:end] = 0.0
+            rows.last[row] = _NOWHERE
+        return
+    previous, before, n = _NOWHERE, 0, 0
+    for i in range(first, end):
+        gain, taken = _best_look(looks, mind.worth[i], mind.chance[i], price)
+        if gain > 0.0 and previous == i - 1 and previous >= 0:
+            chance = _after_clean(mind, i, looks.detects[before])
+            gain, taken = _best_look(looks, mind.worth[i], chance, price)
+        rows.gain[i], rows.stop_s[i] = max(gain, 0.0), looks.stop_s[taken]
+        if gain > 0.0:
+            previous, before = i, taken
+            rows.pays[n] = i
+            n += 1
+    if n == 0:  # by a hair
         rows.last[row] = _NOWHERE
-    previous, n = _NOWHERE, 0
-    for block in range(first // _BLOCK, (end - 1) // _BLOCK + 1):
-        if _most_in(mind, rows, block) <= toll:
-            continue
-        for i in range(max(first, block * _BLOCK), min(end, (block + 1) * _BLOCK)):
-            gain = mind.worth[i] * mind.chance[i] - toll
-            if gain > 0.0 and previous == i - 1 and previous >= 0:
-                gain = mind.worth[i] * _after_clean(mind, i) - toll
-            if gain > 0.0:
-                rows.gain[i] = gain
-                previous = i
-                rows.pays[n] = i
-                n += 1
-    if n == 0:
         return
     for way in range(2, _WAYS):
         _in_and_out(ground, clock, rows, (row, way, n), price)
@@ -495,25 +520,25 @@ def _value_row(
 
 
 @part
-def _most_in(mind: _Mind, rows: _Rows, block: int) -> float:
-    """Return the most that a plant of a block is worth."""
-    if rows.most[block] < 0.0:
+def _most_in(ground: Ground, mind: _Mind, rows: _Rows, row: int) -> float:
+    """Return the most that a find in a row is expected to be worth."""
+    if rows.most[row] < 0.0:
         most = 0.0
-        for i in range(block * _BLOCK, min((block + 1) * _BLOCK, mind.worth.size)):
+        for i in range(ground.row_start[row], ground.row_start[row + 1]):
             most = max(most, mind.worth[i] * mind.chance[i])
-        rows.most[block] = most
-    return float(rows.most[block])
+        rows.most[row] = most
+    return float(rows.most[row])
 
 
 @part
-def _after_clean(mind: _Mind, i: int) -> float:
+def _after_clean(mind: _Mind, i: int, detects: float) -> float:
     """Return the chance of plant i once the one before it was looked at and seemed clean."""
     p, e = mind.chance[i], mind.behind[i]
     if e < 0:
         return float(p)
     q = mind.chance[i - 1]
     c = min(mind.both[e], p, q)
-    return float((p - mind.detects * c) / max(1.0 - mind.detects * q, _LEAST))
+    return float((p - detects * c) / max(1.0 - detects * q, _LEAST))
 
 
 @part
@@ -524,14 +549,15 @@ def _in_and_out(
     row, way, n = state
     entry_m = ground.end_x_m[row, way - 2]
     best, best_s, last = -np.inf, 0.0, _NOWHERE
-    gains = 0.0
+    gains, looking_s = 0.0, 0.0
     for k in range(n):
         i = rows.pays[k] if way == 2 else rows.pays[n - 1 - k]
         gains += rows.gain[i]
+        looking_s += rows.stop_s[i]
         drive_s = 2.0 * abs(ground.x_m[i] - entry_m) / clock.speed_m_s
         net = gains - price * drive_s
         if net > best:
-            best, best_s, last = net, drive_s + (k + 1) * clock.visit_s, i
+            best, best_s, last = net, drive_s + looking_s, i
     rows.net[row, way], rows.seconds[row, way], rows.last[row, way] = best, best_s, last
 
 
@@ -541,18 +567,20 @@ def _through(
 ) -> None:
     """Value a row that is driven from end to end, either way."""
     row, n = state
-    gains = 0.0
+    gains, looking_s = 0.0, 0.0
     for k in range(n):
         gains += rows.gain[rows.pays[k]]
+        looking_s += rows.stop_s[rows.pays[k]]
     drive_s = (ground.end_x_m[row, 1] - ground.end_x_m[row, 0]) / clock.speed_m_s
     for way in range(2):
         rows.net[row, way] = gains - price * drive_s
-        rows.seconds[row, way] = drive_s + n * clock.visit_s
+        rows.seconds[row, way] = drive_s + looking_s
         rows.last[row, way] = rows.pays[n - 1] if way == 0 else rows.pays[0]
 
 
 @part
 def _go(
+    ground: Ground,
     clock: Clock,
     rows: _Rows,
     onward: _Onward,
@@ -564,7 +592,7 @@ def _go(
     for place in range(n_rows):
         row = place if down else n_rows - 1 - place
         for end in range(2):
-            _after(onward, (down, row, end), price)
+            _after(ground, clock, onward, (down, row, end), price)
         for end in range(2):
             onward.net[down, row, end] = onward.left_net[down, row, end]
             onward.seconds[down, row, end] = onward.left_seconds[down, row, end]
@@ -588,18 +616,22 @@ def _go(
 
 
 @part
-def _after(onward: _Onward, place: tuple[int, int, int], price: float) -> None:
+def _after(
+    ground: Ground, clock: Clock, onward: _Onward, place: tuple[int, int, int], price: float
+) -> None:
     """Find the best rest of the day after a row: home, or to one of the next rows in line."""
     down, row, end = place
+    here = 2 * row + end
+    gate = ground.between_m.shape[0] - 1
     n_rows = onward.net.shape[1]
-    best_s = onward.home_s[row, end]
+    best_s = ground.between_m[here, gate] / clock.speed_m_s if clock.returns else 0.0
     best, to = -price * best_s, _NOWHERE
-    for k in range(_REACH):
-        other = row - 1 - k if down else row + 1 + k
+    for k in range(1, _REACH + 1):
+        other = row - k if down else row + k
         if not 0 <= other < n_rows:
             break
         for other_end in range(2):
-            way_s = onward.next_s[down, row, end, k, other_end]
+            way_s = ground.between_m[here, 2 * other + other_end] / clock.speed_m_s
             net = onward.net[down, other, other_end] - price * way_s
             if net > best:
                 best, to = net, 2 * other + other_end
@@ -618,8 +650,6 @@ def _leave(
     best, onto = -price * best_s, (0, _NOWHERE, 0)
     for row in range(onward.net.shape[1]):
         for end in range(2):
-            if onward.way[0, row, end] < 0 and onward.way[1, row, end] < 0:
-                continue
             way_s = ground.between_m[here, 2 * row + end] / clock.speed_m_s
             for down in range(2):
                 if onward.way[down, row, end] < 0:
@@ -643,35 +673,29 @@ def _first_piece(
 
 
 @part
-def _from_row(
-    ground: Ground,
-    clock: Clock,
-    work: tuple[_Mind, _Rows, _Onward],
-    state: tuple[int, float],
-) -> _Piece:
+def _from_row(ground: Ground, clock: Clock, work: _Work, at: int, price: float) -> _Piece:
     """Return the first piece of the best plan from the middle of a row.
 
     The row is left by either end, with the plants that way; before that, plants the other way
     are fetched as far as they pay.
     """
-    _, rows, onward = work
-    at, price = state
+    _, rows, onward, _, either = work
     row = _row_of(ground, at)
+    for end in range(2):
+        _along(ground, clock, rows, either, (at, end, price))
     best = -np.inf
     piece = _Piece(_NOWHERE, 0, _NOWHERE, 0.0)
     for end in range(2):
-        that_way = _along(ground, clock, rows, (at, row, end), price)
-        other_way = _along(ground, clock, rows, (at, row, 1 - end), price)
         net, seconds, onto = _leave(ground, clock, onward, 2 * row + end, price)
-        net += that_way.net + other_way.fetch_net
-        seconds += that_way.seconds + other_way.fetch_seconds
+        net += either.ahead[end] + either.fetch[1 - end]
+        seconds += either.ahead_s[end] + either.fetch_s[1 - end]
         if net <= best:
             continue
         best = net
-        if other_way.turn >= 0:
-            piece = _Piece(row, end, other_way.turn, seconds)
-        elif that_way.last >= 0:
-            piece = _Piece(row, 1 - end, that_way.last, seconds)
+        if either.turn[1 - end] >= 0:
+            piece = _Piece(row, end, either.turn[1 - end], seconds)
+        elif either.last[end] >= 0:
+            piece = _Piece(row, 1 - end, either.last[end], seconds)
         else:
             piece = _first_piece(rows, onward, onto, seconds)
     return piece
@@ -679,23 +703,24 @@ def _from_row(
 
 @part
 def _along(
-    ground: Ground, clock: Clock, rows: _Rows, place: tuple[int, int, int], price: float
-) -> _Along:
-    """Return what the rest of a row comes to, from a plant to an end."""
-    at, row, end = place
-    gains, n, farthest = 0.0, 0, _NOWHERE
-    fetch_net, fetch_s, turn = 0.0, 0.0, _NOWHERE
+    ground: Ground, clock: Clock, rows: _Rows, either: _Either, state: tuple[int, int, float]
+) -> None:
+    """Value one direction along a row: all the way out, and there and back as far as it pays."""
+    at, end, price = state
+    row = _row_of(ground, at)
+    gains, looking_s, farthest = 0.0, 0.0, _NOWHERE
+    either.fetch[end], either.fetch_s[end], either.turn[end] = 0.0, 0.0, _NOWHERE
     i = at - 1 if end == 0 else at + 1
     while ground.row_start[row] <= i < ground.row_start[row + 1]:
         if rows.gain[i] > 0.0:
             gains += rows.gain[i]
-            n += 1
+            looking_s += rows.stop_s[i]
             farthest = i
             way_s = 2.0 * abs(ground.x_m[i] - ground.x_m[at]) / clock.speed_m_s
-            if gains - price * way_s > fetch_net:
-                fetch_net, turn = gains - price * way_s, i
-                fetch_s = way_s + n * clock.visit_s
+            if gains - price * way_s > either.fetch[end]:
+                either.fetch[end], either.turn[end] = gains - price * way_s, i
+                either.fetch_s[end] = way_s + looking_s
         i = i - 1 if end == 0 else i + 1
     out_s = abs(ground.end_x_m[row, end] - ground.x_m[at]) / clock.speed_m_s
-    net, seconds = gains - price * out_s, out_s + n * clock.visit_s
-    return _Along(net, seconds, farthest, fetch_net, fetch_s, turn)
+    either.ahead[end], either.ahead_s[end] = gains - price * out_s, out_s + looking_s
+    either.last[end] = farthest

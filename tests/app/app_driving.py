@@ -24,13 +24,9 @@ def opened(season=None):
 
 
 def go(app, page):
-    """Turn to a page, as its link does.
-
-    AppTest (1.67) shows widgets that persist over pages at their defaults in the run that turns
-    the page, unlike a browser (see test_browser); the next run has them.
-    """
+    """Turn to a page, as its link does: the address is bare, and the next run is the page's."""
     app._page_hash = calc_hash("" if page == "today" else page)
-    app.run()
+    app.query_params.clear()
     return app.run()
 
 

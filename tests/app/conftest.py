@@ -51,20 +51,34 @@ def wait_for(url, server):
     pytest.fail("the app did not answer within 30 s")
 
 
+@pytest.fixture(scope="session")
+def visitors(browser):
+    """Return each kind of visitor's browser window: its tabs share what was loaded, as people's."""
+    windows = {}
+
+    def of(size, agent):
+        if (size, agent) not in windows:
+            windows[size, agent] = browser.new_context(
+                viewport={"width": size[0], "height": size[1]}, user_agent=agent,
+                accept_downloads=True,
+            )  # fmt: skip
+        return windows[size, agent]
+
+    yield of
+    for window in windows.values():
+        window.close()
+
+
 @pytest.fixture
-def page(browser, request):
-    """Return a new page of the asked size that remembers every request and keeps a picture."""
-    size, agent = getattr(request, "param", ((1400, 1000), None))
-    context = browser.new_context(
-        viewport={"width": size[0], "height": size[1]}, user_agent=agent, accept_downloads=True
-    )
-    page = context.new_page()
+def page(visitors, request):
+    """Return a new tab of the asked size that remembers every request and keeps a picture."""
+    page = visitors(*getattr(request, "param", ((1400, 1000), None))).new_page()
     page.requests = []
     page.on("request", lambda sent: page.requests.append(sent.url))
     yield page
     SHOTS.mkdir(exist_ok=True)
     page.screenshot(path=SHOTS / f"{request.node.name.replace('/', '_')}.png")
-    context.close()
+    page.close()
 
 
 @pytest.fixture(autouse=True)

@@ -40,15 +40,15 @@ async def click(line, page):
             return time.perf_counter() - start
 
 
-async def person(port, number, clicks):
+async def person(port, number, clicks, pages=None):
     rng = random.Random(number)
     address = f"ws://127.0.0.1:{port}/_stcore/stream"
     async with websockets.connect(address, subprotocols=["streamlit"], max_size=None) as line:
         first = await click(line, "")
         taken = []
-        for _ in range(clicks):
+        for page in pages or rng.choices(PAGES, k=clicks):
             await asyncio.sleep(rng.uniform(0, 2 * PAUSE_S))
-            taken.append(await click(line, rng.choice(PAGES)))
+            taken.append(await click(line, page))
         return first, taken
 
 
@@ -68,7 +68,7 @@ def resident_mb(pid):
 
 
 async def measure(port, server, people, clicks):
-    await person(port, 0, 2 * len(PAGES))
+    await person(port, 0, 0, PAGES)
     alone = await person(port, 1, clicks)
     before = resident_mb(server.pid)
     every = await asyncio.gather(*(person(port, k, clicks) for k in range(people)))

@@ -21,23 +21,23 @@ from fieldmon.project import Project, Results, Setup
 
 PHONE = ((390, 844), "Mozilla/5.0 (Linux; Android 14) Chrome/150.0 Mobile Safari/537.36")
 MAP = "[data-testid=stDeckGlJsonChart]"
+IDLE = "[data-testid=stApp][data-test-script-state=notRunning]"
 ESTATE = maps.__file__.replace("app/maps.py", "sample_data/")
 
 
 def shown(page, address):
-    """Open the app and wait until the map is drawn and still."""
+    """Open the app and wait until its first screen is there."""
     page.goto(address)
-    page.wait_for_selector(f"{MAP} canvas", timeout=120_000)
-    page.get_by_text("Chance that a plant is infested").wait_for(timeout=60_000)
-    return still(page)
+    page.get_by_text("Keep this season").wait_for(timeout=120_000)
 
 
 def still(page):
-    """Return the map's pixels once two looks at it are the same."""
+    """Return the map's pixels once the server has answered and two looks at it are the same."""
     chart = page.locator(MAP).first
     before = None
-    for _ in range(40):
-        page.wait_for_timeout(500)
+    for _ in range(100):
+        page.wait_for_timeout(200)
+        page.wait_for_selector(IDLE, timeout=60_000)
         now = np.array(Image.open(io.BytesIO(chart.screenshot())).convert("RGB")).astype(int)
         if before is not None and np.array_equal(now, before) and np.ptp(now) > 0:
             return now
@@ -76,7 +76,7 @@ def is_near(image, place, colour, reach=2, tolerance=40):
 
 
 def test_plants_and_route_are_drawn_where_they_are(page, address):
-    image = shown(page, address)
+    shown(page, address)
     page.get_by_role("button", name="stop numbers").click()
     page.get_by_role("button", name="hot spots").click()
     page.get_by_role("button", name="route", exact=True).click()
@@ -107,7 +107,11 @@ def test_nothing_is_asked_of_the_world(page, address):
     for name in ("Map", "Scout", "Season", "Compare", "Plot & records", "Report", "Simulate",
                  "Study", "Today"):  # fmt: skip
         page.get_by_role("link", name=name, exact=True).click()
-        page.wait_for_timeout(1500)
+        page.get_by_role("link", name=name, exact=True).and_(
+            page.locator("[aria-current=page]")
+        ).wait_for()
+        page.wait_for_timeout(300)
+        page.wait_for_selector(IDLE, timeout=60_000)
     still(page)
     assert len(page.requests) > 30
     own = (address, address.replace("http", "ws"), "data:", "blob:", "about:")
@@ -196,7 +200,9 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(page, address, sh
     page.reload()
     page.get_by_role("link", name="Today").click()
     page.get_by_text("8 plants inspected today so far").wait_for(timeout=60_000)
-    assert stops(page)[: len(first) - 8] == first[8:]
+    rest = stops(page)
+    assert len(first) - 20 < len(rest) < len(first)
+    assert not set(rest) & set(first[:8])
 
 
 def stops(page):
@@ -254,7 +260,8 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
 
 @pytest.mark.parametrize("page", [PHONE], indirect=True)
 def test_a_phone_shows_the_figures_and_the_whole_plot(page, address):
-    image = shown(page, address)
+    shown(page, address)
+    image = still(page)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     assert page.get_by_text("Plants to inspect").is_visible()
     edge = np.concatenate([image[:, :3].reshape(-1, 3), image[:, -3:].reshape(-1, 3)])

@@ -1,6 +1,6 @@
 """A thousand clicks by somebody who reads nothing: no page may fail.
 
-The suite clicks 120 times; ``FIELDMON_MONKEY=1000`` clicks as often as it says (seeded alike).
+The suite clicks 80 times; ``FIELDMON_MONKEY=1000`` clicks as often as it says (seeded alike).
 """
 
 import os
@@ -12,7 +12,7 @@ from app_driving import PAGES, begun, go, opened
 
 from app import texts
 
-CLICKS = int(os.environ.get("FIELDMON_MONKEY", "120"))
+CLICKS = int(os.environ.get("FIELDMON_MONKEY", "80"))
 # a comparison of 500 seasons or a table of the thesis takes minutes, as it should
 SMALL = {"seeds": 3, "n_days": 5, "study_replicates": 3}
 NASTY = [

@@ -1,5 +1,7 @@
 """A season in the app: begun, scouted, recorded, undone, come back to."""
 
+import re
+import shutil
 from datetime import date
 
 import numpy as np
@@ -10,9 +12,20 @@ from fieldmon.errors import SettingError
 from fieldmon.project import Project
 
 
+@pytest.fixture(scope="module")
+def begun_file(tmp_path_factory):
+    """Begin a season in the app, once; return its file."""
+    folder = tmp_path_factory.mktemp("begun")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("FIELDMON_SEASONS", str(folder))
+        assert "has begun" in begun(opened()).success[0].value
+    return folder / "Gate 2026.gpkg"
+
+
 @pytest.fixture
-def app():
-    return begun(opened())
+def app(begun_file, seasons_folder):
+    shutil.copy(begun_file, seasons_folder)
+    return opened("Gate 2026")
 
 
 @pytest.fixture
@@ -26,7 +39,8 @@ def tap(app, key):
     assert not app.error
 
 
-def test_a_season_begins_and_is_found_again_by_a_new_session(app, season):
+def test_a_season_begins_and_is_found_again_by_a_new_session(season):
+    app = begun(opened())
     assert "has begun" in app.success[0].value
     assert app.selectbox(key="season").value == "Gate 2026"
     assert season().setup.begins == date(2026, 11, 16)
@@ -35,6 +49,17 @@ def test_a_season_begins_and_is_found_again_by_a_new_session(app, season):
     assert heading(again) == "Gate · 2026-11-16"
     assert "first day of the season" in texts_of(again)
     assert layer(again, "plants")["data"] == layer(app, "plants")["data"]
+
+
+def test_the_first_click_after_a_reload_stays_in_the_season(app):
+    go(app, "map")
+    assert app.selectbox(key="season").value == "Gate 2026"
+    again = opened("Gate 2026")
+    for page in ("season", "study", "today"):
+        go(again, page)
+    assert again.selectbox(key="season").value == "Gate 2026"
+    assert "first day of the season" in texts_of(again)
+    assert again.query_params["season"] == "Gate 2026"
 
 
 def test_a_season_is_never_begun_over_another_and_its_name_stays_in_the_folder(app, season):
@@ -100,6 +125,17 @@ def test_found_plants_and_clean_ones_show_on_the_map(app):
     assert sum(c == [90, 160, 230, 255] for c in shown) == 1
 
 
+def test_today_says_why_it_goes_where_it_goes(app):
+    assert "never inspected yet" in texts_of(app)
+    go(app, "scout")
+    place = app.markdown[0].value.lower()
+    tap(app, "scout_found")
+    go(app, "today")
+    why = next(m.value for m in app.markdown if "around today's find" in m.value)
+    row, plant = (int(n) for n in re.findall(r"find in row (\d+), plant (\d+)", why)[0])
+    assert f"row {row} · plant {plant}" in place
+
+
 def test_one_plant_is_recorded_and_undone_on_the_season_page(app, season):
     go(app, "season")
     app.number_input(key="one_row").set_value(3)
@@ -141,7 +177,7 @@ def test_a_file_that_does_not_fit_is_a_sentence(app, season, data):
 def test_days_in_the_app_give_the_digits_of_the_same_days_without_it(app, season, tmp_path):
     mine = season()
     twin = Project.create(tmp_path / "twin.gpkg", mine.plot, mine.observations, mine.setup)
-    for day in (16, 17, 18):
+    for day in (16, 17):
         on = date(2026, 11, day)
         app.date_input(key="day Gate 2026").set_value(on).run()
         go(app, "season")

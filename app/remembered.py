@@ -1,0 +1,54 @@
+"""Widgets that keep what was chosen when the page is turned.
+
+Streamlit forgets a widget's value on another page. Its ``persist_state="session"`` (1.67) shows
+the default in the run that turns the page where only one run came before: a reload of the address
+of a season, then another page, was the sample estate again.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import streamlit as st
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+T = TypeVar("T")
+_VALUES, _PAGE = "remembered", "page"
+
+
+def turn(page: str) -> None:
+    """Say which page is about to be shown."""
+    st.session_state[_PAGE] = page
+
+
+def first(key: str, value: object) -> None:
+    """Let a widget begin with a value, if it was never shown and there is one."""
+    if value is not None:
+        _values().setdefault(key, ("", value))
+
+
+def value(key: str, default: object = None) -> Any:  # noqa: ANN401 - whatever the widget holds
+    """Return what was chosen last, on whichever page, though its widget may come further down."""
+    return st.session_state.get(key, _values().get(key, ("", default))[1])
+
+
+def show(
+    widget: Callable[..., T], *arguments: object, key: str, default: object = None,
+    **settings: object,
+) -> T:  # fmt: skip
+    """Show a widget with what was chosen before, on this page or another."""
+    state, page = st.session_state, st.session_state.get(_PAGE, "")
+    shown_on, kept = _values().get(key, ("", default))
+    if key not in state or shown_on != page:
+        # the last page's widget, if it was just left, knows better than what its last run saw
+        state[key] = state.get(key, kept)
+    chosen = widget(*arguments, key=key, **settings)
+    _values()[key] = (page, chosen)
+    return chosen
+
+
+def _values() -> dict[str, tuple[str, Any]]:
+    values: dict[str, tuple[str, Any]] = st.session_state.setdefault(_VALUES, {})
+    return values

@@ -163,7 +163,7 @@ def captions(parts: Sequence[str]) -> None:
 def route_figures(choices: Choices, today: Today) -> None:
     """Show the figures to decide by."""
     route, n = today.route, len(choices.plot.grid)
-    finds = route.expected_finds * choices.robot.detects
+    finds = route.expected_found
     with st.container(horizontal=True):
         st.metric(texts.PLANTS_TO_INSPECT, f"{len(route):,} / {n:,}", width="content")
         st.metric(texts.TIME, f"{route.end_s / 3600:.1f} h", width="content")

@@ -127,7 +127,7 @@ def _figures(facts: Facts, today: Today) -> dict[str, str]:
         texts.PLANTS_TO_INSPECT: f"{len(route):,} / {len(facts.chance):,}",
         texts.TIME: f"{route.end_s / 3600:.1f} h",
         texts.DRIVE: facts.units.metres(route.drive_m),
-        texts.FINDS: f"{route.expected_finds * facts.robot.detects:.1f}",
+        texts.FINDS: f"{route.expected_found:.1f}",
     }
 
 

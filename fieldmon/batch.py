@@ -40,7 +40,7 @@ class Orders:
     """
 
     day: np.datetime64
-    sampler: str = "dynamic"
+    sampler: str = "adaptive"
     every: int | None = None
     on_foot: bool = False
     robot: dict[str, float] = field(default_factory=dict)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-import numba as nb
 import numpy as np
 
-from fieldmon.compiled import loop
+from fieldmon.compiled import inlined, loop, part
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -19,6 +18,8 @@ if TYPE_CHECKING:
 
 # no plant is ever taken as certainly clean or certainly infested: evidence must be able to undo it
 _LEAST, _MOST = 1e-6, 1.0 - 1e-6
+# what is added to it is an int64
+_0 = np.int64(0)
 _1, _2, _3 = np.uint32(1), np.uint32(2), np.uint32(3)
 # a look is heard as far as three plants away, and as long as it changes a chance by this
 _RINGS = 3
@@ -27,6 +28,12 @@ _CLOSEST = 0.9
 # how many finds beside finds the belief's own idea of clusters is worth; the most it grows a day
 _HABIT, _MORE = 3.0, 1.5
 _LEAST_SAY = 1e-6
+# correlation of neighbours before anything was found beside a find: where clusters are believed
+# in more, single infested plants cost more looks, and the other way round; it is learnt soon
+COMPANY = 0.25
+# rows of the room for the plants beside one: chance that each infects it; that it does not
+# where there is an infestation beside it; and that with the most infested one left out
+_SHARED, _FREE, _FREE_BUT = 0, 1, 2
 
 
 @dataclass(frozen=True)
@@ -36,7 +43,7 @@ class Learning:
     Parameters
     ----------
     detection
-        Chance that an inspection finds what is there.
+        Chance that an inspection finds what is there; ``(k,)`` for each where they differ.
     beside_find
         Chance that a plant next to a find is infested too, whatever was believed before
         (infestations come in clusters; our choice).
@@ -44,16 +51,21 @@ class Learning:
         Whether a find is destroyed at once (the thesis's rule), or only flagged.
     """
 
-    detection: float = 0.84
+    detection: float | NDArray[np.float64] = 0.84
     beside_find: float = 0.3
     treated: bool = True
 
     def __post_init__(self) -> None:
         for name in ("detection", "beside_find"):
-            if not 0.0 <= getattr(self, name) <= 1.0:
+            values = np.atleast_1d(getattr(self, name))
+            if not ((values >= 0.0) & (values <= 1.0)).all():
                 raise SettingError(
                     f"{name} must be a chance in 0..1, but it is {getattr(self, name)}."
                 )
+
+    def detects(self, looks: int) -> NDArray[np.float64]:
+        """Return the detection of each of so many looks, ``(k,)``."""
+        return np.array(np.broadcast_to(self.detection, looks), np.float64)
 
 
 def learn(
@@ -69,28 +81,29 @@ def learn(
     d; a find settles the plant and raises its neighbours to at least `beside_find`.
     """
     after = chance.copy()
-    rule = (learning.detection, learning.beside_find, learning.treated)
-    _learn(after, grid.adjacent, plants, found, rule)
+    rule = (learning.detects(len(plants)), learning.beside_find, learning.treated)
+    inspected = np.zeros(after.size, np.bool_)
+    _learn((after, inspected), grid.adjacent, plants, found, rule)
     return after
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def _learn(
-    after: NDArray[np.float64],
+    plot: tuple[NDArray[np.float64], NDArray[np.bool_]],
     adjacent: Csr,
     plants: NDArray[np.int32],
     found: NDArray[np.bool_],
-    rule: tuple[float, float, bool],
+    rule: tuple[NDArray[np.float64], float, bool],
 ) -> None:
-    d, beside_find, treated = rule
-    inspected = np.zeros(after.size, np.bool_)
+    after, inspected = plot
+    detects, beside_find, treated = rule
     for k in range(plants.size):
         i = plants[k]
         inspected[i] = True
         if found[k]:
             after[i] = _LEAST if treated else _MOST
         else:
-            p = after[i]
+            p, d = after[i], detects[k]
             after[i] = min(max(p * (1.0 - d) / (1.0 - p * d), _LEAST), _MOST)
     for k in range(plants.size):
         if not found[k]:
@@ -151,18 +164,27 @@ def _overnight(
 
 
 def pairs(
-    chance: NDArray[np.float64], grid: PlantGrid, company: float = 0.5
+    chance: NDArray[np.float64], grid: PlantGrid, company: float = COMPANY
 ) -> NDArray[np.float64]:
     """Return the chance that both of two plants side by side are infested, ``(e,)``.
 
     In the order of ``grid.adjacent``. `company` is the correlation of the two: about the chance
     that a plant beside an infested one is infested too, where few are.
     """
-    start, other = grid.adjacent
-    one = np.repeat(np.arange(len(chance)), np.diff(start))
-    p, q = chance[one], chance[other]
-    both = p * q + company * np.sqrt(p * (1.0 - p) * q * (1.0 - q))
-    return np.minimum(both, np.minimum(p, q))
+    both = np.empty(len(grid.adjacent.plant))
+    _pairs(np.ascontiguousarray(chance), grid.adjacent, company, both)
+    return both
+
+
+@loop
+def _pairs(
+    chance: NDArray[np.float64], adjacent: Csr, company: float, both: NDArray[np.float64]
+) -> None:
+    for i in range(chance.size):
+        for e in range(adjacent.start[i], adjacent.start[i + 1]):
+            p, q = chance[i], chance[adjacent.plant[e]]
+            together = p * q + company * np.sqrt(p * (1.0 - p) * q * (1.0 - q))
+            both[e] = min(together, p, q)
 
 
 class Belief(Protocol):
@@ -229,7 +251,7 @@ class Pairs:
     both: NDArray[np.float64]
 
     @classmethod
-    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = 0.5) -> Pairs:
+    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = COMPANY) -> Pairs:
         """Begin with a chance map, see :func:`pairs`."""
         chance = np.clip(chance, _LEAST, _MOST)
         return cls(grid, chance, pairs(chance, grid, company))
@@ -239,16 +261,20 @@ class Pairs:
     ) -> Pairs:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
         mind = self.chance.copy(), self.both.copy()
-        rule = learning.detection, learning.treated
-        _regroup(mind, self.grid.adjacent, plants, found, learning.detection)
-        _learn_pairs(mind, self.grid.adjacent, plants, found, rule)
+        looks = plants, found, learning.detects(len(plants))
+        _regroup(mind, self.grid.adjacent, looks, Company.none(len(self.chance)))
+        _learn_pairs(mind, self.grid.adjacent, looks, learning.treated, near(len(self.chance)))
         return Pairs(self.grid, *mind)
 
     def overnight(self, spread: Spread) -> Pairs:
         """Return what is believed the next morning."""
         after = np.empty_like(self.chance), np.empty_like(self.both)
+        close, spared = np.zeros(len(self.chance)), np.empty_like(self.both)
+        mind, adjacent = (self.chance, self.both), self.grid.adjacent
         rule = spread.rate_per_day, spread.to == "one", spread.arrivals_per_day
-        _overnight_pairs((self.chance, self.both), after, self.grid.adjacent, rule)
+        beside = np.empty((3, int(np.diff(adjacent.start).max(initial=0))))
+        _spare_pairs(mind, (after[0], close, spared), adjacent, beside, rule)
+        _overnight_pairs(mind, (*after, close, spared), adjacent, rule[0])
         return Pairs(self.grid, *after)
 
     def treated(self, left: NDArray[np.float64]) -> Pairs:
@@ -267,13 +293,12 @@ class Near(NamedTuple):
     after: NDArray[np.float64]
 
 
-@nb.njit(cache=True, nogil=True)
 def near(n: int) -> Near:
     """Return such room for `n` plants."""
     return Near(np.empty(n, np.int64), np.zeros(n, np.int64), np.empty(n))
 
 
-@nb.njit(cache=True, nogil=True)
+@part
 def look(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
@@ -294,7 +319,8 @@ def look(
     p = chance[i]
     after = _MOST if found else p * (1.0 - detection) / (1.0 - p * detection)
     touched.plant[0], touched.ring[i], touched.after[i] = i, 1, min(max(after, _LEAST), _MOST)
-    n, first = 1, 0
+    # not a plain 1: what is called below would be compiled for that number alone
+    n, first = int(touched.ring[i]), 0
     for ring in range(2, _RINGS + 2):
         end = n
         for t in range(first, end):
@@ -313,7 +339,7 @@ def look(
     return n
 
 
-@nb.njit(cache=True)
+@part
 def _tell(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
@@ -344,7 +370,7 @@ def _tell(
     return n
 
 
-@nb.njit(cache=True)
+@part
 def _keep_company(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
@@ -371,14 +397,14 @@ def _keep_company(
         both[e] = both[_back(adjacent, j, e)] = c
 
 
-@nb.njit(cache=True, inline="always")
+@inlined
 def _bounded(both: float, p: float, q: float) -> float:
     """Return the chance of both of two plants, within what their own chances p and q allow."""
     apart = p * q
     return max(min(both, apart + _CLOSEST * (min(p, q) - apart)), p + q - 1.0, 0.0)
 
 
-@nb.njit(cache=True, inline="always")
+@inlined
 def _told(p: float, q: float, both: float, after: float) -> float:
     """Return the chance of a plant, q until now, when its neighbour's goes from p to `after`."""
     c = _bounded(both, p, q)
@@ -386,7 +412,7 @@ def _told(p: float, q: float, both: float, after: float) -> float:
     return min(max(told, _LEAST), _MOST)
 
 
-@nb.njit(cache=True, inline="always")
+@inlined
 def _back(adjacent: Csr, j: int, e: int) -> int:
     """Return where the pair of plant j at place e stands in the list of the other plant."""
     k = adjacent.plant[e]
@@ -396,87 +422,181 @@ def _back(adjacent: Csr, j: int, e: int) -> int:
     return e
 
 
-@nb.njit(cache=True, nogil=True)
-def _regroup(
-    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
-    adjacent: Csr,
-    plants: NDArray[np.int32],
-    found: NDArray[np.bool_],
-    detection: float,
-) -> None:
-    """Learn from a day's looks beside its finds how much infested plants stand together.
+class Company(NamedTuple):
+    """What a day's looks tell of how much infested plants stand together.
 
-    What pairs have in common is scaled, all over the plot, by the finds beside finds: those there
-    were over those expected, both beyond what independent plants would give. A few expected
-    ones are added to both, so that a day of few finds changes little.
+    Parameters
+    ----------
+    outcome
+        ``(n,)`` 1 for a find, 0 for none, -1 where nobody looked.
+    detects
+        ``(n,)`` the detection of that look.
+    finds
+        ``(2,)`` finds beside finds: those there were, and those expected, both beyond what
+        independent plants would give. A few expected ones are added to both, so that a day of
+        few finds changes little.
     """
-    chance, both = mind
-    outcome = np.full(chance.size, -1, np.int8)
-    for k in range(plants.size):
-        outcome[plants[k]] = found[k]
-    seen, expected = _HABIT, _HABIT
-    for k in range(plants.size):
-        i = plants[k]
-        if not found[k]:
+
+    outcome: NDArray[np.int8]
+    detects: NDArray[np.float64]
+    finds: NDArray[np.float64]
+
+    @classmethod
+    def none(cls, n: int) -> Company:
+        """Return what is known of `n` plants before anybody looked."""
+        return cls(np.full(n, -1, np.int8), np.zeros(n), np.full(2, _HABIT))
+
+
+@part
+def meet(
+    dawn: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    result: tuple[int, bool, float],
+    company: Company,
+) -> None:
+    """Note a look (plant, found, detection), and what it says beside other looks of the day.
+
+    `dawn` is ``chance (n,)`` and ``both (e,)`` as believed before the first of them.
+    """
+    chance, both = dawn
+    i, found, detects = result
+    company.outcome[i], company.detects[i] = found, detects
+    for e in range(adjacent.start[i], adjacent.start[i + 1]):
+        j = adjacent.plant[e]
+        if company.outcome[j] < 0:
             continue
-        for e in range(adjacent.start[i], adjacent.start[i + 1]):
-            j = adjacent.plant[e]
-            if outcome[j] >= 0:
-                seen += outcome[j] - detection * chance[j]
-                expected += detection * (both[e] / chance[i] - chance[j])
-    scale = min(max(seen, 0.0) / max(expected, _HABIT), _MORE)
+        if found:
+            company.finds[0] += company.outcome[j] - company.detects[j] * chance[j]
+            company.finds[1] += company.detects[j] * (both[e] / chance[i] - chance[j])
+        if company.outcome[j] == 1:
+            company.finds[0] += found - detects * chance[i]
+            company.finds[1] += detects * (both[e] / chance[j] - chance[i])
+
+
+@part
+def closeness(company: Company) -> float:
+    """Return by how much infested plants stand closer together than believed at dawn."""
+    return float(min(max(company.finds[0], 0.0) / max(company.finds[1], _HABIT), _MORE))
+
+
+@part
+def regroup(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]], adjacent: Csr, scale: float
+) -> None:
+    """Scale what pairs have in common, all over the plot."""
+    chance, both = mind
     for i in range(chance.size):
         for e in range(adjacent.start[i], adjacent.start[i + 1]):
             p, q = chance[i], chance[adjacent.plant[e]]
             both[e] = _bounded(p * q + scale * (both[e] - p * q), p, q)
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
+def _regroup(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    looks: tuple[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]],
+    company: Company,
+) -> None:
+    """Learn from a day's looks beside its finds how much infested plants stand together."""
+    plants, found, detects = looks
+    for k in range(plants.size):
+        meet(mind, adjacent, (_0 + plants[k], found[k], detects[k]), company)
+    regroup(mind, adjacent, closeness(company))
+
+
+@loop
 def _learn_pairs(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
-    plants: NDArray[np.int32],
-    found: NDArray[np.bool_],
-    rule: tuple[float, bool],
+    looks: tuple[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]],
+    treated: bool,  # noqa: FBT001 - a rule, in a compiled loop
+    touched: Near,
 ) -> None:
-    touched = near(mind[0].size)
+    plants, found, detects = looks
     for k in range(plants.size):
-        look(mind, adjacent, (plants[k], found[k]), rule, touched)
+        look(mind, adjacent, (_0 + plants[k], found[k]), (detects[k], treated), touched)
 
 
-@nb.njit(cache=True, nogil=True)
-def _overnight_pairs(
+@loop
+def _spare_pairs(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
-    after: tuple[NDArray[np.float64], NDArray[np.float64]],
+    after: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
+    room: NDArray[np.float64],
     rule: tuple[float, bool, float],
 ) -> None:
-    chance, both = mind
+    """Find every plant's chance in the morning, and what else a night of pairs needs.
+
+    `after` is that chance ``(n,)``, how close infested plants stand about each ``(n,)``, and the
+    chance that a clean plant stays so but for one of those beside it ``(e,)``; `room` ``(3, d)``
+    holds what concerns the d plants beside one.
+    """
+    (chance, both), (morning, close, spared) = mind, after
     rate, one, arrivals = rule
     start, plant = adjacent
-    # chance that a clean plant stays so, whatever beside it, and what beside each of its plants
-    stays, spared = np.empty(chance.size), np.empty(both.size)
-    close, twice = np.empty(chance.size), 1.0 - (1.0 - rate) ** 2
     for i in range(chance.size):
-        close[i] = 0.0
         for e in range(start[i], start[i + 1]):
             close[i] += both[e] / chance[i]
         close[i] /= max(start[i + 1] - start[i], 1)
-    beside, share = np.empty(64), np.empty(64)
     for i in range(chance.size):
         first, degree = start[i], start[i + 1] - start[i]
         weight, kin = 0.0, 0.0
+        # the most infested plant beside it, and the next
+        most, second, which = 0.0, 0.0, -1
         for k in range(degree):
             j = plant[first + k]
-            share[k] = rate / (start[j + 1] - start[j]) if one else rate
-            beside[k] = max(chance[j] - both[first + k], 0.0) / (1.0 - chance[i])
-            weight += beside[k]
-            kin += beside[k] * close[j] ** 2
+            share = rate / (start[j + 1] - start[j]) if one else rate
+            beside = max(chance[j] - both[first + k], 0.0) / (1.0 - chance[i])
+            weight += beside
+            kin += beside * close[j] ** 2
+            room[_SHARED, k] = share * beside
+            if beside > most:
+                most, second, which = beside, most, k
+            elif beside > second:
+                second = beside
         kin = kin / weight if weight > 0.0 else 0.0
-        stays[i] = (1.0 - arrivals) * _spared(beside[:degree], share, kin, -1)
+        g, g_but = max(kin, most), max(kin, second)
+        g, g_but = most / g if g > 0.0 else 0.0, second / g_but if g_but > 0.0 else 0.0
         for k in range(degree):
-            spared[first + k] = (1.0 - arrivals) * _spared(beside[:degree], share, kin, k)
-        after[0][i] = min(max(1.0 - (1.0 - chance[i]) * stays[i], _LEAST), _MOST)
+            room[_FREE, k] = 1.0 - room[_SHARED, k] / g if g > 0.0 else 1.0
+            room[_FREE_BUT, k] = 1.0 - room[_SHARED, k] / g_but if g_but > 0.0 else 1.0
+        for k in range(degree):
+            row, given = (_FREE_BUT, g_but) if k == which else (_FREE, g)
+            spared[first + k] = (1.0 - arrivals) * _spared(room[row], degree, given, k)
+        stays = (1.0 - arrivals) * _spared(room[_FREE], degree, g, -1)
+        morning[i] = min(max(1.0 - (1.0 - chance[i]) * stays, _LEAST), _MOST)
+
+
+@inlined
+def _spared(free: NDArray[np.float64], degree: int, g: float, but: int) -> float:
+    """Return the chance that none of a plant's neighbours infects it, neighbour `but` aside.
+
+    Neighbours of a clean plant are infested together: there is an infestation beside it with the
+    chance g, and if so each neighbour belongs to it with the chance beside / g, so that where
+    one does another does with the chance `kin`. Independent neighbours are the case of g = 1.
+    `free` is the chance that each does not infect it where there is one.
+    """
+    spared = 1.0
+    for k in range(degree):
+        if k != but:
+            spared *= free[k]
+    return 1.0 - g * (1.0 - spared)
+
+
+@loop
+def _overnight_pairs(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    after: tuple[
+        NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]
+    ],
+    adjacent: Csr,
+    rate: float,
+) -> None:
+    """Find the chances of pairs in the morning from what `_spare_pairs` has found."""
+    (chance, both), (morning, pair, close, spared) = mind, after
+    start, plant = adjacent
+    twice = 1.0 - (1.0 - rate) ** 2
     for i in range(chance.size):
         for e in range(start[i], start[i + 1]):
             j = plant[e]
@@ -484,28 +604,6 @@ def _overnight_pairs(
             # what comes to two neighbours at once mostly comes from one infestation
             at_once = max(a * b, twice * min(close[i], close[j]) * min(a, b))
             neither = max(1.0 - chance[i] - chance[j] + both[e], 0.0) * (1.0 - a - b + at_once)
-            c = after[0][i] + after[0][j] - 1.0 + neither
-            least = max(0.0, after[0][i] + after[0][j] - 1.0)
-            after[1][e] = min(max(c, least), after[0][i], after[0][j])
-
-
-@nb.njit(cache=True)
-def _spared(beside: NDArray[np.float64], share: NDArray[np.float64], kin: float, but: int) -> float:
-    """Return the chance that none of a plant's neighbours infects it, neighbour `but` aside.
-
-    Neighbours of a clean plant are infested together: there is an infestation beside it with the
-    chance g, and if so each neighbour belongs to it with the chance beside / g, so that where
-    one does another does with the chance `kin`. Independent neighbours are the case of g = 1.
-    """
-    most = 0.0
-    for k in range(beside.size):
-        if k != but:
-            most = max(most, beside[k])
-    if most <= 0.0:
-        return 1.0
-    g = most / max(kin, most)
-    spared = 1.0
-    for k in range(beside.size):
-        if k != but:
-            spared *= 1.0 - share[k] * beside[k] / g
-    return 1.0 - g * (1.0 - spared)
+            c = morning[i] + morning[j] - 1.0 + neither
+            least = max(0.0, morning[i] + morning[j] - 1.0)
+            pair[e] = min(max(c, least), morning[i], morning[j])

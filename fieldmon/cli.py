@@ -61,6 +61,7 @@ class SamplerName(StrEnum):
     BOUNCY = "bouncy"
     DYNAMIC = "dynamic"
     ADAPTIVE = "adaptive"
+    ADAPTIVE_LOOKS = "adaptive-looks"
     SNAKE = "snake"
     SNAKE_RANDOM = "snake-random"
     NEIGHBOR = "neighbor"
@@ -333,7 +334,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     typer.echo(
         f"{len(route)} of {len(laid.grid)} plants in {route.end_s / 3600:.1f} h, "
         f"{route.drive_m / 1000:.2f} km; about {route.expected_finds:.1f} of them infested, "
-        f"about {route.expected_finds * plans.robot.detects:.1f} of these would be found."
+        f"about {route.expected_found:.1f} of these would be found."
     )
     cli_season.hand_off(route, RouteNotes(laid.field.name, sampler.value, began), output)
     cli_raster.write_map(chance_map, laid, today.chance)

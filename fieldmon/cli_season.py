@@ -116,7 +116,7 @@ def plan_season(context: typer.Context, season: Path, outputs: list[Path] | None
         f"{on}: {done}{len(route)} of {len(project.plot.grid)} plants in "
         f"{route.end_s / 3600:.1f} h, {route.drive_m / 1000:.2f} km; about "
         f"{route.expected_finds:.1f} of them infested, about "
-        f"{route.expected_finds * setup.robot.detects:.1f} of these would be found."
+        f"{route.expected_found:.1f} of these would be found."
     )
     hand_off(route, notes, outputs)
     cli_raster.write_map(context.params["chance_map"], project.plot, today.chance)

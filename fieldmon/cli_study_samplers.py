@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -12,6 +13,8 @@ from fieldmon.errors import FileProblem, SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+_SAVED_EVERY_S = 15.0
 
 
 def samplers(
@@ -28,6 +31,9 @@ def samplers(
         Path | None,
         typer.Option(help="Folder with the public plant maps: finds a look on these instead."),
     ] = None,
+    tune: Annotated[
+        bool, typer.Option("--tune", help="Search Dynamic's open choices instead (ten minutes).")
+    ] = False,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV) and report (HTML).")
     ] = Path(),
@@ -52,6 +58,9 @@ def samplers(
     if maps is not None:
         _on_maps(maps, output)
         return
+    if tune:
+        _tune()
+        return
     cells = all_cells() if full else usual_cells()
     if cell:
         cells = [each for each in cells if any(each.name.startswith(name) for name in cell)]
@@ -65,10 +74,16 @@ def samplers(
         length=len(ahead), label="Seasons", file=sys.stderr, show_eta=True, width=40
     ) as bar:
         bar.update(len(done & set(ahead)))
-        for outcomes in run(cells, range(seeds), done):
-            made += outcomes
+        saved = monotonic()
+        try:
+            for outcomes in run(cells, range(seeds), done):
+                made += outcomes
+                bar.update(1)
+                if monotonic() > saved + _SAVED_EVERY_S:
+                    write_whole(table, csv_text(made).encode())
+                    saved = monotonic()
+        finally:
             write_whole(table, csv_text(made).encode())
-            bar.update(1)
     wanted = set(ahead)
     shown = [outcome for outcome in made if (outcome.cell, outcome.seed) in wanted]
     for sentence in sentences(shown):
@@ -114,6 +129,25 @@ def beliefs(
     page = output / "beliefs.html"
     write_whole(page, report_html(made, about).encode())
     typer.echo(f"Written: {page}")
+
+
+def _tune() -> None:
+    """Print what each of Dynamic's open choices loses."""
+    from fieldmon.comparison.tuning import CHOICES, SEEDS, losses, tuning_cells  # noqa: PLC0415
+
+    made = []
+    with typer.progressbar(
+        losses(tuning_cells(), SEEDS),
+        length=len(CHOICES),
+        label="Choices",
+        file=sys.stderr,
+        show_eta=True,
+        width=40,
+    ) as bar:
+        for choice, loss in bar:
+            made.append((loss, *choice))
+    for loss, suspicious, at_once in sorted(made):
+        typer.echo(f"{loss:8.1f} infested plant-days: {suspicious = }, {at_once = }")
 
 
 def _on_maps(folder: Path, output: Path) -> None:

@@ -11,8 +11,14 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound="Callable[..., object]")
 
-# numba's own stubs leave `_nrt` out
-_BARE: dict[str, Any] = {"cache": True, "error_model": "numpy", "_nrt": False}
+# nothing here is called from C; numba's own stubs leave the last two out
+_BARE: dict[str, Any] = {
+    "cache": True,
+    "error_model": "numpy",
+    "_nrt": False,
+    "no_cfunc_wrapper": True,
+}
+_NOT_FOR_PYTHON = _BARE | {"no_cpython_wrapper": True}
 
 
 def loop(function: F) -> F:
@@ -26,7 +32,18 @@ def loop(function: F) -> F:
     return compiled
 
 
+def part(function: F) -> F:
+    """Compile a function likewise that only other loops call.
+
+    What Python would need to call it is left out (it would crash), which is nearly half of what a
+    small function takes to compile.
+    """
+    compiled: F = nb.njit(**_NOT_FOR_PYTHON)(function)
+    return compiled
+
+
 def inlined(function: F) -> F:
     """Compile a function likewise, to be copied into the loops that call it."""
-    compiled: F = nb.njit(inline="always", **_BARE)(function)
+    # copied as machine code; as numba's own it would be worked through again in every loop
+    compiled: F = nb.njit(forceinline=True, **_BARE)(function)
     return compiled

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numba as nb
 import numpy as np
 
-from fieldmon.belief import pairs
+from fieldmon.belief import COMPANY, pairs
 from fieldmon.chance import Chance, coin
 from fieldmon.outlook import Outlook, draw_fields
 from fieldmon.spread import night
@@ -43,7 +43,7 @@ class Ensemble:
     steps: int = 0
 
     @classmethod
-    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = 0.5) -> Ensemble:
+    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = COMPANY) -> Ensemble:
         """Draw fields from a chance map, see :func:`fieldmon.belief.pairs`."""
         fields = np.zeros((_FIELDS, len(grid)), np.bool_)
         believed = chance, pairs(chance, grid, company)
@@ -70,7 +70,7 @@ class Ensemble:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
         fields = self.fields.copy()
         key = self.chances.key("learn", self.steps)
-        rule = learning.detection, learning.treated
+        rule = learning.detects(len(plants)), learning.treated
         _learn(fields, self.grid.adjacent, (plants, found), rule, key)
         return Ensemble(self.grid, fields, self.chances, self.steps + 1)
 
@@ -110,15 +110,15 @@ def _learn(
     fields: NDArray[np.bool_],
     adjacent: Csr,
     looks: tuple[NDArray[np.int32], NDArray[np.bool_]],
-    rule: tuple[float, bool],
+    rule: tuple[NDArray[np.float64], bool],
     key: np.uint64,
 ) -> None:
     plants, found = looks
-    detection, treated = rule
+    detects, treated = rule
     m = fields.shape[0]
     block = np.empty(_ROOM, np.int64)
     for s in range(plants.size):
-        i = plants[s]
+        i, detection = plants[s], detects[s]
         p = fields[:, i].mean()
         keeps = 0.0 if found[s] else (1.0 - detection) / max(1.0 - detection * p, 1e-9)
         size = _about(adjacent, i, block)

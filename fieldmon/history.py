@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from fieldmon.belief import Learning
 from fieldmon.chance import Chance
 from fieldmon.errors import ObservationError, SettingError
-from fieldmon.samplers.scene import GATE, NEVER, Scene, robot_clock, travel_s
+from fieldmon.samplers.scene import GATE, NEVER, Scene, driven_s, robot_clock
 from fieldmon.spread import Spread
 
 if TYPE_CHECKING:
@@ -255,6 +254,5 @@ def _gone_s(crew: Crew, today: Inspections, resting: int, now_s: float | None) -
         return max(0.0, float(today.second[-1]) - crew.starts_s)
     robot = crew.robot
     clock = robot_clock(robot, robot.day_s)
-    places = [resting, *today.plant.tolist()]
-    drive_s = sum(travel_s(crew.aisles.ground, clock, i, j) for i, j in pairwise(places))
+    drive_s = driven_s(crew.aisles.ground, clock, np.append(np.int64(resting), today.plant))
     return drive_s + robot.visit_s * len(today)

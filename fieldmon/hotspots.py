@@ -19,7 +19,6 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
-from scipy.stats import false_discovery_control
 
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.field import ABSENT, PRESENT, UNKNOWN
@@ -162,6 +161,8 @@ def hot_spots(
 
     The two faces of a vine count as one plant, infested if either is.
     """
+    from scipy.stats import false_discovery_control  # noqa: PLC0415 - half a second to import
+
     settings = settings or HotSpotSettings()
     if len(state) != len(grid):
         raise ObservationError(

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import numpy as np
 from scipy.special import expit
-from scipy.stats import rankdata
 
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.prior import scaled
@@ -102,6 +101,8 @@ def _chances(values: Floats, settings: RiskSettings) -> Floats:
         return values / whole
     upward = -values if settings.low_is_risky else values
     if settings.meaning == "rank":
+        from scipy.stats import rankdata  # noqa: PLC0415 - half a second to import
+
         odds: Floats = (rankdata(upward) - 0.5) / len(upward)
     else:
         spread = float(upward.std())

@@ -30,8 +30,8 @@ class Route:
         ``(k,)`` int32 plants in order.
     arrive_s, leave_s
         ``(k,)`` seconds since the start of the route.
-    chance
-        ``(k,)`` believed chance of infestation at each stop.
+    chance, detects
+        ``(k,)`` believed chance of infestation at each stop, and chance to find what is there.
     line_m
         ``(m, 2)`` the driven line, metres of the plot's frame. It crosses no row of plants.
     line_stop
@@ -47,6 +47,7 @@ class Route:
     arrive_s: NDArray[np.float64]
     leave_s: NDArray[np.float64]
     chance: NDArray[np.float64]
+    detects: NDArray[np.float64]
     line_m: NDArray[np.float64]
     line_stop: NDArray[np.int64]
     line_s: NDArray[np.float64]
@@ -66,6 +67,11 @@ class Route:
         """Infested plants on the route, as believed; not all of them would be seen."""
         return float(self.chance.sum())
 
+    @property
+    def expected_found(self) -> float:
+        """Infested plants that would be found on the route, as believed."""
+        return float((self.chance * self.detects).sum())
+
     def line_lonlat(self) -> NDArray[np.float64]:
         """Return the driven line in degrees, ``(m, 2)``."""
         return self.aisles.grid.frame.lonlat(self.line_m)
@@ -81,7 +87,7 @@ def route_of(scene: Scene, work: Workday) -> Route:
     Its seconds are those the workday charged; its line is the one whose length they were charged
     for, leg by leg: from where the robot stands to each stop, and back to the gate if it returns.
     """
-    leave_s = work.arrive_s + scene.robot.visit_s
+    leave_s = work.arrive_s + work.stop_s
     line_m, leg_end = _line(scene, work)
     arrivals = np.append(work.arrive_s, work.end_s)[: len(leg_end)]
     return Route(
@@ -90,6 +96,7 @@ def route_of(scene: Scene, work: Workday) -> Route:
         arrive_s=work.arrive_s,
         leave_s=leave_s,
         chance=scene.chance[work.plant],
+        detects=work.detects,
         line_m=line_m,
         line_stop=leg_end[: len(work)],
         line_s=_seconds(line_m, leg_end, np.append(0.0, leave_s)[: len(leg_end)], arrivals),

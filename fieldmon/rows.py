@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import shapely
 from scipy.ndimage import gaussian_filter1d
-from scipy.signal import find_peaks
 from scipy.spatial import cKDTree
 
 from fieldmon.errors import PlotError
@@ -139,6 +138,8 @@ def split_lines(y_m: Float, row_spacing_m: float) -> NDArray[np.intp]:
 
     Lines need not be evenly spaced, but half a row spacing apart.
     """
+    from scipy.signal import find_peaks  # noqa: PLC0415 - half a second to import
+
     low = y_m.min() - row_spacing_m
     bin_m = row_spacing_m / 20
     place = ((y_m - low) / bin_m).astype(np.intp)
@@ -284,6 +285,8 @@ def _along_across(east_north_m: Float, bearing_deg: float) -> tuple[Float, Float
 
 def _row_spacing(pairs: _Pairs, bearing_deg: float) -> float | None:
     """Return the first distance across the rows at which plants stand often again."""
+    from scipy.signal import find_peaks  # noqa: PLC0415 - half a second to import
+
     x, y = pairs.within(20).turned(bearing_deg)
     bins = 20
     beside = np.abs(y[np.abs(x) < 8 * pairs.near_m]) / pairs.near_m * bins

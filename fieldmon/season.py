@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +11,7 @@ from fieldmon.belief import Learning, Pairs
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.samplers.scene import GATE, NEVER, Scene
 from fieldmon.spread import Spread, night
-from fieldmon.workday import outcomes, work_day
+from fieldmon.workday import looks_of, luck, work_day
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -84,8 +84,8 @@ class Day:
         What was inspected, when, with what result.
     infested
         ``(n,)`` the truth in the morning.
-    chance
-        ``(n,)`` chance of infestation as believed in the morning.
+    mornings
+        What was believed on the season's mornings.
     last_inspected
         ``(n,)`` day of each plant's last inspection after today's work; -1: never.
     ever_infested
@@ -97,10 +97,20 @@ class Day:
     number: int
     work: Workday
     infested: NDArray[np.bool_]
-    chance: NDArray[np.float64]
+    mornings: _Mornings
     last_inspected: NDArray[np.int32]
     ever_infested: int
     ever_found: int
+
+    @property
+    def belief(self) -> Belief:
+        """Return what was believed in the morning; worked out now if the sampler did not ask."""
+        return self.mornings.on(self.number)
+
+    @property
+    def chance(self) -> NDArray[np.float64]:
+        """Return the chance of infestation as believed in the morning, ``(n,)``."""
+        return self.belief.chance
 
     @property
     def found(self) -> int:
@@ -128,6 +138,35 @@ class Day:
         return 100.0 * float(np.mean(self.last_inspected >= 0))
 
 
+class _Mornings:
+    """What is believed on every morning of a season, worked out when somebody asks.
+
+    Most of a season's time goes into it, and half of the samplers do not read it.
+    """
+
+    def __init__(
+        self, first: Callable[[], Belief], taught: Callable[[Workday], Learning], spread: Spread
+    ) -> None:
+        self._first, self._taught, self._spread = first, taught, spread
+        self._works: list[Workday] = []
+        self._last: tuple[int, Belief] | None = None
+
+    def add(self, work: Workday) -> None:
+        """Hear of the next day's work."""
+        self._works.append(work)
+
+    def on(self, number: int) -> Belief:
+        """Return the belief of a morning, from the last one asked for if that was before."""
+        day, belief = self._last or (0, self._first())
+        if day > number:
+            day, belief = 0, self._first()
+        for work in self._works[day:number]:
+            learnt = belief.learn(work.plant, work.found, self._taught(work))
+            belief = learnt.overnight(self._spread)
+        self._last = number, belief
+        return belief
+
+
 def days(
     aisles: Aisles,
     robot: Robot,
@@ -145,16 +184,24 @@ def days(
     _check(aisles, start)
     learning = settings.learning or Learning(detection=robot.detects)
     believed = settings.believed_spread or settings.spread
-    infested, belief = start.infested.copy(), settings.believe(aisles.grid, start.chance)
+    looks, blind = looks_of(robot, sampler), getattr(sampler, "blind", False)
+    choosing = len(looks.detects) > 1
+    infested = start.infested.copy()
+
+    def taught(work: Workday) -> Learning:
+        return replace(learning, detection=work.detects) if choosing else learning
+
+    mornings = _Mornings(lambda: settings.believe(aisles.grid, start.chance), taught, believed)
     last_inspected = np.full(len(infested), NEVER, np.int32)
     ever_infested, ever_found = int(np.count_nonzero(infested)), 0
     trail, at = np.empty(0, np.int32), GATE
     for number in range(settings.n_days):
+        belief = None if blind else mornings.on(number)
         scene = Scene(
             aisles=aisles,
             robot=robot,
-            chance=belief.chance,
-            both=belief.both,
+            chance=start.chance if belief is None else belief.chance,
+            both=None if belief is None else belief.both,
             last_inspected=last_inspected,
             day=number,
             at=at,
@@ -162,13 +209,13 @@ def days(
             trail=trail,
             key=chance.key("sampler", number),
         )
-        luck = outcomes(infested, robot.detects, chance.key("inspect", number))
-        work = work_day(scene, sampler, luck)
+        drawn = luck(infested, looks, chance.key("inspect", number))
+        work = work_day(scene, sampler, drawn if choosing else drawn > 0)
         last_inspected = last_inspected.copy()
         last_inspected[work.plant] = number
         ever_found += int(np.count_nonzero(work.found))
-        yield Day(number, work, infested, belief.chance, last_inspected, ever_infested, ever_found)
-        belief = belief.learn(work.plant, work.found, learning).overnight(believed)
+        yield Day(number, work, infested, mornings, last_inspected, ever_infested, ever_found)
+        mornings.add(work)
         evening = infested.copy()
         evening[work.plant[work.found]] = False
         infested = night(aisles.grid, evening, settings.spread, chance.key("spread", number))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from fieldmon.chance import coin
-from fieldmon.compiled import inlined, loop
+from fieldmon.compiled import loop, part
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def _night(
             after[i] = True
 
 
-@inlined
+@part
 def _infect(
     i: int, after: NDArray[np.bool_], adjacent: Csr, rule: tuple[float, int], key: np.uint64
 ) -> None:

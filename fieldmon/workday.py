@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fieldmon.chance import coin
 from fieldmon.compiled import loop
-from fieldmon.samplers.scene import travel_s
+from fieldmon.samplers.scene import ChoosesLook, Looks, travel_s
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.samplers.scene import Sampler, Scene, Stops
+    from fieldmon.robot import Robot
+    from fieldmon.samplers.scene import Sampler, Scene
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,8 @@ class Workday:
         ``(k,)`` seconds since the day began, on arrival.
     found
         ``(k,)`` whether the plant was found infested.
+    stop_s, detects
+        ``(k,)`` seconds that each stop takes, and its chance to find what is there.
     end_s
         Seconds at the end: after the last stop, or back at the gate if the robot returns.
     """
@@ -36,6 +39,8 @@ class Workday:
     plant: NDArray[np.int32]
     arrive_s: NDArray[np.float64]
     found: NDArray[np.bool_]
+    stop_s: NDArray[np.float64]
+    detects: NDArray[np.float64]
     end_s: float
 
     def __len__(self) -> int:
@@ -48,10 +53,44 @@ def plan_day(scene: Scene, sampler: Sampler) -> Workday:
     return work_day(scene, sampler, np.zeros(len(scene.chance), np.bool_))
 
 
-def work_day(scene: Scene, sampler: Sampler, would_find: NDArray[np.bool_]) -> Workday:
-    """Return the rest of the day, given what an inspection of each plant ``(n,)`` would find."""
+def work_day(
+    scene: Scene, sampler: Sampler, would_find: NDArray[np.bool_] | NDArray[np.uint8]
+) -> Workday:
+    """Return the rest of the day, given what an inspection of each plant ``(n,)`` would find.
+
+    `would_find` is as :meth:`Sampler.walk` wants it, and :func:`luck` draws it.
+    """
+    looks = looks_of(scene.robot, sampler)
     stops = sampler.walk(scene, would_find)
-    return Workday(stops.plant, stops.arrive_s, would_find[stops.plant], _end_s(scene, stops))
+    look = np.zeros(len(stops.plant), np.uint8) if stops.look is None else stops.look
+    first = would_find[stops.plant]
+    work = Workday(
+        plant=stops.plant,
+        arrive_s=stops.arrive_s,
+        found=(first > 0) & (first <= look + 1),
+        stop_s=looks.stop_s[look],
+        detects=looks.detects[look],
+        end_s=0.0,
+    )
+    return replace(work, end_s=_end_s(scene, work))
+
+
+def looks_of(robot: Robot, sampler: Sampler) -> Looks:
+    """Return the looks that a sampler chooses from; most have one, the robot's."""
+    if isinstance(sampler, ChoosesLook):
+        return sampler.looks(robot)
+    return Looks(np.array([robot.visit_s]), np.array([robot.detects]))
+
+
+def luck(infested: NDArray[np.bool_], looks: Looks, key: np.uint64) -> NDArray[np.uint8]:
+    """Draw ``(n,)`` the first look, from 1, that would find what is on each plant today; 0: none.
+
+    A longer look finds what a shorter one does.
+    """
+    first = np.zeros(len(infested), np.uint8)
+    for k in range(len(looks.detects) - 1, -1, -1):
+        first[outcomes(infested, float(looks.detects[k]), key)] = k + 1
+    return first
 
 
 def outcomes(infested: NDArray[np.bool_], detection: float, key: np.uint64) -> NDArray[np.bool_]:
@@ -69,10 +108,10 @@ def _look(
         found[i] = infested[i] and coin(key, i) < detection
 
 
-def _end_s(scene: Scene, stops: Stops) -> float:
-    if len(stops.plant) == 0:
+def _end_s(scene: Scene, work: Workday) -> float:
+    if not len(work):
         return 0.0
-    end_s = float(stops.arrive_s[-1]) + scene.robot.visit_s
+    end_s = float(work.arrive_s[-1] + work.stop_s[-1])
     if scene.robot.returns:
-        end_s += travel_s(scene.aisles.ground, scene.clock, int(stops.plant[-1]), -1)
+        end_s += travel_s(scene.aisles.ground, scene.clock, int(work.plant[-1]), -1)
     return end_s

@@ -15,10 +15,11 @@ from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.workday import plan_day
 
 
-def check(scene, route):
+def check(scene, work):
     """Check what every route promises."""
-    look_s = scene.robot.visit_s
-    assert route.leave_s == pytest.approx(route.arrive_s + look_s)
+    route = route_of(scene, work)
+    assert route.leave_s == pytest.approx(route.arrive_s + work.stop_s)
+    assert route.expected_found == pytest.approx((route.chance * work.detects).sum())
     assert route.line_s[route.line_stop] == pytest.approx(route.arrive_s)
     assert (np.diff(route.line_s) >= -1e-9).all()
     here = route.line_m[route.line_stop]
@@ -26,7 +27,7 @@ def check(scene, route):
     assert here[:, 0] == pytest.approx(plants[:, 0], abs=1e-6)
     assert np.abs(here[:, 1] - plants[:, 1]).max(initial=0) < scene.grid.row_spacing_m
     assert not crosses_rows(scene.grid, route.line_m)
-    charged = route.drive_m / scene.robot.speed_m_s + len(route) * look_s
+    charged = route.drive_m / scene.robot.speed_m_s + work.stop_s.sum()
     rows = scene.grid.corridor[scene.grid.row[route.plant]]
     charged += scene.robot.row_change_s * np.count_nonzero(np.diff(rows))
     assert route.end_s == pytest.approx(charged, abs=1e-3)
@@ -37,7 +38,7 @@ def check(scene, route):
 @pytest.mark.parametrize("seed", range(2))
 def test_the_route_is_the_day_as_charged(name, grid, seed):
     scene = scene_on(grid, hours=2.0, seed=seed)
-    check(scene, route_of(scene, plan_day(scene, sampler(name))))
+    check(scene, plan_day(scene, sampler(name)))
 
 
 @given(field=crooked_fields(), seed=st.integers(0, 1000))
@@ -47,7 +48,7 @@ def test_on_crooked_fields_too(field, seed):
         scene = scene_on(lay(field, Planting()), hours=2.0, seed=seed)
     except PlotError:
         return
-    check(scene, route_of(scene, plan_day(scene, sampler("dynamic"))))
+    check(scene, plan_day(scene, sampler("dynamic")))
 
 
 def test_a_route_that_returns_ends_where_it_starts():

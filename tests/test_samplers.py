@@ -1,5 +1,7 @@
 """The promises that every sampler keeps, on any plot; a new one is found here by itself."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from crooked import crooked_fields
@@ -23,10 +25,11 @@ def promises_hold(scene, work):
     assert not (scene.last_inspected[work.plant] == scene.day).any()
     assert work.end_s <= scene.seconds_left + 1e-6, "the day is longer than its hours"
     now, at = 0.0, scene.at
-    for plant, arrive_s in zip(work.plant.tolist(), work.arrive_s.tolist(), strict=True):
+    stops = zip(work.plant.tolist(), work.arrive_s.tolist(), work.stop_s.tolist(), strict=True)
+    for plant, arrive_s, stop_s in stops:
         now += charged_s(scene, at, plant)
         assert arrive_s == pytest.approx(now, abs=1e-6), "time charged is not time driven"
-        now += scene.robot.look_s + scene.robot.stop_s
+        now += stop_s
         at = plant
     if scene.robot.returns and len(work):
         now += charged_s(scene, at, GATE)
@@ -90,6 +93,25 @@ def test_with_time_for_all_every_plant_is_inspected(name):
         assert len(visited) == len(scene.chance) // 3
     else:
         assert visited == list(range(len(scene.chance)))
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in NAMES if getattr(SAMPLERS[name], "blind", False)]
+)
+def test_a_sampler_that_calls_itself_blind_does_not_read_the_chances(name):
+    scene = scene_on(GRIDS["rectangle"], seed=3)
+    other = replace(scene, chance=scene.chance[::-1] / 3)
+    assert (plan_day(scene, sampler(name)).plant == plan_day(other, sampler(name)).plant).all()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_day_goes_on_though_the_first_plants_were_all_inspected_today(name):
+    grid = GRIDS["rectangle"]
+    last = np.full(len(grid), NEVER, np.int32)
+    # the first of the sweep, and every second of the others
+    last[np.append(grid.snake[:4], grid.snake[::2])] = 0
+    work = plan_day(scene_on(grid, hours=12.0, last_inspected=last), sampler(name))
+    assert set(work.plant.tolist()) <= set(np.flatnonzero(last == NEVER).tolist())
 
 
 @pytest.mark.parametrize("name", NAMES)

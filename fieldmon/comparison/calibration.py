@@ -127,9 +127,11 @@ def calibration(
 
             settings = replace(cell.settings, n_days=n_days, believe=watched)
             start, chance = cell.begin(Chance(seed)), Chance(seed)
-            season = days(cell.aisles, cell.robot, sampler, start, settings, chance)
-            infested = [day.infested for day in season]
-            for belief, truth in zip(mornings, infested, strict=False):
+            season = list(days(cell.aisles, cell.robot, sampler, start, settings, chance))
+            # a blind sampler has not asked: all mornings are worked out now, for the last one
+            season[-1].belief  # noqa: B018
+            for belief, day in zip(mornings, season, strict=True):
+                truth = day.infested
                 chances.append(belief.chance)
                 truths.append(truth)
                 ahead.append(_outlook(belief, cell.aisles.grid))

@@ -15,6 +15,7 @@ from fieldmon.prior import PriorSettings
 from fieldmon.robot import Robot, Viewpoints
 from fieldmon.samplers import sampler
 from fieldmon.spread import Spread
+from fieldmon.workday import looks_of
 
 if TYPE_CHECKING:
     from fieldmon.samplers import Sampler
@@ -55,7 +56,11 @@ class Setup:
     seed: int = 1
 
     def __post_init__(self) -> None:
-        self.decides()
+        if len(looks_of(self.robot, self.decides()).detects) > 1:
+            raise SettingError(
+                "The sampler of a season must look equally long at every plant, for that is what "
+                f"its findings are read by, but {self.sampler!r} chooses. Take another sampler."
+            )
 
     def decides(self) -> Sampler:
         """Return the sampler; raise `SettingError` if there is none of that name."""

@@ -5,6 +5,7 @@ A new sampler is one file and one line in `SAMPLERS`; the promises test finds it
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from fieldmon.errors import SettingError
@@ -22,6 +23,7 @@ SAMPLERS: dict[str, Callable[..., Sampler]] = {
     "bouncy": Bouncy,
     "dynamic": Dynamic,
     "adaptive": Adaptive,
+    "adaptive-looks": partial(Adaptive, chooses_look=True),
     "snake": Snake,
     "snake-random": SnakeRandom,
     "neighbor": Neighbor,

@@ -1,28 +1,30 @@
 """Adaptive: the drive that is expected to find most in the hours left, planned anew after a find.
 
 The hours have a price: a plant is worth its stop, and a row its drive, only if what is expected
-there is worth more than the seconds cost. The price is set so that the day is just filled. At a
-given price the best drive through the rows, one after the other up or down the plot, is found by
-dynamic programming: each row is passed by, driven through, or entered and left by the same end.
+there is worth more than the seconds cost; and of several looks it gets the one that is worth most
+more than it costs. The price is set so that the day is just filled. At a given price the best
+drive through the rows, one after the other up or down the plot, is found by dynamic programming:
+each row is passed by, driven through, or entered and left by the same end.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-import numba as nb
 import numpy as np
 
-from fieldmon.belief import Near, look, near, pairs
+from fieldmon.belief import Company, Near, closeness, look, meet, near, pairs, regroup
+from fieldmon.compiled import inlined, loop, part
 from fieldmon.errors import SettingError
-from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
+from fieldmon.samplers.scene import Clock, Looks, Scene, Stops, travel_s
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.aisles import Ground
     from fieldmon.grid import Csr
+    from fieldmon.robot import Robot
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
@@ -36,31 +38,54 @@ _NOWHERE = -1
 # the price moves in steps of a tenth, and stays while the plan fills this much of the hours left
 _STEP, _FULL, _TRIES = 1.1, 0.9, 2
 _BISECTIONS = 24
+# how much closer or less close infested plants must stand than thought to think again
+_NOTABLE = 0.1
 
 
 class _Mind(NamedTuple):
     """What is believed during the day.
 
-    `worth` is per chance of infestation, 0 once inspected; `behind` is where in `both` each plant
-    stands with the one before it in its row, -1 if there is none.
+    `worth` is of a find, 0 once inspected; `behind` is where in `both` each plant
+    stands with the one before it in its row, -1 if there is none. `dawn_...`: before the first
+    look; `company` is what the looks since say of it, and `scale` ``(1,)`` what was made of that.
     """
 
     chance: Float
     both: Float
     worth: Float
-    detects: float
     near: Near
     behind: Int
+    dawn_chance: Float
+    dawn_both: Float
+    company: Company
+    scale: Float
 
 
 class _Rows(NamedTuple):
-    """What each way of driving each row comes to, ``(r, 4)``, and each plant's gain ``(n,)``."""
+    """What each way of driving each row comes to, ``(r, 4)``.
+
+    And what each plant gains at the price, and the seconds of its look, ``(n,)``; `pays` is room
+    for the plants of one row with a gain, `most` the most that a find in each row is expected to
+    be worth, -1 where that has changed.
+    """
 
     net: Float
     seconds: Float
     last: Int
     gain: Float
+    stop_s: Float
     stale: NDArray[np.bool_]
+    pays: Int
+    most: Float
+
+    @classmethod
+    def of(cls, n: int, n_rows: int) -> _Rows:
+        """Return room for so many plants and rows."""
+        ways = n_rows, _WAYS
+        last, stale = np.full(ways, _NOWHERE), np.ones(n_rows, np.bool_)
+        gain, stop_s, pays = np.zeros(n), np.zeros(n), np.empty(n, np.int64)
+        most = np.full(n_rows, -1.0)
+        return cls(np.zeros(ways), np.zeros(ways), last, gain, stop_s, stale, pays, most)
 
 
 class _Onward(NamedTuple):
@@ -77,6 +102,30 @@ class _Onward(NamedTuple):
     left_seconds: Float
     to: Int
 
+    @classmethod
+    def of(cls, n_rows: int) -> _Onward:
+        """Return room for so many rows."""
+        net, seconds, left_net, left_seconds = np.zeros((4, 2, n_rows, 2))
+        way, to = np.full((2, 2, n_rows, 2), _NOWHERE)
+        return cls(net, seconds, way, left_net, left_seconds, to)
+
+
+class _Either(NamedTuple):
+    """What each direction along the robot's own row comes to, ``(2,)``: while finding a piece."""
+
+    ahead: Float
+    ahead_s: Float
+    fetch: Float
+    fetch_s: Float
+    last: Int
+    turn: Int
+
+    @classmethod
+    def blank(cls) -> _Either:
+        """Return room."""
+        none = np.full(2, _NOWHERE)
+        return cls(np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2), none, none.copy())
+
 
 class _Piece(NamedTuple):
     """The first piece of a plan: plants of one row up to `last`; what the plan comes to."""
@@ -85,6 +134,9 @@ class _Piece(NamedTuple):
     first_end: int
     last: int
     seconds: float
+
+
+_Work: TypeAlias = tuple[_Mind, _Rows, _Onward, Looks, _Either]
 
 
 @dataclass(frozen=True)
@@ -102,10 +154,14 @@ class Adaptive:
         How much more than itself a find is worth where all plants beside it are clean.
     beside_find
         Chance that a plant next to a find is infested, where the belief says nothing of pairs.
+    chooses_look
+        Whether it decides at each plant how long to look, by the robot's table of viewpoints;
+        if not, it looks as long as the robot is set to.
     """
 
     spares: float = 0.5
     beside_find: float = 0.5
+    chooses_look: bool = False
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.spares < np.inf:
@@ -115,136 +171,181 @@ class Adaptive:
                 f"Adaptive's beside_find must be a chance in 0..1, but it is {self.beside_find}."
             )
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+    def looks(self, robot: Robot) -> Looks:
+        """Return the looks to choose from; raise `SettingError` if the robot's table is unknown."""
+        if not self.chooses_look:
+            return Looks(np.array([robot.visit_s]), np.array([robot.detects]))
+        if robot.detection is not None:
+            raise SettingError(
+                "A robot must state what each time of looking detects (viewpoints) if the sampler "
+                f"is to choose, but its detection is given outright ({robot.detection})."
+            )
+        seconds, detects = np.array(robot.viewpoints.steps).T
+        return Looks(robot.stop_s + seconds, detects)
+
+    def walk(self, scene: Scene, would_find: NDArray[np.bool_] | NDArray[np.uint8]) -> Stops:
         """Return the stops of the rest of the day."""
-        stops = scene.blank()
+        looks = self.looks(scene.robot)
+        stops = scene.room(float(looks.stop_s[0]))
+        taken = np.zeros(len(stops.plant), np.uint8)
         both = scene.both
         if both is None:
             both = pairs(scene.chance, scene.grid, self.beside_find)
+        n, n_rows = len(scene.chance), scene.grid.n_rows
+        mind = _Mind(
+            np.maximum(scene.chance, _LEAST),
+            both.copy(),
+            np.zeros(n),
+            near(n),
+            np.full(n, _NOWHERE),
+            np.maximum(scene.chance, _LEAST),
+            both.copy(),
+            Company.none(n),
+            np.ones(1),
+        )
         k = _walk(
             scene.aisles.ground,
             scene.clock,
-            (scene.grid.adjacent, scene.chance, both, would_find),
-            scene.last_inspected == scene.day,
-            (scene.at, self.spares, scene.robot.detects),
-            stops,
+            (scene.grid.adjacent, mind, would_find.view(np.uint8)),
+            (_Rows.of(n, n_rows), _Onward.of(n_rows), looks, _Either.blank()),
+            (scene.at, self.spares, scene.last_inspected == scene.day),
+            (stops.plant, stops.arrive_s, taken),
         )
-        return Stops(stops.plant[:k], stops.arrive_s[:k])
+        return Stops(stops.plant[:k], stops.arrive_s[:k], taken[:k])
 
 
-@nb.njit(cache=True, nogil=True)
+@loop
 def _walk(
     ground: Ground,
     clock: Clock,
-    plants: tuple[Csr, Float, Float, NDArray[np.bool_]],
-    closed: NDArray[np.bool_],
-    start: tuple[int, float, float],
-    stops: Stops,
+    plants: tuple[Csr, _Mind, NDArray[np.uint8]],
+    room: tuple[_Rows, _Onward, Looks, _Either],
+    start: tuple[int, float, NDArray[np.bool_]],
+    stops: tuple[NDArray[np.int32], Float, NDArray[np.uint8]],
 ) -> int:
-    adjacent, chance, both, would_find = plants
-    at, spares, detects = start
-    mind = _mind(adjacent, chance, both, closed, spares, detects)
-    n_rows = ground.row_start.size - 1
-    rows = _Rows(
-        np.zeros((n_rows, _WAYS)),
-        np.zeros((n_rows, _WAYS)),
-        np.full((n_rows, _WAYS), _NOWHERE),
-        np.zeros(closed.size),
-        np.ones(n_rows, np.bool_),
-    )
-    onward = _onward(n_rows)
+    adjacent, mind, would_find = plants
+    rows, onward, looks, either = room
+    at, spares, closed = start
+    plant_at, _, look_at = stops
+    _worths(adjacent, mind, closed, spares)
+    work = mind, rows, onward, looks, either
     now_s, k = 0.0, 0
-    price = _first_price(ground, clock, adjacent, (mind, rows, onward), at)
-    while k < stops.plant.size:
+    price = _first_price(ground, clock, work, at)
+    while k < plant_at.size:
+        _regroup(adjacent, mind, rows)
         here = (at, price, clock.seconds_left - now_s)
-        price, piece = _plan_on(ground, clock, adjacent, (mind, rows, onward), here)
+        price, piece = _plan_on(ground, clock, work, here)
         before = k
-        while piece.row >= 0 and k < stops.plant.size:
-            plant = _next_in(ground, clock, mind, piece, (at, price))
-            if plant < 0 or not can_visit(ground, clock, at, plant, now_s):
+        while piece.row >= 0 and k < plant_at.size:
+            plant, look = _next_in(ground, (mind, looks), piece, (at, price))
+            if plant < 0 or not _fits(ground, clock, (at, plant), looks.stop_s[look], now_s):
                 break
-            now_s, at, k = _visit(ground, clock, stops, (at, plant, k), now_s)
-            _look(ground, adjacent, mind, rows, (plant, would_find[plant]))
-            if would_find[plant] or plant == piece.last:
+            now_s = _visit(ground, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
+            look_at[k], at, k = look, plant, k + 1
+            found = 0 < would_find[plant] <= look + 1
+            _look(ground, adjacent, mind, rows, (plant, found, looks.detects[look]))
+            if found or plant == piece.last:
                 break
         if k == before:
-            plant = _best_left(ground, clock, mind, at, now_s)
+            plant, look = _best_left(ground, clock, (mind, rows, looks), at, now_s)
             if plant < 0:
                 break
-            now_s, at, k = _visit(ground, clock, stops, (at, plant, k), now_s)
-            _look(ground, adjacent, mind, rows, (plant, would_find[plant]))
+            now_s = _visit(ground, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
+            look_at[k], at, k = look, plant, k + 1
+            found = 0 < would_find[plant] <= look + 1
+            _look(ground, adjacent, mind, rows, (plant, found, looks.detects[look]))
     return k
 
 
-@nb.njit(cache=True)
+@part
 def _visit(
-    ground: Ground, clock: Clock, stops: Stops, move: tuple[int, int, int], now_s: float
-) -> tuple[float, int, int]:
-    """Write down a stop; return the time after it, the place, and the number of stops."""
+    ground: Ground,
+    clock: Clock,
+    stops: tuple[NDArray[np.int32], Float, NDArray[np.uint8]],
+    move: tuple[int, int, int],
+    times: tuple[float, float],
+) -> float:
+    """Write down a stop; return the time after it."""
     at, plant, k = move
+    now_s, stop_s = times
     arrive_s = now_s + travel_s(ground, clock, at, plant)
-    stops.plant[k], stops.arrive_s[k] = plant, arrive_s
-    return arrive_s + clock.visit_s, plant, k + 1
+    stops[0][k], stops[1][k] = plant, arrive_s
+    return arrive_s + stop_s
 
 
-@nb.njit(cache=True)
-def _mind(
-    adjacent: Csr,
-    chance: Float,
-    both: Float,
-    closed: NDArray[np.bool_],
-    spares: float,
-    detects: float,
-) -> _Mind:
-    worth, behind = np.zeros(chance.size), np.full(chance.size, _NOWHERE)
+@part
+def _fits(ground: Ground, clock: Clock, move: tuple[int, int], stop_s: float, now_s: float) -> bool:
+    """Tell whether a stop of so long fits into the day, way back to the gate included."""
+    at, plant = move
+    end_s = now_s + travel_s(ground, clock, at, plant) + stop_s
+    if clock.returns:
+        end_s += travel_s(ground, clock, plant, -1)
+    return bool(end_s <= clock.seconds_left)
+
+
+@inlined
+def _best_look(looks: Looks, worth: float, chance: float, price: float) -> tuple[float, int]:
+    """Return what the best look gains at a price, and which it is."""
+    best, look = -np.inf, 0
+    for k in range(looks.stop_s.size):
+        gain = looks.detects[k] * worth * chance - price * looks.stop_s[k]
+        if gain > best:
+            best, look = gain, k
+    return best, look
+
+
+@part
+def _worths(adjacent: Csr, mind: _Mind, closed: NDArray[np.bool_], spares: float) -> None:
+    """Work out what a find would be worth, and where each plant's pair with the last one stands."""
+    chance = mind.chance
     for i in range(chance.size):
         first, end = adjacent.start[i], adjacent.start[i + 1]
         clean = 0.0
         for e in range(first, end):
             clean += 1.0 - chance[adjacent.plant[e]]
             if adjacent.plant[e] == i - 1:
-                behind[i] = e
+                mind.behind[i] = e
         if not closed[i]:
-            worth[i] = detects * (1.0 + spares * clean / max(end - first, 1))
-    believed = np.maximum(chance, _LEAST)
-    return _Mind(believed, both.copy(), worth, detects, near(chance.size), behind)
+            mind.worth[i] = 1.0 + spares * clean / max(end - first, 1)
 
 
-@nb.njit(cache=True)
-def _onward(n_rows: int) -> _Onward:
-    shape = (2, n_rows, 2)
-    return _Onward(
-        np.zeros(shape),
-        np.zeros(shape),
-        np.full(shape, _NOWHERE),
-        np.zeros(shape),
-        np.zeros(shape),
-        np.full(shape, _NOWHERE),
-    )
-
-
-@nb.njit(cache=True)
+@part
 def _look(
     ground: Ground,
     adjacent: Csr,
     mind: _Mind,
     rows: _Rows,
-    result: tuple[int, bool],
+    result: tuple[int, bool, float],
 ) -> None:
     """Close a plant and let what was seen teach about those near it."""
-    i, found = result
+    i, found, detects = result
     believed = mind.chance, mind.both
-    n = look(believed, adjacent, (i, found), (mind.detects, True), mind.near)
+    n = look(believed, adjacent, (i, found), (detects, True), mind.near)
+    meet((mind.dawn_chance, mind.dawn_both), adjacent, (i, found, detects), mind.company)
     mind.worth[i] = 0.0
     for t in range(n):
-        rows.stale[ground.row[mind.near.plant[t]]] = True
+        row = ground.row[mind.near.plant[t]]
+        rows.stale[row], rows.most[row] = True, -1.0
+    rows.most[ground.row[i]] = -1.0
 
 
-@nb.njit(cache=True)
+@part
+def _regroup(adjacent: Csr, mind: _Mind, rows: _Rows) -> None:
+    """Take to heart how much infested plants stand together, once it differs enough."""
+    scale = closeness(mind.company)
+    if abs(scale - mind.scale[0]) < _NOTABLE * mind.scale[0]:
+        return
+    regroup((mind.chance, mind.both), adjacent, scale / max(mind.scale[0], _LEAST))
+    mind.scale[0] = scale
+    rows.stale[:] = True
+
+
+@part
 def _next_in(
-    ground: Ground, clock: Clock, mind: _Mind, piece: _Piece, state: tuple[int, float]
-) -> int:
-    """Return the next plant of a piece that is worth its stop, from where the robot is, or -1."""
+    ground: Ground, work: tuple[_Mind, Looks], piece: _Piece, state: tuple[int, float]
+) -> tuple[int, int]:
+    """Return the next plant of a piece that is worth its stop and the look it gets, or -1, 0."""
+    mind, looks = work
     at, price = state
     up = piece.first_end == 0
     if at >= 0 and ground.row[at] == piece.row:
@@ -255,46 +356,59 @@ def _next_in(
         i = ground.row_start[piece.row + 1] - 1
     step = 1 if up else -1
     while (i <= piece.last) if up else (i >= piece.last):
-        if mind.worth[i] * mind.chance[i] > price * clock.visit_s:
-            return int(i)
+        gain, taken = _best_look(looks, mind.worth[i], mind.chance[i], price)
+        if gain > 0.0:
+            return int(i), taken
         i += step
-    return _NOWHERE
+    return _NOWHERE, 0
 
 
-@nb.njit(cache=True)
-def _best_left(ground: Ground, clock: Clock, mind: _Mind, at: int, now_s: float) -> int:
-    """Return the plant with the most worth for its time that still fits into the day, or -1."""
-    best, best_rate = _NOWHERE, 0.0
-    for i in range(mind.worth.size):
-        most = mind.worth[i] * mind.chance[i]
-        if most <= best_rate * clock.visit_s:
+@part
+def _best_left(
+    ground: Ground, clock: Clock, work: tuple[_Mind, _Rows, Looks], at: int, now_s: float
+) -> tuple[int, int]:
+    """Return the plant with the most worth for its time that still fits into the day, or -1.
+
+    And the look it gets.
+    """
+    mind, rows, looks = work
+    best, best_rate, taken = _NOWHERE, 0.0, 0
+    for row in range(rows.stale.size):
+        if looks.detects[-1] * _most_in(ground, mind, rows, row) <= best_rate * looks.stop_s[0]:
             continue
-        rate = most / (travel_s(ground, clock, at, i) + clock.visit_s)
-        if rate > best_rate and can_visit(ground, clock, at, i, now_s):
-            best, best_rate = i, rate
-    return best
+        for i in range(ground.row_start[row], ground.row_start[row + 1]):
+            # nothing takes less than no time to reach: most plants need no way worked out
+            if looks.detects[-1] * mind.worth[i] * mind.chance[i] <= best_rate * looks.stop_s[0]:
+                continue
+            way_s = travel_s(ground, clock, at, i)
+            for k in range(looks.stop_s.size):
+                rate = looks.detects[k] * mind.worth[i] * mind.chance[i] / (way_s + looks.stop_s[k])
+                if rate > best_rate and _fits(ground, clock, (at, i), looks.stop_s[k], now_s):
+                    best, best_rate, taken = i, rate, k
+    return best, taken
 
 
-@nb.njit(cache=True)
+@part
 def _first_price(
     ground: Ground,
     clock: Clock,
-    adjacent: Csr,
-    work: tuple[_Mind, _Rows, _Onward],
+    work: _Work,
     at: int,
 ) -> float:
     """Return the price of a second at which the plan just fills the day."""
-    mind = work[0]
-    high = _LEAST
-    for i in range(mind.worth.size):
-        high = max(high, mind.worth[i] * mind.chance[i])
-    high /= clock.visit_s
+    mind, looks = work[0], work[3]
+    high = 0.0
+    for k in range(looks.stop_s.size):
+        most = _LEAST
+        for i in range(mind.worth.size):
+            most = max(most, looks.detects[k] * mind.worth[i] * mind.chance[i])
+        high = max(high, most / looks.stop_s[k])
     low = high * 1e-7
-    if _plan_at(ground, clock, adjacent, work, (at, low)).seconds <= clock.seconds_left:
+    if _plan_at(ground, clock, work, (at, low)).seconds <= clock.seconds_left:
         return low
     for _ in range(_BISECTIONS):
         middle = np.sqrt(low * high)
-        if _plan_at(ground, clock, adjacent, work, (at, middle)).seconds > clock.seconds_left:
+        if _plan_at(ground, clock, work, (at, middle)).seconds > clock.seconds_left:
             low = middle
         else:
             high = middle
@@ -303,19 +417,18 @@ def _first_price(
     return float(high)
 
 
-@nb.njit(cache=True)
+@part
 def _plan_on(
     ground: Ground,
     clock: Clock,
-    adjacent: Csr,
-    work: tuple[_Mind, _Rows, _Onward],
+    work: _Work,
     state: tuple[int, float, float],
 ) -> tuple[float, _Piece]:
     """Return the price that suits the seconds left, a few steps from the last, and the plan."""
     at, price, left_s = state
     rows = work[1]
     trend = 0
-    piece = _replan(ground, clock, adjacent, work, (at, price))
+    piece = _replan(ground, clock, work, (at, price))
     for _ in range(_TRIES):
         if piece.seconds > left_s and trend >= 0:
             trend, price = 1, price * _STEP
@@ -324,133 +437,148 @@ def _plan_on(
         else:
             break
         rows.stale[:] = True
-        piece = _replan(ground, clock, adjacent, work, (at, price))
+        piece = _replan(ground, clock, work, (at, price))
     return price, piece
 
 
-@nb.njit(cache=True)
+@part
 def _row_of(ground: Ground, at: int) -> int:
     """Return the row of a plant, -1 for the gate; of one integer type, as numba wants it."""
     return 0 + ground.row[at] if at >= 0 else _NOWHERE
 
 
-@nb.njit(cache=True)
+@part
 def _plan_at(
     ground: Ground,
     clock: Clock,
-    adjacent: Csr,
-    work: tuple[_Mind, _Rows, _Onward],
+    work: _Work,
     state: tuple[int, float],
 ) -> _Piece:
     work[1].stale[:] = True
-    return _replan(ground, clock, adjacent, work, state)
+    return _replan(ground, clock, work, state)
 
 
-@nb.njit(cache=True)
+@part
 def _replan(
     ground: Ground,
     clock: Clock,
-    adjacent: Csr,
-    work: tuple[_Mind, _Rows, _Onward],
+    work: _Work,
     state: tuple[int, float],
 ) -> _Piece:
     """Return the first piece of the best plan at a price."""
-    mind, rows, onward = work
+    mind, rows, onward, looks, _ = work
     at, price = state
     own = _row_of(ground, at)
     for row in range(rows.stale.size):
         if rows.stale[row]:
-            _value_row(ground, clock, adjacent, (mind, rows), (row, price))
+            _value_row(ground, clock, (mind, rows, looks), (row, price))
             rows.stale[row] = False
     _go(ground, clock, rows, onward, (0, own, price))
     _go(ground, clock, rows, onward, (1, own, price))
     if at < 0:
         _, seconds, onto = _leave(ground, clock, onward, 2 * (rows.stale.size), price)
         return _first_piece(rows, onward, onto, seconds)
-    return _from_row(ground, clock, (mind, rows, onward), (at, price))
+    return _from_row(ground, clock, work, at, price)
 
 
-@nb.njit(cache=True)
+@part
 def _value_row(
     ground: Ground,
     clock: Clock,
-    adjacent: Csr,
-    work: tuple[_Mind, _Rows],
+    work: tuple[_Mind, _Rows, Looks],
     state: tuple[int, float],
 ) -> None:
     """Work out what each way of driving a row comes to at a price.
 
     Of neighbours in the row the second counts as it will be after a clean look at the first.
     """
-    mind, rows = work
+    mind, rows, looks = work
     row, price = state
     first, end = ground.row_start[row], ground.row_start[row + 1]
-    toll = price * clock.visit_s
-    previous = _NOWHERE
-    for i in range(first, end):
-        gain = mind.worth[i] * mind.chance[i] - toll
-        if gain > 0.0 and previous == i - 1 and previous >= 0:
-            gain = mind.worth[i] * _after_clean(mind, i) - toll
-        rows.gain[i] = max(gain, 0.0)
-        if gain > 0.0:
-            previous = i
-    rows.last[row] = _NOWHERE
-    if previous < 0:
+    if _best_look(looks, 1.0, _most_in(ground, mind, rows, row), price)[0] <= 0.0:
+        if rows.last[row, 0] >= 0:
+            rows.gain[first:end] = 0.0
+            rows.last[row] = _NOWHERE
         return
-    _in_and_out(ground, clock, rows, (row, 2, price))
-    _in_and_out(ground, clock, rows, (row, 3, price))
-    _through(ground, clock, rows, row, price)
+    previous, before, n = _NOWHERE, 0, 0
+    for i in range(first, end):
+        gain, taken = _best_look(looks, mind.worth[i], mind.chance[i], price)
+        if gain > 0.0 and previous == i - 1 and previous >= 0:
+            chance = _after_clean(mind, i, looks.detects[before])
+            gain, taken = _best_look(looks, mind.worth[i], chance, price)
+        rows.gain[i], rows.stop_s[i] = max(gain, 0.0), looks.stop_s[taken]
+        if gain > 0.0:
+            previous, before = i, taken
+            rows.pays[n] = i
+            n += 1
+    if n == 0:  # by a hair
+        rows.last[row] = _NOWHERE
+        return
+    for way in range(2, _WAYS):
+        _in_and_out(ground, clock, rows, (row, way, n), price)
+    _through(ground, clock, rows, (row, n), price)
 
 
-@nb.njit(cache=True)
-def _after_clean(mind: _Mind, i: int) -> float:
+@part
+def _most_in(ground: Ground, mind: _Mind, rows: _Rows, row: int) -> float:
+    """Return the most that a find in a row is expected to be worth."""
+    if rows.most[row] < 0.0:
+        most = 0.0
+        for i in range(ground.row_start[row], ground.row_start[row + 1]):
+            most = max(most, mind.worth[i] * mind.chance[i])
+        rows.most[row] = most
+    return float(rows.most[row])
+
+
+@part
+def _after_clean(mind: _Mind, i: int, detects: float) -> float:
     """Return the chance of plant i once the one before it was looked at and seemed clean."""
     p, e = mind.chance[i], mind.behind[i]
     if e < 0:
         return float(p)
     q = mind.chance[i - 1]
     c = min(mind.both[e], p, q)
-    return float((p - mind.detects * c) / max(1.0 - mind.detects * q, _LEAST))
+    return float((p - detects * c) / max(1.0 - detects * q, _LEAST))
 
 
-@nb.njit(cache=True)
-def _in_and_out(ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int, float]) -> None:
+@part
+def _in_and_out(
+    ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int, int], price: float
+) -> None:
     """Value a row that is left by the end it was entered by, as far in as pays best."""
-    row, way, price = state
-    first, end = ground.row_start[row], ground.row_start[row + 1]
+    row, way, n = state
     entry_m = ground.end_x_m[row, way - 2]
-    rows.net[row, way] = -np.inf
-    gains, n = 0.0, 0
-    for k in range(end - first):
-        i = first + k if way == 2 else end - 1 - k
-        if rows.gain[i] <= 0.0:
-            continue
+    best, best_s, last = -np.inf, 0.0, _NOWHERE
+    gains, looking_s = 0.0, 0.0
+    for k in range(n):
+        i = rows.pays[k] if way == 2 else rows.pays[n - 1 - k]
         gains += rows.gain[i]
-        n += 1
+        looking_s += rows.stop_s[i]
         drive_s = 2.0 * abs(ground.x_m[i] - entry_m) / clock.speed_m_s
-        if gains - price * drive_s > rows.net[row, way]:
-            rows.net[row, way], rows.last[row, way] = gains - price * drive_s, i
-            rows.seconds[row, way] = drive_s + n * clock.visit_s
+        net = gains - price * drive_s
+        if net > best:
+            best, best_s, last = net, drive_s + looking_s, i
+    rows.net[row, way], rows.seconds[row, way], rows.last[row, way] = best, best_s, last
 
 
-@nb.njit(cache=True)
-def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) -> None:
+@part
+def _through(
+    ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int], price: float
+) -> None:
     """Value a row that is driven from end to end, either way."""
-    gains, n, low, high = 0.0, 0, _NOWHERE, _NOWHERE
-    for i in range(ground.row_start[row], ground.row_start[row + 1]):
-        if rows.gain[i] > 0.0:
-            gains += rows.gain[i]
-            n += 1
-            low = i if low < 0 else low
-            high = i
+    row, n = state
+    gains, looking_s = 0.0, 0.0
+    for k in range(n):
+        gains += rows.gain[rows.pays[k]]
+        looking_s += rows.stop_s[rows.pays[k]]
     drive_s = (ground.end_x_m[row, 1] - ground.end_x_m[row, 0]) / clock.speed_m_s
     for way in range(2):
         rows.net[row, way] = gains - price * drive_s
-        rows.seconds[row, way] = drive_s + n * clock.visit_s
-        rows.last[row, way] = high if way == 0 else low
+        rows.seconds[row, way] = drive_s + looking_s
+        rows.last[row, way] = rows.pays[n - 1] if way == 0 else rows.pays[0]
 
 
-@nb.njit(cache=True)
+@part
 def _go(
     ground: Ground,
     clock: Clock,
@@ -487,7 +615,7 @@ def _go(
                     onward.way[down, row, end] = way
 
 
-@nb.njit(cache=True)
+@part
 def _after(
     ground: Ground, clock: Clock, onward: _Onward, place: tuple[int, int, int], price: float
 ) -> None:
@@ -512,7 +640,7 @@ def _after(
     onward.to[down, row, end] = to
 
 
-@nb.njit(cache=True)
+@part
 def _leave(
     ground: Ground, clock: Clock, onward: _Onward, here: int, price: float
 ) -> tuple[float, float, tuple[int, int, int]]:
@@ -533,7 +661,7 @@ def _leave(
     return best, best_s, onto
 
 
-@nb.njit(cache=True)
+@part
 def _first_piece(
     rows: _Rows, onward: _Onward, onto: tuple[int, int, int], seconds: float
 ) -> _Piece:
@@ -544,54 +672,55 @@ def _first_piece(
     return _Piece(row, end, rows.last[row, way], seconds)
 
 
-@nb.njit(cache=True)
-def _from_row(
-    ground: Ground,
-    clock: Clock,
-    work: tuple[_Mind, _Rows, _Onward],
-    state: tuple[int, float],
-) -> _Piece:
+@part
+def _from_row(ground: Ground, clock: Clock, work: _Work, at: int, price: float) -> _Piece:
     """Return the first piece of the best plan from the middle of a row.
 
     The row is left by either end, with the plants that way; before that, plants the other way
     are fetched as far as they pay.
     """
-    _, rows, onward = work
-    at, price = state
+    _, rows, onward, _, either = work
     row = _row_of(ground, at)
+    for end in range(2):
+        _along(ground, clock, rows, either, (at, end, price))
     best = -np.inf
     piece = _Piece(_NOWHERE, 0, _NOWHERE, 0.0)
-    ahead = np.empty((2, 2))
-    fetch = np.empty((2, 2))
-    last, turn = np.empty(2, np.int64), np.empty(2, np.int64)
-    for end in range(2):
-        gains, n, farthest = 0.0, 0, _NOWHERE
-        fetch[end, 0], fetch[end, 1], turn[end] = 0.0, 0.0, _NOWHERE
-        i = at - 1 if end == 0 else at + 1
-        while ground.row_start[row] <= i < ground.row_start[row + 1]:
-            if rows.gain[i] > 0.0:
-                gains += rows.gain[i]
-                n += 1
-                farthest = i
-                way_s = 2.0 * abs(ground.x_m[i] - ground.x_m[at]) / clock.speed_m_s
-                if gains - price * way_s > fetch[end, 0]:
-                    fetch[end, 0], turn[end] = gains - price * way_s, i
-                    fetch[end, 1] = way_s + n * clock.visit_s
-            i = i - 1 if end == 0 else i + 1
-        out_s = abs(ground.end_x_m[row, end] - ground.x_m[at]) / clock.speed_m_s
-        ahead[end, 0], ahead[end, 1] = gains - price * out_s, out_s + n * clock.visit_s
-        last[end] = farthest
     for end in range(2):
         net, seconds, onto = _leave(ground, clock, onward, 2 * row + end, price)
-        net += ahead[end, 0] + fetch[1 - end, 0]
-        seconds += ahead[end, 1] + fetch[1 - end, 1]
+        net += either.ahead[end] + either.fetch[1 - end]
+        seconds += either.ahead_s[end] + either.fetch_s[1 - end]
         if net <= best:
             continue
         best = net
-        if turn[1 - end] >= 0:
-            piece = _Piece(row, end, turn[1 - end], seconds)
-        elif last[end] >= 0:
-            piece = _Piece(row, 1 - end, last[end], seconds)
+        if either.turn[1 - end] >= 0:
+            piece = _Piece(row, end, either.turn[1 - end], seconds)
+        elif either.last[end] >= 0:
+            piece = _Piece(row, 1 - end, either.last[end], seconds)
         else:
             piece = _first_piece(rows, onward, onto, seconds)
     return piece
+
+
+@part
+def _along(
+    ground: Ground, clock: Clock, rows: _Rows, either: _Either, state: tuple[int, int, float]
+) -> None:
+    """Value one direction along a row: all the way out, and there and back as far as it pays."""
+    at, end, price = state
+    row = _row_of(ground, at)
+    gains, looking_s, farthest = 0.0, 0.0, _NOWHERE
+    either.fetch[end], either.fetch_s[end], either.turn[end] = 0.0, 0.0, _NOWHERE
+    i = at - 1 if end == 0 else at + 1
+    while ground.row_start[row] <= i < ground.row_start[row + 1]:
+        if rows.gain[i] > 0.0:
+            gains += rows.gain[i]
+            looking_s += rows.stop_s[i]
+            farthest = i
+            way_s = 2.0 * abs(ground.x_m[i] - ground.x_m[at]) / clock.speed_m_s
+            if gains - price * way_s > either.fetch[end]:
+                either.fetch[end], either.turn[end] = gains - price * way_s, i
+                either.fetch_s[end] = way_s + looking_s
+        i = i - 1 if end == 0 else i + 1
+    out_s = abs(ground.end_x_m[row, end] - ground.x_m[at]) / clock.speed_m_s
+    either.ahead[end], either.ahead_s[end] = gains - price * out_s, out_s + looking_s
+    either.last[end] = farthest

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
 from fieldmon.chance import coin, coin_table
-from fieldmon.compiled import loop
+from fieldmon.compiled import loop, part
 from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
@@ -50,6 +50,7 @@ class Snake:
         N; 1 inspects every plant.
     """
 
+    blind: ClassVar[bool] = True
     every: int = 1
 
     def __post_init__(self) -> None:
@@ -63,6 +64,8 @@ class Snake:
 @dataclass(frozen=True)
 class SnakeRandom:
     """The snake with N drawn anew, 1 to 4, at every stop: algorithm 3 of the thesis."""
+
+    blind: ClassVar[bool] = True
 
     def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
@@ -82,6 +85,7 @@ class Neighbor:
         Every N-th stop.
     """
 
+    blind: ClassVar[bool] = True
     every: int = 1
 
     def __post_init__(self) -> None:
@@ -95,6 +99,8 @@ class Neighbor:
 @dataclass(frozen=True)
 class NeighborRandom:
     """The neighbor sampler with N drawn anew, 1 to 4, at every stop: algorithm 5 of the thesis."""
+
+    blind: ClassVar[bool] = True
 
     def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
@@ -111,6 +117,7 @@ class RandomShare:
         N; the share is 1/N, rounded down, but one plant at least.
     """
 
+    blind: ClassVar[bool] = True
     every: int = 3
 
     def __post_init__(self) -> None:
@@ -118,7 +125,7 @@ class RandomShare:
 
     def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
         """Return the day's draw from the start of the plot."""
-        n = len(scene.chance)
+        n = len(scene.grid)
         drawn = np.argsort(coin_table(scene.key, n))[: max(n // self.every, 1)]
         wanted = np.zeros(n, np.bool_)
         wanted[drawn] = True
@@ -136,7 +143,7 @@ def _one_by_one(grid: PlantGrid) -> Stations:
     n = len(grid)
     of = np.empty(n, np.int32)
     of[grid.snake] = np.arange(n, dtype=np.int32)
-    return Stations(np.arange(n + 1, dtype=np.int32), grid.snake, of)
+    return _stations(np.arange(n + 1, dtype=np.int32), grid.snake, of)
 
 
 @lru_cache(maxsize=4)
@@ -154,12 +161,19 @@ def _face_to_face(grid: PlantGrid) -> Stations:
     start = np.append(np.flatnonzero(new), n).astype(np.int32)
     of = np.empty(n, np.int32)
     of[order] = (np.cumsum(new) - 1).astype(np.int32)
-    return Stations(start, order.astype(np.int32), of)
+    return _stations(start, order.astype(np.int32), of)
+
+
+def _stations(*arrays: NDArray[np.int32]) -> Stations:
+    """Return stations that are only read, so that sweeps are compiled once for all of them."""
+    for array in arrays:
+        array.flags.writeable = False
+    return Stations(*arrays)
 
 
 def _sweep(scene: Scene, stations: Stations, every: int) -> Stops:
     """Return the stops of a sweep that goes on where the last day ended, in its direction."""
-    wanted = np.ones(len(scene.chance), np.bool_)
+    wanted = np.ones(len(scene.grid), np.bool_)
     before = stations.of[scene.trail]
     if scene.resume < 0:
         return _walked(scene, stations, wanted, (0, 1, every, True))
@@ -224,7 +238,7 @@ def _walk(
     return k
 
 
-@loop
+@part
 def _next_here(
     ground: Ground,
     stations: Stations,
@@ -246,7 +260,7 @@ def _next_here(
     return found
 
 
-@loop
+@part
 def _turned(stations: Stations, last: NDArray[np.int32], ahead: int, step: int) -> int:
     """Return where a sweep goes on at the plot's end: least recently visited, then nearest."""
     m = stations.start.size - 1

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compiled import inlined, loop
+from fieldmon.compiled import inlined, loop, part
 from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
@@ -145,7 +145,7 @@ def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) 
     return 1
 
 
-@loop
+@part
 def _refill(
     ground: Ground,
     opened: _Open,

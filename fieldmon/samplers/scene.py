@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
 from fieldmon.aisles import drive_m
-from fieldmon.compiled import inlined
+from fieldmon.compiled import inlined, loop
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,11 +44,25 @@ def robot_clock(robot: Robot, seconds_left: float) -> Clock:
     )
 
 
+class Looks(NamedTuple):
+    """The looks to choose from at a stop, the shortest first.
+
+    Seconds of the whole stop, ``(l,)``, and the chance to find what is there, ``(l,)``.
+    """
+
+    stop_s: NDArray[np.float64]
+    detects: NDArray[np.float64]
+
+
 class Stops(NamedTuple):
-    """The plants inspected in order, ``(k,)`` int32, and the seconds at arrival, ``(k,)``."""
+    """The plants inspected in order, ``(k,)`` int32, and the seconds at arrival, ``(k,)``.
+
+    And which of its looks the sampler took at each, ``(k,)`` uint8, if it has several.
+    """
 
     plant: NDArray[np.int32]
     arrive_s: NDArray[np.float64]
+    look: NDArray[np.uint8] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,20 +125,39 @@ class Scene:
 
     def blank(self) -> Stops:
         """Return room for as many stops as the time left or the plants allow."""
-        room = min(len(self.chance), int(self.seconds_left // self.robot.visit_s) + 1)
+        return self.room(self.robot.visit_s)
+
+    def room(self, stop_s: float) -> Stops:
+        """Return room for as many stops of at least `stop_s` each."""
+        room = min(len(self.grid), int(self.seconds_left // stop_s) + 1)
         return Stops(np.empty(room, np.int32), np.empty(room, np.float64))
 
 
 class Sampler(Protocol):
-    """Decides which plants come next."""
+    """Decides which plants come next.
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+    One that reads neither ``chance`` nor ``both`` of a scene may say so by ``blind = True``: what
+    is believed is then not worked out for it.
+    """
+
+    def walk(self, scene: Scene, would_find: NDArray[Any]) -> Stops:
         """Return the stops from here to the end of the day.
 
         ``would_find`` (n,) says of each plant whether an inspection today would find it infested.
+        One that chooses how long to look (see `ChoosesLook`) is told from which of its looks on,
+        counted from 1, and 0 where none would find anything.
         A sampler may read an entry only when it has driven to that plant and inspected it: plants
         before the first find are those of a day on which nothing is found.
         """
+        ...
+
+
+@runtime_checkable
+class ChoosesLook(Sampler, Protocol):
+    """A sampler that decides at each stop how long to look."""
+
+    def looks(self, robot: Robot) -> Looks:
+        """Return what it chooses from."""
         ...
 
 
@@ -139,6 +172,15 @@ def travel_s(ground: Ground, clock: Clock, i: int, j: int) -> float:
         return seconds + clock.row_change_s
     if ground.side[a] != ground.side[b]:
         return seconds + clock.turn_180_s
+    return seconds
+
+
+@loop
+def driven_s(ground: Ground, clock: Clock, places: NDArray[np.int64]) -> float:
+    """Return the seconds of driving from place to place ``(k,)``, plants or the gate."""
+    seconds = 0.0
+    for k in range(1, places.size):
+        seconds += travel_s(ground, clock, places[k - 1], places[k])
     return seconds
 
 

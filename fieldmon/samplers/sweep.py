@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
-from fieldmon.compiled import loop
+from fieldmon.compiled import loop, part
 from fieldmon.errors import SettingError
 from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
 
@@ -24,6 +24,8 @@ class Naive:
     (our reading of the thesis, whose text does not define the order).
     """
 
+    blind: ClassVar[bool] = True
+
     def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
         return _sweep(scene, 1)
@@ -41,6 +43,7 @@ class Bouncy:
         N; the thesis leaves one plant out between two (2).
     """
 
+    blind: ClassVar[bool] = True
     every: int = 2
 
     def __post_init__(self) -> None:
@@ -81,9 +84,14 @@ def _walk(
         left += day != today
     position = _first(snake, last, every) if after < 0 else _place(snake, after) + every
     now_s, k = 0.0, 0
+    # where the pass began, and after how many stops
+    begin, before = 0, -1
     while left > 0 and k < stops.plant.size:
         if position >= snake.size:
-            position = _first(snake, last, every)
+            # a pass on which all were inspected today leads nowhere: the next one takes others
+            position = _first(snake, last, every) if k > before else (begin + 1) % every
+            begin, before = position, k
+            continue
         plant = snake[position]
         position += every
         if last[plant] == today:
@@ -100,7 +108,7 @@ def _walk(
     return k
 
 
-@loop
+@part
 def _first(snake: NDArray[np.int32], last: NDArray[np.int32], every: int) -> int:
     """Return where a new pass starts: at the first plant inspected least recently."""
     best = 0
@@ -110,7 +118,7 @@ def _first(snake: NDArray[np.int32], last: NDArray[np.int32], every: int) -> int
     return best
 
 
-@loop
+@part
 def _place(snake: NDArray[np.int32], plant: int) -> int:
     """Return where in the sweep a plant stands."""
     for position in range(snake.size):

@@ -8,38 +8,57 @@ from fieldmon import cli
 from fieldmon.chance import Chance
 from fieldmon.comparison.cells import PRIORS, STARTS, Cell, all_cells, usual_cells
 from fieldmon.comparison.report import report_html
-from fieldmon.comparison.runs import ADAPTIVE, CLAIRVOYANT, NAMES, WORDED, Outcome, outcomes, run
+from fieldmon.comparison.runs import (
+    ADAPTIVE,
+    CLAIRVOYANT,
+    NAMES,
+    RIVALS,
+    SOME,
+    WORDED,
+    Outcome,
+    outcomes,
+    run,
+)
 from fieldmon.comparison.summary import by_cell, csv_text, outcomes_from, ratio, sentences
+from fieldmon.comparison.tuning import CHOICES, losses
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.spread import Spread
 
 SMALL = Cell("A", Spread(0.5, "one"))
+ALWAYS = [rival.name for rival in RIVALS if rival.every == 1]
 
 
 @pytest.fixture(scope="module")
 def made():
-    return [outcome for seed in (0, 1) for outcome in outcomes(SMALL, seed)]
+    return [outcome for seed in (0, SOME, 1) for outcome in outcomes(SMALL, seed)]
 
 
-def test_every_rival_gets_one_outcome_a_seed(made):
-    assert [o.who for o in made] == [*NAMES, *NAMES]
-    assert {o.seed for o in made} == {0, 1}
+def test_every_rival_gets_one_outcome_a_seed_and_bounds_are_in_every_tenth(made):
+    for seed, who in ((0, NAMES), (SOME, NAMES), (1, ALWAYS)):
+        assert [o.who for o in made if o.seed == seed] == list(who)
 
 
 def test_who_knows_the_truth_loses_least(made):
-    for seed in (0, 1):
+    for seed in (0, SOME):
         loss = {o.who: o.infested_plant_days for o in made if o.seed == seed}
         assert loss[CLAIRVOYANT] == min(loss.values())
 
 
 def test_the_same_cell_and_seed_give_the_same_outcomes(made):
-    assert outcomes(SMALL, 1) == made[len(NAMES) :]
+    assert outcomes(SMALL, 1) == made[-len(ALWAYS) :]
 
 
 def test_what_is_done_is_not_run_again(made):
     done = frozenset({(SMALL.name, 0)})
     rows = list(run([SMALL], [0, 1], done))
-    assert rows == [made[len(NAMES) :]]
+    assert rows == [made[-len(ALWAYS) :]]
+
+
+def test_every_one_of_dynamics_choices_is_tried():
+    tried = dict(losses([Cell("B", start="scattered")], [0]))
+    assert list(tried) == list(CHOICES)
+    assert min(tried.values()) > 0
+    assert len(set(tried.values())) > len(CHOICES) / 4
 
 
 def test_a_table_is_read_back_as_it_was_written(made):
@@ -108,6 +127,6 @@ def test_the_command_writes_table_and_report_and_goes_on_where_it_stopped(tmp_pa
         result = CliRunner().invoke(cli.app, [*args, seeds])
         assert result.exit_code == 0, result.output
         table = outcomes_from((tmp_path / "samplers.csv").read_text(), "samplers.csv")
-        assert len(table) == int(seeds) * len(NAMES)
+        assert len(table) == len(NAMES) + (int(seeds) - 1) * len(ALWAYS)
     assert "Infested plant-days against dynamic, tuned" in result.output
     assert (tmp_path / "samplers.html").stat().st_size > 2000

@@ -22,7 +22,7 @@ from fieldmon.field import Field, Observations
 from fieldmon.frame import Frame
 from fieldmon.planting import Planting
 from fieldmon.study import chunks as study_chunks
-from fieldmon.study import engine, store
+from fieldmon.study import design, engine, store
 from fieldmon.study.design import Case, Design, Site, chunks
 
 FRAME = Frame(5.0, 45.0)
@@ -37,7 +37,16 @@ def site(size_m=40.0, name="plot"):
     return Site(Field(name, area(size_m)), Planting(), Observations.none(), DAY)
 
 
-SMALL = Design(hours=(1.0, 3.0), n_days=4, n_seeds=700, infested=(0.05,))
+SMALL = Design(hours=(1.0, 3.0), n_days=4, n_seeds=60, infested=(0.05,))
+# a short study has many chunks to lose
+CHUNK_S = 0.02
+
+
+@pytest.fixture(scope="module", autouse=True)
+def short_chunks():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(design, "_CHUNK_S", CHUNK_S)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -86,11 +95,12 @@ def test_a_killed_worker_costs_only_what_it_had_in_hand(undisturbed, tmp_path):
     same_files(tmp_path, undisturbed)
 
 
-@pytest.mark.timeout(900)
 def test_a_killed_client_costs_only_unfinished_chunks(tmp_path):
     write_geojson(tmp_path / "plot.geojson", [area(60.0)])
-    words = [*[sys.executable, "-m", "fieldmon.cli", "study", "run", "plot.geojson"], "--seeds"]
-    words += ["1400", "--days", "10", "--workers", "2", "--date", "2026-11-02"]
+    command = f"from fieldmon.study import design; design._CHUNK_S = {CHUNK_S}; "
+    command += "from fieldmon.cli import main; main()"
+    words = [sys.executable, "-c", command, "study", "run", "plot.geojson", "--seeds", "40"]
+    words += ["--days", "10", "--workers", "2", "--date", "2026-11-02"]
     command = subprocess.Popen([*words, "-o", "killed"], cwd=tmp_path, stderr=subprocess.DEVNULL)
     until = time.monotonic() + 200
     while not list(tmp_path.glob("killed/*/*.parquet")) and time.monotonic() < until:
@@ -104,7 +114,7 @@ def test_a_killed_client_costs_only_unfinished_chunks(tmp_path):
     subprocess.run([*words, "-o", "killed"], cwd=tmp_path, check=True, capture_output=True)
     (tmp_path / "whole").mkdir()
     sites = cli_study_run._sites(tmp_path / "plot.geojson", None, None, "2026-11-02")
-    whole = list(chunks(sites, Design(n_days=10, n_seeds=1400)))
+    whole = list(chunks(sites, Design(n_days=10, n_seeds=40)))
     for chunk in whole:
         store.keep(tmp_path / "whole", chunk, study_chunks.run_chunk(chunk))
     assert 0 < len(half) < len(whole)
@@ -113,9 +123,9 @@ def test_a_killed_client_costs_only_unfinished_chunks(tmp_path):
 
 
 def test_a_plot_without_room_is_refused_and_the_others_go_on(tmp_path):
-    design = Design(samplers=("naive",), n_days=1, n_seeds=2)
+    short = Design(samplers=("naive",), n_days=1, n_seeds=2)
     with engine.cluster(workers=1) as client:
-        refused = engine.run(client, tmp_path, (site(), site(1.0, "tiny")), design, quiet)
+        refused = engine.run(client, tmp_path, (site(), site(1.0, "tiny")), short, quiet)
     assert set(refused) == {"tiny"}
     assert set(store.seasons(tmp_path)["plot"].to_pylist()) == {"plot"}
 
@@ -136,14 +146,14 @@ def test_a_season_of_a_study_is_that_of_the_simulator(undisturbed):
     from fieldmon.spread import Spread
 
     rows = store.seasons(undisturbed).to_pylist()
-    assert len(rows) == 3 * 2 * 700
-    row = next(r for r in rows if (r["sampler"], r["hours"], r["seed"]) == ("dynamic", 3.0, 77))
+    assert len(rows) == 3 * 2 * 60
+    row = next(r for r in rows if (r["sampler"], r["hours"], r["seed"]) == ("dynamic", 3.0, 37))
     plot = Plot.of(site().field, Planting())
     assert isinstance(plot.aisles, Aisles)
     chance = prior_chance(plot.grid, plot.field, Observations.none(), DAY, PriorSettings())
-    start = Start(start_infested(chance, 0.05, Chance(77).of("start")), chance)
+    start = Start(start_infested(chance, 0.05, Chance(37).of("start")), chance)
     settings = SeasonSettings(n_days=4, spread=Spread(0.1))
-    walk = days(plot.aisles, Robot(hours=3.0), sampler("dynamic"), start, settings, Chance(77))
+    walk = days(plot.aisles, Robot(hours=3.0), sampler("dynamic"), start, settings, Chance(37))
     season = figures(walk)
     assert row["found_by_day"] == season.found.tolist()
     assert row["detection_pct"] == season.detection_pct[-1]
@@ -169,14 +179,14 @@ def test_chunks_hold_every_season_once_whatever_the_size_of_the_plot():
 
 
 def test_another_plot_setting_or_seed_has_other_keys():
-    def keys(one, design):
-        return {chunk.key for chunk in chunks((one,), design)}
+    def keys(one, study):
+        return {chunk.key for chunk in chunks((one,), study)}
 
     base = keys(site(), SMALL)
     assert base == keys(site(), SMALL)
     for other in (site(41.0), site(name="other")):
         assert not base & keys(other, SMALL)
-    assert not base & keys(site(), Design(hours=(1.0, 3.0), n_days=5, n_seeds=700))
+    assert not base & keys(site(), Design(hours=(1.0, 3.0), n_days=5, n_seeds=60))
 
 
 def test_a_folder_with_another_study_is_refused(tmp_path):
@@ -215,11 +225,11 @@ def test_impossible_designs_are_refused(settings):
 def test_a_cluster_that_is_there_already_is_used(tmp_path):
     from distributed import LocalCluster
 
-    design = Design(samplers=("naive",), n_days=1, n_seeds=2)
+    short = Design(samplers=("naive",), n_days=1, n_seeds=2)
     there = LocalCluster(
         n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
     )
     with there, engine.cluster(there.scheduler_address) as client:
         assert client.scheduler.address == there.scheduler_address
-        engine.run(client, tmp_path, (site(),), design, quiet)
+        engine.run(client, tmp_path, (site(),), short, quiet)
     assert store.seasons(tmp_path).num_rows == 2

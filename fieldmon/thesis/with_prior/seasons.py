@@ -136,7 +136,7 @@ def _inspect(
 ) -> tuple[NDArray[np.int32], Flags, Floats]:
     """Return the plants inspected on a day, which were found infested, and when it was done."""
     would_find = outcomes(infested, scene.robot.detects, key)
-    plants, arrive_s = sampler(trial.sampler).walk(scene, would_find)
+    plants, arrive_s, _ = sampler(trial.sampler).walk(scene, would_find)
     end = len(plants)
     if trial.sampler == "bouncy" and trial.choices.bouncy_rests:
         end = min(end, (len(infested) + 1) // 2)

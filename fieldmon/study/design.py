@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 # a chunk takes about so long; what seasons cost was measured, see the README's section on speed
 _CHUNK_S = 4.0
-_S_PER_PLANT_DAY = 4e-8
+_S_PER_PLANT_DAY = {"dynamic": 4e-7, "adaptive": 2.5e-6}
+_S_PER_BLIND_PLANT_DAY = 2e-8
 _S_PER_DAY = 3e-4
 # changes when seasons come out differently, so that old chunks are not taken for new ones
 _VERSION = "1"
@@ -177,16 +178,19 @@ def chunks(sites: tuple[Site, ...], design: Design) -> Iterator[Chunk]:
     """Yield the chunks of a study: the same ones, whoever simulates them."""
     end = design.first_seed + design.n_seeds
     for site in sites:
-        digest, size = site.digest, _seasons(site.about_plants, design.n_days)
-        for case, first in product(design.cases, range(design.first_seed, end, size)):
-            seeds = (first, min(first + size, end))
-            key = _digest(_VERSION, digest, vars(case), seeds, design.n_days)
-            yield Chunk(site, case, seeds, design.n_days, key)
+        digest, n_plants = site.digest, site.about_plants
+        for case in design.cases:
+            size = _seasons(case.sampler, n_plants, design.n_days)
+            for first in range(design.first_seed, end, size):
+                seeds = (first, min(first + size, end))
+                key = _digest(_VERSION, digest, vars(case), seeds, design.n_days)
+                yield Chunk(site, case, seeds, design.n_days, key)
 
 
-def _seasons(n_plants: int, n_days: int) -> int:
+def _seasons(sampler: str, n_plants: int, n_days: int) -> int:
     """Return how many seasons take about `_CHUNK_S`."""
-    return math.ceil(_CHUNK_S / (n_days * (_S_PER_DAY + n_plants * _S_PER_PLANT_DAY)))
+    each_s = _S_PER_PLANT_DAY.get(sampler, _S_PER_BLIND_PLANT_DAY)
+    return math.ceil(_CHUNK_S / (n_days * (_S_PER_DAY + n_plants * each_s)))
 
 
 def _digest(*parts: object) -> str:

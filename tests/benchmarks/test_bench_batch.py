@@ -73,7 +73,7 @@ def test_a_study_of_seasons(benchmark, tmp_path, workers):
                 client,
                 tmp_path / str(time.monotonic_ns()),
                 sites,
-                Design(n_seeds=2000),
+                Design(n_seeds=400),
                 lambda *_: None,
             )
 

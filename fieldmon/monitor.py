@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.aisles import Aisles
+from fieldmon.belief import pairs
 from fieldmon.field import Field
 from fieldmon.gaps import without
 from fieldmon.planting import Planting, found_planting, grid_from_plants, lay
@@ -143,6 +144,9 @@ def plan_from(plot: Plot, chance: NDArray[np.float64], plans: Plans) -> Today:
         chance=chance,
         last_inspected=np.full(len(plot.grid), NEVER, np.int32),
         seconds_left=plans.robot.day_s,
+        both=pairs(
+            chance, plot.grid
+        ),  # as a season believes: it goes the same way on its first day
     )
     work = plan_day(scene, plans.sampler)
     return Today(scene, work, route_of(scene, work))

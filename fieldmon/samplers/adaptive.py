@@ -40,6 +40,10 @@ _STEP, _FULL, _TRIES = 1.1, 0.9, 2
 _BISECTIONS = 24
 # how much closer or less close infested plants must stand than thought to think again
 _NOTABLE = 0.1
+# plants in line that are looked at together: do any of them pay?
+_BLOCK = 32
+# a bound stays one however its sum is rounded
+_NEARLY = 1.0 - 1e-9
 
 
 class _Mind(NamedTuple):
@@ -65,8 +69,8 @@ class _Rows(NamedTuple):
     """What each way of driving each row comes to, ``(r, 4)``.
 
     And what each plant gains at the price, and the seconds of its look, ``(n,)``; `pays` is room
-    for the plants of one row with a gain, `most` the most that a find in each row is expected to
-    be worth, -1 where that has changed.
+    for the plants of one row with a gain, `most` the most that a find in each `_BLOCK` of plants
+    in line is expected to be worth, -1 where that has changed.
     """
 
     net: Float
@@ -84,7 +88,7 @@ class _Rows(NamedTuple):
         ways = n_rows, _WAYS
         last, stale = np.full(ways, _NOWHERE), np.ones(n_rows, np.bool_)
         gain, stop_s, pays = np.zeros(n), np.zeros(n), np.empty(n, np.int64)
-        most = np.full(n_rows, -1.0)
+        most = np.full(n // _BLOCK + 1, -1.0)
         return cls(np.zeros(ways), np.zeros(ways), last, gain, stop_s, stale, pays, most)
 
 
@@ -93,6 +97,8 @@ class _Onward(NamedTuple):
 
     ``way`` is how the row is driven, or -1 where it is passed by; ``to`` the lane end
     (2 row + end) after it, or -1 for home. ``left_...``: the same once the row is done.
+    ``next_s`` ``(2, r, 2, 6, 2)`` are the seconds to the ends of the next lanes in line, and
+    ``home_s`` ``(r, 2)`` those to the gate.
     """
 
     net: Float
@@ -101,13 +107,16 @@ class _Onward(NamedTuple):
     left_net: Float
     left_seconds: Float
     to: Int
+    next_s: Float
+    home_s: Float
 
     @classmethod
     def of(cls, n_rows: int) -> _Onward:
         """Return room for so many rows."""
         net, seconds, left_net, left_seconds = np.zeros((4, 2, n_rows, 2))
         way, to = np.full((2, 2, n_rows, 2), _NOWHERE)
-        return cls(net, seconds, way, left_net, left_seconds, to)
+        next_s, home_s = np.empty((2, n_rows, 2, _REACH, 2)), np.empty((n_rows, 2))
+        return cls(net, seconds, way, left_net, left_seconds, to, next_s, home_s)
 
 
 class _Either(NamedTuple):
@@ -203,11 +212,13 @@ class Adaptive:
             Company.none(n),
             np.ones(1),
         )
+        onward = _Onward.of(n_rows)
+        _measure(scene.aisles.ground, scene.clock, onward.next_s, onward.home_s)
         k = _walk(
             scene.aisles.ground,
             scene.clock,
             (scene.grid.adjacent, mind, would_find.view(np.uint8)),
-            (_Rows.of(n, n_rows), _Onward.of(n_rows), looks, _Either.blank()),
+            (_Rows.of(n, n_rows), onward, looks, _Either.blank()),
             (scene.at, self.spares, scene.last_inspected == scene.day),
             (stops.plant, stops.arrive_s, taken),
         )
@@ -247,7 +258,7 @@ def _walk(
             if found or plant == piece.last:
                 break
         if k == before:
-            plant, look = _best_left(ground, clock, (mind, rows, looks), at, now_s)
+            plant, look = _best_left(ground, clock, work, at, now_s)
             if plant < 0:
                 break
             now_s = _visit(ground, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
@@ -309,6 +320,29 @@ def _worths(adjacent: Csr, mind: _Mind, closed: NDArray[np.bool_], spares: float
             mind.worth[i] = 1.0 + spares * clean / max(end - first, 1)
 
 
+@loop
+def _measure(ground: Ground, clock: Clock, next_s: Float, home_s: Float) -> None:
+    """Find the seconds from every lane end to the next lanes in line, and to the gate.
+
+    In the table of all ways each of them stands far from the last: it is read once a day.
+    """
+    n_rows, gate = home_s.shape[0], ground.between_m.shape[0] - 1
+    for row in range(n_rows):
+        for end in range(2):
+            here = 2 * row + end
+            home_m = ground.between_m[here, gate]
+            home_s[row, end] = home_m / clock.speed_m_s if clock.returns else 0.0
+            for k in range(2 * _REACH):
+                other = row + k - _REACH if k < _REACH else row + k - _REACH + 1
+                if not 0 <= other < n_rows:
+                    continue
+                # from _REACH rows before to _REACH rows after, this one left out
+                down, step = (1, row - other - 1) if k < _REACH else (0, other - row - 1)
+                for other_end in range(2):
+                    way_m = ground.between_m[here, 2 * other + other_end]
+                    next_s[down, row, end, step, other_end] = way_m / clock.speed_m_s
+
+
 @part
 def _look(
     ground: Ground,
@@ -324,9 +358,8 @@ def _look(
     meet((mind.dawn_chance, mind.dawn_both), adjacent, (i, found, detects), mind.company)
     mind.worth[i] = 0.0
     for t in range(n):
-        row = ground.row[mind.near.plant[t]]
-        rows.stale[row], rows.most[row] = True, -1.0
-    rows.most[ground.row[i]] = -1.0
+        near_it = mind.near.plant[t]
+        rows.stale[ground.row[near_it]], rows.most[near_it // _BLOCK] = True, -1.0
 
 
 @part
@@ -364,28 +397,46 @@ def _next_in(
 
 
 @part
-def _best_left(
-    ground: Ground, clock: Clock, work: tuple[_Mind, _Rows, Looks], at: int, now_s: float
-) -> tuple[int, int]:
+def _best_left(ground: Ground, clock: Clock, work: _Work, at: int, now_s: float) -> tuple[int, int]:
     """Return the plant with the most worth for its time that still fits into the day, or -1.
 
     And the look it gets.
     """
-    mind, rows, looks = work
+    mind, rows, onward, looks, _ = work
+    quick_s, sharp = looks.stop_s[0], looks.detects[-1]
     best, best_rate, taken = _NOWHERE, 0.0, 0
     for row in range(rows.stale.size):
-        if looks.detects[-1] * _most_in(ground, mind, rows, row) <= best_rate * looks.stop_s[0]:
+        least_s = _least_s(ground, clock, at, row)
+        home_s = min(onward.home_s[row, 0], onward.home_s[row, 1])
+        if now_s + least_s + quick_s + home_s > clock.seconds_left:
             continue
-        for i in range(ground.row_start[row], ground.row_start[row + 1]):
-            # nothing takes less than no time to reach: most plants need no way worked out
-            if looks.detects[-1] * mind.worth[i] * mind.chance[i] <= best_rate * looks.stop_s[0]:
+        first, end = ground.row_start[row], ground.row_start[row + 1]
+        for block in range(first // _BLOCK, (end - 1) // _BLOCK + 1):
+            if sharp * _most_in(mind, rows, block) <= best_rate * (least_s + quick_s):
                 continue
-            way_s = travel_s(ground, clock, at, i)
-            for k in range(looks.stop_s.size):
-                rate = looks.detects[k] * mind.worth[i] * mind.chance[i] / (way_s + looks.stop_s[k])
-                if rate > best_rate and _fits(ground, clock, (at, i), looks.stop_s[k], now_s):
-                    best, best_rate, taken = i, rate, k
+            for i in range(max(first, block * _BLOCK), min(end, (block + 1) * _BLOCK)):
+                if sharp * mind.worth[i] * mind.chance[i] <= best_rate * quick_s:
+                    continue
+                way_s = travel_s(ground, clock, at, i)
+                for k in range(looks.stop_s.size):
+                    stop_s = looks.stop_s[k]
+                    rate = looks.detects[k] * mind.worth[i] * mind.chance[i] / (way_s + stop_s)
+                    if rate > best_rate and _fits(ground, clock, (at, i), stop_s, now_s):
+                        best, best_rate, taken = i, rate, k
     return best, taken
+
+
+@part
+def _least_s(ground: Ground, clock: Clock, at: int, row: int) -> float:
+    """Return seconds that it takes at least from a place to any plant of a row."""
+    own = _row_of(ground, at)
+    if own < 0 or ground.corridor[own] == ground.corridor[row]:
+        return 0.0
+    least_m = np.inf
+    for end in range(2):
+        for other_end in range(2):
+            least_m = min(least_m, ground.between_m[2 * own + end, 2 * row + other_end])
+    return float((least_m / clock.speed_m_s + clock.row_change_s) * _NEARLY)
 
 
 @part
@@ -473,8 +524,8 @@ def _replan(
         if rows.stale[row]:
             _value_row(ground, clock, (mind, rows, looks), (row, price))
             rows.stale[row] = False
-    _go(ground, clock, rows, onward, (0, own, price))
-    _go(ground, clock, rows, onward, (1, own, price))
+    for down in range(2):
+        _go(clock, rows, onward, (down, own, price))
     if at < 0:
         _, seconds, onto = _leave(ground, clock, onward, 2 * (rows.stale.size), price)
         return _first_piece(rows, onward, onto, seconds)
@@ -495,24 +546,24 @@ def _value_row(
     mind, rows, looks = work
     row, price = state
     first, end = ground.row_start[row], ground.row_start[row + 1]
-    if _best_look(looks, 1.0, _most_in(ground, mind, rows, row), price)[0] <= 0.0:
-        if rows.last[row, 0] >= 0:
-            rows.gain[first:end] = 0.0
-            rows.last[row] = _NOWHERE
-        return
-    previous, before, n = _NOWHERE, 0, 0
-    for i in range(first, end):
-        gain, taken = _best_look(looks, mind.worth[i], mind.chance[i], price)
-        if gain > 0.0 and previous == i - 1 and previous >= 0:
-            chance = _after_clean(mind, i, looks.detects[before])
-            gain, taken = _best_look(looks, mind.worth[i], chance, price)
-        rows.gain[i], rows.stop_s[i] = max(gain, 0.0), looks.stop_s[taken]
-        if gain > 0.0:
-            previous, before = i, taken
-            rows.pays[n] = i
-            n += 1
-    if n == 0:  # by a hair
+    if rows.last[row, 0] >= 0:
+        rows.gain[first:end] = 0.0
         rows.last[row] = _NOWHERE
+    previous, before, n = _NOWHERE, 0, 0
+    for block in range(first // _BLOCK, (end - 1) // _BLOCK + 1):
+        if _best_look(looks, 1.0, _most_in(mind, rows, block), price)[0] <= 0.0:
+            continue
+        for i in range(max(first, block * _BLOCK), min(end, (block + 1) * _BLOCK)):
+            gain, taken = _best_look(looks, mind.worth[i], mind.chance[i], price)
+            if gain > 0.0 and previous == i - 1 and previous >= 0:
+                chance = _after_clean(mind, i, looks.detects[before])
+                gain, taken = _best_look(looks, mind.worth[i], chance, price)
+            if gain > 0.0:
+                rows.gain[i], rows.stop_s[i] = gain, looks.stop_s[taken]
+                previous, before = i, taken
+                rows.pays[n] = i
+                n += 1
+    if n == 0:
         return
     for way in range(2, _WAYS):
         _in_and_out(ground, clock, rows, (row, way, n), price)
@@ -520,14 +571,14 @@ def _value_row(
 
 
 @part
-def _most_in(ground: Ground, mind: _Mind, rows: _Rows, row: int) -> float:
-    """Return the most that a find in a row is expected to be worth."""
-    if rows.most[row] < 0.0:
+def _most_in(mind: _Mind, rows: _Rows, block: int) -> float:
+    """Return the most that a find in a block is expected to be worth."""
+    if rows.most[block] < 0.0:
         most = 0.0
-        for i in range(ground.row_start[row], ground.row_start[row + 1]):
+        for i in range(block * _BLOCK, min((block + 1) * _BLOCK, mind.worth.size)):
             most = max(most, mind.worth[i] * mind.chance[i])
-        rows.most[row] = most
-    return float(rows.most[row])
+        rows.most[block] = most
+    return float(rows.most[block])
 
 
 @part
@@ -580,7 +631,6 @@ def _through(
 
 @part
 def _go(
-    ground: Ground,
     clock: Clock,
     rows: _Rows,
     onward: _Onward,
@@ -592,7 +642,7 @@ def _go(
     for place in range(n_rows):
         row = place if down else n_rows - 1 - place
         for end in range(2):
-            _after(ground, clock, onward, (down, row, end), price)
+            _after(onward, (down, row, end), price)
         for end in range(2):
             onward.net[down, row, end] = onward.left_net[down, row, end]
             onward.seconds[down, row, end] = onward.left_seconds[down, row, end]
@@ -616,22 +666,18 @@ def _go(
 
 
 @part
-def _after(
-    ground: Ground, clock: Clock, onward: _Onward, place: tuple[int, int, int], price: float
-) -> None:
+def _after(onward: _Onward, place: tuple[int, int, int], price: float) -> None:
     """Find the best rest of the day after a row: home, or to one of the next rows in line."""
     down, row, end = place
-    here = 2 * row + end
-    gate = ground.between_m.shape[0] - 1
     n_rows = onward.net.shape[1]
-    best_s = ground.between_m[here, gate] / clock.speed_m_s if clock.returns else 0.0
+    best_s = onward.home_s[row, end]
     best, to = -price * best_s, _NOWHERE
-    for k in range(1, _REACH + 1):
-        other = row - k if down else row + k
+    for k in range(_REACH):
+        other = row - 1 - k if down else row + 1 + k
         if not 0 <= other < n_rows:
             break
         for other_end in range(2):
-            way_s = ground.between_m[here, 2 * other + other_end] / clock.speed_m_s
+            way_s = onward.next_s[down, row, end, k, other_end]
             net = onward.net[down, other, other_end] - price * way_s
             if net > best:
                 best, to = net, 2 * other + other_end
@@ -650,6 +696,8 @@ def _leave(
     best, onto = -price * best_s, (0, _NOWHERE, 0)
     for row in range(onward.net.shape[1]):
         for end in range(2):
+            if onward.way[0, row, end] < 0 and onward.way[1, row, end] < 0:
+                continue
             way_s = ground.between_m[here, 2 * row + end] / clock.speed_m_s
             for down in range(2):
                 if onward.way[down, row, end] < 0:

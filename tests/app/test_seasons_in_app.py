@@ -40,7 +40,10 @@ def tap(app, key):
 
 
 def test_a_season_begins_and_is_found_again_by_a_new_session(season):
-    app = begun(opened())
+    app = opened()
+    route = layer(app, "route")["data"]
+    begun(app)
+    assert layer(app, "route")["data"] == route
     assert "has begun" in app.success[0].value
     assert app.selectbox(key="season").value == "Gate 2026"
     assert season().setup.begins == date(2026, 11, 16)

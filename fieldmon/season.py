@@ -11,7 +11,7 @@ from fieldmon.belief import Learning, Pairs
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.samplers.scene import GATE, NEVER, Scene
 from fieldmon.spread import Spread, night
-from fieldmon.workday import looks_of, luck, work_day
+from fieldmon.workday import looks_of, luck, outcomes, work_day
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -209,8 +209,11 @@ def days(
             trail=trail,
             key=chance.key("sampler", number),
         )
-        drawn = luck(infested, looks, chance.key("inspect", number))
-        work = work_day(scene, sampler, drawn if choosing else drawn > 0)
+        key = chance.key("inspect", number)
+        if choosing:
+            work = work_day(scene, sampler, luck(infested, looks, key))
+        else:
+            work = work_day(scene, sampler, outcomes(infested, float(looks.detects[0]), key))
         last_inspected = last_inspected.copy()
         last_inspected[work.plant] = number
         ever_found += int(np.count_nonzero(work.found))

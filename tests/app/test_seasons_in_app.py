@@ -177,10 +177,10 @@ def test_a_file_that_does_not_fit_is_a_sentence(app, season, data):
     assert not len(season().history.inspections)
 
 
-def test_days_in_the_app_give_the_digits_of_the_same_days_without_it(app, season, tmp_path):
+def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(app, season, tmp_path):
     mine = season()
     twin = Project.create(tmp_path / "twin.gpkg", mine.plot, mine.observations, mine.setup)
-    for day in (16, 17):
+    for day in range(16, 26):
         on = date(2026, 11, day)
         app.date_input(key="day Gate 2026").set_value(on).run()
         go(app, "season")

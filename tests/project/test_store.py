@@ -78,7 +78,7 @@ def test_a_process_killed_at_any_moment_leaves_a_whole_season(path):
         assert now >= before
         grew += now > before
         before = now
-    assert grew > KILLS / 4, "nothing was written between the kills: they prove nothing"
+    assert grew > KILLS / 10, "hardly anything was written between the kills: they prove nothing"
     with Project(path).store.writing():
         pass  # a killed process may leave an empty journal; who writes next takes it away
     assert [file.name for file in path.parent.iterdir()] == ["season.gpkg"]

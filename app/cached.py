@@ -10,6 +10,7 @@ from __future__ import annotations
 import io
 import threading
 import zipfile
+from functools import cache
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
@@ -68,7 +69,7 @@ def digest(data: bytes) -> str:
     return sha256(data).hexdigest()
 
 
-@st.cache_resource
+@cache
 def warm() -> threading.Thread:
     """Start the file reader and compile the samplers while the person is still looking."""
 

@@ -6,6 +6,7 @@ before: every sampler meets the same insects, so comparisons are paired.
 
 from __future__ import annotations
 
+import math
 import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -27,6 +28,7 @@ _HASH, _HASH_TIMES = np.uint64(0x43B0D7E5), np.uint64(0x931E8875)
 _STATE, _STATE_TIMES = np.uint64(0x8B51F9DD), np.uint64(0x58F38DED)
 _MIX_LEFT, _MIX_RIGHT = np.uint64(0xCA01F9DD), np.uint64(0x4973F715)
 _LOW_32, _S16, _S32 = np.uint64(0xFFFFFFFF), np.uint64(16), np.uint64(32)
+_COIN_PARTS = 2.0**53
 _S11, _S27, _S30, _S31 = np.uint64(11), np.uint64(27), np.uint64(30), np.uint64(31)
 
 
@@ -52,11 +54,21 @@ class Chance:
 
     def key(self, name: str, *key: int) -> np.uint64:
         """Return 64 random bits that name a whole table of coins (see :func:`coin`)."""
+        words = self._words(name, key)
+        return np.uint64(_first_state(words, np.empty(_POOL, np.uint64)))
+
+    def keys(self, name: str, n: int) -> NDArray[np.uint64]:
+        """Return the keys of ``name`` at 0, 1, ..., ``(n,)``: as many calls of `key` in one."""
+        keys = np.empty(n, np.uint64)
+        _first_states(self._words(name, (0,)), np.empty(_POOL, np.uint64), keys)
+        return keys
+
+    def _words(self, name: str, key: tuple[int, ...]) -> NDArray[np.uint64]:
         words = _words(self.seed)
         words += [0] * (_POOL - len(words))
         for number in (zlib.crc32(name.encode()), *key):
             words += _words(number)
-        return np.uint64(_first_state(np.array(words, np.uint64), np.empty(_POOL, np.uint64)))
+        return np.array(words, np.uint64)
 
     def _sequence(self, name: str, key: tuple[int, ...]) -> np.random.SeedSequence:
         return np.random.SeedSequence(self.seed, spawn_key=(zlib.crc32(name.encode()), *key))
@@ -92,6 +104,16 @@ def _first_state(words: NDArray[np.uint64], pool: NDArray[np.uint64]) -> np.uint
     return low | (high << _S32)
 
 
+@loop
+def _first_states(
+    words: NDArray[np.uint64], pool: NDArray[np.uint64], states: NDArray[np.uint64]
+) -> None:
+    """Find the same for the last word 0, 1, ..."""
+    for k in range(states.size):
+        words[-1] = k
+        states[k] = _first_state(words, pool)
+
+
 @inlined
 def _hashed(word: np.uint64, factor: np.uint64, times: np.uint64) -> tuple[np.uint64, np.uint64]:
     word ^= factor
@@ -107,11 +129,22 @@ def coin(key: np.uint64, i: int) -> float:
     A counter-based generator: SplitMix64 (Steele, Lea & Flood 2014, OOPSLA) jumped to its i-th
     output, so that a plant's coin does not depend on which plants were asked before.
     """
+    return float(coin_bits(key, i)) * (1.0 / _COIN_PARTS)
+
+
+@inlined
+def coin_bits(key: np.uint64, i: int) -> np.uint64:
+    """Return the coin as a whole number of 2^-53: quicker to compare, see :func:`coin_limit`."""
     z = key + (np.uint64(i) + np.uint64(1)) * _GOLDEN
     z = (z ^ (z >> _S30)) * _MIX_1
     z = (z ^ (z >> _S27)) * _MIX_2
     z = z ^ (z >> _S31)
-    return float(z >> _S11) * (1.0 / 9007199254740992.0)
+    return z >> _S11
+
+
+def coin_limit(chance: float) -> np.uint64:
+    """Return the bits below which a coin is below a chance in [0, 1], to the last bit."""
+    return np.uint64(math.ceil(chance * _COIN_PARTS))
 
 
 @nb.njit(cache=True, nogil=True)

@@ -195,6 +195,7 @@ def days(
     last_inspected = np.full(len(infested), NEVER, np.int32)
     ever_infested, ever_found = int(np.count_nonzero(infested)), 0
     trail, at = np.empty(0, np.int32), GATE
+    keys = {name: chance.keys(name, settings.n_days) for name in ("sampler", "inspect", "spread")}
     for number in range(settings.n_days):
         belief = None if blind else mornings.on(number)
         scene = Scene(
@@ -207,9 +208,9 @@ def days(
             at=at,
             seconds_left=robot.day_s,
             trail=trail,
-            key=chance.key("sampler", number),
+            key=keys["sampler"][number],
         )
-        key = chance.key("inspect", number)
+        key = keys["inspect"][number]
         if choosing:
             work = work_day(scene, sampler, luck(infested, looks, key))
         else:
@@ -221,7 +222,7 @@ def days(
         mornings.add(work)
         evening = infested.copy()
         evening[work.plant[work.found]] = False
-        infested = night(aisles.grid, evening, settings.spread, chance.key("spread", number))
+        infested = night(aisles.grid, evening, settings.spread, keys["spread"][number])
         # nobody recovers at night
         ever_infested += int(np.count_nonzero(infested)) - int(np.count_nonzero(evening))
         trail = work.plant if len(work) else trail

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from fieldmon.chance import coin
-from fieldmon.compiled import loop, part
+import numpy as np
+
+from fieldmon.chance import coin, coin_bits, coin_limit
+from fieldmon.compiled import loop
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.grid import Csr, PlantGrid
@@ -63,40 +64,44 @@ def night(
     same `key` two histories differ only where they differ.
     """
     after = infested.copy()
-    rule = (spread.rate_per_day, _TO[spread.to], spread.arrivals_per_day)
-    _night(infested, after, grid.adjacent, rule, key)
+    rule = coin_limit(spread.rate_per_day), _TO[spread.to]
+    _infect(np.flatnonzero(infested), after, grid.adjacent, rule, key)
+    if spread.arrivals_per_day > 0.0:
+        _arrive(infested, after, coin_limit(spread.arrivals_per_day), key)
     return after
 
 
 @loop
-def _night(
-    infested: NDArray[np.bool_],
+def _infect(
+    infested: NDArray[np.intp],
     after: NDArray[np.bool_],
     adjacent: Csr,
-    rule: tuple[float, int, float],
+    rule: tuple[np.uint64, int],
     key: np.uint64,
 ) -> None:
-    rate, to, arrivals = rule
-    for i in range(infested.size):
-        if infested[i]:
-            _infect(i, after, adjacent, (rate, to), key)
-        elif arrivals > 0.0 and coin(key, _COINS * i + _ARRIVAL) < arrivals:
-            after[i] = True
+    """Let the infested plants infect others."""
+    limit, to = rule
+    start, plant = adjacent
+    for i in infested:
+        # unsigned: an index that may be negative is checked for it
+        first, end = np.uint32(start[i]), np.uint32(start[i + 1])
+        if to == _EACH:
+            for k in range(first, end):
+                # written either way: to foresee a coin is what costs
+                after[np.uint32(plant[k])] |= coin_bits(key, _COINS * i + (k - first)) < limit
+        elif end > first and coin_bits(key, _COINS * i) < limit:
+            if to == _ONE:
+                first += np.uint32(coin(key, _COINS * i + 1) * (end - first))
+                end = np.uint32(first + 1)
+            for k in range(first, end):
+                after[np.uint32(plant[k])] = True
 
 
-@part
-def _infect(
-    i: int, after: NDArray[np.bool_], adjacent: Csr, rule: tuple[float, int], key: np.uint64
+@loop
+def _arrive(
+    infested: NDArray[np.bool_], after: NDArray[np.bool_], limit: np.uint64, key: np.uint64
 ) -> None:
-    rate, to = rule
-    first, end = adjacent.start[i], adjacent.start[i + 1]
-    if to == _EACH:
-        for k in range(first, end):
-            if coin(key, _COINS * i + (k - first)) < rate:
-                after[adjacent.plant[k]] = True
-    elif end > first and coin(key, _COINS * i) < rate:
-        if to == _ONE:
-            first += int(coin(key, _COINS * i + 1) * (end - first))
-            end = first + 1
-        for k in range(first, end):
-            after[adjacent.plant[k]] = True
+    """Let insects arrive from outside the plot on clean plants."""
+    for i in range(infested.size):
+        if not infested[i] and coin_bits(key, _COINS * i + _ARRIVAL) < limit:
+            after[i] = True

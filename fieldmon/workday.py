@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.chance import coin
+from fieldmon.chance import coin_bits, coin_limit
 from fieldmon.compiled import loop
-from fieldmon.samplers.scene import ChoosesLook, Looks, travel_s
+from fieldmon.samplers.scene import GATE, Looks, travel_s
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.robot import Robot
-    from fieldmon.samplers.scene import Sampler, Scene
+    from fieldmon.samplers.scene import Sampler, Scene, Stops
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,23 +64,23 @@ def work_day(
     """
     looks = looks_of(scene.robot, sampler)
     stops = sampler.walk(scene, would_find)
-    look = np.zeros(len(stops.plant), np.uint8) if stops.look is None else stops.look
-    first = would_find[stops.plant]
-    work = Workday(
-        plant=stops.plant,
-        arrive_s=stops.arrive_s,
-        found=(first > 0) & (first <= look + 1),
-        stop_s=looks.stop_s[look],
-        detects=looks.detects[look],
-        end_s=0.0,
-    )
-    return replace(work, end_s=_end_s(scene, work))
+    first, k = would_find[stops.plant], len(stops.plant)
+    if len(looks.stop_s) == 1 or stops.look is None:
+        found = first.view(np.uint8) == 1
+        stop_s, detects = np.full(k, looks.stop_s[0]), np.full(k, looks.detects[0])
+    else:
+        found = (first > 0) & (first <= stops.look + 1)
+        stop_s, detects = looks.stop_s[stops.look], looks.detects[stops.look]
+    end_s = _end_s(scene, stops, float(stop_s[-1])) if k else 0.0
+    return Workday(stops.plant, stops.arrive_s, found, stop_s, detects, end_s)
 
 
 def looks_of(robot: Robot, sampler: Sampler) -> Looks:
-    """Return the looks that a sampler chooses from; most have one, the robot's."""
-    if isinstance(sampler, ChoosesLook):
-        return sampler.looks(robot)
+    """Return the looks that a sampler chooses from (see `ChoosesLook`); most have the robot's."""
+    # asking whether it is an instance of the protocol takes as long as a day's drive
+    chosen: Callable[[Robot], Looks] | None = getattr(sampler, "looks", None)
+    if chosen is not None:
+        return chosen(robot)
     return Looks(np.array([robot.visit_s]), np.array([robot.detects]))
 
 
@@ -87,31 +89,36 @@ def luck(infested: NDArray[np.bool_], looks: Looks, key: np.uint64) -> NDArray[n
 
     A longer look finds what a shorter one does.
     """
-    first = np.zeros(len(infested), np.uint8)
+    first, where = np.zeros(len(infested), np.uint8), np.flatnonzero(infested)
     for k in range(len(looks.detects) - 1, -1, -1):
-        first[outcomes(infested, float(looks.detects[k]), key)] = k + 1
+        _look(where, coin_limit(float(looks.detects[k])), key, (first, np.uint8(k + 1)))
     return first
 
 
 def outcomes(infested: NDArray[np.bool_], detection: float, key: np.uint64) -> NDArray[np.bool_]:
     """Draw ``(n,)`` what an inspection of each plant would find today: nothing on clean plants."""
-    found = np.empty(len(infested), np.bool_)
-    _look(infested, detection, key, found)
+    found = np.zeros(len(infested), np.bool_)
+    seen = found.view(np.uint8), np.uint8(1)
+    _look(np.flatnonzero(infested), coin_limit(detection), key, seen)
     return found
 
 
 @loop
 def _look(
-    infested: NDArray[np.bool_], detection: float, key: np.uint64, found: NDArray[np.bool_]
+    infested: NDArray[np.intp],
+    limit: np.uint64,
+    key: np.uint64,
+    found: tuple[NDArray[np.uint8], np.uint8],
 ) -> None:
-    for i in range(infested.size):
-        found[i] = infested[i] and coin(key, i) < detection
+    """Note a value for those of the infested plants that a look would find."""
+    noted, value = found
+    for i in infested:
+        if coin_bits(key, i) < limit:
+            noted[i] = value
 
 
-def _end_s(scene: Scene, work: Workday) -> float:
-    if not len(work):
-        return 0.0
-    end_s = float(work.arrive_s[-1] + work.stop_s[-1])
+def _end_s(scene: Scene, stops: Stops, last_stop_s: float) -> float:
+    end_s = float(stops.arrive_s[-1]) + last_stop_s
     if scene.robot.returns:
-        end_s += travel_s(scene.aisles.ground, scene.clock, int(work.plant[-1]), -1)
+        end_s += travel_s(scene.aisles.ground, scene.clock, int(stops.plant[-1]), GATE)
     return end_s

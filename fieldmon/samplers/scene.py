@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -152,7 +152,6 @@ class Sampler(Protocol):
         ...
 
 
-@runtime_checkable
 class ChoosesLook(Sampler, Protocol):
     """A sampler that decides at each stop how long to look."""
 

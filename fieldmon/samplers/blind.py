@@ -16,7 +16,7 @@ import numpy as np
 from fieldmon.chance import coin, coin_table
 from fieldmon.compiled import loop, part
 from fieldmon.errors import SettingError
-from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
+from fieldmon.samplers.scene import Clock, Scene, Stops, in_time, travel_s
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -224,11 +224,11 @@ def _walk(
         first = k
         plant = _next_here(ground, stations, (wanted, last, today), position, at)
         while plant >= 0:
-            if k == stops.plant.size or not can_visit(ground, clock, at, plant, now_s):
+            arrive_s = now_s + travel_s(ground, clock, at, plant)
+            if k == stops.plant.size or not in_time(ground, clock, plant, arrive_s):
                 return k
-            now_s += travel_s(ground, clock, at, plant)
-            stops.plant[k], stops.arrive_s[k] = plant, now_s
-            now_s += clock.visit_s
+            stops.plant[k], stops.arrive_s[k] = plant, arrive_s
+            now_s = arrive_s + clock.visit_s
             last[plant] = today
             at = plant
             k += 1

@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compiled import inlined, loop, part
 from fieldmon.errors import SettingError
-from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
+from fieldmon.samplers.scene import Clock, Scene, Stops, in_time, travel_s
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,7 +26,8 @@ _OCTAVE = 8
 class _Open(NamedTuple):
     """The open list: a flag per plant, and per row how many are open and between which.
 
-    And room to count plants by how many levels they are below the most suspicious.
+    And room to count plants by how many levels they are below the most suspicious, and for those
+    that come into question.
     """
 
     flag: NDArray[np.bool_]
@@ -34,6 +35,7 @@ class _Open(NamedTuple):
     low: NDArray[np.int64]
     high: NDArray[np.int64]
     tally: NDArray[np.int64]
+    asked: NDArray[np.int32]
 
     @classmethod
     def on(cls, grid: PlantGrid, steps: int) -> _Open:
@@ -44,6 +46,7 @@ class _Open(NamedTuple):
             grid.row_start[1:].copy(),
             grid.row_start[:-1] - 1,
             np.empty(steps, np.int64),
+            np.empty(len(grid), np.int32),
         )
 
 
@@ -114,10 +117,10 @@ def _walk(
             left = _refill(ground, opened, (closed, chance_bits), (max(room, 1), steps))
             if left == 0:
                 break
-        plant = _nearest(ground, clock, opened, lane_y_m, at)
-        if not can_visit(ground, clock, at, plant, now_s):
+        plant, way_s = _nearest(ground, clock, opened, lane_y_m, at)
+        if not in_time(ground, clock, plant, now_s + way_s):
             break
-        now_s += travel_s(ground, clock, at, plant)
+        now_s += way_s
         stops.plant[k], stops.arrive_s[k] = plant, now_s
         now_s += clock.visit_s
         k += 1
@@ -157,13 +160,18 @@ def _refill(
     room, steps = limits
     most = np.int64(0)
     for plant in range(closed.size):
-        if chance_bits[plant] > most and not closed[plant]:
-            most = chance_bits[plant]
+        bits = np.int64(0) if closed[plant] else chance_bits[plant]
+        most = bits if bits > most else most  # noqa: FURB136 - max is slower
     top = most >> _LEVEL_BITS
-    opened.tally[:] = 0
+    n = 0
     for plant in range(closed.size):
+        # written either way: to foresee which ones come into question is what costs
+        opened.asked[n] = plant
+        n += (top - (chance_bits[plant] >> _LEVEL_BITS) <= steps) & (not closed[plant])
+    opened.tally[:] = 0
+    for plant in opened.asked[:n]:
         below = top - (chance_bits[plant] >> _LEVEL_BITS)
-        if below < steps and not closed[plant]:
+        if below < steps:
             opened.tally[below] += 1
     most_below = min(steps, int(top))
     least, above = 0, 0
@@ -172,11 +180,9 @@ def _refill(
         least += 1
     even = room - above
     joined = 0
-    for plant in range(closed.size):
+    for plant in opened.asked[:n]:
         below = top - (chance_bits[plant] >> _LEVEL_BITS)
-        if below > least or closed[plant]:
-            continue
-        if below < least or even > 0:
+        if below < least or (below == least and even > 0):
             even -= below == least
             joined += _open(ground, opened, closed, plant)
     return joined
@@ -185,8 +191,8 @@ def _refill(
 @inlined
 def _nearest(
     ground: Ground, clock: Clock, opened: _Open, lane_y_m: NDArray[np.float64], at: int
-) -> int:
-    """Return the open plant that is reached first from `at` (a plant or the gate).
+) -> tuple[int, float]:
+    """Return the open plant that is reached first from `at` (a plant or the gate), and the seconds.
 
     Rows are looked at outward from the robot's own, as their lanes ascend with y, until driving
     straight across to the next one would already take longer than to the best plant so far.
@@ -207,7 +213,7 @@ def _nearest(
                 if plant_s < best_s:
                     best, best_s = plant, plant_s
             row += step
-    return best
+    return best, best_s
 
 
 @inlined
@@ -234,6 +240,8 @@ def _nearest_end(
         opened.high[row] -= 1
     low, high = opened.low[row], opened.high[row]
     low_s = travel_s(ground, clock, at, low)
+    if low == high:
+        return low, low_s
     high_s = travel_s(ground, clock, at, high)
     return (low, low_s) if low_s <= high_s else (high, high_s)
 
@@ -248,16 +256,21 @@ def _nearest_along(
     middle = at
     if row != ground.row[at]:
         middle = start + np.searchsorted(ground.x_m[start:end], ground.x_m[at])
-    for plant in range(middle, end):
-        if opened.flag[plant]:
-            best, best_s = plant, travel_s(ground, clock, at, plant)
-            break
-    for plant in range(middle - 1, start - 1, -1):
+    plant = max(middle, opened.low[row])
+    while plant <= opened.high[row] and not opened.flag[plant]:
+        plant += 1
+    if plant <= opened.high[row]:
+        best, best_s = plant, travel_s(ground, clock, at, plant)
+    else:
+        # none from here on up: not to be looked through again
+        opened.high[row] = min(opened.high[row], middle - 1)
+    plant = min(middle - 1, opened.high[row])
+    while plant >= opened.low[row]:
         if (ground.x_m[at] - ground.x_m[plant]) / clock.speed_m_s >= best_s:
-            break
+            return best, best_s
         if opened.flag[plant]:
             plant_s = travel_s(ground, clock, at, plant)
-            if plant_s < best_s:
-                best, best_s = plant, plant_s
-            break
+            return (plant, plant_s) if plant_s < best_s else (best, best_s)
+        plant -= 1
+    opened.low[row] = max(opened.low[row], middle)
     return best, best_s

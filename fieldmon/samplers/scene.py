@@ -184,9 +184,9 @@ def driven_s(ground: Ground, clock: Clock, places: NDArray[np.int64]) -> float:
 
 
 @inlined
-def can_visit(ground: Ground, clock: Clock, i: int, j: int, now_s: float) -> bool:
-    """Tell whether plant j fits into the day after `now_s` at i, way back to the gate included."""
-    end_s = now_s + travel_s(ground, clock, i, j) + clock.visit_s
+def in_time(ground: Ground, clock: Clock, plant: int, arrive_s: float) -> bool:
+    """Tell whether a plant reached then fits into the day, way back to the gate included."""
+    end_s = arrive_s + clock.visit_s
     if clock.returns:
-        end_s += travel_s(ground, clock, j, -1)
+        end_s += travel_s(ground, clock, plant, -1)
     return end_s <= clock.seconds_left

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from fieldmon.compiled import loop, part
 from fieldmon.errors import SettingError
-from fieldmon.samplers.scene import Clock, Scene, Stops, can_visit, travel_s
+from fieldmon.samplers.scene import Clock, Scene, Stops, in_time, travel_s
 
 if TYPE_CHECKING:
     import numpy as np
@@ -96,11 +96,11 @@ def _walk(
         position += every
         if last[plant] == today:
             continue
-        if not can_visit(ground, clock, at, plant, now_s):
+        arrive_s = now_s + travel_s(ground, clock, at, plant)
+        if not in_time(ground, clock, plant, arrive_s):
             break
-        now_s += travel_s(ground, clock, at, plant)
-        stops.plant[k], stops.arrive_s[k] = plant, now_s
-        now_s += clock.visit_s
+        stops.plant[k], stops.arrive_s[k] = plant, arrive_s
+        now_s = arrive_s + clock.visit_s
         last[plant] = today
         at = plant
         left -= 1

@@ -13,7 +13,7 @@ from fieldmon.errors import SettingError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.grid import Csr, PlantGrid
+    from fieldmon.grid import Csr, Linked, PlantGrid
     from fieldmon.spread import Spread
 
 # no plant is ever taken as certainly clean or certainly infested: evidence must be able to undo it
@@ -21,6 +21,7 @@ _LEAST, _MOST = 1e-6, 1.0 - 1e-6
 # what is added to it is an int64
 _0 = np.int64(0)
 _1, _2, _3 = np.uint32(1), np.uint32(2), np.uint32(3)
+_64 = np.uint64(1)
 # a look is heard as far as three plants away, and as long as it changes a chance by this
 _RINGS = 3
 # round a loop the same news arrives twice: no plant settles its neighbour more than this
@@ -262,19 +263,20 @@ class Pairs:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
         mind = self.chance.copy(), self.both.copy()
         looks = plants, found, learning.detects(len(plants))
-        _regroup(mind, self.grid.adjacent, looks, Company.none(len(self.chance)))
-        _learn_pairs(mind, self.grid.adjacent, looks, learning.treated, near(len(self.chance)))
+        _regroup(mind, self.grid.linked, looks, Company.none(len(self.chance)))
+        _learn_pairs(mind, self.grid.linked, looks, learning.treated, near(len(self.chance)))
         return Pairs(self.grid, *mind)
 
     def overnight(self, spread: Spread) -> Pairs:
         """Return what is believed the next morning."""
         after = np.empty_like(self.chance), np.empty_like(self.both)
-        close, spared = np.zeros(len(self.chance)), np.empty_like(self.both)
-        mind, adjacent = (self.chance, self.both), self.grid.adjacent
+        close, spared = np.empty_like(self.chance), np.empty_like(self.both)
+        mind, linked = (self.chance, self.both), self.grid.linked
         rule = spread.rate_per_day, spread.to == "one", spread.arrivals_per_day
-        beside = np.empty((3, int(np.diff(adjacent.start).max(initial=0))))
-        _spare_pairs(mind, (after[0], close, spared), adjacent, beside, rule)
-        _overnight_pairs(mind, (*after, close, spared), adjacent, rule[0])
+        beside = np.empty((3, int(np.diff(linked.start).max(initial=0))))
+        _stand_close(mind, close, linked)
+        _spare_pairs(mind, (after[0], close, spared), linked, beside, rule)
+        _overnight_pairs(mind, (*after, close, spared), linked, rule[0])
         return Pairs(self.grid, *after)
 
     def treated(self, left: NDArray[np.float64]) -> Pairs:
@@ -301,7 +303,7 @@ def near(n: int) -> Near:
 @part
 def look(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
-    adjacent: Csr,
+    linked: Linked,
     result: tuple[int, bool],
     rule: tuple[float, bool],
     touched: Near,
@@ -318,63 +320,64 @@ def look(
     detection, treated = rule
     p = chance[i]
     after = _MOST if found else p * (1.0 - detection) / (1.0 - p * detection)
-    touched.plant[0], touched.ring[i], touched.after[i] = i, 1, min(max(after, _LEAST), _MOST)
-    # not a plain 1: what is called below would be compiled for that number alone
-    n, first = int(touched.ring[i]), 0
+    touched.plant[0], touched.ring[i], touched.after[i] = i, 1, _sure(after)
+    # unsigned, here and below: an index that may be negative is checked for it
+    n, first = np.uint64(1), np.uint64(0)
     for ring in range(2, _RINGS + 2):
         end = n
         for t in range(first, end):
-            n = _tell(mind, adjacent, (touched.plant[t], ring), touched, n)
+            n = _tell(mind, linked, (np.uint64(touched.plant[t]), ring), touched, n)
         first = end
     for t in range(n):
-        j = touched.plant[t]
-        _keep_company(mind, adjacent, j, touched)
+        _keep_company(mind, linked, np.uint64(touched.plant[t]), touched)
     for t in range(n):
-        j = touched.plant[t]
+        j = np.uint64(touched.plant[t])
         chance[j], touched.ring[j] = touched.after[j], 0
     if found and treated:
         chance[i] = _LEAST
-        for e in range(adjacent.start[i], adjacent.start[i + 1]):
-            both[e] = both[_back(adjacent, i, e)] = 0.0
-    return n
+        for e in range(linked.start[i], linked.start[i + 1]):
+            both[e] = both[linked.back[e]] = 0.0
+    return int(n)
 
 
-@part
+# the next two are copied into `look`: calling them costs a quarter of what they do
+@inlined
 def _tell(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
-    adjacent: Csr,
-    teller: tuple[int, int],
+    linked: Linked,
+    teller: tuple[np.uint64, int],
     touched: Near,
-    n: int,
-) -> int:
+    n: np.uint64,
+) -> np.uint64:
     """Pass on what a plant has learnt to its neighbours in the next ring."""
     chance, both = mind
     j, ring = teller
     p, after = chance[j], touched.after[j]
     if abs(after - p) < _LEAST_SAY:
         return n
-    for e in range(adjacent.start[j], adjacent.start[j + 1]):
-        k = adjacent.plant[e]
-        if touched.ring[k] == 0:
-            touched.plant[n], touched.ring[k], touched.after[k] = k, ring, chance[k]
-            n += 1
-        elif touched.ring[k] != ring:
+    for e in range(np.uint32(linked.start[j]), np.uint32(linked.start[j + _64])):
+        k = np.uint32(linked.plant[e])
+        q, its_ring = chance[k], touched.ring[k]
+        own = q if its_ring == 0 else touched.after[k]
+        if its_ring == 0:
+            touched.plant[n], touched.ring[k] = k, ring
+            n += _64
+        elif its_ring != ring:
             continue
-        q = chance[k]
         told = _told(p, q, both[e], after)
         if told < q:
-            touched.after[k] *= told / q
+            own *= told / q
         else:
-            touched.after[k] = 1.0 - (1.0 - touched.after[k]) * (1.0 - told) / (1.0 - q)
-        touched.after[k] = min(max(touched.after[k], _LEAST), _MOST)
+            own = 1.0 - (1.0 - own) * (1.0 - told) / (1.0 - q)
+        touched.after[k] = _sure(own)
     return n
 
 
-@part
+@inlined
 def _keep_company(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
-    adjacent: Csr,
-    j: int,
+    linked: Linked,
+    j: np.uint64,
     touched: Near,
 ) -> None:
     """Bring the pairs of a plant and those farther out to their new chances.
@@ -383,43 +386,53 @@ def _keep_company(
     from others.
     """
     chance, both = mind
-    for e in range(adjacent.start[j], adjacent.start[j + 1]):
-        k = adjacent.plant[e]
-        if touched.ring[k] != 0 and (touched.ring[k], k) < (touched.ring[j], j):
+    p, after, ring = chance[j], touched.after[j], touched.ring[j]
+    for e in range(np.uint32(linked.start[j]), np.uint32(linked.start[j + _64])):
+        k = np.uint32(linked.plant[e])
+        its_ring = touched.ring[k]
+        if its_ring != 0 and (its_ring < ring or (its_ring == ring and k < j)):
             continue
-        p, q, after = chance[j], chance[k], touched.after[j]
-        own = touched.after[k] if touched.ring[k] else q
+        q = chance[k]
+        own = q if its_ring == 0 else touched.after[k]
         told = _told(p, q, both[e], after)
         from_others = own / (1.0 - own) * (1.0 - told) / told
-        beside = min(both[e] / p, 1.0)
+        beside = _least(both[e] / p, 1.0)
         beside = beside * from_others / (beside * from_others + 1.0 - beside + _LEAST)
         c = _bounded(beside * after, own, after)
-        both[e] = both[_back(adjacent, j, e)] = c
+        both[e] = both[np.uint32(linked.back[e])] = c
+
+
+@inlined
+def _least(a: float, b: float) -> float:
+    """Return the lesser of two numbers: as `min`, which looks out for NaN and so is slower."""
+    return a if a < b else b  # noqa: FURB136 - see above
+
+
+@inlined
+def _most(a: float, b: float) -> float:
+    """Return the greater of two numbers, likewise."""
+    return a if a > b else b  # noqa: FURB136 - see above
+
+
+@inlined
+def _sure(chance: float) -> float:
+    """Return a chance that evidence can undo."""
+    return _least(_most(chance, _LEAST), _MOST)
 
 
 @inlined
 def _bounded(both: float, p: float, q: float) -> float:
     """Return the chance of both of two plants, within what their own chances p and q allow."""
     apart = p * q
-    return max(min(both, apart + _CLOSEST * (min(p, q) - apart)), p + q - 1.0, 0.0)
+    most = apart + _CLOSEST * (_least(p, q) - apart)
+    return _most(_least(both, most), _most(p + q - 1.0, 0.0))
 
 
 @inlined
 def _told(p: float, q: float, both: float, after: float) -> float:
     """Return the chance of a plant, q until now, when its neighbour's goes from p to `after`."""
     c = _bounded(both, p, q)
-    told = c / p * after + (q - c) / (1.0 - p) * (1.0 - after)
-    return min(max(told, _LEAST), _MOST)
-
-
-@inlined
-def _back(adjacent: Csr, j: int, e: int) -> int:
-    """Return where the pair of plant j at place e stands in the list of the other plant."""
-    k = adjacent.plant[e]
-    for back in range(adjacent.start[k], adjacent.start[k + 1]):
-        if adjacent.plant[back] == j:
-            return back
-    return e
+    return _sure(c / p * after + (q - c) / (1.0 - p) * (1.0 - after))
 
 
 class Company(NamedTuple):
@@ -450,7 +463,7 @@ class Company(NamedTuple):
 @part
 def meet(
     dawn: tuple[NDArray[np.float64], NDArray[np.float64]],
-    adjacent: Csr,
+    linked: Linked,
     result: tuple[int, bool, float],
     company: Company,
 ) -> None:
@@ -461,8 +474,8 @@ def meet(
     chance, both = dawn
     i, found, detects = result
     company.outcome[i], company.detects[i] = found, detects
-    for e in range(adjacent.start[i], adjacent.start[i + 1]):
-        j = adjacent.plant[e]
+    for e in range(linked.start[i], linked.start[i + 1]):
+        j = linked.plant[e]
         if company.outcome[j] < 0:
             continue
         if found:
@@ -481,48 +494,65 @@ def closeness(company: Company) -> float:
 
 @part
 def regroup(
-    mind: tuple[NDArray[np.float64], NDArray[np.float64]], adjacent: Csr, scale: float
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]], linked: Linked, scale: float
 ) -> None:
     """Scale what pairs have in common, all over the plot."""
     chance, both = mind
-    for i in range(chance.size):
-        for e in range(adjacent.start[i], adjacent.start[i + 1]):
-            p, q = chance[i], chance[adjacent.plant[e]]
+    for i in range(np.uint64(chance.size)):
+        p = chance[i]
+        for e in range(np.uint32(linked.start[i]), np.uint32(linked.start[i + _64])):
+            q = chance[np.uint32(linked.plant[e])]
             both[e] = _bounded(p * q + scale * (both[e] - p * q), p, q)
 
 
 @loop
 def _regroup(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
-    adjacent: Csr,
+    linked: Linked,
     looks: tuple[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]],
     company: Company,
 ) -> None:
     """Learn from a day's looks beside its finds how much infested plants stand together."""
     plants, found, detects = looks
     for k in range(plants.size):
-        meet(mind, adjacent, (_0 + plants[k], found[k], detects[k]), company)
-    regroup(mind, adjacent, closeness(company))
+        meet(mind, linked, (_0 + plants[k], found[k], detects[k]), company)
+    regroup(mind, linked, closeness(company))
 
 
 @loop
 def _learn_pairs(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
-    adjacent: Csr,
+    linked: Linked,
     looks: tuple[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]],
     treated: bool,  # noqa: FBT001 - a rule, in a compiled loop
     touched: Near,
 ) -> None:
     plants, found, detects = looks
     for k in range(plants.size):
-        look(mind, adjacent, (_0 + plants[k], found[k]), (detects[k], treated), touched)
+        look(mind, linked, (_0 + plants[k], found[k]), (detects[k], treated), touched)
+
+
+@loop
+def _stand_close(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    close: NDArray[np.float64],
+    linked: Linked,
+) -> None:
+    """Find how close infested plants stand about each, ``(n,)``."""
+    chance, both = mind
+    for i in range(np.uint64(chance.size)):
+        first, end = np.uint32(linked.start[i]), np.uint32(linked.start[i + _64])
+        beside = 0.0
+        for e in range(first, end):
+            beside += both[e] / chance[i]
+        close[i] = beside / (end - first) if end > first else 0.0
 
 
 @loop
 def _spare_pairs(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     after: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
-    adjacent: Csr,
+    linked: Linked,
     room: NDArray[np.float64],
     rule: tuple[float, bool, float],
 ) -> None:
@@ -531,57 +561,141 @@ def _spare_pairs(
     `after` is that chance ``(n,)``, how close infested plants stand about each ``(n,)``, and the
     chance that a clean plant stays so but for one of those beside it ``(e,)``; `room` ``(3, d)``
     holds what concerns the d plants beside one.
-    """
-    (chance, both), (morning, close, spared) = mind, after
-    rate, one, arrivals = rule
-    start, plant = adjacent
-    for i in range(chance.size):
-        for e in range(start[i], start[i + 1]):
-            close[i] += both[e] / chance[i]
-        close[i] /= max(start[i + 1] - start[i], 1)
-    for i in range(chance.size):
-        first, degree = start[i], start[i + 1] - start[i]
-        weight, kin = 0.0, 0.0
-        # the most infested plant beside it, and the next
-        most, second, which = 0.0, 0.0, -1
-        for k in range(degree):
-            j = plant[first + k]
-            share = rate / (start[j + 1] - start[j]) if one else rate
-            beside = max(chance[j] - both[first + k], 0.0) / (1.0 - chance[i])
-            weight += beside
-            kin += beside * close[j] ** 2
-            room[_SHARED, k] = share * beside
-            if beside > most:
-                most, second, which = beside, most, k
-            elif beside > second:
-                second = beside
-        kin = kin / weight if weight > 0.0 else 0.0
-        g, g_but = max(kin, most), max(kin, second)
-        g, g_but = most / g if g > 0.0 else 0.0, second / g_but if g_but > 0.0 else 0.0
-        for k in range(degree):
-            room[_FREE, k] = 1.0 - room[_SHARED, k] / g if g > 0.0 else 1.0
-            room[_FREE_BUT, k] = 1.0 - room[_SHARED, k] / g_but if g_but > 0.0 else 1.0
-        for k in range(degree):
-            row, given = (_FREE_BUT, g_but) if k == which else (_FREE, g)
-            spared[first + k] = (1.0 - arrivals) * _spared(room[row], degree, given, k)
-        stays = (1.0 - arrivals) * _spared(room[_FREE], degree, g, -1)
-        morning[i] = min(max(1.0 - (1.0 - chance[i]) * stays, _LEAST), _MOST)
-
-
-@inlined
-def _spared(free: NDArray[np.float64], degree: int, g: float, but: int) -> float:
-    """Return the chance that none of a plant's neighbours infects it, neighbour `but` aside.
 
     Neighbours of a clean plant are infested together: there is an infestation beside it with the
     chance g, and if so each neighbour belongs to it with the chance beside / g, so that where
     one does another does with the chance `kin`. Independent neighbours are the case of g = 1.
-    `free` is the chance that each does not infect it where there is one.
     """
-    spared = 1.0
+    chance, morning = mind[0], after[0]
+    for i in range(np.uint64(chance.size)):
+        # most plants; a loop of unknown length costs three times this
+        if linked.start[i + _64] - linked.start[i] == 4:
+            stays = _spare_four(i, mind, after, linked, rule)
+        else:
+            stays = _spare_any(i, mind, after, linked, (room, rule))
+        morning[i] = _sure(1.0 - (1.0 - chance[i]) * stays)
+
+
+@part
+def _spare_any(
+    i: int,
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    after: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    linked: Linked,
+    given: tuple[NDArray[np.float64], tuple[float, bool, float]],
+) -> float:
+    """Return the chance that a clean plant stays so; find it but for each of those beside it."""
+    (chance, both), (_, close, spared) = mind, after
+    room, (rate, one, arrivals) = given
+    first, degree = linked.start[i], linked.start[i + _64] - linked.start[i]
+    weight, kin = 0.0, 0.0
+    # the most infested plant beside it, and the next
+    most, second, which = 0.0, 0.0, -1
     for k in range(degree):
-        if k != but:
-            spared *= free[k]
-    return 1.0 - g * (1.0 - spared)
+        j = linked.plant[first + k]
+        share = rate / (linked.start[j + 1] - linked.start[j]) if one else rate
+        beside = max(chance[j] - both[first + k], 0.0) / (1.0 - chance[i])
+        weight += beside
+        kin += beside * close[j] ** 2
+        room[_SHARED, k] = share * beside
+        if beside > most:
+            most, second, which = beside, most, k
+        elif beside > second:
+            second = beside
+    g, g_but = _one_infestation(weight, kin, (most, second))
+    for k in range(degree):
+        room[_FREE, k] = 1.0 - room[_SHARED, k] / g if g > 0.0 else 1.0
+        room[_FREE_BUT, k] = 1.0 - room[_SHARED, k] / g_but if g_but > 0.0 else 1.0
+    for k in range(degree):
+        row, there = (_FREE_BUT, g_but) if k == which else (_FREE, g)
+        free = 1.0
+        for other in range(degree):
+            if other != k:
+                free *= room[row, other]
+        spared[first + k] = (1.0 - arrivals) * (1.0 - there * (1.0 - free))
+    free = 1.0
+    for k in range(degree):
+        free *= room[_FREE, k]
+    return (1.0 - arrivals) * (1.0 - g * (1.0 - free))
+
+
+@inlined
+def _one_infestation(
+    weight: float, kin: float, infested: tuple[float, float]
+) -> tuple[float, float]:
+    """Return the chance of an infestation beside a clean plant.
+
+    And of one where the most infested plant beside it is left out.
+    """
+    most, second = infested
+    kin = kin / weight if weight > 0.0 else 0.0
+    g, g_but = _most(kin, most), _most(kin, second)
+    return most / g if g > 0.0 else 0.0, second / g_but if g_but > 0.0 else 0.0
+
+
+@inlined
+def _spare_four(
+    i: int,
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    after: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    linked: Linked,
+    rule: tuple[float, bool, float],
+) -> float:
+    """Do the same for a plant with four beside it, to the same digits."""
+    chance, (_, close, spared) = mind[0], after
+    rate, one, arrivals = rule
+    stay, clean = 1.0 - arrivals, 1.0 - chance[i]
+    e0 = np.uint64(np.uint32(linked.start[i]))
+    e1, e2, e3 = e0 + _64, e0 + np.uint64(2), e0 + np.uint64(3)
+    j0, b0 = _beside(mind, linked, e0, clean)
+    j1, b1 = _beside(mind, linked, e1, clean)
+    j2, b2 = _beside(mind, linked, e2, clean)
+    j3, b3 = _beside(mind, linked, e3, clean)
+    kin = b0 * close[j0] ** 2 + b1 * close[j1] ** 2 + b2 * close[j2] ** 2 + b3 * close[j3] ** 2
+    # the most infested of them, and the next
+    more, less = (b1, b0) if b1 > b0 else (b0, b1)
+    other_more, other_less = (b3, b2) if b3 > b2 else (b2, b3)
+    first_two = other_more <= more
+    most = more if first_two else other_more
+    second = _most(other_more, less) if first_two else _most(more, other_less)
+    which = b1 > b0 if first_two else 2 + (b3 > b2)
+    g, g_but = _one_infestation(b0 + b1 + b2 + b3, kin, (most, second))
+    s0, s1 = _share(linked, (rate, one), j0) * b0, _share(linked, (rate, one), j1) * b1
+    s2, s3 = _share(linked, (rate, one), j2) * b2, _share(linked, (rate, one), j3) * b3
+    f0, f1, f2, f3 = _free(s0, g), _free(s1, g), _free(s2, g), _free(s3, g)
+    spared[e0] = stay * (1.0 - g * (1.0 - f1 * f2 * f3))
+    spared[e1] = stay * (1.0 - g * (1.0 - f0 * f2 * f3))
+    spared[e2] = stay * (1.0 - g * (1.0 - f0 * f1 * f3))
+    spared[e3] = stay * (1.0 - g * (1.0 - f0 * f1 * f2))
+    low, middle, high = s1 if which == 0 else s0, s2 if which <= 1 else s1, s2 if which == 3 else s3
+    free_but = _free(low, g_but) * _free(middle, g_but) * _free(high, g_but)
+    spared[e0 + np.uint64(which)] = stay * (1.0 - g_but * (1.0 - free_but))
+    return stay * (1.0 - g * (1.0 - f0 * f1 * f2 * f3))
+
+
+@inlined
+def _beside(
+    mind: tuple[NDArray[np.float64], NDArray[np.float64]],
+    linked: Linked,
+    e: np.uint64,
+    clean: float,
+) -> tuple[np.uint32, float]:
+    """Return the plant of an entry, and its chance if the one it stands beside is clean."""
+    j = np.uint32(linked.plant[e])
+    return j, _most(mind[0][j] - mind[1][e], 0.0) / clean
+
+
+@inlined
+def _share(linked: Linked, rule: tuple[float, bool], j: np.uint32) -> float:
+    """Return the chance that an infested plant infests a given one beside it."""
+    rate, one = rule
+    return rate / (linked.start[np.uint64(j) + _64] - linked.start[j]) if one else rate
+
+
+@inlined
+def _free(share: float, g: float) -> float:
+    """Return the chance that a neighbour does not infest a plant where an infestation is near."""
+    return 1.0 - share / g if g > 0.0 else 1.0
 
 
 @loop
@@ -590,20 +704,19 @@ def _overnight_pairs(
     after: tuple[
         NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]
     ],
-    adjacent: Csr,
+    linked: Linked,
     rate: float,
 ) -> None:
     """Find the chances of pairs in the morning from what `_spare_pairs` has found."""
     (chance, both), (morning, pair, close, spared) = mind, after
-    start, plant = adjacent
     twice = 1.0 - (1.0 - rate) ** 2
-    for i in range(chance.size):
-        for e in range(start[i], start[i + 1]):
-            j = plant[e]
-            a, b = 1.0 - spared[e], 1.0 - spared[_back(adjacent, i, e)]
+    for i in range(np.uint64(chance.size)):
+        for e in range(np.uint32(linked.start[i]), np.uint32(linked.start[i + _64])):
+            j = np.uint32(linked.plant[e])
+            a, b = 1.0 - spared[e], 1.0 - spared[np.uint32(linked.back[e])]
             # what comes to two neighbours at once mostly comes from one infestation
-            at_once = max(a * b, twice * min(close[i], close[j]) * min(a, b))
-            neither = max(1.0 - chance[i] - chance[j] + both[e], 0.0) * (1.0 - a - b + at_once)
+            at_once = _most(a * b, twice * _least(close[i], close[j]) * _least(a, b))
+            neither = _most(1.0 - chance[i] - chance[j] + both[e], 0.0) * (1.0 - a - b + at_once)
             c = morning[i] + morning[j] - 1.0 + neither
-            least = max(0.0, morning[i] + morning[j] - 1.0)
-            pair[e] = min(max(c, least), morning[i], morning[j])
+            c = _most(c, _most(0.0, morning[i] + morning[j] - 1.0))
+            pair[e] = _least(_least(c, morning[i]), morning[j])

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
+from fieldmon.compiled import loop
 from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
@@ -30,6 +31,14 @@ class Csr(NamedTuple):
 
     start: NDArray[np.int32]
     plant: NDArray[np.int32]
+
+
+class Linked(NamedTuple):
+    """The same, and for each entry the place ``(e,)`` where the other plant's list names this."""
+
+    start: NDArray[np.int32]
+    plant: NDArray[np.int32]
+    back: NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,6 +136,14 @@ class PlantGrid:
         return Csr(start, plant)
 
     @cached_property
+    def linked(self) -> Linked:
+        """Neighbours as in `adjacent`, each linked with its own entry for the plant."""
+        back = np.empty(len(self.adjacent.plant), np.int32)
+        _link(self.adjacent, back)
+        back.setflags(write=False)
+        return Linked(*self.adjacent, back)
+
+    @cached_property
     def vine(self) -> NDArray[np.intp]:
         """One number for both faces of a vine, ``(n,)``: that of the lower-numbered face."""
         itself = np.arange(len(self))
@@ -201,3 +218,14 @@ def _line_faces(grid: PlantGrid) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     new_line = np.diff(grid.row_line, prepend=-1) != 0
     new_face = new_line | (np.diff(grid.side, prepend=0) != 0)
     return first[new_line], first[new_face][np.cumsum(new_face) - 1]
+
+
+@loop
+def _link(adjacent: Csr, back: NDArray[np.int32]) -> None:
+    start, plant = adjacent
+    for i in range(start.size - 1):
+        for e in range(start[i], start[i + 1]):
+            back[e] = e
+            for other in range(start[plant[e]], start[plant[e] + 1]):
+                if plant[other] == i:
+                    back[e] = other

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.aisles import Ground
-    from fieldmon.grid import Csr
+    from fieldmon.grid import Linked
     from fieldmon.robot import Robot
 
     Float = NDArray[np.float64]
@@ -217,7 +217,7 @@ class Adaptive:
         k = _walk(
             scene.aisles.ground,
             scene.clock,
-            (scene.grid.adjacent, mind, would_find.view(np.uint8)),
+            (scene.grid.linked, mind, would_find.view(np.uint8)),
             (_Rows.of(n, n_rows), onward, looks, _Either.blank()),
             (scene.at, self.spares, scene.last_inspected == scene.day),
             (stops.plant, stops.arrive_s, taken),
@@ -229,21 +229,21 @@ class Adaptive:
 def _walk(
     ground: Ground,
     clock: Clock,
-    plants: tuple[Csr, _Mind, NDArray[np.uint8]],
+    plants: tuple[Linked, _Mind, NDArray[np.uint8]],
     room: tuple[_Rows, _Onward, Looks, _Either],
     start: tuple[int, float, NDArray[np.bool_]],
     stops: tuple[NDArray[np.int32], Float, NDArray[np.uint8]],
 ) -> int:
-    adjacent, mind, would_find = plants
+    linked, mind, would_find = plants
     rows, onward, looks, either = room
     at, spares, closed = start
     plant_at, _, look_at = stops
-    _worths(adjacent, mind, closed, spares)
+    _worths(linked, mind, closed, spares)
     work = mind, rows, onward, looks, either
     now_s, k = 0.0, 0
     price = _first_price(ground, clock, work, at)
     while k < plant_at.size:
-        _regroup(adjacent, mind, rows)
+        _regroup(linked, mind, rows)
         here = (at, price, clock.seconds_left - now_s)
         price, piece = _plan_on(ground, clock, work, here)
         before = k
@@ -254,7 +254,7 @@ def _walk(
             now_s = _visit(ground, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
             look_at[k], at, k = look, plant, k + 1
             found = 0 < would_find[plant] <= look + 1
-            _look(ground, adjacent, mind, rows, (plant, found, looks.detects[look]))
+            _look(ground, linked, mind, rows, (plant, found, looks.detects[look]))
             if found or plant == piece.last:
                 break
         if k == before:
@@ -264,7 +264,7 @@ def _walk(
             now_s = _visit(ground, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
             look_at[k], at, k = look, plant, k + 1
             found = 0 < would_find[plant] <= look + 1
-            _look(ground, adjacent, mind, rows, (plant, found, looks.detects[look]))
+            _look(ground, linked, mind, rows, (plant, found, looks.detects[look]))
     return k
 
 
@@ -306,15 +306,15 @@ def _best_look(looks: Looks, worth: float, chance: float, price: float) -> tuple
 
 
 @part
-def _worths(adjacent: Csr, mind: _Mind, closed: NDArray[np.bool_], spares: float) -> None:
+def _worths(linked: Linked, mind: _Mind, closed: NDArray[np.bool_], spares: float) -> None:
     """Work out what a find would be worth, and where each plant's pair with the last one stands."""
     chance = mind.chance
     for i in range(chance.size):
-        first, end = adjacent.start[i], adjacent.start[i + 1]
+        first, end = linked.start[i], linked.start[i + 1]
         clean = 0.0
         for e in range(first, end):
-            clean += 1.0 - chance[adjacent.plant[e]]
-            if adjacent.plant[e] == i - 1:
+            clean += 1.0 - chance[linked.plant[e]]
+            if linked.plant[e] == i - 1:
                 mind.behind[i] = e
         if not closed[i]:
             mind.worth[i] = 1.0 + spares * clean / max(end - first, 1)
@@ -346,7 +346,7 @@ def _measure(ground: Ground, clock: Clock, next_s: Float, home_s: Float) -> None
 @part
 def _look(
     ground: Ground,
-    adjacent: Csr,
+    linked: Linked,
     mind: _Mind,
     rows: _Rows,
     result: tuple[int, bool, float],
@@ -354,8 +354,8 @@ def _look(
     """Close a plant and let what was seen teach about those near it."""
     i, found, detects = result
     believed = mind.chance, mind.both
-    n = look(believed, adjacent, (i, found), (detects, True), mind.near)
-    meet((mind.dawn_chance, mind.dawn_both), adjacent, (i, found, detects), mind.company)
+    n = look(believed, linked, (i, found), (detects, True), mind.near)
+    meet((mind.dawn_chance, mind.dawn_both), linked, (i, found, detects), mind.company)
     mind.worth[i] = 0.0
     for t in range(n):
         near_it = mind.near.plant[t]
@@ -363,12 +363,12 @@ def _look(
 
 
 @part
-def _regroup(adjacent: Csr, mind: _Mind, rows: _Rows) -> None:
+def _regroup(linked: Linked, mind: _Mind, rows: _Rows) -> None:
     """Take to heart how much infested plants stand together, once it differs enough."""
     scale = closeness(mind.company)
     if abs(scale - mind.scale[0]) < _NOTABLE * mind.scale[0]:
         return
-    regroup((mind.chance, mind.both), adjacent, scale / max(mind.scale[0], _LEAST))
+    regroup((mind.chance, mind.both), linked, scale / max(mind.scale[0], _LEAST))
     mind.scale[0] = scale
     rows.stale[:] = True
 

@@ -56,7 +56,7 @@ def sample():
 
 def pixels(grid, lonlat, shape):
     """Return where lon/lat positions are on the map's picture, by Web Mercator."""
-    view = maps.view(grid)
+    view = maps.deck(grid, []).initial_view_state
     world = 512 * 2.0**view.zoom
 
     def project(lon, lat):

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeAlias
 import typer
 
 from fieldmon import cli_app, cli_raster, cli_season, cli_study
+from fieldmon.cli_waiting import WAITING
 from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
-from fieldmon.first_use import FIRST_USE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
 #: a file, and what was chosen about how to read it
 _Asked: TypeAlias = tuple[Path | None, list[str] | None]
-_FIRST_USE = "Compiling fieldmon for this machine, once; this may take a minute ..."
 PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
 
 app = typer.Typer(
@@ -168,9 +167,9 @@ StartTime = Annotated[str, typer.Option(help="Local time the work starts, HH:MM.
 
 def main() -> None:
     """Run the command; a problem is a sentence and exit code 2, never a traceback."""
-    FIRST_USE.tell(_Compiling())
     try:
-        code = app(standalone_mode=False)
+        with WAITING:
+            code = app(standalone_mode=False)
         sys.exit(code if isinstance(code, int) else 0)
     except FieldmonError as error:
         _end(str(error), 2)
@@ -182,22 +181,6 @@ def main() -> None:
         sys.exit(0)
     except Exception as error:  # noqa: BLE001 - no traceback ever reaches a person
         _unexpected(error)
-
-
-class _Compiling:
-    """Says on standard error what the first use of an installation waits for."""
-
-    def __init__(self) -> None:
-        self.is_said = False
-
-    def __call__(self, compiled: int, seconds: float, busy: bool) -> None:  # noqa: FBT001
-        if sys.stderr.isatty():
-            said = f"{_FIRST_USE} {compiled} parts so far" if busy and seconds > 1 else ""
-            sys.stderr.write(f"\r\x1b[K{said}")
-            sys.stderr.flush()
-        elif seconds > 1 and not self.is_said:
-            self.is_said = True
-            typer.echo(_FIRST_USE, err=True)
 
 
 def _unexpected(error: Exception) -> NoReturn:

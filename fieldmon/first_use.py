@@ -9,8 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     #: told when a loop's compiling begins or ends: loops compiled so far, seconds since the first
-    #: began, and whether one is still being compiled
-    Listener = Callable[[int, float, bool], None]
+    Listener = Callable[[int, float], None]
 
 
 class FirstUse:
@@ -25,6 +24,11 @@ class FirstUse:
     def tell(self, listener: Listener) -> None:
         """Tell `listener` from now on, and nobody else."""
         self._listener = listener
+
+    @property
+    def is_busy(self) -> bool:
+        """Return whether one is being compiled."""
+        return self._depth > 0
 
     def began(self) -> None:
         """Note that a loop's compiling has begun; loops it calls are compiled within."""
@@ -41,7 +45,7 @@ class FirstUse:
 
     def _say(self) -> None:
         if self._listener is not None:
-            self._listener(self.compiled, monotonic() - self._since, self._depth > 0)
+            self._listener(self.compiled, monotonic() - self._since)
 
 
 FIRST_USE = FirstUse()

@@ -3,10 +3,11 @@
 import os
 import subprocess
 import sys
+import time
 
 import pytest
 
-from fieldmon import cli
+from fieldmon import cli_waiting
 from fieldmon.first_use import FirstUse
 
 A_NIGHT = """
@@ -22,7 +23,7 @@ print(FIRST_USE.compiled)
 def test_a_loop_within_a_loop_is_counted_and_the_outer_one_ends_last():
     heard = []
     use = FirstUse()
-    use.tell(lambda *said: heard.append((said[0], said[2])))
+    use.tell(lambda *said: heard.append((said[0], use.is_busy)))
     use.began()
     use.began()
     use.ended()
@@ -33,14 +34,33 @@ def test_a_loop_within_a_loop_is_counted_and_the_outer_one_ends_last():
 @pytest.mark.parametrize("tty", [True, False])
 def test_a_command_says_that_it_compiles_and_wipes_it_away_where_it_can(monkeypatch, capsys, tty):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: tty, raising=False)
-    said = cli._Compiling()
-    said(0, 0.0, True)
-    said(3, 2.0, True)
-    said(4, 2.5, True)
-    said(5, 3.0, False)
+    use = FirstUse()
+    monkeypatch.setattr(cli_waiting, "FIRST_USE", use)
+    waiting = cli_waiting.Waiting()
+    with waiting:
+        use.began()
+        use._since -= 2
+        use.began()
+        use.ended()
+        use.ended()
     err = capsys.readouterr().err
-    assert err.count("Compiling") == (2 if tty else 1)
-    assert err.endswith("\x1b[K" if tty else "...\n")
+    assert "Compiling" in err
+    assert err.endswith("\x1b[K") if tty else err.count("Compiling") == 1
+
+
+def test_a_long_command_counts_the_seconds_at_a_terminal_unless_a_bar_does(monkeypatch, capsys):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr(cli_waiting, "_SILENT_S", 0.0)
+    with cli_waiting.WAITING:
+        time.sleep(1.2)
+        before = capsys.readouterr().err
+        with cli_waiting.progress("Simulating"):
+            time.sleep(1.2)
+        barred = capsys.readouterr().err
+    assert "Working, 1 s" in before
+    assert "Working" not in barred
+    assert "Simulating" in barred
+    assert capsys.readouterr().err.endswith("\x1b[K")
 
 
 def test_only_the_first_use_of_an_installation_compiles(tmp_path):

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli_waiting import WAITING
 from fieldmon.errors import SettingError
 
 
@@ -52,4 +53,6 @@ def open_app(
     flags = [f"--{name}={value}" for name, value in settings.items()]
     command = [sys.executable, "-P", "-m", "app.serve", "run", str(page), *flags]
     env = os.environ | {"FIELDMON_SEASONS": str(seasons.absolute()), "PYTHONPATH": path}
-    raise typer.Exit(subprocess.run(command, check=False, env=env).returncode)  # noqa: S603
+    with WAITING.silent():
+        ended = subprocess.run(command, check=False, env=env)  # noqa: S603 - our own
+    raise typer.Exit(ended.returncode)

@@ -1,9 +1,11 @@
 """Every page, driven without a browser."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import streamlit as st
 from app_driving import (
     PAGES,
     go,
@@ -21,6 +23,9 @@ from app_driving import (
 from rasterio.io import MemoryFile
 from rasterio.transform import from_bounds
 from streamlit.testing.v1 import AppTest
+
+from app import cached
+from fieldmon.first_use import FIRST_USE
 
 
 @pytest.fixture
@@ -311,3 +316,22 @@ def study_page():
     from app.views import study
 
     study.show()
+
+
+def test_while_loops_are_compiled_the_page_says_so_and_shows_the_outline(monkeypatch):
+    class Ready:
+        asked = 0
+
+        def wait(self, _):
+            self.asked += 1
+            if self.asked > 2:
+                st.stop()
+            return False
+
+    monkeypatch.setattr(cached, "warm", lambda: SimpleNamespace(ready=Ready()))
+    monkeypatch.setattr(FIRST_USE, "compiled", 7)
+    app = opened()
+    assert "7 parts" in app.info[0].value
+    (picture,) = app.get("deck_gl_json_chart")
+    assert "boundary" in picture.proto.json
+    assert not app.metric

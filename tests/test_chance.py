@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from fieldmon.chance import Chance, coin, coin_table
+from fieldmon.chance import Chance, coin, coin_bits, coin_limit, coin_table
 from fieldmon.errors import SettingError
 
 
@@ -56,3 +56,17 @@ def test_a_key_is_what_numpys_seed_sequence_makes_of_seed_and_name(seed, key, na
     spawn_key = (zlib.crc32(name.encode()), *key)
     (state,) = np.random.SeedSequence(seed, spawn_key=spawn_key).generate_state(1, np.uint64)
     assert Chance(seed).key(name, *key) == state
+
+
+@given(seed=st.integers(0, 2**140), name=st.text())
+def test_keys_are_the_keys_one_by_one(seed, name):
+    chance = Chance(seed)
+    assert chance.keys(name, 5).tolist() == [chance.key(name, day) for day in range(5)]
+
+
+@given(key=st.integers(0, 2**64 - 1), i=st.integers(0, 10_000), chance=st.floats(0, 1))
+def test_bits_are_below_the_limit_of_a_chance_where_the_coin_is_below_it(key, i, chance):
+    key = np.uint64(key)
+    its_own = float(coin(key, i))
+    for limit in (chance, its_own, np.nextafter(its_own, 1.0), 0.0, 1.0):
+        assert (coin_bits(key, i) < coin_limit(limit)) == (its_own < limit)

@@ -40,7 +40,7 @@ def test_adjacent_plants_are_those_along_the_row_and_then_those_across(grid):
 
 
 @FEW
-@given(grid=crooked_grids())
+@given(crooked_grids(50))
 def test_linked_entries_are_those_of_the_same_two_plants(grid):
     start, plant, back = grid.linked
     one = np.repeat(np.arange(len(grid)), np.diff(start))
@@ -48,6 +48,7 @@ def test_linked_entries_are_those_of_the_same_two_plants(grid):
     assert (one[back] == plant).all()
 
 
+@FEW
 @given(crooked_grids(50))
 def test_the_snake_visits_every_plant_once_up_one_line_and_down_the_next(grid):
     assert sorted(grid.snake) == list(range(len(grid)))

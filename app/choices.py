@@ -254,27 +254,36 @@ def draw(plot_key: str, edits: tuple[Edit, ...]) -> None:
     st.session_state[f"edits {plot_key}"] = edits
 
 
-def row_settings() -> dict[str, float | None]:
-    """Return what was said about rows by hand; None: found, or as the file says."""
+def row_settings(plot_key: str) -> dict[str, float | None]:
+    """Return what was said about a plot's rows by hand; None: found, or as the file says."""
     said = {
-        name: remembered.value(name)
-        for name in ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
+        name: remembered.value(f"{name} {plot_key}")
+        for name in ("row_bearing_deg", "row_spacing_m", "plant_spacing_m", "headland_m")
     }
-    both = remembered.value("both_faces")
-    headland = remembered.value("headland_m") or 4.0
-    return {**said, "headland_m": headland, "faces": 2 if both else None}
+    both = remembered.value(f"both_faces {plot_key}")
+    return {**said, "faces": 2 if both else None}
 
 
 def _plot(field: Field | None, key: str, plants: cached.Array | None) -> tuple[Plot, str]:
-    """Return the plot with its plants, as the row settings say."""
-    given = row_settings()
+    """Return the plot with its plants, as the row settings and what was drawn say."""
+    st.session_state["laying"] = key
+    edits, given = drawn(key), row_settings(key)
     if field is None:
         planting = Planting(**{name: v for name, v in given.items() if v is not None})
-        return cached.plot_around(key, planting, plants), f"{key}{planting}"
-    edits = drawn(key)
-    planting = planting_of(field, **given)
-    key = f"{key}{edits}"
-    return cached.plot(key, planting, edited(field, edits)), f"{key}{planting}"
+        around = cached.plot_around(key, planting, plants)
+        if not edits:
+            return around, f"{key}{planting}"
+        field = around.field
+    return laid(key, edits, field, edits)
+
+
+def laid(
+    plot_key: str, edits: tuple[Edit, ...], field: Field, new: tuple[Edit, ...]
+) -> tuple[Plot, str]:
+    """Return the plot on which all `edits` are drawn, the `new` ones of them not yet on `field`."""
+    planting = planting_of(field, **row_settings(plot_key))
+    key = f"{plot_key}{edits}"
+    return cached.plot(key, planting, edited(field, new)), f"{key}{planting}"
 
 
 def _records(

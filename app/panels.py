@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
+from fieldmon.errors import FieldmonError
 from fieldmon.explain import explain
 from fieldmon.field import ABSENT, PRESENT
 from fieldmon.geodata.handoff import FORMATS
@@ -18,10 +19,10 @@ from fieldmon.history import FOUND
 from fieldmon.hotspots import record_states
 from fieldmon.prior import usable
 
-from . import cached, maps, texts
+from . import cached, maps, remembered, texts
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from fieldmon.field import Observations
     from fieldmon.geodata.handoff import HandoffPlan
@@ -31,8 +32,12 @@ if TYPE_CHECKING:
 
     from .choices import Choices
 
+    #: takes what was tapped, by layer
+    Tapped = Callable[[dict], None]
+
 STARTS = time(6, 0)
 _SEEN = {"found": PRESENT, "clean": ABSENT}
+_ROW, _PLANT = "history row", "history plant"
 
 
 def starts(choices: Choices, today: Today) -> datetime:
@@ -137,8 +142,8 @@ def route_layers(choices: Choices, route: Route, *, numbers: bool) -> list:
     return cached.layers(key, partial(maps.route, route, numbers=numbers, dark=choices.dark))
 
 
-def draw(choices: Choices, layers: list, key: str, *, tap: bool = False) -> object:
-    """Show a map with outline, scale and north; return what was tapped, if that is asked for."""
+def draw(choices: Choices, layers: list, key: str, tap: Tapped | None = None) -> None:
+    """Show a map with outline, scale and north; `tap` is called once for each tap on it."""
     grid = choices.plot.grid
     bar, text = maps.scale(grid, choices.units, dark=choices.dark)
     route = next((layer for layer in layers if layer.id == "route"), None)
@@ -147,12 +152,24 @@ def draw(choices: Choices, layers: list, key: str, *, tap: bool = False) -> obje
         stops=0 if route is None else len(choices.today().route),
     )  # fmt: skip
     outline = maps.boundary(choices.plot.field, dark=choices.dark)
-    chart = st.pydeck_chart(
-        maps.deck(grid, [outline, *layers, *bar], phone=choices.phone),
-        height=choices.map_px, key=key, alt=alt, on_select="rerun" if tap else "ignore",
+    picture = maps.deck(grid, [outline, *layers, *bar], phone=choices.phone)
+    picture.renamed = st.session_state.get(f"renamed {key}", frozenset())
+    # a callback, since what was tapped stays selected in all the runs that follow
+    st.pydeck_chart(
+        picture, height=choices.map_px, key=key, alt=alt,
+        on_select="ignore" if tap is None else partial(_tapped, key, tap),
     )  # fmt: skip
     st.session_state["bar"] = text
-    return chart.selection.objects if tap else None
+
+
+def _tapped(key: str, tap: Tapped) -> None:
+    objects = {
+        name.removesuffix(maps.RENAMED): hits
+        for name, hits in st.session_state[key].selection.objects.items()
+    }
+    renamed = st.session_state.get(f"renamed {key}", frozenset())
+    st.session_state[f"renamed {key}"] = renamed ^ objects.keys()
+    tap(objects)
 
 
 def captions(parts: Sequence[str]) -> None:
@@ -235,20 +252,33 @@ def _risen(choices: Choices, yesterday: str) -> str:
     return ", ".join(f"{k + 1} (+{rise[k]:.1%})" for k in top)
 
 
-def history(choices: Choices, tapped: dict | None, key: str) -> None:
+def take_plant(choices: Choices, objects: dict) -> None:
+    """Take the plant that was tapped as the one whose history is shown."""
+    hits = [hit["i"] for layer in objects.values() for hit in layer if "i" in hit]
+    if hits:
+        grid = choices.plot.grid
+        label = row_label(grid, np.array([min(hits[0], len(grid) - 1)]))
+        st.session_state[_ROW], st.session_state[_PLANT] = int(label.line[0]), int(label.number[0])
+
+
+def chosen_layers(choices: Choices) -> list:
+    """Return the ring round the plant whose history is shown, if there is such a plant."""
+    try:
+        plant = plant_at(choices.plot.grid, *(remembered.value(key, 1) for key in (_ROW, _PLANT)))
+    except FieldmonError:
+        return []  # its history says why
+    return maps.chosen(choices.plot.grid, plant)
+
+
+def history(choices: Choices) -> None:
     """Show what is known of the plant tapped, or of the one whose row and number are given."""
-    grid = choices.plot.grid
     st.markdown(f"**{texts.HISTORY}**")
     st.caption(texts.HISTORY_TAP)
-    hits = [hit for layer in (tapped or {}).values() for hit in layer if "i" in hit]
-    if hits and st.session_state.get(f"{key} seen") != hits[0]["i"]:
-        st.session_state[f"{key} seen"] = hits[0]["i"]
-        label = row_label(grid, np.array([min(hits[0]["i"], len(grid) - 1)]))
-        st.session_state[f"{key} row"] = int(label.line[0])
-        st.session_state[f"{key} plant"] = int(label.number[0])
-    row = st.number_input(texts.HISTORY_ROW, 1, None, 1, key=f"{key} row")
-    number = st.number_input(texts.HISTORY_PLANT, 1, None, 1, key=f"{key} plant")
-    plant = plant_at(grid, int(row), int(number))
+    row, number = (
+        remembered.show(st.number_input, label, 1, key=key, default=1)
+        for label, key in ((texts.HISTORY_ROW, _ROW), (texts.HISTORY_PLANT, _PLANT))
+    )
+    plant = plant_at(choices.plot.grid, int(row), int(number))
     now = first = chance_of(choices)
     if choices.project is not None:
         begins = str(choices.project.setup.begins)

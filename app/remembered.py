@@ -31,7 +31,12 @@ def first(key: str, value: object) -> None:
 
 def value(key: str, default: object = None) -> Any:  # noqa: ANN401 - whatever the widget holds
     """Return what was chosen last, on whichever page, though its widget may come further down."""
-    return st.session_state.get(key, _values().get(key, ("", default))[1])
+    page, kept = _values().get(key, ("", default))
+    if key in st.session_state:
+        kept = st.session_state[key]
+        # what it changes may be that its widget is not shown any more
+        _values()[key] = (page, kept)
+    return kept
 
 
 def show(

@@ -152,6 +152,7 @@ DRAW_KINDS = {"": "nothing", "gate": "the gate", "path": "points of a path",
               "no_go": "corners of a no-go area"}  # fmt: skip
 DRAW_TYPED = "or type positions (lon,lat lon,lat ...)"
 DRAW_ADD, DRAW_DONE, DRAW_UNDO, DRAW_DROP = "Add", "Finish", "Undo the last one", "Drop points"
+DRAW_HERE = "click: here"
 DRAW_POINTS = "{n} point(s) so far."
 DRAW_NOTE = "Insects come in along paths; a no-go area carries no plants and is not driven through."
 RECORDS, RECORDS_NONE = "Records up to", "There are no records of this plot."

@@ -29,10 +29,10 @@ def show(choices: Choices) -> None:
             grounds.bring()
     with left:
         choices = playing.day(choices)
-        tapped = playing.show(choices, _layers(choices, shade, shown, rows), on="route" in shown)
+        playing.show(choices, _layers(choices, shade, shown, rows), on="route" in shown)
         _legend(shade)
     with right:
-        panels.history(choices, tapped, "plant")
+        panels.history(choices)
     st.markdown("\n".join(f"- {meaning}" for meaning in panels.meanings(panels.spots_of(choices))))
 
 
@@ -54,8 +54,10 @@ def _layers(choices: Choices, shade: str, shown: list[str], rows: tuple[int, int
     if "route" in shown:
         layers += panels.route_layers(choices, choices.today().route, numbers="numbers" in shown)
     if "hot" in shown:
-        layers += maps.hot(choices.plot.grid, panels.spots_of(choices))
-    return layers + maps.records(choices.records) if "records" in shown else layers
+        layers = maps.with_hot(layers, choices.plot.grid, panels.spots_of(choices))
+    if "records" in shown:
+        layers += maps.records(choices.records)
+    return layers + panels.chosen_layers(choices)
 
 
 def _legend(shade: str) -> None:

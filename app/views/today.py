@@ -52,7 +52,7 @@ def _layers(choices: Choices, today: Today, shown: list[str]) -> list:
     if "route" in shown:
         layers = layers + panels.route_layers(choices, today.route, numbers="numbers" in shown)
     if "hot" in shown:
-        layers = layers + maps.hot(choices.plot.grid, panels.spots_of(choices))
+        layers = maps.with_hot(layers, choices.plot.grid, panels.spots_of(choices))
     return layers + maps.records(choices.records) if "records" in shown else layers
 
 

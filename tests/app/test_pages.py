@@ -13,6 +13,7 @@ from app_driving import (
     metric,
     opened,
     press,
+    row_box,
     square,
     texts_of,
     upload,
@@ -68,8 +69,8 @@ def test_shorter_hours_give_a_shorter_route_on_every_page(app):
 
 def test_rows_can_be_turned_and_set_apart(app):
     go(app, "plot")
-    app.number_input(key="row_bearing_deg").set_value(158.0).run()
-    app.number_input(key="row_spacing_m").set_value(8.0).run()
+    row_box(app, "row_bearing_deg").set_value(158.0).run()
+    row_box(app, "row_spacing_m").set_value(8.0).run()
     assert not app.exception
     assert metric(app, "Row bearing") == "158.0°"
     assert 1500 < len(layer(app, "plants")["data"]) < 2000
@@ -85,6 +86,42 @@ def test_layers_are_switched_off_and_on_while_the_view_stays(app):
     assert map_of(app)["initialViewState"] == view
 
 
+def test_rows_set_by_hand_that_leave_no_plant_can_be_set_again(app, tmp_path):
+    upload(app, plot=("plot.zip", zipped(tmp_path, square(0.0006)), "application/zip"))
+    plants = metric(app, "Plants")
+    row_box(app, "headland_m").set_value(40.0).run()
+    assert "headland" in app.error[0].value
+    go(app, "today")
+    assert app.error
+    row_box(app, "headland_m").set_value(4.0).run()
+    assert not app.error
+    go(app, "plot")
+    assert metric(app, "Plants") == plants
+
+
+def test_rows_set_by_hand_are_those_of_one_plot(app):
+    go(app, "plot")
+    row_box(app, "row_bearing_deg").set_value(10.0).run()
+    other = app.selectbox(key="feature sample/paran_estate.zip").set_value(1).run()
+    assert metric(other, "Row bearing") != "10.0°"
+    app.selectbox(key="feature sample/paran_estate.zip").set_value(0).run()
+    assert metric(app, "Row bearing") == "10.0°"
+
+
+def test_a_gate_is_set_where_only_plants_were_brought(app):
+    lonlat = "\n".join(f"{35 + x / 4e3:.6f},{30 + y / 4e3:.6f}" for x in range(6) for y in range(9))
+    upload(app, plant=("plants.csv", f"lon,lat\n{lonlat}\n".encode(), "text/csv"))
+    plants = metric(app, "Plants")
+    app.selectbox(key="draw_kind").set_value("gate").run()
+    app.text_input(key="draw_typed").set_value("35.0001,29.9999").run()
+    press(app, "Add")
+    assert not app.error
+    assert metric(app, "Plants") == plants
+    assert layer(app, "gate")["data"][0]["p"] == [35.0001, 29.9999]
+    go(app, "today")
+    assert layer(app, "gate")["data"][0]["p"] == pytest.approx([35.0001, 29.9999], abs=1e-6)
+
+
 def test_a_scout_is_planned_for_too(app):
     app.segmented_control(key="who").set_value("Scout on foot").run()
     assert not app.exception
@@ -93,7 +130,7 @@ def test_a_scout_is_planned_for_too(app):
 
 def test_too_short_a_day_is_said_in_a_sentence(app):
     go(app, "plot")
-    app.number_input(key="headland_m").set_value(40.0).run()
+    row_box(app, "headland_m").set_value(40.0).run()
     app.slider(key="hours Robot").set_value(0.5).run()
     assert not app.exception
 
@@ -133,9 +170,9 @@ def test_the_map_tells_three_states_apart_by_shape_and_the_history_of_a_plant(ap
     finds = len(layer(app, "finds0")["data"])
     assert finds == sum(p["c"][:3] == [213, 30, 30] for p in layer(app, "plants")["data"])
     assert finds > 20
-    app.number_input(key="plant row").set_value(20).run()
+    app.number_input(key="history row").set_value(20).run()
     assert "Chance of infestation now" in texts_of(app)
-    app.number_input(key="plant row").set_value(99_999).run()
+    app.number_input(key="history row").set_value(99_999).run()
     assert not app.exception
     assert "must be one of 1 to" in app.error[0].value
 

@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from fieldmon.geodata.raster_values import Backdrop, RasterOptions
     from fieldmon.planting import Planting
     from fieldmon.project import Remark
+    from fieldmon.route import Route
 
     from .figures import DayFigures, Known
 
@@ -193,6 +194,12 @@ def season_today(path: str, revision: str, day: str, _season: Project) -> Today:
 def season_route(path: str, revision: str, day: str, _season: Project) -> Array:  # noqa: ARG001
     """Return the plants of the route that was given out for a day; empty if none was."""
     return _season.kept_route(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_FEW)
+def season_done(path: str, revision: str, day: str, _season: Project) -> Route:  # noqa: ARG001
+    """Return a day's way as it was worked; empty if nothing was recorded."""
+    return day_figures.done(_season, np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_FEW)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from datetime import datetime, time, timedelta
 from functools import partial
 from typing import TYPE_CHECKING
@@ -135,9 +136,27 @@ def state_notes(state: cached.Array) -> list[str]:
     return [said[s] for s in state.tolist()]
 
 
+@dataclass(frozen=True, eq=False)
+class Way:
+    """A route on the map, and the local time at which it starts."""
+
+    route: Route
+    begins: datetime
+
+
+def route_of_day(choices: Choices) -> Way:
+    """Return the way that the robot went on a day that was worked, or that it is to go."""
+    today, project = choices.today(), choices.project
+    if project is not None and (not len(today.route) or choices.on < project.last_date()):
+        done = cached.season_done(choices.key, choices.revision, choices.day, project)
+        if len(done):
+            return Way(done, datetime.combine(choices.on, project.setup.starts))
+    return Way(today.route, starts(choices, today))
+
+
 def route_layers(choices: Choices, route: Route, *, numbers: bool) -> list:
     """Return the route's layers, made once."""
-    shown = f"{choices.robot} {choices.sampler} {numbers} {choices.dark}"
+    shown = f"{choices.robot} {choices.sampler} {numbers} {choices.dark} {route.end_s}"
     key = f"route {choices.key} {choices.revision} {choices.day} {shown}"
     return cached.layers(key, partial(maps.route, route, numbers=numbers, dark=choices.dark))
 
@@ -149,7 +168,7 @@ def draw(choices: Choices, layers: list, key: str, tap: Tapped | None = None) ->
     route = next((layer for layer in layers if layer.id == "route"), None)
     alt = texts.MAP_ALT.format(
         name=choices.plot.field.name, plants=len(grid), finds=int((states_of(choices) == 1).sum()),
-        stops=0 if route is None else len(choices.today().route),
+        stops=0 if route is None else len(route_of_day(choices).route),
     )  # fmt: skip
     outline = maps.boundary(choices.plot.field, dark=choices.dark)
     picture = maps.deck(grid, [outline, *layers, *bar], phone=choices.phone)
@@ -188,13 +207,17 @@ def route_figures(choices: Choices, today: Today) -> None:
         st.metric(texts.FINDS, f"{finds:.1f}", help=texts.FINDS_HELP, width="content")
 
 
-def done_today(choices: Choices) -> None:
-    """Say what was recorded of the day, if anything was."""
-    if choices.project is None:
-        return
-    now = cached.known(choices.key, choices.revision, choices.day, choices.project)
-    if now.inspected_today:
-        st.info(texts.TODAY_DONE.format(inspected=now.inspected_today, found=now.found_today))
+def said_of_day(choices: Choices, today: Today) -> None:
+    """Say what was recorded of the day, and why there is no route where there is none."""
+    said = "" if len(today.route) else texts.NO_STOPS
+    if choices.project is not None:
+        now = cached.known(choices.key, choices.revision, choices.day, choices.project)
+        done = {"inspected": now.inspected_today, "found": now.found_today}
+        if now.inspected_today:
+            st.info((texts.TODAY_OVER if said else texts.TODAY_DONE).format(**done))
+            return
+    if said:
+        st.warning(said)
 
 
 def changes(choices: Choices) -> list[str]:

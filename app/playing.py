@@ -33,7 +33,8 @@ def day(choices: Choices) -> Choices:
 
 def show(choices: Choices, layers: list, *, on: bool) -> None:
     """Show the map with the clock of the day above it; a tap shows a plant's history."""
-    route = choices.today().route
+    way = panels.route_of_day(choices)
+    route = way.route
     tap = partial(panels.take_plant, choices)
     if not on or not len(route):
         panels.draw(choices, layers, "field_map", tap)
@@ -41,7 +42,6 @@ def show(choices: Choices, layers: list, *, on: bool) -> None:
     key = f"clock {choices.day}"
     if st.session_state.get("playing"):
         _forward(key, route.end_s)
-    begins = panels.starts(choices, choices.today())
     left, right = st.columns([1, 4], vertical_alignment="bottom")
     playing = bool(st.session_state.get("playing"))
     left.button(texts.PAUSE if playing else texts.PLAY, key="play", on_click=_toggle,
@@ -53,7 +53,7 @@ def show(choices: Choices, layers: list, *, on: bool) -> None:
     if minute:
         layers = [one for one in layers if one.id not in ("route", "arrows", "numbers")]
         layers += maps.playback(route, second, dark=choices.dark)
-    st.caption(f"{begins + timedelta(seconds=second):%H:%M}")
+    st.caption(f"{way.begins + timedelta(seconds=second):%H:%M}")
     panels.draw(choices, layers, "field_map", tap)
     if playing:
         _tick()

@@ -43,7 +43,9 @@ def page(show, title: str, icon: str, path: str) -> st.Page:  # noqa: ANN001 - a
 
     def run() -> None:
         chosen = choose()
-        keeping.said()
+        # a box of its own, empty or not: a map below that moves by a place forgets its zoom
+        with st.container():
+            keeping.said()
         if chosen.choices is None:
             plot.bring(chosen.problem)
             return

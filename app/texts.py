@@ -137,6 +137,10 @@ CHANGED_NONE = "Nothing was recorded on {day}."
 CHANGED_OUT = "Still infested, as expected: {now:.1f} after {before:.1f} ({sign}{diff:.1f})."
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
+TODAY_OVER = (
+    "{inspected} plants inspected today, {found} found: the working day is over. Choose the next "
+    "day on the left for its route, or give more hours."
+)
 TODAY_DONE = "{inspected} plants inspected today so far, {found} found. The route shows the rest."
 OTHER_FORMATS, FORMAT, DOWNLOAD_AS = "Robot, phone, paper", "Format", "Download for {reader}"
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"

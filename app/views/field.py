@@ -52,7 +52,8 @@ def _layers(choices: Choices, shade: str, shown: list[str], rows: tuple[int, int
     layers = grounds.layers(choices) if "backdrop" in shown else []
     layers = [*layers, *panels.plant_layers(choices, shade, rows)]
     if "route" in shown:
-        layers += panels.route_layers(choices, choices.today().route, numbers="numbers" in shown)
+        route = panels.route_of_day(choices).route
+        layers += panels.route_layers(choices, route, numbers="numbers" in shown)
     if "hot" in shown:
         layers = maps.with_hot(layers, choices.plot.grid, panels.spots_of(choices))
     if "records" in shown:

@@ -19,10 +19,9 @@ def show(choices: Choices) -> None:
     """Plan the day and show it."""
     today = choices.today()
     st.subheader(f"{choices.name} · {choices.units.day(choices.day)}")
-    panels.route_figures(choices, today)
-    panels.done_today(choices)
-    if not len(today.route):
-        st.warning(texts.NO_STOPS)
+    with st.container():  # one place above the map, however much is said there
+        panels.route_figures(choices, today)
+        panels.said_of_day(choices, today)
     picture = st.container()
     shown = remembered.show(
         st.pills, texts.LAYERS, list(texts.LAYER_NAMES), key="layers",

@@ -250,6 +250,19 @@ def changes(choices: Choices) -> list[str]:
     return [*said, texts.CHANGED_ROWS.format(rows=rows)] if rows else said
 
 
+def found_on_day(choices: Choices) -> dict[str, str]:
+    """Return the numbers of the plants found on the day, by row."""
+    project = choices.project
+    if project is None:
+        return {}
+    done = project.history.inspections.on(project.setup.day(choices.on))
+    label = row_label(choices.plot.grid, np.unique(done.plant[done.result == FOUND]))
+    rows: dict[str, list[str]] = {}
+    for line, number in zip(label.line.tolist(), label.number.tolist(), strict=True):
+        rows.setdefault(texts.REPORT_IN_ROW.format(row=line), []).append(str(number))
+    return {row: ", ".join(numbers) for row, numbers in rows.items()}
+
+
 def reasons(choices: Choices, today: Today) -> list[str]:
     """Return what the stops of the day are for, in sentences."""
     project = choices.project

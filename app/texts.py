@@ -268,6 +268,7 @@ REPORT_INTRO = "A page to print, or to keep as PDF (Print, then Save as PDF)."
 REPORT_DOWNLOAD, REPORT_PREVIEW = "Download the report (HTML)", "Preview"
 REPORT_TITLE = "Plot {name}, {day}"
 REPORT_SETTINGS, REPORT_ROUTE, REPORT_SEASON = "Settings", "Route", "Season so far"
+REPORT_FOUND, REPORT_IN_ROW = "Found that day", "Row {row}"
 REPORT_TICK = "found?"
 SPEED, DETECTS = "Speed", "Finds what is there with a chance of"
 

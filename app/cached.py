@@ -19,9 +19,9 @@ import streamlit as st
 from fieldmon.aisles import Aisles
 from fieldmon.chance import Chance
 from fieldmon.geodata import guard, reading
-from fieldmon.geodata.findings import Finding, Severity
+from fieldmon.geodata.findings import Finding, Severity, seen
 from fieldmon.geodata.handoff import FORMATS
-from fieldmon.geodata.rasters import read_backdrop
+from fieldmon.geodata.rasters import read_backdrop, read_raster
 from fieldmon.hotspots import HotSpots, hot_spots, record_states
 from fieldmon.metrics import SeasonFigures, figures
 from fieldmon.monitor import Plans, Plot, Today, first_day
@@ -29,6 +29,7 @@ from fieldmon.planting import rectangle
 from fieldmon.prior import start_infested
 from fieldmon.project import Project
 from fieldmon.project.store import get_meta
+from fieldmon.risk import RiskSettings, risk_chance
 from fieldmon.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.season import Day, SeasonSettings, Start, days
@@ -136,11 +137,12 @@ def today(
     robot: Robot,
     sampler_name: str,
     _plot: Plot,
-    _records: Observations,
+    _known: tuple[Observations, Array | None],
 ) -> Today:
-    """Return the planned day; `key` stands for plot and records."""
+    """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
     plans = Plans(robot, sampler(sampler_name))
-    return first_day(_plot, _records, np.datetime64(day, "D"), plans)
+    records, at_risk = _known
+    return first_day(_plot, records, np.datetime64(day, "D"), plans, at_risk)
 
 
 @st.cache_resource(max_entries=_FEW)
@@ -267,6 +269,22 @@ def handoff(key: str, name: str, _plan: HandoffPlan) -> tuple[str, bytes]:  # no
 def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Backdrop:  # noqa: ARG001
     """Return a picture of the ground about a plot."""
     return read_backdrop(_source, options, _near).value
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def risk(
+    key: str,  # noqa: ARG001
+    options: RasterOptions,
+    settings: RiskSettings,
+    _source: Source,
+    _plot: Plot,
+) -> Imported[Array]:
+    """Return the risk of a plot's plants from a raster; `key` stands for raster and plot."""
+    read = read_raster(_source, options, _plot.field)
+    chance = risk_chance(read.value.of_plants(_plot.grid), settings)
+    low, high, mean = np.nanmin(chance), np.nanmax(chance), np.nanmean(chance)
+    said = seen(texts.RISK_IS.format(low=low, high=high, mean=mean))
+    return read.having(chance, [said])
 
 
 @st.cache_resource(max_entries=_MAPS)

@@ -16,7 +16,7 @@ from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.monitor import Plot, planting_of
 from fieldmon.planting import Planting
 
-from . import cached, files, remembered, seasons, texts
+from . import cached, files, remembered, risks, seasons, texts
 from .edits import Edit, edited
 from .files import File, Heard
 from .units import AREAS_M2, DATES, LENGTHS, Units
@@ -55,6 +55,8 @@ class Choices:
         The season that is open, or None: nothing is kept then.
     plot_key
         Names the plot before anything was drawn on it.
+    risk
+        ``(n,)`` risk of the plants from a raster, or None; a season has taken it in.
     """
 
     key: str
@@ -67,6 +69,7 @@ class Choices:
     units: Units
     project: Project | None = None
     plot_key: str = ""
+    risk: cached.Array | None = None
 
     @property
     def name(self) -> str:
@@ -102,7 +105,8 @@ class Choices:
         """Return the planned day: what is left of it, once something of it was recorded."""
         if self.project is not None:
             return cached.season_today(self.key, self.revision, self.day, self.project)
-        return cached.today(self.key, self.day, self.robot, self.sampler, self.plot, self.records)
+        known = self.records, self.risk
+        return cached.today(self.key, self.day, self.robot, self.sampler, self.plot, known)
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,10 +207,12 @@ def _unsaved(where: str) -> Choices | None:
     field, plot_key, heard = _field(plot_file, plants, plant_key)
     plot, key = _plot(field, plot_key, plants)
     records, more, key = _records(record_file, plot, key)
+    risk, said, key = risks.of(plot, key)
     robot, sampler, day = _work(where)
     return Choices(
-        key, plot, records, (*heard, *more), robot, sampler, day, read_units(), None, plot_key
-    )
+        key, plot, records, (*heard, *more, *said), robot, sampler, day, read_units(), None,
+        plot_key, risk,
+    )  # fmt: skip
 
 
 def _sample(name: str) -> File:

@@ -30,7 +30,7 @@ def rows(plot_key: str) -> None:
             ("plant_spacing_m", texts.PLANT_SPACING, (0.1, 50.0, 0.1), texts.SPACING_HELP),
         ):
             low, high, step = limits
-            remembered.show(st.number_input, label, low, high, None, step, help=help_,
+            remembered.show(st.number_input, label, low, high, step=step, help=help_,
                             key=f"{key} {plot_key}")  # fmt: skip
         remembered.show(st.number_input, texts.HEADLAND, 0.1, 50.0, step=0.5, default=4.0,
                         key=f"headland_m {plot_key}")  # fmt: skip

@@ -159,6 +159,17 @@ DRAW_ADD, DRAW_DONE, DRAW_UNDO, DRAW_DROP = "Add", "Finish", "Undo the last one"
 DRAW_HERE = "click: here"
 DRAW_POINTS = "{n} point(s) so far."
 DRAW_NOTE = "Insects come in along paths; a no-go area carries no plants and is not driven through."
+RISK, RISK_FILE = "Risk from a raster", "GeoTIFF: NDVI, elevation, a risk map"
+RISK_NOTE = "One more reason for a plant to be infested, beside records, edges and paths."
+RISK_MEANS = "Its numbers are"
+RISK_MEANINGS = {
+    "chance": "chances, 0 to 1",
+    "percent": "chances in percent",
+    "rank": "only an order: the higher, the more risk",
+    "score": "scores: far above the average is much more risk",
+}
+RISK_SHARE, RISK_LOW = "Plants infested for this reason (%)", "Low numbers are the risky ones"
+RISK_IS = "Risk of the plants: {low:.1%} to {high:.1%}, {mean:.1%} on average."
 RECORDS, RECORDS_NONE = "Records up to", "There are no records of this plot."
 RECORDS_SHOWN = "{shown} of {all} records shown ({found} with pests, {clean} without)."
 UNDATED = "Records without a date are always shown."

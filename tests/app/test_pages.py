@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from app_driving import (
     PAGES,
+    begun,
     go,
     heading,
     layer,
@@ -22,6 +23,8 @@ from app_driving import (
 from rasterio.io import MemoryFile
 from rasterio.transform import from_bounds
 from streamlit.testing.v1 import AppTest
+
+from fieldmon.project import Project
 
 
 @pytest.fixture
@@ -348,3 +351,27 @@ def study_page():
     from app.views import study
 
     study.show()
+
+
+def test_a_raster_of_risk_changes_the_chances_and_the_season_keeps_it(app, seasons_folder):
+    west, south, east, north = 35.1, 30.3, 35.2, 30.4
+    rows = np.repeat(np.linspace(40, 0, 400, dtype=np.float32)[:, None], 400, axis=1)
+    with MemoryFile() as memory:
+        shape = {"width": 400, "height": 400, "count": 1, "dtype": "float32", "driver": "GTiff"}
+        place = from_bounds(west, south, east, north, 400, 400)
+        with memory.open(**shape, crs="EPSG:4326", transform=place) as raster:
+            raster.write(rows[None])
+        data = memory.read()
+    before = float(metric(app, "Expected finds"))
+    go(app, "plot")
+    app.file_uploader(key="risk_file").upload("risk.tif", data).run()
+    assert "must hold values in 0..1" in app.error[0].value, "percent were taken for chances"
+    app.selectbox(key="risk_meaning").set_value("percent").run()
+    assert not app.error
+    assert "Risk of the plants" in texts_of(app)
+    go(app, "today")
+    assert float(metric(app, "Expected finds")) > before
+    begun(app)
+    risk = Project(seasons_folder / "Gate 2026.gpkg").risk
+    assert risk is not None
+    assert 0.1 < np.nanmean(risk) < 0.4

@@ -44,6 +44,7 @@ ROUTE: Colour = (20, 80, 200)
 ROUTE_IN_DARK: Colour = (110, 220, 255)
 GATE: Colour = (0, 140, 90)
 HOT: Colour = (140, 40, 180)
+HOT_IN_DARK: Colour = (205, 130, 255)
 OUTLINE: Colour = (70, 80, 70)
 OUTLINE_IN_DARK: Colour = (190, 200, 190)
 
@@ -347,7 +348,9 @@ def _arrows(the_route: Route) -> list[dict[str, Any]]:
     return [{"p": corner} for corner in lonlat.tolist()]
 
 
-def with_hot(layers: list[Layer], grid: PlantGrid, spots: HotSpots) -> list[Layer]:
+def with_hot(
+    layers: list[Layer], grid: PlantGrid, spots: HotSpots, *, dark: bool = False
+) -> list[Layer]:
     """Return the layers with each hot spot outlined, its tint under plants that can be tapped."""
     if not len(spots):
         return layers
@@ -359,9 +362,10 @@ def with_hot(layers: list[Layer], grid: PlantGrid, spots: HotSpots) -> list[Laye
         corners = np.round(shapely.get_coordinates(shape.exterior), 7).tolist()
         text = f"hot spot: {spots.found[k]} found of {spots.inspected[k]} inspected"
         rows.append({"p": corners, "t": text})
-    tint = Layer("PolygonLayer", rows, id="hot", get_polygon="p", get_fill_color=[*HOT, 20],
+    colour = HOT_IN_DARK if dark else HOT
+    tint = Layer("PolygonLayer", rows, id="hot", get_polygon="p", get_fill_color=[*colour, 20],
                  stroked=False, pickable=True)  # fmt: skip
-    edge = Layer("PathLayer", rows, id="hot-edge", get_path="p", get_color=list(HOT),
+    edge = Layer("PathLayer", rows, id="hot-edge", get_path="p", get_color=list(colour),
                  width_min_pixels=3, get_width=0.4)  # fmt: skip
     points = [k for k, layer in enumerate(layers) if layer.type == "ScatterplotLayer"]
     under = min([*points, len(layers)])
@@ -380,12 +384,13 @@ def paths(field: Field) -> list[Layer]:
     ]  # fmt: skip
 
 
-def records(observations: Observations) -> list[Layer]:
+def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
     """Return the records: filled where pests were seen, empty where not."""
+    colour = HOT_IN_DARK if dark else HOT
     rows = [
         {
             "p": place,
-            "c": [*HOT, 220 if seen == 1 else 0],
+            "c": [*colour, 220 if seen == 1 else 0],
             "t": f"record of {day}: {'found' if seen == 1 else 'nothing' if seen == 0 else '?'}",
         }
         for place, seen, day in zip(
@@ -398,7 +403,7 @@ def records(observations: Observations) -> list[Layer]:
     return [
         Layer(
             "ScatterplotLayer", rows, id="records", get_position="p", get_fill_color="c",
-            get_radius=1.2, radius_min_pixels=3, stroked=True, get_line_color=[*HOT, 170],
+            get_radius=1.2, radius_min_pixels=3, stroked=True, get_line_color=[*colour, 170],
             line_width_min_pixels=1, pickable=True,
         )
     ]  # fmt: skip

@@ -42,7 +42,7 @@ def show(choices: Choices, layers: list, *, on: bool) -> None:
     key = f"clock {choices.day}"
     if st.session_state.get("playing"):
         _forward(key, route.end_s)
-    left, right = st.columns([1, 4], vertical_alignment="bottom")
+    left, right = st.columns([2, 5], vertical_alignment="bottom")
     playing = bool(st.session_state.get("playing"))
     left.button(texts.PAUSE if playing else texts.PLAY, key="play", on_click=_toggle,
                 icon=":material/pause:" if playing else ":material/play_arrow:")  # fmt: skip

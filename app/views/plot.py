@@ -69,7 +69,11 @@ def _figures(choices: Choices) -> None:
 
 def _map(choices: Choices) -> None:
     records, said = panels.records_until(choices)
-    layers = [*drawing.plain_plants(choices), *maps.records(records), *drawing.layers(choices)]
+    layers = [
+        *drawing.plain_plants(choices),
+        *maps.records(records, dark=choices.dark),
+        *drawing.layers(choices),
+    ]
     panels.draw(choices, layers, "plot_map", partial(drawing.take, choices))
     panels.captions([texts.LEGEND_RECORDS, *([said] if said else [])])
     if not len(choices.records):

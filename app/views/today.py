@@ -51,8 +51,12 @@ def _layers(choices: Choices, today: Today, shown: list[str]) -> list:
     if "route" in shown:
         layers = layers + panels.route_layers(choices, today.route, numbers="numbers" in shown)
     if "hot" in shown:
-        layers = maps.with_hot(layers, choices.plot.grid, panels.spots_of(choices))
-    return layers + maps.records(choices.records) if "records" in shown else layers
+        layers = maps.with_hot(
+            layers, choices.plot.grid, panels.spots_of(choices), dark=choices.dark
+        )
+    return (
+        layers + maps.records(choices.records, dark=choices.dark) if "records" in shown else layers
+    )
 
 
 def _hand_out(choices: Choices, today: Today) -> None:

@@ -10,14 +10,17 @@ from __future__ import annotations
 import io
 import threading
 import zipfile
+from functools import cache
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
 import numpy as np
 import streamlit as st
+from shapely import MultiPolygon
 
 from fieldmon.aisles import Aisles
 from fieldmon.chance import Chance
+from fieldmon.field import PRESENT, Field, Observations
 from fieldmon.geodata import guard, reading
 from fieldmon.geodata.findings import Finding, Severity, seen
 from fieldmon.geodata.handoff import FORMATS
@@ -47,7 +50,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiLineString
 
-    from fieldmon.field import Field, Observations
     from fieldmon.geodata.findings import Imported
     from fieldmon.geodata.handoff import HandoffPlan
     from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
@@ -70,22 +72,37 @@ def digest(data: bytes) -> str:
     return sha256(data).hexdigest()
 
 
-@st.cache_resource
-def warm() -> threading.Thread:
-    """Start the file reader and compile the samplers while the person is still looking."""
+class Warming(threading.Thread):
+    """Starts the file reader and compiles the samplers while the person is still looking."""
 
-    def work() -> None:
-        guard.warm()
-        grid = rectangle(3, 3)
-        start = Start(np.ones(9, np.bool_), np.full(9, 0.1))
-        # those that Today, Compare and Simulate begin with, Today's first: it is waited for
+    def __init__(self) -> None:
+        super().__init__(daemon=True)
+        #: set once what Today needs is compiled
+        self.ready = threading.Event()
+
+    def run(self) -> None:
+        """Plan a day on a few plants, then simulate with what Compare and Simulate begin with."""
+        try:
+            guard.warm()
+            corners = [(35.15, 30.36), (35.1504, 30.3601), (35.1503, 30.3604), (35.15, 30.3603)]
+            a_plot = Plot.of(Field("", MultiPolygon([(corners, [])])))
+            record = Observations.of(np.array([(35.1502, 30.3602)]), np.array([PRESENT]))
+            first_day(a_plot, record, np.datetime64("2026-11-16"), Plans())
+            hot_spots(a_plot.grid, record_states(a_plot.grid, record))
+        finally:
+            self.ready.set()
         for name in ("adaptive", "dynamic", "naive"):
-            settings = SeasonSettings(n_days=2)
-            list(days(Aisles.of(grid), Robot(), sampler(name), start, settings, Chance(0)))
+            start = Start(np.ones(9, np.bool_), np.full(9, 0.1))
+            settings, aisles = SeasonSettings(n_days=2), Aisles.of(rectangle(3, 3))
+            list(days(aisles, Robot(), sampler(name), start, settings, Chance(0)))
 
-    thread = threading.Thread(target=work, daemon=True)
-    thread.start()
-    return thread
+
+@cache
+def warm() -> Warming:
+    """Start warming, once for all sessions."""
+    warming = Warming()
+    warming.start()
+    return warming
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)

@@ -12,16 +12,19 @@ import streamlit as st
 from fieldmon import robot as robots
 from fieldmon.errors import FieldmonError
 from fieldmon.field import Field, Observations
+from fieldmon.first_use import FIRST_USE
 from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.monitor import Plot, planting_of
 from fieldmon.planting import Planting
 
-from . import cached, files, remembered, risks, seasons, texts
+from . import cached, files, maps, remembered, risks, seasons, texts
 from .edits import Edit, edited
 from .files import File, Heard
 from .units import AREAS_M2, DATES, LENGTHS, Units
 
 if TYPE_CHECKING:
+    from streamlit.delta_generator import DeltaGenerator
+
     from fieldmon.monitor import Today
     from fieldmon.project import Project
     from fieldmon.robot import Robot
@@ -89,17 +92,17 @@ class Choices:
     @property
     def phone(self) -> bool:
         """Return whether the page is shown on a phone, by what its browser says."""
-        return "Mobi" in (st.context.headers.get("User-Agent") or "")
+        return _is_phone()
 
     @property
     def dark(self) -> bool:
         """Return whether the page is dark."""
-        return st.context.theme.get("type") == "dark"
+        return _is_dark()
 
     @property
     def map_px(self) -> int:
         """Return the height of the map: half a phone's screen, more on a laptop."""
-        return 400 if self.phone else 520
+        return _map_px()
 
     def today(self) -> Today:
         """Return the planned day: what is left of it, once something of it was recorded."""
@@ -117,18 +120,50 @@ class Chosen:
     problem: FieldmonError | None = None
 
 
+def _is_phone() -> bool:
+    return "Mobi" in (st.context.headers.get("User-Agent") or "")
+
+
+def _is_dark() -> bool:
+    return st.context.theme.get("type") == "dark"
+
+
+def _map_px() -> int:
+    return 400 if _is_phone() else 520
+
+
 def choose() -> Chosen:
     """Show the sidebar; return the choices, or the problem that keeps from them."""
+    above = st.empty()
     with st.sidebar:
         where = _where()
         try:
             if where not in (texts.SAMPLE, texts.UPLOAD):
+                _wait(above)
                 return Chosen(_open(where))
-            return Chosen(_unsaved(where))
+            return Chosen(_unsaved(where, above))
         except FieldmonError as error:
             return Chosen(problem=error)
         finally:
             _units()
+
+
+def _wait(above: DeltaGenerator, field: Field | None = None) -> None:
+    """Show how far compiling is, which an installation does once, and meanwhile the outline."""
+    warming, said = cached.warm(), None
+    while not warming.ready.wait(0.5):
+        if not FIRST_USE.compiled:
+            continue
+        if said is None:
+            with above.container():
+                said = st.empty()
+                if field is not None:
+                    st.pydeck_chart(
+                        maps.outline(field, dark=_is_dark(), phone=_is_phone()), key="outline",
+                        height=_map_px(), alt=texts.OUTLINE_ALT.format(name=field.name),
+                    )  # fmt: skip
+        said.info(texts.COMPILING.format(n=FIRST_USE.compiled))
+    above.empty()
 
 
 def _where() -> str:
@@ -191,7 +226,7 @@ def _change(name: str, choices: Choices) -> None:
                 st.rerun()
 
 
-def _unsaved(where: str) -> Choices | None:
+def _unsaved(where: str, above: DeltaGenerator) -> Choices | None:
     if where == texts.SAMPLE:
         st.caption(texts.SAMPLE_NOTE)
         plot_file, record_file, plant_file = (
@@ -205,6 +240,7 @@ def _unsaved(where: str) -> Choices | None:
             return None
     plants, plant_key = _plants(plant_file)
     field, plot_key, heard = _field(plot_file, plants, plant_key)
+    _wait(above, field)
     plot, key = _plot(field, plot_key, plants)
     records, more, key = _records(record_file, plot, key)
     risk, said, key = risks.of(plot, key)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from fieldmon.chance import Chance
 from fieldmon.errors import FieldmonError
@@ -172,7 +172,7 @@ def estimate(values: Floats) -> Estimate:
     mean, n = float(np.mean(values)), len(values)
     if n < 2:
         return Estimate(mean, np.nan, np.nan)
-    half = float(student.ppf(_SURE, n - 1) * np.std(values, ddof=1) / np.sqrt(n))
+    half = float(stdtrit(n - 1, _SURE) * np.std(values, ddof=1) / np.sqrt(n))
     return Estimate(mean, mean - half, mean + half)
 
 
@@ -205,7 +205,7 @@ def curve(walked: list[SeasonFigures]) -> tuple[Floats, Floats, Floats]:
     mean, n = percent.mean(axis=0), len(percent)
     if n < 2:
         return mean, mean, mean
-    half = student.ppf(_SURE, n - 1) * percent.std(axis=0, ddof=1) / np.sqrt(n)
+    half = stdtrit(n - 1, _SURE) * percent.std(axis=0, ddof=1) / np.sqrt(n)
     return mean, np.maximum(mean - half, 0.0), np.minimum(mean + half, 100.0)
 
 

@@ -146,15 +146,25 @@ def deck(grid: PlantGrid, layers: list[Layer], *, phone: bool = False) -> Deck:
     """Return the map of a plot; its first view depends on the plot and the device alone."""
     return Deck(
         layers=layers,
-        initial_view_state=view(grid, phone=phone),
+        initial_view_state=view(
+            grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m)), phone=phone
+        ),
         map_provider=None,
         tooltip={"html": "{t}", "style": {"fontSize": "13px"}},
     )
 
 
-def view(grid: PlantGrid, *, phone: bool = False) -> pdk.ViewState:
-    """Return the view that holds the whole plot on a laptop's map, or on a phone's."""
-    corners = grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m))
+def outline(field: Field, *, dark: bool = False, phone: bool = False) -> Deck:
+    """Return the map of a plot on which no plants are laid yet."""
+    return Deck(
+        layers=[boundary(field, dark=dark)],
+        initial_view_state=view(shapely.get_coordinates(field.boundary), phone=phone),
+        map_provider=None,
+    )
+
+
+def view(corners: NDArray[np.float64], *, phone: bool = False) -> pdk.ViewState:
+    """Return the view that holds corners ``(n, 2)`` lon/lat on a laptop's map, or on a phone's."""
     (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
     low, high = (_mercator(lat) for lat in (south, north))
     size_px = _PHONE_PX if phone else _VIEW_PX

@@ -1,5 +1,6 @@
 """The app's frame: `fieldmon app` runs it."""
 
+import importlib
 import sys
 from pathlib import Path
 
@@ -12,18 +13,6 @@ if str(Path(__file__).resolve().parents[1]) not in sys.path:
 
 from app import cached, keeping, remembered, texts  # noqa: E402 - after the path is right
 from app.choices import choose  # noqa: E402
-from app.views import (  # noqa: E402
-    compare,
-    field,
-    plot,
-    prior_study,
-    report,
-    scout,
-    season,
-    simulate,
-    study,
-    today,
-)
 from fieldmon.errors import FieldmonError  # noqa: E402
 
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
@@ -45,8 +34,14 @@ if st.context.theme.get("type") == "dark":
 cached.warm()
 
 
-def page(show, title: str, icon: str, path: str) -> st.Page:  # noqa: ANN001 - a page's function
+def view(name: str):  # noqa: ANN201 - a page's module
+    """Return a page's module, loaded when it is turned to."""
+    return importlib.import_module(f"app.views.{name}")
+
+
+def page(name: str, title: str, icon: str, path: str = "") -> st.Page:
     """Return a page that shows what was chosen, or how to begin."""
+    path = path or name
 
     def run() -> None:
         chosen = choose()
@@ -54,10 +49,10 @@ def page(show, title: str, icon: str, path: str) -> st.Page:  # noqa: ANN001 - a
         with st.container():
             keeping.said()
         if chosen.choices is None:
-            plot.bring(chosen.problem)
+            view("plot").bring(chosen.problem)
             return
         try:
-            show(chosen.choices)
+            view(name).show(chosen.choices)
         except FieldmonError as error:
             st.error(str(error))
 
@@ -68,24 +63,29 @@ def page(show, title: str, icon: str, path: str) -> st.Page:  # noqa: ANN001 - a
 
 def page_prior() -> None:
     """Show the study with prior information, on the chosen plot too."""
-    prior_study.show(choose().choices)
+    view("prior_study").show(choose().choices)
 
 
-scouting = page(scout.show, texts.SCOUTING, "eco", "scout")
+def page_study() -> None:
+    """Show the published simulator."""
+    view("study").show()
+
+
+scouting = page("scout", texts.SCOUTING, "eco")
 st.session_state["scout_page"] = scouting
 # a click may end the first run of a page before its sidebar is there
 remembered.first("season", st.query_params.get("season"))
 turned = st.navigation(
     [
-        page(today.show, texts.TODAY, "route", "today"),
-        page(field.show, texts.MAP, "map", "map"),
+        page("today", texts.TODAY, "route"),
+        page("field", texts.MAP, "map", "map"),
         scouting,
-        page(season.show, texts.SEASON, "calendar_month", "season"),
-        page(compare.show, texts.COMPARE, "balance", "compare"),
-        page(plot.show, texts.PLOT, "polyline", "plot"),
-        page(report.show, texts.REPORT, "print", "report"),
-        page(simulate.show, texts.SIMULATE, "bug_report", "simulate"),
-        st.Page(study.show, title=texts.STUDY, icon=":material/science:", url_path="study"),
+        page("season", texts.SEASON, "calendar_month"),
+        page("compare", texts.COMPARE, "balance"),
+        page("plot", texts.PLOT, "polyline"),
+        page("report", texts.REPORT, "print"),
+        page("simulate", texts.SIMULATE, "bug_report"),
+        st.Page(page_study, title=texts.STUDY, icon=":material/science:", url_path="study"),
         st.Page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
     ],
     position="top",

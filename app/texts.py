@@ -104,6 +104,11 @@ LEFT = "Infested left"
 FOUND_SO_FAR, FOUND_TODAY, VISITED_TODAY = "Found so far", "Found that day", "Inspected that day"
 HOT_SPOTS = "{n} hot spot(s)"
 WORKING = "Working ..."
+COMPILING = (
+    "fieldmon is being compiled for this machine: {n} parts so far. This happens once and takes "
+    "up to a minute; the plan follows by itself."
+)
+OUTLINE_ALT = "Outline of plot {name}; its plants are not laid yet."
 STUDY_TITLE = "The thesis's samplers without prior information"
 STUDY_INTRO = (
     "Chapter 4 of A. Yehoshua's thesis (2023), made again: our mean and its interval beside each "

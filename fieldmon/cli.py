@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeAlias
 import typer
 
 from fieldmon import cli_app, cli_raster, cli_season, cli_study
+from fieldmon.cli_waiting import WAITING
 from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
 
 if TYPE_CHECKING:
@@ -167,7 +168,8 @@ StartTime = Annotated[str, typer.Option(help="Local time the work starts, HH:MM.
 def main() -> None:
     """Run the command; a problem is a sentence and exit code 2, never a traceback."""
     try:
-        code = app(standalone_mode=False)
+        with WAITING:
+            code = app(standalone_mode=False)
         sys.exit(code if isinstance(code, int) else 0)
     except FieldmonError as error:
         _end(str(error), 2)

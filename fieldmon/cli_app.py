@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli_waiting import WAITING
 from fieldmon.errors import SettingError
 
 
@@ -41,6 +42,8 @@ def open_app(
             ) from error
     typer.echo(f"fieldmon is at http://{address}:{port} (stop it with Ctrl-C)")
     page = Path(found.origin).with_name("streamlit_app.py")
+    # -m looks in the folder one stands in first, which need not be where the app is
+    path = os.pathsep.join([str(page.parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])])
     # everything else is set, with reasons, in the app's own .streamlit/config.toml
     settings = {
         "server.port": port,
@@ -48,6 +51,8 @@ def open_app(
         "server.headless": str(not browser).lower(),
     }
     flags = [f"--{name}={value}" for name, value in settings.items()]
-    command = [sys.executable, "-m", "streamlit", "run", str(page), *flags]
-    env = os.environ | {"FIELDMON_SEASONS": str(seasons.absolute())}
-    raise typer.Exit(subprocess.run(command, check=False, env=env).returncode)  # noqa: S603
+    command = [sys.executable, "-P", "-m", "app.serve", "run", str(page), *flags]
+    env = os.environ | {"FIELDMON_SEASONS": str(seasons.absolute()), "PYTHONPATH": path}
+    with WAITING.silent():
+        ended = subprocess.run(command, check=False, env=env)  # noqa: S603 - our own
+    raise typer.Exit(ended.returncode)

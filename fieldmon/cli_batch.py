@@ -6,7 +6,6 @@ import csv
 import io
 import os
 import signal
-import sys
 import time
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -18,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from fieldmon.batch import plan_task
+from fieldmon.cli_waiting import progress
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.geodata.nearby import apart
 from fieldmon.geodata.routes import RouteNotes, write_route
@@ -149,9 +149,7 @@ def _plan(
 
     pool = ProcessPoolExecutor(min(workers, len(tasks)), get_context("spawn"), _prepare, (day,))
     names, saved = list(tasks), time.monotonic()
-    with typer.progressbar(
-        length=len(names), label="Planning", file=sys.stderr, show_eta=True, width=40
-    ) as bar:
+    with progress("Planning", len(names)) as bar:
         try:
             for one in _ended(pool, tasks.items(), keep):
                 one.result()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,6 +9,7 @@ import typer
 
 from fieldmon import cli_study_run, cli_study_samplers
 from fieldmon.cli_study_prior import register as register_prior
+from fieldmon.cli_waiting import progress
 from fieldmon.errors import FileProblem
 
 if TYPE_CHECKING:
@@ -66,9 +66,7 @@ def no_prior(
 
     if not output.is_dir():
         raise FileProblem(f"The folder {output} must exist, but it does not. Make it first.")
-    with typer.progressbar(
-        length=1, label="Simulating", file=sys.stderr, show_eta=True, width=40
-    ) as bar:
+    with progress("Simulating") as bar:
         made = run_no_prior(table, replicates, seed, _shown(bar))
     for part in made.tables:
         typer.echo(f"\n{part.title}")

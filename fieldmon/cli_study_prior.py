@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli_waiting import progress
 from fieldmon.errors import ChoiceNeeded, FileProblem
 
 if TYPE_CHECKING:
@@ -70,9 +70,7 @@ def prior(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         _on_plot((plot, feature, observations), seeds, seed, output)
         return
     parts = (*(scenario or []), *(sweep or [])) or PARTS
-    with typer.progressbar(
-        length=1, label="Simulating", file=sys.stderr, show_eta=True, width=40
-    ) as bar:
+    with progress("Simulating") as bar:
         made = run_prior(parts, seeds, seed, progress=_shown(bar))
     _tell(made)
     name = "prior" if parts == PARTS else "prior_" + "_".join(parts)
@@ -107,9 +105,7 @@ def calibrate(
 
     _must_be_folder(output)
     effort = Effort(drawn=drawn, kept=kept, steps=steps, final_seeds=seeds)
-    with typer.progressbar(
-        length=1, label="Searching", file=sys.stderr, show_eta=True, width=40
-    ) as bar:
+    with progress("Searching") as bar:
         found = search(effort, seed, _shown(bar))
     _tell_fit(found)
     _write(output, {"prior_calibration.csv": candidates_csv(found.tried)})
@@ -125,9 +121,7 @@ def _on_maps(folder: Path, seeds: int, seed: int, output: Path) -> None:
 
     rules = MapRules(Robot(), CALIBRATED.spread)
     maps = read_plant_maps(folder)
-    with typer.progressbar(
-        length=1, label="Inspecting", file=sys.stderr, show_eta=True, width=40
-    ) as bar:
+    with progress("Inspecting") as bar:
         table = run_maps(maps, rules, seeds, seed, _shown(bar))
     for row in table:
         if row.visited_pct == 25.0 and row.seeds:
@@ -145,9 +139,7 @@ def _on_plot(
     from fieldmon.thesis.with_prior.studies import csv_text, rows, run_site  # noqa: PLC0415
 
     site = _site(*files)
-    with typer.progressbar(
-        length=1, label="Simulating", file=sys.stderr, show_eta=True, width=40
-    ) as bar:
+    with progress("Simulating") as bar:
         made = run_site(site, seeds, seed, progress=_shown(bar))
     for part in made.parts:
         for runs in part.runs:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fieldmon.cli_waiting import progress
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -81,15 +81,13 @@ def study_run(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
 def _run(client: Any, output: Path, sites: tuple[Site, ...], design: Design) -> dict[str, str]:  # noqa: ANN401 - Dask's
     from fieldmon.study import engine  # noqa: PLC0415
 
-    with typer.progressbar(
-        length=1, label="Simulating", file=sys.stderr, show_eta=True, width=40
-    ) as bar:
+    with progress("Simulating") as bar:
 
-        def progress(done: int, total: int) -> None:
+        def shown(done: int, total: int) -> None:
             bar.length = total
             bar.update(done - bar.pos)
 
-        return engine.run(client, output, sites, design, progress)
+        return engine.run(client, output, sites, design, shown)
 
 
 def _sites(

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli_waiting import progress
 from fieldmon.errors import FileProblem, SettingError
 
 if TYPE_CHECKING:
@@ -70,9 +70,7 @@ def samplers(
     made = outcomes_from(table.read_text(encoding="utf-8"), table.name) if table.exists() else []
     done = frozenset((outcome.cell, outcome.seed) for outcome in made)
     ahead = [(each.name, seed) for each in cells for seed in range(seeds)]
-    with typer.progressbar(
-        length=len(ahead), label="Seasons", file=sys.stderr, show_eta=True, width=40
-    ) as bar:
+    with progress("Seasons", len(ahead)) as bar:
         bar.update(len(done & set(ahead)))
         saved = monotonic()
         try:
@@ -136,16 +134,10 @@ def _tune() -> None:
     from fieldmon.comparison.tuning import CHOICES, SEEDS, losses, tuning_cells  # noqa: PLC0415
 
     made = []
-    with typer.progressbar(
-        losses(tuning_cells(), SEEDS),
-        length=len(CHOICES),
-        label="Choices",
-        file=sys.stderr,
-        show_eta=True,
-        width=40,
-    ) as bar:
-        for choice, loss in bar:
+    with progress("Choices", len(CHOICES)) as bar:
+        for choice, loss in losses(tuning_cells(), SEEDS):
             made.append((loss, *choice))
+            bar.update(1)
     for loss, suspicious, at_once in sorted(made):
         typer.echo(f"{loss:8.1f} infested plant-days: {suspicious = }, {at_once = }")
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numba as nb
+from numba.core import event
+
+from fieldmon.first_use import FIRST_USE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,6 +22,21 @@ _BARE: dict[str, Any] = {
     "no_cfunc_wrapper": True,
 }
 _NOT_FOR_PYTHON = _BARE | {"no_cpython_wrapper": True}
+
+
+class _Compiling(event.Listener):
+    """Hears of every loop that was not found compiled."""
+
+    def on_start(self, _: object) -> None:
+        """Pass it on."""
+        FIRST_USE.began()
+
+    def on_end(self, _: object) -> None:
+        """Pass it on."""
+        FIRST_USE.ended()
+
+
+event.register("numba:compile", _Compiling())  # type: ignore[no-untyped-call]
 
 
 def loop(function: F) -> F:

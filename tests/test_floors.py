@@ -8,7 +8,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 
 FLOORS = [
-    {"errors", "compiled"},
+    {"errors", "first_use", "compiled"},
     {"chance"},
     {"frame"},
     {"field"},
@@ -29,6 +29,7 @@ CLI = {"cli", "cli_parts"}
 FLOOR = {name: level for level, names in enumerate(FLOORS) for name in names}
 # modules of one floor that form one room: the first may use the second
 SAME_ROOM = {
+    ("compiled", "first_use"),
     ("ensemble", "outlook"),
     ("planting", "grid"),
     ("planting", "rows"),

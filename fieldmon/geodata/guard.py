@@ -109,14 +109,14 @@ def _work(pid: int) -> _Work:
 
 
 class Reader:
-    """One reading process."""
+    """One reading process; it loads `modules` before its first file."""
 
-    def __init__(self) -> None:
+    def __init__(self, *modules: str) -> None:
         here = str(Path(__file__).resolve().parents[2])
         path = os.pathsep.join([here, *filter(None, [os.environ.get("PYTHONPATH")])])
         # -P: a folder of downloads that one happens to stand in must not shadow a module
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "fieldmon.geodata.guard"],
+        self._process = subprocess.Popen(  # noqa: S603 - our own names
+            [sys.executable, "-P", "-m", "fieldmon.geodata.guard", *modules],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -196,14 +196,14 @@ class _Idle:
         self._lock = threading.Lock()
         atexit.register(self.stop)
 
-    def borrow(self) -> Reader:
+    def borrow(self, *modules: str) -> Reader:
         with self._lock:
             while self._readers:
                 reader = self._readers.pop()
                 if reader.is_alive:
                     return reader
                 reader.stop()
-        return Reader()
+        return Reader(*modules)
 
     def give_back(self, reader: Reader) -> None:
         with self._lock:
@@ -243,8 +243,8 @@ def call(task: str, *arguments: Any, seconds: float = limits.READ_SECONDS) -> An
 
 
 def warm() -> None:
-    """Start a reading process now, so that the first file need not wait for it."""
-    _IDLE.give_back(_IDLE.borrow())
+    """Start a reading process now, so that the first file need not wait for it to load."""
+    _IDLE.give_back(_IDLE.borrow("fieldmon.geodata.tasks"))
 
 
 def peaks_bytes() -> list[int]:
@@ -263,6 +263,8 @@ def _serve() -> None:
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # whatever a library prints must not end up among the answers
     _limit_memory()
+    for module in sys.argv[1:]:
+        importlib.import_module(module)
     while True:
         try:
             task, arguments = pickle.load(calls)  # noqa: S301 - from our own program

@@ -28,7 +28,7 @@ ESTATE = maps.__file__.replace("app/maps.py", "sample_data/")
 def shown(page, address):
     """Open the app and wait until its first screen is there."""
     page.goto(address)
-    page.get_by_text("Keep this season").wait_for(timeout=120_000)
+    page.get_by_text("Keep this season").wait_for(timeout=240_000)  # compiled first
 
 
 def still(page):
@@ -77,7 +77,7 @@ def sample():
 
 def pixels(grid, lonlat, shape):
     """Return where lon/lat positions are on the map's picture, by Web Mercator."""
-    view = maps.view(grid)
+    view = maps.deck(grid, []).initial_view_state
     world = 512 * 2.0**view.zoom
 
     def project(lon, lat):
@@ -295,7 +295,7 @@ def stops(page):
 def test_three_samplers_are_compared_while_the_page_stays_usable(page, address):
     page.goto(f"{address}/compare")
     seeds = page.get_by_role("spinbutton", name="Seasons each")
-    seeds.wait_for(timeout=120_000)
+    seeds.wait_for(timeout=240_000)
     seeds.fill("60")
     seeds.press("Enter")
     page.get_by_role("button", name="Compare", exact=True).click()
@@ -313,7 +313,7 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
     project = season(served_seasons / "Phone.gpkg", plot)
     page.goto(f"{address}/scout?season=Phone")
     place = page.locator("h2")
-    place.wait_for(timeout=120_000)
+    place.wait_for(timeout=240_000)
     for name in ("Clean", "Found", "Could not inspect"):
         button = page.get_by_role("button", name=name, exact=True)
         size = button.bounding_box()

@@ -1,9 +1,11 @@
 """Every page, driven without a browser."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import streamlit as st
 from app_driving import (
     PAGES,
     begun,
@@ -24,6 +26,8 @@ from rasterio.io import MemoryFile
 from rasterio.transform import from_bounds
 from streamlit.testing.v1 import AppTest
 
+from app import cached
+from fieldmon.first_use import FIRST_USE
 from fieldmon.project import Project
 
 
@@ -375,3 +379,22 @@ def test_a_raster_of_risk_changes_the_chances_and_the_season_keeps_it(app, seaso
     risk = Project(seasons_folder / "Gate 2026.gpkg").risk
     assert risk is not None
     assert 0.1 < np.nanmean(risk) < 0.4
+
+
+def test_while_loops_are_compiled_the_page_says_so_and_shows_the_outline(monkeypatch):
+    class Ready:
+        asked = 0
+
+        def wait(self, _):
+            self.asked += 1
+            if self.asked > 2:
+                st.stop()
+            return False
+
+    monkeypatch.setattr(cached, "warm", lambda: SimpleNamespace(ready=Ready()))
+    monkeypatch.setattr(FIRST_USE, "compiled", 7)
+    app = opened()
+    assert "7 parts" in app.info[0].value
+    (picture,) = app.get("deck_gl_json_chart")
+    assert "boundary" in picture.proto.json
+    assert not app.metric

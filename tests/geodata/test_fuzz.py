@@ -56,6 +56,15 @@ def test_a_reader_that_hangs_or_crashes_is_ended_and_the_next_file_is_read():
     assert len(reading.read_plots(GOOD).value) == 1
 
 
+def test_a_reader_started_ahead_has_loaded_what_reads():
+    loaded = "'fieldmon.geodata.tasks' in __import__('sys').modules"
+    guard.stop()
+    assert not guard.call("builtins:eval", loaded)
+    guard.stop()
+    guard.warm()
+    assert guard.call("builtins:eval", loaded)
+
+
 def test_a_reader_that_fills_the_memory_is_stopped():
     with pytest.raises(fuzz.FileProblem, match="of memory at most"):
         guard.call("numpy:ones", 400_000_000)

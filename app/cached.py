@@ -22,9 +22,9 @@ from fieldmon.aisles import Aisles
 from fieldmon.chance import Chance
 from fieldmon.field import PRESENT, Field, Observations
 from fieldmon.geodata import guard, reading
-from fieldmon.geodata.findings import Finding, Severity
+from fieldmon.geodata.findings import Finding, Severity, seen
 from fieldmon.geodata.handoff import FORMATS
-from fieldmon.geodata.rasters import read_backdrop
+from fieldmon.geodata.rasters import read_backdrop, read_raster
 from fieldmon.hotspots import HotSpots, hot_spots, record_states
 from fieldmon.metrics import SeasonFigures, figures
 from fieldmon.monitor import Plans, Plot, Today, first_day
@@ -32,6 +32,7 @@ from fieldmon.planting import rectangle
 from fieldmon.prior import start_infested
 from fieldmon.project import Project
 from fieldmon.project.store import get_meta
+from fieldmon.risk import RiskSettings, risk_chance
 from fieldmon.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.season import Day, SeasonSettings, Start, days
@@ -55,6 +56,7 @@ if TYPE_CHECKING:
     from fieldmon.geodata.raster_values import Backdrop, RasterOptions
     from fieldmon.planting import Planting
     from fieldmon.project import Remark
+    from fieldmon.route import Route
 
     from .figures import DayFigures, Known
 
@@ -152,11 +154,12 @@ def today(
     robot: Robot,
     sampler_name: str,
     _plot: Plot,
-    _records: Observations,
+    _known: tuple[Observations, Array | None],
 ) -> Today:
-    """Return the planned day; `key` stands for plot and records."""
+    """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
     plans = Plans(robot, sampler(sampler_name))
-    return first_day(_plot, _records, np.datetime64(day, "D"), plans)
+    records, at_risk = _known
+    return first_day(_plot, records, np.datetime64(day, "D"), plans, at_risk)
 
 
 @st.cache_resource(max_entries=_FEW)
@@ -210,6 +213,12 @@ def season_today(path: str, revision: str, day: str, _season: Project) -> Today:
 def season_route(path: str, revision: str, day: str, _season: Project) -> Array:  # noqa: ARG001
     """Return the plants of the route that was given out for a day; empty if none was."""
     return _season.kept_route(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_FEW)
+def season_done(path: str, revision: str, day: str, _season: Project) -> Route:  # noqa: ARG001
+    """Return a day's way as it was worked; empty if nothing was recorded."""
+    return day_figures.done(_season, np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_FEW)
@@ -277,6 +286,22 @@ def handoff(key: str, name: str, _plan: HandoffPlan) -> tuple[str, bytes]:  # no
 def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Backdrop:  # noqa: ARG001
     """Return a picture of the ground about a plot."""
     return read_backdrop(_source, options, _near).value
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def risk(
+    key: str,  # noqa: ARG001
+    options: RasterOptions,
+    settings: RiskSettings,
+    _source: Source,
+    _plot: Plot,
+) -> Imported[Array]:
+    """Return the risk of a plot's plants from a raster; `key` stands for raster and plot."""
+    read = read_raster(_source, options, _plot.field)
+    chance = risk_chance(read.value.of_plants(_plot.grid), settings)
+    low, high, mean = np.nanmin(chance), np.nanmax(chance), np.nanmean(chance)
+    said = seen(texts.RISK_IS.format(low=low, high=high, mean=mean))
+    return read.having(chance, [said])
 
 
 @st.cache_resource(max_entries=_MAPS)

@@ -37,7 +37,7 @@ def detection(seasons: dict[str, SeasonFigures], day: int, axes: tuple[str, str]
             color=alt.Color(
                 "sampler:N",
                 scale=alt.Scale(domain=list(seasons), range=_COLOURS[: len(seasons)]),
-                legend=alt.Legend(orient="top", title=None),
+                legend=alt.Legend(orient="top", title=None, columns=2),
             ),
             tooltip=["sampler", "day", alt.Tooltip("detection:Q", format=".1f")],
         )
@@ -57,7 +57,7 @@ def found(figures: SeasonFigures, axes: tuple[str, str]) -> alt.Chart:
             y=alt.Y("found:Q", title=axes[1]),
             tooltip=["day", "found"],
         )
-        .properties(height=160)
+        .properties(height=200)
     )
 
 

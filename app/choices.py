@@ -17,7 +17,7 @@ from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.monitor import Plot, planting_of
 from fieldmon.planting import Planting
 
-from . import cached, files, maps, remembered, seasons, texts
+from . import cached, files, maps, remembered, risks, seasons, texts
 from .edits import Edit, edited
 from .files import File, Heard
 from .units import AREAS_M2, DATES, LENGTHS, Units
@@ -58,6 +58,8 @@ class Choices:
         The season that is open, or None: nothing is kept then.
     plot_key
         Names the plot before anything was drawn on it.
+    risk
+        ``(n,)`` risk of the plants from a raster, or None; a season has taken it in.
     """
 
     key: str
@@ -70,6 +72,7 @@ class Choices:
     units: Units
     project: Project | None = None
     plot_key: str = ""
+    risk: cached.Array | None = None
 
     @property
     def name(self) -> str:
@@ -105,7 +108,8 @@ class Choices:
         """Return the planned day: what is left of it, once something of it was recorded."""
         if self.project is not None:
             return cached.season_today(self.key, self.revision, self.day, self.project)
-        return cached.today(self.key, self.day, self.robot, self.sampler, self.plot, self.records)
+        known = self.records, self.risk
+        return cached.today(self.key, self.day, self.robot, self.sampler, self.plot, known)
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,10 +243,12 @@ def _unsaved(where: str, above: DeltaGenerator) -> Choices | None:
     _wait(above, field)
     plot, key = _plot(field, plot_key, plants)
     records, more, key = _records(record_file, plot, key)
+    risk, said, key = risks.of(plot, key)
     robot, sampler, day = _work(where)
     return Choices(
-        key, plot, records, (*heard, *more), robot, sampler, day, read_units(), None, plot_key
-    )
+        key, plot, records, (*heard, *more, *said), robot, sampler, day, read_units(), None,
+        plot_key, risk,
+    )  # fmt: skip
 
 
 def _sample(name: str) -> File:
@@ -290,27 +296,36 @@ def draw(plot_key: str, edits: tuple[Edit, ...]) -> None:
     st.session_state[f"edits {plot_key}"] = edits
 
 
-def row_settings() -> dict[str, float | None]:
-    """Return what was said about rows by hand; None: found, or as the file says."""
+def row_settings(plot_key: str) -> dict[str, float | None]:
+    """Return what was said about a plot's rows by hand; None: found, or as the file says."""
     said = {
-        name: remembered.value(name)
-        for name in ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
+        name: remembered.value(f"{name} {plot_key}")
+        for name in ("row_bearing_deg", "row_spacing_m", "plant_spacing_m", "headland_m")
     }
-    both = remembered.value("both_faces")
-    headland = remembered.value("headland_m") or 4.0
-    return {**said, "headland_m": headland, "faces": 2 if both else None}
+    both = remembered.value(f"both_faces {plot_key}")
+    return {**said, "faces": 2 if both else None}
 
 
 def _plot(field: Field | None, key: str, plants: cached.Array | None) -> tuple[Plot, str]:
-    """Return the plot with its plants, as the row settings say."""
-    given = row_settings()
+    """Return the plot with its plants, as the row settings and what was drawn say."""
+    st.session_state["laying"] = key
+    edits, given = drawn(key), row_settings(key)
     if field is None:
         planting = Planting(**{name: v for name, v in given.items() if v is not None})
-        return cached.plot_around(key, planting, plants), f"{key}{planting}"
-    edits = drawn(key)
-    planting = planting_of(field, **given)
-    key = f"{key}{edits}"
-    return cached.plot(key, planting, edited(field, edits)), f"{key}{planting}"
+        around = cached.plot_around(key, planting, plants)
+        if not edits:
+            return around, f"{key}{planting}"
+        field = around.field
+    return laid(key, edits, field, edits)
+
+
+def laid(
+    plot_key: str, edits: tuple[Edit, ...], field: Field, new: tuple[Edit, ...]
+) -> tuple[Plot, str]:
+    """Return the plot on which all `edits` are drawn, the `new` ones of them not yet on `field`."""
+    planting = planting_of(field, **row_settings(plot_key))
+    key = f"{plot_key}{edits}"
+    return cached.plot(key, planting, edited(field, new)), f"{key}{planting}"
 
 
 def _records(

@@ -9,11 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.history import FOUND
+from fieldmon.project.setup import seconds
+from fieldmon.route import route_of
+from fieldmon.samplers.scene import GATE, NEVER, Scene, driven_s
+from fieldmon.workday import Workday
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.project import Project
+    from fieldmon.route import Route
 
 
 @dataclass(frozen=True)
@@ -61,6 +66,36 @@ def of(project: Project, on: date) -> DayFigures:
     return DayFigures(
         on, now.inspected_today, now.found_today, out.expected, out.low, out.high, out.chance_clean
     )
+
+
+def done(project: Project, on: date) -> Route:
+    """Return the way from plant to plant as a day was worked, at the times noted.
+
+    Where a time is missing, all are those that driving and looking cost.
+    """
+    setup, aisles = project.setup, project.plot.aisles
+    today = project.history.inspections.on(setup.day(on))
+    robot, n = setup.robot, len(today)
+    if np.isfinite(today.second).all():
+        today = today.of(np.argsort(today.second, kind="stable"))
+    scene = Scene(
+        aisles=aisles, robot=robot, chance=project.morning(on), seconds_left=robot.day_s,
+        last_inspected=np.full(len(aisles.grid), NEVER, np.int32),
+    )  # fmt: skip
+    places = np.concatenate([[GATE], today.plant, [GATE] if robot.returns else []]).astype(np.int64)
+    drive_s = np.array([
+        driven_s(aisles.ground, scene.clock, places[k : k + 2]) for k in range(len(places) - 1)
+    ])  # fmt: skip
+    leave_s = np.maximum(today.second - seconds(setup.starts), 0.0)
+    if not np.isfinite(leave_s).all():
+        leave_s = np.cumsum(drive_s[:n] + robot.visit_s)
+    # a find is noted while standing there: the time of arrival is not known, and not needed
+    work = Workday(
+        plant=today.plant, arrive_s=leave_s, found=today.result == FOUND, stop_s=np.zeros(n),
+        detects=np.full(n, robot.detects),
+        end_s=float(leave_s[-1] + drive_s[n:].sum()) if n else 0.0,
+    )  # fmt: skip
+    return route_of(scene, work)
 
 
 def known(project: Project, on: date) -> Known:

@@ -57,7 +57,7 @@ def _create(choices: Choices) -> None:
     ]
     try:
         path = seasons.new_path(name)
-        Project.create(path, choices.plot, choices.records, setup, remarks)
+        Project.create(path, choices.plot, choices.records, setup, remarks, choices.risk)
     except FieldmonError as error:
         note("error", str(error))
         return

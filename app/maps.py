@@ -44,6 +44,7 @@ ROUTE: Colour = (20, 80, 200)
 ROUTE_IN_DARK: Colour = (110, 220, 255)
 GATE: Colour = (0, 140, 90)
 HOT: Colour = (140, 40, 180)
+HOT_IN_DARK: Colour = (205, 130, 255)
 OUTLINE: Colour = (70, 80, 70)
 OUTLINE_IN_DARK: Colour = (190, 200, 190)
 
@@ -59,8 +60,10 @@ AGE_FROM = (0, 1, 3, 7, 14)
 AGE_COLOURS: tuple[Colour, ...] = (
     (217, 240, 163), (120, 198, 121), (49, 163, 84), (0, 104, 55), (0, 50, 30),
 )  # fmt: skip
+# after a layer's name: the same layer once more
+RENAMED = "~"
 _EMPTY = 30  # opacity of a plant that nobody looked at: an outline with next to nothing in it
-_LATTICE = 70
+_LATTICE = 100
 # layers are not changed once made; their texts go when they do
 _WRITTEN: WeakKeyDictionary[Layer, str] = WeakKeyDictionary()
 
@@ -69,7 +72,11 @@ class Deck(pdk.Deck):
     """A deck whose JSON has no white space, and whose layers are written once each.
 
     Half the size and several times the speed; a layer that is shown again costs nothing.
+    Layers in `renamed` have another id in the page: what was tapped on them is not selected there
+    any more, and Streamlit no longer fades everything else.
     """
+
+    renamed: frozenset[str] = frozenset()
 
     def to_json(self) -> str:
         """Return the deck as compact JSON."""
@@ -78,8 +85,14 @@ class Deck(pdk.Deck):
             frame = _json(self)
         finally:
             self.layers = layers
-        texts = ",".join(_layer_json(layer) for layer in layers)
+        texts = ",".join(self._named(layer) for layer in layers)
         return frame.replace('"layers":[]', f'"layers":[{texts}]', 1)
+
+    def _named(self, layer: Layer) -> str:
+        text, name = _layer_json(layer), json.dumps(layer.id)
+        if layer.id not in self.renamed:
+            return text
+        return text.replace(f'"id":{name}', f'"id":{json.dumps(layer.id + RENAMED)}', 1)
 
 
 def _layer_json(layer: Layer) -> str:
@@ -233,11 +246,27 @@ def finds(grid: PlantGrid, state: NDArray[np.int8]) -> list[Layer]:
     ]
 
 
-def _ring(name: str, places: list[list[float]], size_m: float, pen: tuple[Colour, float]) -> Layer:
+def chosen(grid: PlantGrid, plant: int) -> list[Layer]:
+    """Return a broad yellow ring with a dark rim round the plant whose history is shown."""
+    here = np.round(grid.lonlat(np.array([plant])), 7).tolist()
+    size = 0.9 * min(grid.plant_spacing_m, grid.row_spacing_m)
+    return [
+        _ring(f"chosen{k}", here, size, pen, 9.0)
+        for k, pen in enumerate([((40, 30, 0), 6.5), ((255, 190, 0), 4.0)])
+    ]
+
+
+def _ring(
+    name: str,
+    places: list[list[float]],
+    size_m: float,
+    pen: tuple[Colour, float],
+    least_px: float = 4.5,
+) -> Layer:
     colour, pixels = pen
     return Layer(
         "ScatterplotLayer", [{"p": p} for p in places], id=name, get_position="p",
-        get_radius=size_m, radius_min_pixels=4.5, filled=False, stroked=True,
+        get_radius=size_m, radius_min_pixels=least_px, filled=False, stroked=True,
         get_line_color=list(colour), line_width_min_pixels=pixels, get_line_width=0.05,
     )  # fmt: skip
 
@@ -329,10 +358,12 @@ def _arrows(the_route: Route) -> list[dict[str, Any]]:
     return [{"p": corner} for corner in lonlat.tolist()]
 
 
-def hot(grid: PlantGrid, spots: HotSpots) -> list[Layer]:
-    """Return the outline of each hot spot's plants."""
+def with_hot(
+    layers: list[Layer], grid: PlantGrid, spots: HotSpots, *, dark: bool = False
+) -> list[Layer]:
+    """Return the layers with each hot spot outlined, its tint under plants that can be tapped."""
     if not len(spots):
-        return []
+        return layers
     rows = []
     margin_m = 0.75 * max(grid.row_spacing_m, grid.plant_spacing_m)
     for k in range(len(spots)):
@@ -341,13 +372,14 @@ def hot(grid: PlantGrid, spots: HotSpots) -> list[Layer]:
         corners = np.round(shapely.get_coordinates(shape.exterior), 7).tolist()
         text = f"hot spot: {spots.found[k]} found of {spots.inspected[k]} inspected"
         rows.append({"p": corners, "t": text})
-    return [
-        Layer(
-            "PolygonLayer", rows, id="hot", get_polygon="p", filled=True,
-            get_fill_color=[*HOT, 20], stroked=True, get_line_color=list(HOT),
-            line_width_min_pixels=3, get_line_width=0.4, pickable=True,
-        )
-    ]  # fmt: skip
+    colour = HOT_IN_DARK if dark else HOT
+    tint = Layer("PolygonLayer", rows, id="hot", get_polygon="p", get_fill_color=[*colour, 20],
+                 stroked=False, pickable=True)  # fmt: skip
+    edge = Layer("PathLayer", rows, id="hot-edge", get_path="p", get_color=list(colour),
+                 width_min_pixels=3, get_width=0.4)  # fmt: skip
+    points = [k for k, layer in enumerate(layers) if layer.type == "ScatterplotLayer"]
+    under = min([*points, len(layers)])
+    return [*layers[:under], tint, *layers[under:], edge]
 
 
 def paths(field: Field) -> list[Layer]:
@@ -362,12 +394,13 @@ def paths(field: Field) -> list[Layer]:
     ]  # fmt: skip
 
 
-def records(observations: Observations) -> list[Layer]:
+def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
     """Return the records: filled where pests were seen, empty where not."""
+    colour = HOT_IN_DARK if dark else HOT
     rows = [
         {
             "p": place,
-            "c": [*HOT, 220 if seen == 1 else 0],
+            "c": [*colour, 220 if seen == 1 else 0],
             "t": f"record of {day}: {'found' if seen == 1 else 'nothing' if seen == 0 else '?'}",
         }
         for place, seen, day in zip(
@@ -380,7 +413,7 @@ def records(observations: Observations) -> list[Layer]:
     return [
         Layer(
             "ScatterplotLayer", rows, id="records", get_position="p", get_fill_color="c",
-            get_radius=1.2, radius_min_pixels=3, stroked=True, get_line_color=[*HOT, 170],
+            get_radius=1.2, radius_min_pixels=3, stroked=True, get_line_color=[*colour, 170],
             line_width_min_pixels=1, pickable=True,
         )
     ]  # fmt: skip
@@ -447,7 +480,7 @@ def drawing(points: tuple[tuple[float, float], ...]) -> list[Layer]:
     ]  # fmt: skip
 
 
-def clickable(grid: PlantGrid) -> Layer:
+def clickable(grid: PlantGrid, note: str) -> Layer:
     """Return a lattice of places all over and around the plot, unseen, that can be clicked on."""
     corners = grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m))
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -456,8 +489,7 @@ def clickable(grid: PlantGrid) -> Layer:
         np.linspace(a - m, b + m, _LATTICE) for a, b, m in zip(low, high, margin, strict=True)
     )
     step_m = 111_320.0 * float(lat[1] - lat[0])
-    rows = [{"p": [x, y], "t": f"{x}, {y}"} for x in lon.round(7).tolist()
-            for y in lat.round(7).tolist()]  # fmt: skip
+    rows = [{"p": [x, y], "t": note} for x in lon.round(7).tolist() for y in lat.round(7).tolist()]
     return Layer(
         "ScatterplotLayer", rows, id="clicks", get_position="p", get_radius=0.75 * step_m,
         get_fill_color=[0, 0, 0, 2], pickable=True, auto_highlight=True,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from datetime import datetime, time, timedelta
 from functools import partial
 from typing import TYPE_CHECKING
@@ -10,6 +11,7 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
+from fieldmon.errors import FieldmonError
 from fieldmon.explain import explain
 from fieldmon.field import ABSENT, PRESENT
 from fieldmon.geodata.handoff import FORMATS
@@ -18,10 +20,10 @@ from fieldmon.history import FOUND
 from fieldmon.hotspots import record_states
 from fieldmon.prior import usable
 
-from . import cached, maps, texts
+from . import cached, maps, remembered, texts
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from fieldmon.field import Observations
     from fieldmon.geodata.handoff import HandoffPlan
@@ -31,8 +33,12 @@ if TYPE_CHECKING:
 
     from .choices import Choices
 
+    #: takes what was tapped, by layer
+    Tapped = Callable[[dict], None]
+
 STARTS = time(6, 0)
 _SEEN = {"found": PRESENT, "clean": ABSENT}
+_ROW, _PLANT = "history row", "history plant"
 
 
 def starts(choices: Choices, today: Today) -> datetime:
@@ -130,29 +136,59 @@ def state_notes(state: cached.Array) -> list[str]:
     return [said[s] for s in state.tolist()]
 
 
+@dataclass(frozen=True, eq=False)
+class Way:
+    """A route on the map, and the local time at which it starts."""
+
+    route: Route
+    begins: datetime
+
+
+def route_of_day(choices: Choices) -> Way:
+    """Return the way that the robot went on a day that was worked, or that it is to go."""
+    today, project = choices.today(), choices.project
+    if project is not None and (not len(today.route) or choices.on < project.last_date()):
+        done = cached.season_done(choices.key, choices.revision, choices.day, project)
+        if len(done):
+            return Way(done, datetime.combine(choices.on, project.setup.starts))
+    return Way(today.route, starts(choices, today))
+
+
 def route_layers(choices: Choices, route: Route, *, numbers: bool) -> list:
     """Return the route's layers, made once."""
-    shown = f"{choices.robot} {choices.sampler} {numbers} {choices.dark}"
+    shown = f"{choices.robot} {choices.sampler} {numbers} {choices.dark} {route.end_s}"
     key = f"route {choices.key} {choices.revision} {choices.day} {shown}"
     return cached.layers(key, partial(maps.route, route, numbers=numbers, dark=choices.dark))
 
 
-def draw(choices: Choices, layers: list, key: str, *, tap: bool = False) -> object:
-    """Show a map with outline, scale and north; return what was tapped, if that is asked for."""
+def draw(choices: Choices, layers: list, key: str, tap: Tapped | None = None) -> None:
+    """Show a map with outline, scale and north; `tap` is called once for each tap on it."""
     grid = choices.plot.grid
     bar, text = maps.scale(grid, choices.units, dark=choices.dark)
     route = next((layer for layer in layers if layer.id == "route"), None)
     alt = texts.MAP_ALT.format(
         name=choices.plot.field.name, plants=len(grid), finds=int((states_of(choices) == 1).sum()),
-        stops=0 if route is None else len(choices.today().route),
+        stops=0 if route is None else len(route_of_day(choices).route),
     )  # fmt: skip
     outline = maps.boundary(choices.plot.field, dark=choices.dark)
-    chart = st.pydeck_chart(
-        maps.deck(grid, [outline, *layers, *bar], phone=choices.phone),
-        height=choices.map_px, key=key, alt=alt, on_select="rerun" if tap else "ignore",
+    picture = maps.deck(grid, [outline, *layers, *bar], phone=choices.phone)
+    picture.renamed = st.session_state.get(f"renamed {key}", frozenset())
+    # a callback, since what was tapped stays selected in all the runs that follow
+    st.pydeck_chart(
+        picture, height=choices.map_px, key=key, alt=alt,
+        on_select="ignore" if tap is None else partial(_tapped, key, tap),
     )  # fmt: skip
     st.session_state["bar"] = text
-    return chart.selection.objects if tap else None
+
+
+def _tapped(key: str, tap: Tapped) -> None:
+    objects = {
+        name.removesuffix(maps.RENAMED): hits
+        for name, hits in st.session_state[key].selection.objects.items()
+    }
+    renamed = st.session_state.get(f"renamed {key}", frozenset())
+    st.session_state[f"renamed {key}"] = renamed ^ objects.keys()
+    tap(objects)
 
 
 def captions(parts: Sequence[str]) -> None:
@@ -171,13 +207,17 @@ def route_figures(choices: Choices, today: Today) -> None:
         st.metric(texts.FINDS, f"{finds:.1f}", help=texts.FINDS_HELP, width="content")
 
 
-def done_today(choices: Choices) -> None:
-    """Say what was recorded of the day, if anything was."""
-    if choices.project is None:
-        return
-    now = cached.known(choices.key, choices.revision, choices.day, choices.project)
-    if now.inspected_today:
-        st.info(texts.TODAY_DONE.format(inspected=now.inspected_today, found=now.found_today))
+def said_of_day(choices: Choices, today: Today) -> None:
+    """Say what was recorded of the day, and why there is no route where there is none."""
+    said = "" if len(today.route) else texts.NO_STOPS
+    if choices.project is not None:
+        now = cached.known(choices.key, choices.revision, choices.day, choices.project)
+        done = {"inspected": now.inspected_today, "found": now.found_today}
+        if now.inspected_today:
+            st.info((texts.TODAY_OVER if said else texts.TODAY_DONE).format(**done))
+            return
+    if said:
+        st.warning(said)
 
 
 def changes(choices: Choices) -> list[str]:
@@ -210,6 +250,19 @@ def changes(choices: Choices) -> list[str]:
     return [*said, texts.CHANGED_ROWS.format(rows=rows)] if rows else said
 
 
+def found_on_day(choices: Choices) -> dict[str, str]:
+    """Return the numbers of the plants found on the day, by row."""
+    project = choices.project
+    if project is None:
+        return {}
+    done = project.history.inspections.on(project.setup.day(choices.on))
+    label = row_label(choices.plot.grid, np.unique(done.plant[done.result == FOUND]))
+    rows: dict[str, list[str]] = {}
+    for line, number in zip(label.line.tolist(), label.number.tolist(), strict=True):
+        rows.setdefault(texts.REPORT_IN_ROW.format(row=line), []).append(str(number))
+    return {row: ", ".join(numbers) for row, numbers in rows.items()}
+
+
 def reasons(choices: Choices, today: Today) -> list[str]:
     """Return what the stops of the day are for, in sentences."""
     project = choices.project
@@ -235,20 +288,33 @@ def _risen(choices: Choices, yesterday: str) -> str:
     return ", ".join(f"{k + 1} (+{rise[k]:.1%})" for k in top)
 
 
-def history(choices: Choices, tapped: dict | None, key: str) -> None:
+def take_plant(choices: Choices, objects: dict) -> None:
+    """Take the plant that was tapped as the one whose history is shown."""
+    hits = [hit["i"] for layer in objects.values() for hit in layer if "i" in hit]
+    if hits:
+        grid = choices.plot.grid
+        label = row_label(grid, np.array([min(hits[0], len(grid) - 1)]))
+        st.session_state[_ROW], st.session_state[_PLANT] = int(label.line[0]), int(label.number[0])
+
+
+def chosen_layers(choices: Choices) -> list:
+    """Return the ring round the plant whose history is shown, if there is such a plant."""
+    try:
+        plant = plant_at(choices.plot.grid, *(remembered.value(key, 1) for key in (_ROW, _PLANT)))
+    except FieldmonError:
+        return []  # its history says why
+    return maps.chosen(choices.plot.grid, plant)
+
+
+def history(choices: Choices) -> None:
     """Show what is known of the plant tapped, or of the one whose row and number are given."""
-    grid = choices.plot.grid
     st.markdown(f"**{texts.HISTORY}**")
     st.caption(texts.HISTORY_TAP)
-    hits = [hit for layer in (tapped or {}).values() for hit in layer if "i" in hit]
-    if hits and st.session_state.get(f"{key} seen") != hits[0]["i"]:
-        st.session_state[f"{key} seen"] = hits[0]["i"]
-        label = row_label(grid, np.array([min(hits[0]["i"], len(grid) - 1)]))
-        st.session_state[f"{key} row"] = int(label.line[0])
-        st.session_state[f"{key} plant"] = int(label.number[0])
-    row = st.number_input(texts.HISTORY_ROW, 1, None, 1, key=f"{key} row")
-    number = st.number_input(texts.HISTORY_PLANT, 1, None, 1, key=f"{key} plant")
-    plant = plant_at(grid, int(row), int(number))
+    row, number = (
+        remembered.show(st.number_input, label, 1, key=key, default=1)
+        for label, key in ((texts.HISTORY_ROW, _ROW), (texts.HISTORY_PLANT, _PLANT))
+    )
+    plant = plant_at(choices.plot.grid, int(row), int(number))
     now = first = chance_of(choices)
     if choices.project is not None:
         begins = str(choices.project.setup.begins)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from datetime import date, timedelta
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -30,33 +31,32 @@ def day(choices: Choices) -> Choices:
     return replace(choices, day=chosen)
 
 
-def show(choices: Choices, layers: list, *, on: bool) -> dict | None:
-    """Show the map with the clock of the day under it; return what was tapped."""
-    route = choices.today().route
+def show(choices: Choices, layers: list, *, on: bool) -> None:
+    """Show the map with the clock of the day above it; a tap shows a plant's history."""
+    way = panels.route_of_day(choices)
+    route = way.route
+    tap = partial(panels.take_plant, choices)
     if not on or not len(route):
-        return panels.draw(choices, layers, "field_map", tap=True)
+        panels.draw(choices, layers, "field_map", tap)
+        return
     key = f"clock {choices.day}"
     if st.session_state.get("playing"):
         _forward(key, route.end_s)
-    begins = panels.starts(choices, choices.today())
-    left, right = st.columns([1, 4], vertical_alignment="bottom")
+    left, right = st.columns([2, 5], vertical_alignment="bottom")
     playing = bool(st.session_state.get("playing"))
     left.button(texts.PAUSE if playing else texts.PLAY, key="play", on_click=_toggle,
                 icon=":material/pause:" if playing else ":material/play_arrow:")  # fmt: skip
     minutes = int(route.end_s // 60) + 1
-    minute = right.slider(
-        texts.MAP_CLOCK, 0, minutes, min(st.session_state.get(key, 0), minutes), key=key,
-        format="%d min",
-    )  # fmt: skip
+    st.session_state[key] = min(st.session_state.get(key, 0), minutes)
+    minute = right.slider(texts.MAP_CLOCK, 0, minutes, key=key, format="%d min")
+    second = min(60.0 * minute, route.end_s)
     if minute:
-        second = min(60.0 * minute, route.end_s)
         layers = [one for one in layers if one.id not in ("route", "arrows", "numbers")]
         layers += maps.playback(route, second, dark=choices.dark)
-        st.caption(f"{begins + timedelta(seconds=second):%H:%M}")
-    tapped = panels.draw(choices, layers, "field_map", tap=True)
+    st.caption(f"{way.begins + timedelta(seconds=second):%H:%M}")
+    panels.draw(choices, layers, "field_map", tap)
     if playing:
         _tick()
-    return tapped
 
 
 @st.fragment(run_every=0.8)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 T = TypeVar("T")
-_VALUES, _PAGE = "remembered", "page"
+_VALUES, _PAGE, _BEGINS = "remembered", "page", "remembered begins"
 
 
 def turn(page: str) -> None:
@@ -31,7 +31,12 @@ def first(key: str, value: object) -> None:
 
 def value(key: str, default: object = None) -> Any:  # noqa: ANN401 - whatever the widget holds
     """Return what was chosen last, on whichever page, though its widget may come further down."""
-    return st.session_state.get(key, _values().get(key, ("", default))[1])
+    page, kept = _values().get(key, ("", default))
+    if key in st.session_state:
+        kept = st.session_state[key]
+        # what it changes may be that its widget is not shown any more
+        _values()[key] = (page, kept)
+    return kept
 
 
 def show(
@@ -41,12 +46,31 @@ def show(
     """Show a widget with what was chosen before, on this page or another."""
     state, page = st.session_state, st.session_state.get(_PAGE, "")
     shown_on, kept = _values().get(key, ("", default))
+    begins = state.setdefault(_BEGINS, {})
     if key not in state or shown_on != page:
         # the last page's widget, if it was just left, knows better than what its last run saw
-        state[key] = state.get(key, kept)
-    chosen = widget(*arguments, key=key, **settings)
+        begins[key] = state[key] = state.get(key, kept)
+    own = _own_default(widget, arguments, begins.get(key, kept))
+    chosen = widget(*arguments, key=key, **settings, **own)
     _values()[key] = (page, chosen)
     return chosen
+
+
+def _own_default(
+    widget: Callable[..., object], arguments: tuple[object, ...], value: object
+) -> dict[str, Any]:
+    """Return the widget's own default, the same as long as a page is shown.
+
+    A run that is followed at once by another never reaches the browser, nor does the value set in
+    it: a box then fell back to its least number, and a choice to none.
+    """
+    name = widget.__name__
+    if name in {"selectbox", "radio"}:
+        options: list[object] = list(arguments[1])  # type: ignore[call-overload]
+        return {"index": options.index(value)} if value in options else {}
+    if name in {"pills", "segmented_control", "multiselect"}:
+        return {"default": value}
+    return {"value": value}
 
 
 def _values() -> dict[str, tuple[str, Any]]:

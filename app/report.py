@@ -17,19 +17,27 @@ if TYPE_CHECKING:
 
     from fieldmon.monitor import Today
     from fieldmon.robot import Robot
+    from fieldmon.route import Route
 
     from .figures import DayFigures
     from .units import Units
 
 _WIDE = 900.0
+_STOPS_A_TABLE = 60
 _STYLE = """
 .fm-report{font-family:system-ui,sans-serif;color:#111;background:#fff;max-width:1000px;
 padding:12px}
 .fm-report h1{font-size:1.5rem}.fm-report h2{font-size:1.1rem;margin-top:1.2em}
 .fm-report table{border-collapse:collapse;font-size:.85rem}
 .fm-report td,.fm-report th{border:1px solid #999;padding:2px 8px;text-align:right}
-.fm-report svg{max-width:100%;height:auto;border:1px solid #ccc}
-@media print{.fm-report table{page-break-inside:auto}.fm-report tr{page-break-inside:avoid}}
+.fm-report svg.map{max-width:100%;height:auto;border:1px solid #ccc;margin:10px 0}
+.fm-report .stops{display:flex;flex-wrap:wrap;gap:12px;align-items:flex-start}
+.fm-report .stops table{font-size:.62rem}.fm-report .stops td,.fm-report .stops th{padding:0 2px}
+@page{size:A4;margin:12mm}
+@media print{.fm-report{padding:0}.fm-report svg.map{max-height:165mm}
+.fm-report .stops{display:block}.fm-report h2{break-after:avoid}
+.fm-report .stops table{display:inline-table;vertical-align:top;margin:0 3px 6px 0}
+.fm-report table,.fm-report tr{break-inside:avoid}}
 """
 
 
@@ -44,24 +52,32 @@ class Facts:
     state: NDArray[np.int8]
     robot: Robot
     sampler: str
+    way: Route
+    results: dict[str, str]
 
 
 def html(facts: Facts, today: Today, stops: pd.DataFrame, days: list[DayFigures]) -> str:
     """Return the whole page."""
-    title = escape(texts.REPORT_TITLE.format(name=facts.name, day=facts.day))
+    title = escape(texts.REPORT_TITLE.format(name=texts.isolated(facts.name), day=facts.day))
     parts = [
-        f'<h1 dir="auto">{title}</h1>',
+        f"<h1>{title}</h1>",
         _pairs(_figures(facts, today)),
-        drawing(facts, today),
+        drawing(facts),
+        f"<strong>{texts.LEGEND_CHANCE}</strong>",
         maps.chance_legend(),
-        maps.state_legend(texts.LEGEND_STATES),
-    ]
+        maps.legend(
+            [(maps.FOUND, texts.LEGEND_STATES["found"]), (maps.ROUTE, texts.MAP_LAYERS["route"]),
+             (maps.GATE, texts.DRAW_KINDS["gate"])],
+            signs=("find", "line", "ring"),
+        ),
+    ]  # fmt: skip
+    if facts.results:
+        parts += [f"<h2>{texts.REPORT_FOUND}</h2>", _pairs(facts.results)]
     if days:
         parts += [f"<h2>{texts.REPORT_SEASON}</h2>", _season(facts, days)]
     parts += [f"<h2>{texts.REPORT_SETTINGS}</h2>", _pairs(_settings(facts))]
     if len(stops):
-        table = stops.assign(**{texts.REPORT_TICK: "☐"})
-        parts += [f"<h2>{texts.REPORT_ROUTE}</h2>", table.to_html(border=0)]
+        parts += [f"<h2>{texts.REPORT_ROUTE}</h2>", _stops(stops)]
     body = f'<style>{_STYLE}</style><div class="fm-report">{"".join(parts)}</div>'
     return (
         f'<!DOCTYPE html><html><head><meta charset="utf-8"><title>{title}</title></head>'
@@ -69,9 +85,20 @@ def html(facts: Facts, today: Today, stops: pd.DataFrame, days: list[DayFigures]
     )
 
 
-def drawing(facts: Facts, today: Today) -> str:
+def _stops(stops: pd.DataFrame) -> str:
+    """Return the stops as tables side by side: a day's route is many pages long otherwise."""
+    table = stops.assign(**{texts.REPORT_TICK: "☐"}).reset_index()
+    parts = [table.iloc[k : k + _STOPS_A_TABLE] for k in range(0, len(table), _STOPS_A_TABLE)]
+    return (
+        '<div class="stops">'
+        + "".join(part.to_html(border=0, index=False) for part in parts)
+        + "</div>"
+    )
+
+
+def drawing(facts: Facts) -> str:
     """Return the plot as an SVG picture, north up: chance by colour, finds as rings, the route."""
-    grid = today.scene.grid
+    grid, route = facts.way.aisles.grid, facts.way
     lonlat = grid.lonlat()
     outline = shapely.get_rings(shapely.get_parts(grid.frame.geometry_lonlat(grid.drivable_m)))
     low, high = shapely.bounds(shapely.geometrycollections(outline)).reshape(2, 2)
@@ -83,21 +110,25 @@ def drawing(facts: Facts, today: Today) -> str:
         across = (points[:, 0] - low[0]) * squeeze * per_deg + 10
         return np.round(np.stack([across, (high[1] - points[:, 1]) * per_deg + 10], axis=1), 1)
 
-    wide, tall = span * per_deg + 20
+    wide, tall = span * per_deg + [20, 60]
     size = max(0.35 * grid.plant_spacing_m * per_deg / 111_320.0, 1.0)
     parts = [_dots(at(lonlat), maps.by_chance(facts.chance), size)]
     parts += [_line(at(shapely.get_coordinates(ring)), "#46504a", 1.5) for ring in outline]
-    if len(today.route):
-        parts.append(_line(at(today.route.line_lonlat()), "#1450c8", 1.4))
+    if len(route):
+        parts.append(_line(at(route.line_lonlat()), "#1450c8", 1.4))
     parts += [
-        f'<circle cx="{x}" cy="{y}" r="{size + 3:.1f}" fill="none" stroke="#140000" '
-        'stroke-width="2"/>'
+        f'<circle cx="{x}" cy="{y}" r="{size:.1f}" fill="rgb{maps.FOUND}" stroke="#140000" '
+        'stroke-width="1.5"/>'
         for x, y in at(lonlat[facts.state == 1]).tolist()
     ]
-    label = escape(texts.MAP_ALT.format(name=facts.name, plants=len(grid), stops=len(today.route),
+    gate = at(grid.frame.lonlat(route.aisles.gate_m))[0]
+    parts.append(f'<circle cx="{gate[0]}" cy="{gate[1]}" r="8" fill="none" '
+                 f'stroke="rgb{maps.GATE}" stroke-width="4"/>')  # fmt: skip
+    parts.append(_scale(facts.units, per_deg / 111_320.0, (wide, tall)))
+    label = escape(texts.MAP_ALT.format(name=facts.name, plants=len(grid), stops=len(route),
                                         finds=int((facts.state == 1).sum())))  # fmt: skip
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{label}" '
+        f'<svg class="map" xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{label}" '
         f'viewBox="0 0 {wide:.0f} {tall:.0f}" width="{wide:.0f}">{"".join(parts)}</svg>'
     )
 
@@ -108,12 +139,23 @@ def _dots(places: NDArray[np.float64], shade: maps.Shade, size: float) -> str:
     for rank in np.unique(shade.rank):
         own = places[shade.rank == rank]
         colour = tuple(maps.CHANCE_COLOURS[rank])
-        dots = "".join(f"M{x} {y}h0" for x, y in own.tolist())
-        parts.append(
-            f'<path d="{dots}" stroke="rgb{colour}" stroke-width="{2 * size:.1f}" '
-            'stroke-linecap="square"/>'
-        )
+        # lines as long as they are wide: dots of no length are missing in a PDF
+        dots = "".join(f"M{x - size:.1f} {y}h{2 * size:.1f}" for x, y in own.tolist())
+        parts.append(f'<path d="{dots}" stroke="rgb{colour}" stroke-width="{2 * size:.1f}"/>')
     return "".join(parts)
+
+
+def _scale(units: Units, per_m: float, corner: tuple[float, float]) -> str:
+    """Return a bar of a round length in the lower left corner and an arrow to the north."""
+    (wide, tall), ink = corner, "#222"
+    bar_m, text = units.bar_m((wide - 20) / per_m / 4)
+    end, y = 10 + bar_m * per_m, tall - 24
+    return (
+        _line(np.array([[10.0, y], [round(end, 1), y]]), ink, 4)
+        + f'<text x="10" y="{y + 18:.0f}" font-size="16" fill="{ink}">{escape(text)}</text>'
+        f'<path d="M{wide - 22:.0f} {tall - 10:.0f}l8 -26l8 26l-8 -7z" fill="{ink}"/>'
+        f'<text x="{wide - 20:.0f}" y="{tall - 40:.0f}" font-size="16" fill="{ink}">N</text>'
+    )
 
 
 def _line(places: NDArray[np.float64], colour: str, wide: float) -> str:

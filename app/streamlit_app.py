@@ -22,8 +22,15 @@ st.html(
     "<style>[data-testid=stMainBlockContainer]{padding-top:4rem;padding-bottom:3rem}"
     "h1,h2,h3,[data-testid=stMarkdownContainer] p{unicode-bidi:plaintext}"
     ".st-key-start_scouting a{border:1px solid rgba(128,128,128,.5);border-radius:.5rem;"
-    "min-height:2.5rem;padding:.25rem .75rem;margin:0}</style>"
+    "min-height:2.5rem;padding:.25rem .75rem;margin:0}"
+    ".st-key-start_scouting [data-testid=stElementContainer]{margin:0}</style>"
 )
+if st.context.theme.get("type") == "dark":
+    # Streamlit writes white on the pale green of the dark theme: 2:1, where AA asks for 4.5:1
+    st.html(
+        "<style>[data-testid^=stBaseButton-primary],[data-testid^=stBaseButton-primary] *,"
+        "[data-tag],[data-tag] *{color:#0b1f14!important}</style>"
+    )
 cached.warm()
 
 
@@ -38,7 +45,9 @@ def page(name: str, title: str, icon: str, path: str = "") -> st.Page:
 
     def run() -> None:
         chosen = choose()
-        keeping.said()
+        # a box of its own, empty or not: a map below that moves by a place forgets its zoom
+        with st.container():
+            keeping.said()
         if chosen.choices is None:
             view("plot").bring(chosen.problem)
             return

@@ -142,6 +142,10 @@ CHANGED_NONE = "Nothing was recorded on {day}."
 CHANGED_OUT = "Still infested, as expected: {now:.1f} after {before:.1f} ({sign}{diff:.1f})."
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
+TODAY_OVER = (
+    "{inspected} plants inspected today, {found} found: the working day is over. Choose the next "
+    "day on the left for its route, or give more hours."
+)
 TODAY_DONE = "{inspected} plants inspected today so far, {found} found. The route shows the rest."
 OTHER_FORMATS, FORMAT, DOWNLOAD_AS = "Robot, phone, paper", "Format", "Download for {reader}"
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"
@@ -157,8 +161,20 @@ DRAW_KINDS = {"": "nothing", "gate": "the gate", "path": "points of a path",
               "no_go": "corners of a no-go area"}  # fmt: skip
 DRAW_TYPED = "or type positions (lon,lat lon,lat ...)"
 DRAW_ADD, DRAW_DONE, DRAW_UNDO, DRAW_DROP = "Add", "Finish", "Undo the last one", "Drop points"
+DRAW_HERE = "click: here"
 DRAW_POINTS = "{n} point(s) so far."
 DRAW_NOTE = "Insects come in along paths; a no-go area carries no plants and is not driven through."
+RISK, RISK_FILE = "Risk from a raster", "GeoTIFF: NDVI, elevation, a risk map"
+RISK_NOTE = "One more reason for a plant to be infested, beside records, edges and paths."
+RISK_MEANS = "Its numbers are"
+RISK_MEANINGS = {
+    "chance": "chances, 0 to 1",
+    "percent": "chances in percent",
+    "rank": "only an order: the higher, the more risk",
+    "score": "scores: far above the average is much more risk",
+}
+RISK_SHARE, RISK_LOW = "Plants infested for this reason (%)", "Low numbers are the risky ones"
+RISK_IS = "Risk of the plants: {low:.1%} to {high:.1%}, {mean:.1%} on average."
 RECORDS, RECORDS_NONE = "Records up to", "There are no records of this plot."
 RECORDS_SHOWN = "{shown} of {all} records shown ({found} with pests, {clean} without)."
 UNDATED = "Records without a date are always shown."
@@ -268,6 +284,7 @@ REPORT_INTRO = "A page to print, or to keep as PDF (Print, then Save as PDF)."
 REPORT_DOWNLOAD, REPORT_PREVIEW = "Download the report (HTML)", "Preview"
 REPORT_TITLE = "Plot {name}, {day}"
 REPORT_SETTINGS, REPORT_ROUTE, REPORT_SEASON = "Settings", "Route", "Season so far"
+REPORT_FOUND, REPORT_IN_ROW = "Found that day", "Row {row}"
 REPORT_TICK = "found?"
 SPEED, DETECTS = "Speed", "Finds what is there with a chance of"
 

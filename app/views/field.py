@@ -29,10 +29,10 @@ def show(choices: Choices) -> None:
             grounds.bring()
     with left:
         choices = playing.day(choices)
-        tapped = playing.show(choices, _layers(choices, shade, shown, rows), on="route" in shown)
+        playing.show(choices, _layers(choices, shade, shown, rows), on="route" in shown)
         _legend(shade)
     with right:
-        panels.history(choices, tapped, "plant")
+        panels.history(choices)
     st.markdown("\n".join(f"- {meaning}" for meaning in panels.meanings(panels.spots_of(choices))))
 
 
@@ -52,10 +52,15 @@ def _layers(choices: Choices, shade: str, shown: list[str], rows: tuple[int, int
     layers = grounds.layers(choices) if "backdrop" in shown else []
     layers = [*layers, *panels.plant_layers(choices, shade, rows)]
     if "route" in shown:
-        layers += panels.route_layers(choices, choices.today().route, numbers="numbers" in shown)
+        route = panels.route_of_day(choices).route
+        layers += panels.route_layers(choices, route, numbers="numbers" in shown)
     if "hot" in shown:
-        layers += maps.hot(choices.plot.grid, panels.spots_of(choices))
-    return layers + maps.records(choices.records) if "records" in shown else layers
+        layers = maps.with_hot(
+            layers, choices.plot.grid, panels.spots_of(choices), dark=choices.dark
+        )
+    if "records" in shown:
+        layers += maps.records(choices.records, dark=choices.dark)
+    return layers + panels.chosen_layers(choices)
 
 
 def _legend(shade: str) -> None:

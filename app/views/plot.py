@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 import streamlit as st
 
-from app import drawing, files, maps, panels, texts
+from app import drawing, files, maps, panels, risks, texts
+from app.choices import row_settings
+from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
     from app.choices import Choices
@@ -24,6 +27,10 @@ def bring(problem: FieldmonError | None) -> None:
         files.bring()
     if problem is not None:
         files.say(problem)
+        laying = st.session_state.get("laying", "")
+        # what was set by hand may be what is wrong: it must stay within reach
+        if isinstance(problem, PlotError) and any(row_settings(laying).values()):
+            drawing.rows(laying)
 
 
 def show(choices: Choices) -> None:
@@ -34,8 +41,9 @@ def show(choices: Choices) -> None:
     left, right = st.columns([3, 2])
     with right:
         if choices.project is None:
-            drawing.rows()
+            drawing.rows(choices.plot_key)
             drawing.tools(choices)
+            risks.bring()
         else:
             st.info(texts.FIXED)
         with st.expander(texts.FINDINGS, expanded=True):
@@ -61,9 +69,12 @@ def _figures(choices: Choices) -> None:
 
 def _map(choices: Choices) -> None:
     records, said = panels.records_until(choices)
-    layers = [*drawing.plain_plants(choices), *maps.records(records), *drawing.layers(choices)]
-    tapped = panels.draw(choices, layers, "plot_map", tap=True)
-    drawing.take(choices, tapped)
+    layers = [
+        *drawing.plain_plants(choices),
+        *maps.records(records, dark=choices.dark),
+        *drawing.layers(choices),
+    ]
+    panels.draw(choices, layers, "plot_map", partial(drawing.take, choices))
     panels.captions([texts.LEGEND_RECORDS, *([said] if said else [])])
     if not len(choices.records):
         st.caption(texts.RECORDS_NONE)

@@ -22,7 +22,8 @@ def show(choices: Choices) -> None:
     facts = report.Facts(
         choices.plot.field.name, choices.units.day(choices.day), choices.units,
         panels.chance_of(choices), panels.states_of(choices), choices.robot,
-        texts.SAMPLERS[choices.sampler],
+        texts.SAMPLERS[choices.sampler], panels.route_of_day(choices).route,
+        panels.found_on_day(choices),
     )  # fmt: skip
     page = report.html(facts, today, panels.stops(choices, today), days)
     st.download_button(

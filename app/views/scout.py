@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 _BIG = """<style>
 [class*="st-key-scout"] button {min-height:4.2rem;width:100%}
+.st-key-scout_count button {min-height:0;width:auto}
 [class*="st-key-scout"] button p {font-size:1.4rem;font-weight:600}
 .st-key-scout_clean button {background:#146c43;color:#fff;border-color:#146c43}
 .st-key-scout_found button {background:#b3171d;color:#fff;border-color:#b3171d}

@@ -71,8 +71,8 @@ def _map(choices: Choices, season: list[Day], number: int) -> None:
         maps.plants(grid, maps.by_state(state), panels.state_notes(state)),
         *maps.finds(grid, state),
         *maps.route(route_of(scene, day.work), numbers=False),
-        *maps.hot(grid, hot_spots(grid, state)),
     ]
+    layers = maps.with_hot(layers, grid, hot_spots(grid, state), dark=choices.dark)
     if st.toggle(texts.SHOW_TRUTH, key="truth"):
         left = day.infested.copy()
         left[day.work.plant[day.work.found]] = False

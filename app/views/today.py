@@ -19,10 +19,9 @@ def show(choices: Choices) -> None:
     """Plan the day and show it."""
     today = choices.today()
     st.subheader(f"{choices.name} · {choices.units.day(choices.day)}")
-    panels.route_figures(choices, today)
-    panels.done_today(choices)
-    if not len(today.route):
-        st.warning(texts.NO_STOPS)
+    with st.container():  # one place above the map, however much is said there
+        panels.route_figures(choices, today)
+        panels.said_of_day(choices, today)
     picture = st.container()
     shown = remembered.show(
         st.pills, texts.LAYERS, list(texts.LAYER_NAMES), key="layers",
@@ -52,8 +51,12 @@ def _layers(choices: Choices, today: Today, shown: list[str]) -> list:
     if "route" in shown:
         layers = layers + panels.route_layers(choices, today.route, numbers="numbers" in shown)
     if "hot" in shown:
-        layers = layers + maps.hot(choices.plot.grid, panels.spots_of(choices))
-    return layers + maps.records(choices.records) if "records" in shown else layers
+        layers = maps.with_hot(
+            layers, choices.plot.grid, panels.spots_of(choices), dark=choices.dark
+        )
+    return (
+        layers + maps.records(choices.records, dark=choices.dark) if "records" in shown else layers
+    )
 
 
 def _hand_out(choices: Choices, today: Today) -> None:

@@ -47,6 +47,11 @@ def map_of(app):
     return json.loads(app.get("deck_gl_json_chart")[0].proto.json)
 
 
+def row_box(app, name):
+    """Return the box in which a plot's rows are set by hand."""
+    return next(one for one in app.number_input if one.key.startswith(name))
+
+
 def layer(app, name):
     return next((one for one in map_of(app)["layers"] if one["id"] == name), None)
 

@@ -45,6 +45,27 @@ def still(page):
     pytest.fail("the map did not come to rest")
 
 
+def zoomed(page):
+    """Turn the wheel over the map; return its pixels."""
+    box = page.locator(MAP).first.bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    for _ in range(2):
+        page.mouse.wheel(0, -300)
+        page.wait_for_timeout(300)
+    page.mouse.move(box["x"], box["y"] - 25)
+    return still(page)
+
+
+def click(page, across, down, says=None):
+    """Click on the map, at a share of its width and height; wait for what the page then says."""
+    chart = page.locator(MAP).first
+    box = chart.bounding_box()
+    chart.click(position={"x": across * box["width"], "y": down * box["height"]})
+    if says is not None:
+        page.get_by_text(says).wait_for(timeout=60_000)
+    still(page)
+
+
 def sample():
     """Plan the sample as the app's first screen does."""
     (field,) = read_plots(ESTATE + "paran_estate.zip", PlotOptions(feature="Gate")).value
@@ -134,6 +155,8 @@ def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address,
     found, clean, never = (np.arange(k, len(plot.grid), 97) for k in (0, 31, 62))
     plants, result = np.concatenate([found, clean]), np.repeat([1, 0], [len(found), len(clean)])
     project.record(Results.of(plants, result, np.datetime64("2026-11-16")), "test")
+    later = found[:30] + 80
+    project.record(Results.of(later, np.ones(30, int), np.datetime64("2026-11-17")), "test")
     page.goto(f"{address}/map?season=States")
     page.wait_for_selector(f"{MAP} canvas", timeout=120_000)
     page.get_by_text("found, clean, never inspected", exact=True).click()
@@ -154,13 +177,30 @@ def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address,
     assert np.mean([is_near(image, place[k], ring, reach=6) for k in found]) > 0.9
     flipped = image[::-1]
     assert np.mean([is_near(flipped, place[k], maps.FOUND, reach=1) for k in found]) < 0.3
+    near = zoomed(page)
+    assert (near != image).any(axis=2).mean() > 0.1
+    day = page.get_by_role("slider", name="Day")
+    for key, changed in (("ArrowLeft", True), ("ArrowRight", False)):
+        day.press(key)
+        page.wait_for_timeout(300)
+        assert (still(page) != near).any() == changed, f"the day's {key} lost the zoom"
+    page.get_by_role("button", name="route", exact=True).click()
+    page.get_by_role("button", name="route", exact=True).click()
+    assert (still(page) == near).all(), "a layer lost the zoom"
+    for place in (0.5, 0.51, 0.52, 0.53):  # one of them meets a plant
+        click(page, place, place)
+    assert page.get_by_role("spinbutton", name="Row").input_value() != "1"
+    ring = (np.abs(still(page) - (255, 190, 0)).max(axis=2) < 30).sum()
+    assert ring > 50, "the plant that was tapped has no ring"
 
 
 def season(path, plot):
     return Project.create(path, plot, Observations.none(), Setup(date(2026, 11, 16)))
 
 
-def test_a_day_begins_with_files_and_ends_with_tomorrows_route(page, address, shared, tmp_path):
+def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
+    page, address, shared, tmp_path, served_seasons
+):
     parcels = gpd.read_file(next(shared.glob("parcels_orchards_vineyards/**/*lleida*.gpkg")))
     own = parcels[(parcels.area > 8_000) & (parcels.area < 15_000)].head(1)
     own = own.to_crs(25831).assign(name="מטע הדרים")[["name", "geometry"]]
@@ -182,14 +222,21 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(page, address, sh
     page.get_by_text("1 of 1 records shown").wait_for(timeout=60_000)
     title = page.get_by_role("heading", name="מטע הדרים").bounding_box()
     assert title["width"] > 50
+    gate = a_gate_and_an_area_are_drawn_by_clicks(page)
     page.get_by_role("link", name="Today").click()
-    still(page)
+    far = still(page)
     first = stops(page)
     assert len(first) > 10
+    near = zoomed(page)
     page.get_by_label("Name of the season").fill("עונה 2026")
     page.get_by_role("button", name="Begin the season").click()
     page.get_by_text("has begun").wait_for(timeout=60_000)
+    after = still(page)
+    moved = [np.mean(np.abs(after - other).max(axis=2) > 30) for other in (near, far)]
+    assert moved[0] < 0.2 * moved[1], f"what is said above the map lost its zoom: {moved}"
     assert stops(page) == first
+    project = Project(served_seasons / "עונה 2026.gpkg")
+    assert project.plot.field.gate == pytest.approx(gate, abs=1e-6)
     page.get_by_role("link", name="Season").click()
     box = page.get_by_role("spinbutton", name="Stops done")
     box.wait_for(timeout=60_000)
@@ -203,6 +250,36 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(page, address, sh
     rest = stops(page)
     assert len(first) - 20 < len(rest) < len(first)
     assert not set(rest) & set(first[:8])
+
+
+def a_gate_and_an_area_are_drawn_by_clicks(page):
+    """Draw both, take the area back; return the gate."""
+    plants = page.get_by_test_id("stMetric").filter(has_text="Plants").first
+    before = plants.inner_text()
+    page.get_by_text("Gate, paths, no-go areas").click()
+    draw_by_click(page, "corners of a no-go area")
+    for number, corner in enumerate([(0.4, 0.4), (0.6, 0.4), (0.5, 0.65)], start=1):
+        click(page, *corner, says=f"{number} point(s) so far")
+    page.get_by_role("button", name="Finish").click()
+    page.get_by_text("corners of a no-go area: 3").wait_for(timeout=60_000)
+    assert plants.inner_text() != before
+    page.get_by_role("button", name="Undo the last one").click()
+    page.get_by_text("corners of a no-go area: 3").wait_for(state="detached", timeout=60_000)
+    draw_by_click(page, "the gate")
+    click(page, 0.3, 0.3, says="the gate: 1")
+    assert plants.inner_text() == before
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Today").click()
+        page.get_by_role("button", name="Download the route").click()
+    route = json.loads(download.value.path().read_text(encoding="utf-8"))
+    return tuple(route["features"][0]["geometry"]["coordinates"][0])
+
+
+def draw_by_click(page, what):
+    still(page)
+    page.get_by_role("combobox", name="A click on the map sets").click()
+    page.get_by_role("option", name=what).click()
+    still(page)
 
 
 def stops(page):

@@ -8,6 +8,7 @@ import pytest
 import streamlit as st
 from app_driving import (
     PAGES,
+    begun,
     go,
     heading,
     layer,
@@ -15,6 +16,7 @@ from app_driving import (
     metric,
     opened,
     press,
+    row_box,
     square,
     texts_of,
     upload,
@@ -26,6 +28,7 @@ from streamlit.testing.v1 import AppTest
 
 from app import cached
 from fieldmon.first_use import FIRST_USE
+from fieldmon.project import Project
 
 
 @pytest.fixture
@@ -73,8 +76,8 @@ def test_shorter_hours_give_a_shorter_route_on_every_page(app):
 
 def test_rows_can_be_turned_and_set_apart(app):
     go(app, "plot")
-    app.number_input(key="row_bearing_deg").set_value(158.0).run()
-    app.number_input(key="row_spacing_m").set_value(8.0).run()
+    row_box(app, "row_bearing_deg").set_value(158.0).run()
+    row_box(app, "row_spacing_m").set_value(8.0).run()
     assert not app.exception
     assert metric(app, "Row bearing") == "158.0°"
     assert 1500 < len(layer(app, "plants")["data"]) < 2000
@@ -90,6 +93,42 @@ def test_layers_are_switched_off_and_on_while_the_view_stays(app):
     assert map_of(app)["initialViewState"] == view
 
 
+def test_rows_set_by_hand_that_leave_no_plant_can_be_set_again(app, tmp_path):
+    upload(app, plot=("plot.zip", zipped(tmp_path, square(0.0006)), "application/zip"))
+    plants = metric(app, "Plants")
+    row_box(app, "headland_m").set_value(40.0).run()
+    assert "headland" in app.error[0].value
+    go(app, "today")
+    assert app.error
+    row_box(app, "headland_m").set_value(4.0).run()
+    assert not app.error
+    go(app, "plot")
+    assert metric(app, "Plants") == plants
+
+
+def test_rows_set_by_hand_are_those_of_one_plot(app):
+    go(app, "plot")
+    row_box(app, "row_bearing_deg").set_value(10.0).run()
+    other = app.selectbox(key="feature sample/paran_estate.zip").set_value(1).run()
+    assert metric(other, "Row bearing") != "10.0°"
+    app.selectbox(key="feature sample/paran_estate.zip").set_value(0).run()
+    assert metric(app, "Row bearing") == "10.0°"
+
+
+def test_a_gate_is_set_where_only_plants_were_brought(app):
+    lonlat = "\n".join(f"{35 + x / 4e3:.6f},{30 + y / 4e3:.6f}" for x in range(6) for y in range(9))
+    upload(app, plant=("plants.csv", f"lon,lat\n{lonlat}\n".encode(), "text/csv"))
+    plants = metric(app, "Plants")
+    app.selectbox(key="draw_kind").set_value("gate").run()
+    app.text_input(key="draw_typed").set_value("35.0001,29.9999").run()
+    press(app, "Add")
+    assert not app.error
+    assert metric(app, "Plants") == plants
+    assert layer(app, "gate")["data"][0]["p"] == [35.0001, 29.9999]
+    go(app, "today")
+    assert layer(app, "gate")["data"][0]["p"] == pytest.approx([35.0001, 29.9999], abs=1e-6)
+
+
 def test_a_scout_is_planned_for_too(app):
     app.segmented_control(key="who").set_value("Scout on foot").run()
     assert not app.exception
@@ -98,7 +137,7 @@ def test_a_scout_is_planned_for_too(app):
 
 def test_too_short_a_day_is_said_in_a_sentence(app):
     go(app, "plot")
-    app.number_input(key="headland_m").set_value(40.0).run()
+    row_box(app, "headland_m").set_value(40.0).run()
     app.slider(key="hours Robot").set_value(0.5).run()
     assert not app.exception
 
@@ -138,9 +177,9 @@ def test_the_map_tells_three_states_apart_by_shape_and_the_history_of_a_plant(ap
     finds = len(layer(app, "finds0")["data"])
     assert finds == sum(p["c"][:3] == [213, 30, 30] for p in layer(app, "plants")["data"])
     assert finds > 20
-    app.number_input(key="plant row").set_value(20).run()
+    app.number_input(key="history row").set_value(20).run()
     assert "Chance of infestation now" in texts_of(app)
-    app.number_input(key="plant row").set_value(99_999).run()
+    app.number_input(key="history row").set_value(99_999).run()
     assert not app.exception
     assert "must be one of 1 to" in app.error[0].value
 
@@ -316,6 +355,30 @@ def study_page():
     from app.views import study
 
     study.show()
+
+
+def test_a_raster_of_risk_changes_the_chances_and_the_season_keeps_it(app, seasons_folder):
+    west, south, east, north = 35.1, 30.3, 35.2, 30.4
+    rows = np.repeat(np.linspace(40, 0, 400, dtype=np.float32)[:, None], 400, axis=1)
+    with MemoryFile() as memory:
+        shape = {"width": 400, "height": 400, "count": 1, "dtype": "float32", "driver": "GTiff"}
+        place = from_bounds(west, south, east, north, 400, 400)
+        with memory.open(**shape, crs="EPSG:4326", transform=place) as raster:
+            raster.write(rows[None])
+        data = memory.read()
+    before = float(metric(app, "Expected finds"))
+    go(app, "plot")
+    app.file_uploader(key="risk_file").upload("risk.tif", data).run()
+    assert "must hold values in 0..1" in app.error[0].value, "percent were taken for chances"
+    app.selectbox(key="risk_meaning").set_value("percent").run()
+    assert not app.error
+    assert "Risk of the plants" in texts_of(app)
+    go(app, "today")
+    assert float(metric(app, "Expected finds")) > before
+    begun(app)
+    risk = Project(seasons_folder / "Gate 2026.gpkg").risk
+    assert risk is not None
+    assert 0.1 < np.nanmean(risk) < 0.4
 
 
 def test_while_loops_are_compiled_the_page_says_so_and_shows_the_outline(monkeypatch):

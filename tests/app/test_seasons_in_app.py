@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from app_driving import begun, go, heading, layer, metric, opened, press, texts_of
 
+from app import figures
 from fieldmon.errors import SettingError
-from fieldmon.project import Project
+from fieldmon.project import Project, Results
 
 
 @pytest.fixture(scope="module")
@@ -126,6 +127,25 @@ def test_found_plants_and_clean_ones_show_on_the_map(app):
     shown = [p["c"] for p in layer(app, "plants")["data"]]
     assert sum(c == [213, 30, 30, 255] for c in shown) == 1
     assert sum(c == [90, 160, 230, 255] for c in shown) == 1
+
+
+def test_a_day_that_was_worked_is_played_as_it_was_worked(app, season):
+    plants = np.array([900, 5, 200])
+    for on, at_s in (("2026-11-16", [25_200.0, 21_660.0, 28_800.0]), ("2026-11-17", [np.nan] * 3)):
+        season().record(
+            Results.of(plants, np.zeros(3, np.int8), np.datetime64(on), second=np.array(at_s)), on
+        )
+    noted, driven = (figures.done(season(), date(2026, 11, day)) for day in (16, 17))
+    assert noted.plant.tolist() == [5, 900, 200], "in the order of the times noted"
+    assert noted.leave_s.tolist() == [60.0, 3600.0, 7200.0]
+    assert noted.line_m[noted.line_stop] == pytest.approx(noted.aisles.stop_m[noted.plant])
+    assert driven.plant.tolist() == plants.tolist()
+    gaps = np.diff(driven.leave_s, prepend=0.0)
+    assert (gaps > season().setup.robot.visit_s).all()
+    go(app, "map")
+    app.select_slider[0].set_value("2026-11-16").run()
+    path = layer(app, "route")["data"][0]["path"]
+    assert np.array(path) == pytest.approx(noted.line_lonlat(), abs=1e-7)
 
 
 def test_today_says_why_it_goes_where_it_goes(app):

@@ -1,0 +1,83 @@
+"""A raster of this session that says where plants are at more risk, and what its numbers mean."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.errors import FieldmonError
+from fieldmon.geodata.options import Upload
+from fieldmon.geodata.raster_values import RasterOptions
+from fieldmon.risk import RiskSettings
+
+from . import cached, files, remembered, texts
+from .files import File, Heard
+
+if TYPE_CHECKING:
+    from fieldmon.monitor import Plot
+
+_FILE, _PROBLEM = "risk", "risk problem"
+_MEANING, _SHARE, _LOW = "risk_meaning", "risk_share", "risk_low"
+_RELATIVE = ("rank", "score")
+
+
+def bring() -> None:
+    """Show the box for the raster, what its numbers mean, and what is wrong with it."""
+    kept = st.session_state.get(_FILE)
+    with st.expander(texts.RISK, expanded=kept is not None):
+        st.caption(texts.RISK_NOTE)
+        st.file_uploader(texts.RISK_FILE, key="risk_file", on_change=_take)
+        remembered.show(st.selectbox, texts.RISK_MEANS, list(texts.RISK_MEANINGS), key=_MEANING,
+                        format_func=texts.RISK_MEANINGS.__getitem__, default="chance",
+                        filter_mode=None)  # fmt: skip
+        if remembered.value(_MEANING) in _RELATIVE:
+            remembered.show(st.number_input, texts.RISK_SHARE, 0.1, 50.0, step=0.5, key=_SHARE,
+                            default=2.0)  # fmt: skip
+            remembered.show(st.toggle, texts.RISK_LOW, key=_LOW, default=False)
+        if kept is None:
+            return
+        st.caption(texts.KEPT_FILE.format(name=texts.isolated(kept.source.name)))
+        st.button(texts.FORGET_FILE, key="forget risk", on_click=_forget)
+        problem = st.session_state.get(_PROBLEM)
+        if problem is not None:
+            st.session_state["asking"] = kept.key
+            files.say(problem)
+
+
+def _take() -> None:
+    part = st.session_state.get("risk_file")
+    if part is not None:
+        data = part.getvalue()
+        st.session_state[_FILE] = File(cached.digest(data), Upload(part.name, data))
+
+
+def _forget() -> None:
+    st.session_state.pop(_FILE, None)
+
+
+def of(plot: Plot, key: str) -> tuple[cached.Array | None, tuple[Heard, ...], str]:
+    """Return the risk of each plant ``(n,)`` or None, what the import said, and the longer key.
+
+    A raster that cannot be used is left out; the page where it was brought says why.
+    """
+    file = st.session_state.get(_FILE)
+    st.session_state[_PROBLEM] = None
+    if file is None:
+        return None, (), key
+    try:
+        settings, options = _settings(), files.settled(file, RasterOptions())
+        key_of_risk = f"{key} risk {file.key} {settings} {options}"
+        read = cached.risk(key_of_risk, options, settings, file.source, plot)
+    except FieldmonError as error:
+        st.session_state[_PROBLEM] = error
+        return None, (), key
+    return read.value, tuple(Heard(file.key, finding) for finding in read.findings), key_of_risk
+
+
+def _settings() -> RiskSettings:
+    meaning = remembered.value(_MEANING, "chance")
+    if meaning not in _RELATIVE:
+        return RiskSettings(meaning)
+    share = remembered.value(_SHARE, 2.0) / 100
+    return RiskSettings(meaning, share, low_is_risky=bool(remembered.value(_LOW, default=False)))

@@ -18,12 +18,15 @@ from fieldmon.compiled import inlined, loop
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _MIX_2 = np.uint64(0x94D049BB133111EB)
 _POOL = 4
+_AT_ONCE = 32
 _HASH, _HASH_TIMES = np.uint64(0x43B0D7E5), np.uint64(0x931E8875)
 _STATE, _STATE_TIMES = np.uint64(0x8B51F9DD), np.uint64(0x58F38DED)
 _MIX_LEFT, _MIX_RIGHT = np.uint64(0xCA01F9DD), np.uint64(0x4973F715)
@@ -57,11 +60,13 @@ class Chance:
         words = self._words(name, key)
         return np.uint64(_first_state(words, np.empty(_POOL, np.uint64)))
 
-    def keys(self, name: str, n: int) -> NDArray[np.uint64]:
-        """Return the keys of ``name`` at 0, 1, ..., ``(n,)``: as many calls of `key` in one."""
-        keys = np.empty(n, np.uint64)
-        _first_states(self._words(name, (0,)), np.empty(_POOL, np.uint64), keys)
-        return keys
+    def keys(self, name: str) -> Iterator[np.uint64]:
+        """Yield the keys of ``name`` at 0, 1, 2, ... (2^32 of them): quicker than one by one."""
+        words, pool = self._words(name, (0,)), np.empty(_POOL, np.uint64)
+        for first in range(0, 2**32, _AT_ONCE):
+            keys = np.empty(_AT_ONCE, np.uint64)
+            _first_states(words, pool, keys, first)
+            yield from keys
 
     def _words(self, name: str, key: tuple[int, ...]) -> NDArray[np.uint64]:
         words = _words(self.seed)
@@ -106,11 +111,11 @@ def _first_state(words: NDArray[np.uint64], pool: NDArray[np.uint64]) -> np.uint
 
 @loop
 def _first_states(
-    words: NDArray[np.uint64], pool: NDArray[np.uint64], states: NDArray[np.uint64]
+    words: NDArray[np.uint64], pool: NDArray[np.uint64], states: NDArray[np.uint64], first: int
 ) -> None:
-    """Find the same for the last word 0, 1, ..."""
+    """Find the same with `first` and the numbers after it for the last word."""
     for k in range(states.size):
-        words[-1] = k
+        words[-1] = first + k
         states[k] = _first_state(words, pool)
 
 

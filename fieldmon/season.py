@@ -195,8 +195,8 @@ def days(
     last_inspected = np.full(len(infested), NEVER, np.int32)
     ever_infested, ever_found = int(np.count_nonzero(infested)), 0
     trail, at = np.empty(0, np.int32), GATE
-    keys = {name: chance.keys(name, settings.n_days) for name in ("sampler", "inspect", "spread")}
-    for number in range(settings.n_days):
+    keys = zip(*(chance.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
+    for number, (own_key, look_key, night_key) in zip(range(settings.n_days), keys, strict=False):
         belief = None if blind else mornings.on(number)
         scene = Scene(
             aisles=aisles,
@@ -208,13 +208,12 @@ def days(
             at=at,
             seconds_left=robot.day_s,
             trail=trail,
-            key=keys["sampler"][number],
+            key=own_key,
         )
-        key = keys["inspect"][number]
         if choosing:
-            work = work_day(scene, sampler, luck(infested, looks, key))
+            work = work_day(scene, sampler, luck(infested, looks, look_key))
         else:
-            work = work_day(scene, sampler, outcomes(infested, float(looks.detects[0]), key))
+            work = work_day(scene, sampler, outcomes(infested, float(looks.detects[0]), look_key))
         last_inspected = last_inspected.copy()
         last_inspected[work.plant] = number
         ever_found += int(np.count_nonzero(work.found))
@@ -222,7 +221,7 @@ def days(
         mornings.add(work)
         evening = infested.copy()
         evening[work.plant[work.found]] = False
-        infested = night(aisles.grid, evening, settings.spread, keys["spread"][number])
+        infested = night(aisles.grid, evening, settings.spread, night_key)
         # nobody recovers at night
         ever_infested += int(np.count_nonzero(infested)) - int(np.count_nonzero(evening))
         trail = work.plant if len(work) else trail

@@ -164,7 +164,7 @@ def today(
 
 @st.cache_resource(max_entries=_FEW)
 def recorded_hot_spots(key: str, _plot: Plot, _records: Observations) -> HotSpots:  # noqa: ARG001
-    """Return where the records cluster."""
+    """Return where records cluster; `key` stands for the plot, its records and the day."""
     return hot_spots(_plot.grid, record_states(_plot.grid, _records))
 
 

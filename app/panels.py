@@ -80,17 +80,23 @@ def chance_of(choices: Choices) -> cached.Array:
     return cached.evening(choices.key, choices.revision, choices.day, choices.project)
 
 
+def _known(choices: Choices) -> Observations:
+    """Return the records that are known on the chosen day."""
+    return usable(choices.records, np.datetime64(choices.day)).observations
+
+
 def states_of(choices: Choices) -> cached.Array:
     """Return ``(n,)`` found (1), clean (0) or never inspected (-1); of records without a season."""
     if choices.project is None:
-        return record_states(choices.plot.grid, choices.records)
+        return record_states(choices.plot.grid, _known(choices))
     return choices.project.history.states(choices.project.setup.day(choices.on))
 
 
 def spots_of(choices: Choices) -> HotSpots:
     """Return the hot spots of the chosen day: of findings in a season, else of records."""
     if choices.project is None:
-        return cached.recorded_hot_spots(choices.key, choices.plot, choices.records)
+        key = f"{choices.key} {choices.day}"
+        return cached.recorded_hot_spots(key, choices.plot, _known(choices))
     return cached.season_hot_spots(choices.key, choices.revision, choices.day, choices.project)
 
 

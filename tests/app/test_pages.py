@@ -1,6 +1,7 @@
 """Every page, driven without a browser."""
 
 import json
+from datetime import date
 from types import SimpleNamespace
 
 import numpy as np
@@ -398,3 +399,9 @@ def test_while_loops_are_compiled_the_page_says_so_and_shows_the_outline(monkeyp
     (picture,) = app.get("deck_gl_json_chart")
     assert "boundary" in picture.proto.json
     assert not app.metric
+
+
+def test_records_of_later_days_make_no_hot_spot_yet(app):
+    assert "hot" in {one["id"] for one in map_of(app)["layers"]}
+    app.date_input[0].set_value(date(2026, 1, 1)).run()
+    assert "hot" not in {one["id"] for one in map_of(app)["layers"]}

@@ -163,9 +163,15 @@ def today(
 
 
 @st.cache_resource(max_entries=_FEW)
-def recorded_hot_spots(key: str, _plot: Plot, _records: Observations) -> HotSpots:  # noqa: ARG001
-    """Return where records cluster; `key` stands for the plot, its records and the day."""
-    return hot_spots(_plot.grid, record_states(_plot.grid, _records))
+def recorded_states(key: str, _plot: Plot, _records: Observations) -> NDArray[np.int8]:  # noqa: ARG001
+    """Return what records say of plants; `key` stands for the plot, its records and the day."""
+    return record_states(_plot.grid, _records)
+
+
+@st.cache_resource(max_entries=_FEW)
+def recorded_hot_spots(key: str, _plot: Plot, _records: Observations) -> HotSpots:
+    """Return where records cluster; `key` as above."""
+    return hot_spots(_plot.grid, recorded_states(key, _plot, _records))
 
 
 # -- seasons that are kept

@@ -97,7 +97,7 @@ class Choices:
     @property
     def dark(self) -> bool:
         """Return whether the page is dark."""
-        return _is_dark()
+        return is_dark()
 
     @property
     def map_px(self) -> int:
@@ -124,7 +124,8 @@ def _is_phone() -> bool:
     return "Mobi" in (st.context.headers.get("User-Agent") or "")
 
 
-def _is_dark() -> bool:
+def is_dark() -> bool:
+    """Return whether the page is dark."""
     return st.context.theme.get("type") == "dark"
 
 
@@ -159,7 +160,7 @@ def _wait(above: DeltaGenerator, field: Field | None = None) -> None:
                 said = st.empty()
                 if field is not None:
                     st.pydeck_chart(
-                        maps.outline(field, dark=_is_dark(), phone=_is_phone()), key="outline",
+                        maps.outline(field, dark=is_dark(), phone=_is_phone()), key="outline",
                         height=_map_px(), alt=texts.OUTLINE_ALT.format(name=field.name),
                     )  # fmt: skip
         said.info(texts.COMPILING.format(n=FIRST_USE.compiled))

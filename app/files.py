@@ -67,6 +67,20 @@ def _take(kind: str) -> None:
     brought()[kind] = File(key, uploads[0] if len(uploads) == 1 else uploads)
 
 
+def bring_one(label: str, kept_as: str) -> File | None:
+    """Show a box for a single file; return the one that the session keeps under a name."""
+    st.file_uploader(label, key=f"{kept_as}_file", on_change=_take_one, args=(kept_as,))
+    kept: File | None = st.session_state.get(kept_as)
+    return kept
+
+
+def _take_one(kept_as: str) -> None:
+    part = st.session_state.get(f"{kept_as}_file")
+    if part is not None:
+        data = part.getvalue()
+        st.session_state[kept_as] = File(cached.digest(data), Upload(part.name, data))
+
+
 def _forget(kind: str) -> None:
     brought().pop(kind, None)
 

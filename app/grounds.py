@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.geodata.options import Upload
 from fieldmon.geodata.raster_values import RasterOptions
 
 from . import cached, files, maps, texts
@@ -18,17 +17,9 @@ if TYPE_CHECKING:
 
 def bring() -> None:
     """Show the box for the picture; other sessions do not see it."""
-    st.file_uploader(texts.BACKDROP, key="ground_file", on_change=_take)
-    kept = st.session_state.get("ground")
+    kept = files.bring_one(texts.BACKDROP, "ground")
     if kept is not None:
         st.caption(texts.KEPT_FILE.format(name=texts.isolated(kept.source.name)))
-
-
-def _take() -> None:
-    part = st.session_state.get("ground_file")
-    if part is not None:
-        data = part.getvalue()
-        st.session_state["ground"] = files.File(cached.digest(data), Upload(part.name, data))
 
 
 def layers(choices: Choices) -> list:

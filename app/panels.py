@@ -17,7 +17,6 @@ from fieldmon.field import ABSENT, PRESENT
 from fieldmon.geodata.handoff import FORMATS
 from fieldmon.grid import plant_at, row_label
 from fieldmon.history import FOUND
-from fieldmon.hotspots import record_states
 from fieldmon.prior import usable
 
 from . import cached, maps, remembered, texts
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
     from fieldmon.field import Observations
     from fieldmon.geodata.handoff import HandoffPlan
     from fieldmon.hotspots import HotSpots
-    from fieldmon.monitor import Today
+    from fieldmon.monitor import Plot, Today
     from fieldmon.route import Route
 
     from .choices import Choices
@@ -80,23 +79,23 @@ def chance_of(choices: Choices) -> cached.Array:
     return cached.evening(choices.key, choices.revision, choices.day, choices.project)
 
 
-def _known(choices: Choices) -> Observations:
-    """Return the records that are known on the chosen day."""
-    return usable(choices.records, np.datetime64(choices.day)).observations
+def _recorded(choices: Choices) -> tuple[str, Plot, Observations]:
+    """Return the records that are known on the chosen day, their plot, and a key for both."""
+    known = usable(choices.records, np.datetime64(choices.day)).observations
+    return f"{choices.key} {choices.day}", choices.plot, known
 
 
 def states_of(choices: Choices) -> cached.Array:
     """Return ``(n,)`` found (1), clean (0) or never inspected (-1); of records without a season."""
     if choices.project is None:
-        return record_states(choices.plot.grid, _known(choices))
+        return cached.recorded_states(*_recorded(choices))
     return choices.project.history.states(choices.project.setup.day(choices.on))
 
 
 def spots_of(choices: Choices) -> HotSpots:
     """Return the hot spots of the chosen day: of findings in a season, else of records."""
     if choices.project is None:
-        key = f"{choices.key} {choices.day}"
-        return cached.recorded_hot_spots(key, choices.plot, _known(choices))
+        return cached.recorded_hot_spots(*_recorded(choices))
     return cached.season_hot_spots(choices.key, choices.revision, choices.day, choices.project)
 
 
@@ -165,6 +164,16 @@ def route_layers(choices: Choices, route: Route, *, numbers: bool) -> list:
     shown = f"{choices.robot} {choices.sampler} {numbers} {choices.dark} {route.end_s}"
     key = f"route {choices.key} {choices.revision} {choices.day} {shown}"
     return cached.layers(key, partial(maps.route, route, numbers=numbers, dark=choices.dark))
+
+
+def with_marks(choices: Choices, layers: list, shown: list[str]) -> list:
+    """Return the layers with hot spots and records, where these are to be shown."""
+    if "hot" in shown:
+        spots = spots_of(choices)
+        layers = maps.with_hot(layers, choices.plot.grid, spots, dark=choices.dark)
+    if "records" in shown:
+        layers = layers + maps.records(choices.records, dark=choices.dark)
+    return layers
 
 
 def draw(choices: Choices, layers: list, key: str, tap: Tapped | None = None) -> None:

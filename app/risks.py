@@ -7,19 +7,17 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.geodata.options import Upload
 from fieldmon.geodata.raster_values import RasterOptions
-from fieldmon.risk import RiskSettings
+from fieldmon.risk import RELATIVE, RiskSettings
 
 from . import cached, files, remembered, texts
-from .files import File, Heard
+from .files import Heard
 
 if TYPE_CHECKING:
     from fieldmon.monitor import Plot
 
 _FILE, _PROBLEM = "risk", "risk problem"
 _MEANING, _SHARE, _LOW = "risk_meaning", "risk_share", "risk_low"
-_RELATIVE = ("rank", "score")
 
 
 def bring() -> None:
@@ -27,11 +25,11 @@ def bring() -> None:
     kept = st.session_state.get(_FILE)
     with st.expander(texts.RISK, expanded=kept is not None):
         st.caption(texts.RISK_NOTE)
-        st.file_uploader(texts.RISK_FILE, key="risk_file", on_change=_take)
+        files.bring_one(texts.RISK_FILE, _FILE)
         remembered.show(st.selectbox, texts.RISK_MEANS, list(texts.RISK_MEANINGS), key=_MEANING,
                         format_func=texts.RISK_MEANINGS.__getitem__, default="chance",
                         filter_mode=None)  # fmt: skip
-        if remembered.value(_MEANING) in _RELATIVE:
+        if remembered.value(_MEANING) in RELATIVE:
             remembered.show(st.number_input, texts.RISK_SHARE, 0.1, 50.0, step=0.5, key=_SHARE,
                             default=2.0)  # fmt: skip
             remembered.show(st.toggle, texts.RISK_LOW, key=_LOW, default=False)
@@ -43,13 +41,6 @@ def bring() -> None:
         if problem is not None:
             st.session_state["asking"] = kept.key
             files.say(problem)
-
-
-def _take() -> None:
-    part = st.session_state.get("risk_file")
-    if part is not None:
-        data = part.getvalue()
-        st.session_state[_FILE] = File(cached.digest(data), Upload(part.name, data))
 
 
 def _forget() -> None:
@@ -77,7 +68,7 @@ def of(plot: Plot, key: str) -> tuple[cached.Array | None, tuple[Heard, ...], st
 
 def _settings() -> RiskSettings:
     meaning = remembered.value(_MEANING, "chance")
-    if meaning not in _RELATIVE:
+    if meaning not in RELATIVE:
         return RiskSettings(meaning)
     share = remembered.value(_SHARE, 2.0) / 100
     return RiskSettings(meaning, share, low_is_risky=bool(remembered.value(_LOW, default=False)))

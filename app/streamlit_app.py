@@ -12,7 +12,7 @@ if str(Path(__file__).resolve().parents[1]) not in sys.path:
     sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from app import cached, keeping, remembered, texts  # noqa: E402 - after the path is right
-from app.choices import choose  # noqa: E402
+from app.choices import choose, is_dark  # noqa: E402
 from fieldmon.errors import FieldmonError  # noqa: E402
 
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
@@ -25,7 +25,7 @@ st.html(
     "min-height:2.5rem;padding:.25rem .75rem;margin:0}"
     ".st-key-start_scouting [data-testid=stElementContainer]{margin:0}</style>"
 )
-if st.context.theme.get("type") == "dark":
+if is_dark():
     # Streamlit writes white on the pale green of the dark theme: 2:1, where AA asks for 4.5:1
     st.html(
         "<style>[data-testid^=stBaseButton-primary],[data-testid^=stBaseButton-primary] *,"

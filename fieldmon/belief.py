@@ -585,27 +585,27 @@ def _spare_any(
     given: tuple[NDArray[np.float64], tuple[float, bool, float]],
 ) -> float:
     """Return the chance that a clean plant stays so; find it but for each of those beside it."""
-    (chance, both), (_, close, spared) = mind, after
+    chance, (_, close, spared) = mind[0], after
     room, (rate, one, arrivals) = given
     first, degree = linked.start[i], linked.start[i + _64] - linked.start[i]
     weight, kin = 0.0, 0.0
     # the most infested plant beside it, and the next
     most, second, which = 0.0, 0.0, -1
     for k in range(degree):
-        j = linked.plant[first + k]
-        share = rate / (linked.start[j + 1] - linked.start[j]) if one else rate
-        beside = max(chance[j] - both[first + k], 0.0) / (1.0 - chance[i])
+        j, beside = _beside(mind, linked, np.uint64(first + k), 1.0 - chance[i])
         weight += beside
         kin += beside * close[j] ** 2
-        room[_SHARED, k] = share * beside
+        room[_SHARED, k] = _share(linked, (rate, one), j) * beside
         if beside > most:
             most, second, which = beside, most, k
         elif beside > second:
             second = beside
     g, g_but = _one_infestation(weight, kin, (most, second))
     for k in range(degree):
-        room[_FREE, k] = 1.0 - room[_SHARED, k] / g if g > 0.0 else 1.0
-        room[_FREE_BUT, k] = 1.0 - room[_SHARED, k] / g_but if g_but > 0.0 else 1.0
+        room[_FREE, k], room[_FREE_BUT, k] = (
+            _free(room[_SHARED, k], g),
+            _free(room[_SHARED, k], g_but),
+        )
     for k in range(degree):
         row, there = (_FREE_BUT, g_but) if k == which else (_FREE, g)
         free = 1.0

@@ -28,6 +28,8 @@ def open_app(
     import socket  # noqa: PLC0415
     import subprocess  # noqa: PLC0415
 
+    from fieldmon.geodata.guard import own_path  # noqa: PLC0415
+
     found = importlib.util.find_spec("app")
     if found is None or found.origin is None:
         raise SettingError("The app must be installed beside fieldmon, but it was not found.")
@@ -42,8 +44,6 @@ def open_app(
             ) from error
     typer.echo(f"fieldmon is at http://{address}:{port} (stop it with Ctrl-C)")
     page = Path(found.origin).with_name("streamlit_app.py")
-    # -m looks in the folder one stands in first, which need not be where the app is
-    path = os.pathsep.join([str(page.parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])])
     # everything else is set, with reasons, in the app's own .streamlit/config.toml
     settings = {
         "server.port": port,
@@ -52,7 +52,8 @@ def open_app(
     }
     flags = [f"--{name}={value}" for name, value in settings.items()]
     command = [sys.executable, "-P", "-m", "app.serve", "run", str(page), *flags]
-    env = os.environ | {"FIELDMON_SEASONS": str(seasons.absolute()), "PYTHONPATH": path}
+    # -m looks in the folder one stands in first, which need not be where the app is
+    env = os.environ | {"FIELDMON_SEASONS": str(seasons.absolute()), "PYTHONPATH": own_path()}
     with WAITING.silent():
         ended = subprocess.run(command, check=False, env=env)  # noqa: S603 - our own
     raise typer.Exit(ended.returncode)

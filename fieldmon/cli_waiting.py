@@ -41,13 +41,13 @@ class Waiting:
     def __exit__(self, *_: object) -> None:
         """Wipe the count away."""
         self._over.set()
-        self._wipe()
+        _show(_WIPE)
 
     @contextmanager
     def silent(self) -> Iterator[None]:
         """Say nothing meanwhile."""
         self._still.set()
-        self._wipe()
+        _show(_WIPE)
         try:
             yield
         finally:
@@ -58,24 +58,23 @@ class Waiting:
         while not self._over.wait(0.5):
             seconds = monotonic() - began
             if seconds > _SILENT_S and not self._still.is_set() and not FIRST_USE.is_busy:
-                sys.stderr.write(f"\r{_WORKING.format(seconds=seconds)}\r")
-                sys.stderr.flush()
+                _show(f"\r{_WORKING.format(seconds=seconds)}\r")
 
     def _compiling(self, compiled: int, seconds: float) -> None:
         if seconds < 1.0:
             return
         if sys.stderr.isatty():
             said = f"{_COMPILING} {compiled} parts so far" if FIRST_USE.is_busy else ""
-            sys.stderr.write(f"{_WIPE}{said}")
-            sys.stderr.flush()
+            _show(f"{_WIPE}{said}")
         elif not self._compiling_said:
             self._compiling_said = True
             typer.echo(_COMPILING, err=True)
 
-    def _wipe(self) -> None:
-        if sys.stderr.isatty():
-            sys.stderr.write(_WIPE)
-            sys.stderr.flush()
+
+def _show(text: str) -> None:
+    if sys.stderr.isatty():
+        sys.stderr.write(text)
+        sys.stderr.flush()
 
 
 WAITING = Waiting()

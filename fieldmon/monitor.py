@@ -144,9 +144,8 @@ def plan_from(plot: Plot, chance: NDArray[np.float64], plans: Plans) -> Today:
         chance=chance,
         last_inspected=np.full(len(plot.grid), NEVER, np.int32),
         seconds_left=plans.robot.day_s,
-        both=pairs(
-            chance, plot.grid
-        ),  # as a season believes: it goes the same way on its first day
+        # as a season believes: it goes the same way on its first day
+        both=pairs(chance, plot.grid),
     )
     work = plan_day(scene, plans.sampler)
     return Today(scene, work, route_of(scene, work))

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 Meaning: TypeAlias = Literal["chance", "percent", "rank", "score"]
 _MOST_SCORE = 4.0
+#: meanings that say which plants are at more risk, but not at how much
+RELATIVE = frozenset({"rank", "score"})
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,7 @@ class RiskSettings:
                 f"What a risk raster means must be one of {', '.join(get_args(Meaning))}, but it "
                 f"is {self.meaning!r}."
             )
-        relative = self.meaning in {"rank", "score"}
+        relative = self.meaning in RELATIVE
         if relative and self.mean_share is None:
             raise SettingError(
                 f"A {self.meaning} says which plants are at more risk, but not at how much: state "

@@ -54,13 +54,7 @@ def _layers(choices: Choices, shade: str, shown: list[str], rows: tuple[int, int
     if "route" in shown:
         route = panels.route_of_day(choices).route
         layers += panels.route_layers(choices, route, numbers="numbers" in shown)
-    if "hot" in shown:
-        layers = maps.with_hot(
-            layers, choices.plot.grid, panels.spots_of(choices), dark=choices.dark
-        )
-    if "records" in shown:
-        layers += maps.records(choices.records, dark=choices.dark)
-    return layers + panels.chosen_layers(choices)
+    return panels.with_marks(choices, layers, shown) + panels.chosen_layers(choices)
 
 
 def _legend(shade: str) -> None:

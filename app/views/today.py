@@ -50,13 +50,7 @@ def _layers(choices: Choices, today: Today, shown: list[str]) -> list:
     layers = panels.plant_layers(choices, "chance") if "plants" in shown else []
     if "route" in shown:
         layers = layers + panels.route_layers(choices, today.route, numbers="numbers" in shown)
-    if "hot" in shown:
-        layers = maps.with_hot(
-            layers, choices.plot.grid, panels.spots_of(choices), dark=choices.dark
-        )
-    return (
-        layers + maps.records(choices.records, dark=choices.dark) if "records" in shown else layers
-    )
+    return panels.with_marks(choices, layers, shown)
 
 
 def _hand_out(choices: Choices, today: Today) -> None:

@@ -108,19 +108,23 @@ def _work(pid: int) -> _Work:
     return _Work(ticks / os.sysconf("SC_CLK_TCK"), state in {"R", "D"})
 
 
+def own_path() -> str:
+    """Return where Python is to look first for modules: beside this very package."""
+    here = str(Path(__file__).resolve().parents[2])
+    return os.pathsep.join([here, *filter(None, [os.environ.get("PYTHONPATH")])])
+
+
 class Reader:
     """One reading process; it loads `modules` before its first file."""
 
     def __init__(self, *modules: str) -> None:
-        here = str(Path(__file__).resolve().parents[2])
-        path = os.pathsep.join([here, *filter(None, [os.environ.get("PYTHONPATH")])])
         # -P: a folder of downloads that one happens to stand in must not shadow a module
         self._process = subprocess.Popen(  # noqa: S603 - our own names
             [sys.executable, "-P", "-m", "fieldmon.geodata.guard", *modules],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            env=os.environ | _ENVIRONMENT | {"PYTHONPATH": path},
+            env=os.environ | _ENVIRONMENT | {"PYTHONPATH": own_path()},
         )
         self.uses = 0
 

@@ -550,11 +550,14 @@ def _value_row(
     row, price = state
     first, end = ground.row_start[row], ground.row_start[row + 1]
     rows.last[row] = _NOWHERE
+    pays = _pays_from(looks, price)
     previous, before, n = _NOWHERE, 0, 0
     for block in range(first // _BLOCK, (end - 1) // _BLOCK + 1):
-        if _best_look(looks, 1.0, _most_in(mind, rows, block), price)[0] <= 0.0:
+        if _most_in(mind, rows, block) < pays:
             continue
         for i in range(max(first, block * _BLOCK), min(end, (block + 1) * _BLOCK)):
+            if mind.worth[i] * mind.chance[i] < pays:
+                continue
             gain, taken = _best_look(looks, mind.worth[i], mind.chance[i], price)
             if gain > 0.0 and previous == i - 1 and previous >= 0:
                 chance = _after_clean(mind, i, looks.detects[before])
@@ -572,18 +575,29 @@ def _value_row(
     _through(ground, clock, rows, row, price)
 
 
-@part
+@inlined
+def _pays_from(looks: Looks, price: float) -> float:
+    """Return what a find must be expected to be worth for any look to pay; a little less."""
+    least = np.inf
+    for k in range(looks.stop_s.size):
+        least = min(least, looks.stop_s[k] / looks.detects[k])
+    return price * least * _NEARLY
+
+
+@inlined
 def _most_in(mind: _Mind, rows: _Rows, block: int) -> float:
     """Return the most that a find in a block is expected to be worth."""
-    if rows.most[block] < 0.0:
+    most = rows.most[block]
+    if most < 0.0:
         most = 0.0
         for i in range(block * _BLOCK, min((block + 1) * _BLOCK, mind.worth.size)):
             most = max(most, mind.worth[i] * mind.chance[i])
         rows.most[block] = most
-    return float(rows.most[block])
+    return float(most)
 
 
-@part
+# copied: handing over all of a mind takes longer than this
+@inlined
 def _after_clean(mind: _Mind, i: int, detects: float) -> float:
     """Return the chance of plant i once the one before it was looked at and seemed clean."""
     p, e = mind.chance[i], mind.behind[i]

@@ -208,7 +208,10 @@ def _refill(
 
 @part
 def _least_of(
-    opened: _Open, chance_bits: NDArray[np.int64], asked: tuple[int, int], levels: tuple[int, int]
+    opened: _Open,
+    chance_bits: NDArray[np.int64],
+    asked: tuple[int, int],
+    levels: tuple[np.int64, int],
 ) -> tuple[int, int]:
     """Return the lowest level of which some have room, and how many of that one."""
     n, room = asked

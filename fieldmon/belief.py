@@ -66,7 +66,7 @@ class Learning:
 
     def detects(self, looks: int) -> NDArray[np.float64]:
         """Return the detection of each of so many looks, ``(k,)``."""
-        return np.array(np.broadcast_to(self.detection, looks), np.float64)
+        return np.full(looks, self.detection, np.float64)
 
 
 def learn(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
@@ -118,7 +119,7 @@ class Scene:
             return self.at
         return int(self.trail[-1]) if len(self.trail) else NEVER
 
-    @property
+    @cached_property
     def clock(self) -> Clock:
         """Return the robot's numbers for the rest of the day."""
         return robot_clock(self.robot, self.seconds_left)

@@ -8,32 +8,25 @@ leaves out, beside a key that stands for them.
 from __future__ import annotations
 
 import io
-import threading
 import zipfile
-from functools import cache
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
 import numpy as np
 import streamlit as st
-from shapely import MultiPolygon
 
-from fieldmon.aisles import Aisles
 from fieldmon.chance import Chance
-from fieldmon.field import PRESENT, Field, Observations
-from fieldmon.geodata import guard, reading
+from fieldmon.geodata import reading
 from fieldmon.geodata.findings import Finding, Severity, seen
 from fieldmon.geodata.handoff import FORMATS
 from fieldmon.geodata.rasters import read_backdrop, read_raster
 from fieldmon.hotspots import HotSpots, hot_spots, record_states
 from fieldmon.metrics import SeasonFigures, figures
 from fieldmon.monitor import Plans, Plot, Today, first_day
-from fieldmon.planting import rectangle
 from fieldmon.prior import start_infested
 from fieldmon.project import Project
 from fieldmon.project.store import get_meta
 from fieldmon.risk import RiskSettings, risk_chance
-from fieldmon.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.season import Day, SeasonSettings, Start, days
 from fieldmon.spread import Spread
@@ -50,12 +43,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiLineString
 
+    from fieldmon.field import Field, Observations
     from fieldmon.geodata.findings import Imported
     from fieldmon.geodata.handoff import HandoffPlan
     from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
     from fieldmon.geodata.raster_values import Backdrop, RasterOptions
     from fieldmon.planting import Planting
     from fieldmon.project import Remark
+    from fieldmon.robot import Robot
     from fieldmon.route import Route
 
     from .figures import DayFigures, Known
@@ -70,39 +65,6 @@ _MAPS = 60
 def digest(data: bytes) -> str:
     """Return what stands for a file's bytes in keys."""
     return sha256(data).hexdigest()
-
-
-class Warming(threading.Thread):
-    """Starts the file reader and compiles the samplers while the person is still looking."""
-
-    def __init__(self) -> None:
-        super().__init__(daemon=True)
-        #: set once what Today needs is compiled
-        self.ready = threading.Event()
-
-    def run(self) -> None:
-        """Plan a day on a few plants, then simulate with what Compare and Simulate begin with."""
-        try:
-            guard.warm()
-            corners = [(35.15, 30.36), (35.1504, 30.3601), (35.1503, 30.3604), (35.15, 30.3603)]
-            a_plot = Plot.of(Field("", MultiPolygon([(corners, [])])))
-            record = Observations.of(np.array([(35.1502, 30.3602)]), np.array([PRESENT]))
-            first_day(a_plot, record, np.datetime64("2026-11-16"), Plans())
-            hot_spots(a_plot.grid, record_states(a_plot.grid, record))
-        finally:
-            self.ready.set()
-        for name in ("adaptive", "dynamic", "naive"):
-            start = Start(np.ones(9, np.bool_), np.full(9, 0.1))
-            settings, aisles = SeasonSettings(n_days=2), Aisles.of(rectangle(3, 3))
-            list(days(aisles, Robot(), sampler(name), start, settings, Chance(0)))
-
-
-@cache
-def warm() -> Warming:
-    """Start warming, once for all sessions."""
-    warming = Warming()
-    warming.start()
-    return warming
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from datetime import date, datetime
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -17,7 +16,8 @@ from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.monitor import Plot, planting_of
 from fieldmon.planting import Planting
 
-from . import cached, files, maps, remembered, risks, seasons, texts
+from . import cached, early, files, remembered, risks, seasons, texts, warming
+from .early import SAMPLE, WHERE
 from .edits import Edit, edited
 from .files import File, Heard
 from .units import AREAS_M2, DATES, LENGTHS, Units
@@ -29,13 +29,12 @@ if TYPE_CHECKING:
     from fieldmon.project import Project
     from fieldmon.robot import Robot
 
-SAMPLE = Path(__file__).resolve().parents[1] / "sample_data"
+    from .early import Places
+
 LAST_SAMPLE_DAY = date(2026, 11, 16)
 #: what is put into cache keys for the sample estate's files
 _SAMPLE = "sample/"
 _DAY = "day {season}"
-# also the word in the address
-_WHERE = "season"
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,17 +91,17 @@ class Choices:
     @property
     def phone(self) -> bool:
         """Return whether the page is shown on a phone, by what its browser says."""
-        return _is_phone()
+        return early.is_phone()
 
     @property
     def dark(self) -> bool:
         """Return whether the page is dark."""
-        return is_dark()
+        return early.is_dark()
 
     @property
     def map_px(self) -> int:
         """Return the height of the map: half a phone's screen, more on a laptop."""
-        return _map_px()
+        return early.map_px()
 
     def today(self) -> Today:
         """Return the planned day: what is left of it, once something of it was recorded."""
@@ -120,73 +119,55 @@ class Chosen:
     problem: FieldmonError | None = None
 
 
-def _is_phone() -> bool:
-    return "Mobi" in (st.context.headers.get("User-Agent") or "")
-
-
-def is_dark() -> bool:
-    """Return whether the page is dark."""
-    return st.context.theme.get("type") == "dark"
-
-
-def _map_px() -> int:
-    return 400 if _is_phone() else 520
-
-
-def choose() -> Chosen:
+def choose(places: Places | None = None) -> Chosen:
     """Show the sidebar; return the choices, or the problem that keeps from them."""
-    above = st.empty()
+    above, picture = (st.empty(), None) if places is None else (places.above, places.picture)
     with st.sidebar:
         where = _where()
         try:
             if where not in (texts.SAMPLE, texts.UPLOAD):
                 _wait(above)
                 return Chosen(_open(where))
-            return Chosen(_unsaved(where, above))
+            return Chosen(_unsaved(where, above, picture))
         except FieldmonError as error:
             return Chosen(problem=error)
         finally:
             _units()
 
 
-def _wait(above: DeltaGenerator, field: Field | None = None) -> None:
-    """Show how far compiling is, which an installation does once, and meanwhile the outline."""
-    warming, said = cached.warm(), None
-    while not warming.ready.wait(0.5):
-        if not FIRST_USE.compiled:
-            continue
-        if said is None:
-            with above.container():
-                said = st.empty()
-                if field is not None:
-                    st.pydeck_chart(
-                        maps.outline(field, dark=is_dark(), phone=_is_phone()), key="outline",
-                        height=_map_px(), alt=texts.OUTLINE_ALT.format(name=field.name),
-                    )  # fmt: skip
-        said.info(texts.COMPILING.format(n=FIRST_USE.compiled))
+def _wait(
+    above: DeltaGenerator, picture: DeltaGenerator | None = None, field: Field | None = None
+) -> None:
+    """Show the outline until plants can be laid, and how far compiling is, once an installation."""
+    ready = warming.start().ready
+    if field is not None and picture is not None and not ready.is_set():
+        early.outline(picture, field)
+    while not ready.wait(0.5):
+        if FIRST_USE.compiled:
+            above.info(texts.COMPILING.format(n=FIRST_USE.compiled))
     above.empty()
 
 
 def _where() -> str:
     options = [texts.SAMPLE, texts.UPLOAD, *seasons.names()]
-    remembered.first(_WHERE, st.query_params.get(_WHERE))
-    if remembered.value(_WHERE) not in options:
-        st.session_state[_WHERE] = texts.SAMPLE
+    remembered.first(WHERE, st.query_params.get(WHERE))
+    if remembered.value(WHERE) not in options:
+        st.session_state[WHERE] = texts.SAMPLE
     chosen = remembered.show(
-        st.selectbox, texts.PLOT_FROM, options, key=_WHERE, help=texts.PLOT_FROM_HELP,
+        st.selectbox, texts.PLOT_FROM, options, key=WHERE, help=texts.PLOT_FROM_HELP,
         filter_mode=None,
     )  # fmt: skip
     # the address leads back to the season after a reload, and to another person's screen
     if chosen == texts.SAMPLE:
-        st.query_params.pop(_WHERE, None)
-    elif st.query_params.get(_WHERE) != chosen:
-        st.query_params[_WHERE] = chosen
+        st.query_params.pop(WHERE, None)
+    elif st.query_params.get(WHERE) != chosen:
+        st.query_params[WHERE] = chosen
     return chosen
 
 
 def open_season(name: str) -> None:
     """Let the season of this name be open from the next run on (for callbacks)."""
-    st.session_state[_WHERE] = name
+    st.session_state[WHERE] = name
 
 
 def _open(name: str) -> Choices:
@@ -227,11 +208,11 @@ def _change(name: str, choices: Choices) -> None:
                 st.rerun()
 
 
-def _unsaved(where: str, above: DeltaGenerator) -> Choices | None:
+def _unsaved(where: str, above: DeltaGenerator, picture: DeltaGenerator | None) -> Choices | None:
     if where == texts.SAMPLE:
         st.caption(texts.SAMPLE_NOTE)
         plot_file, record_file, plant_file = (
-            _sample("paran_estate.zip"), _sample("mite_records.csv"), None,
+            _sample(early.PLOTS), _sample("mite_records.csv"), None,
         )  # fmt: skip
     else:
         brought = files.brought()
@@ -241,7 +222,7 @@ def _unsaved(where: str, above: DeltaGenerator) -> Choices | None:
             return None
     plants, plant_key = _plants(plant_file)
     field, plot_key, heard = _field(plot_file, plants, plant_key)
-    _wait(above, field)
+    _wait(above, picture, field)
     plot, key = _plot(field, plot_key, plants)
     records, more, key = _records(record_file, plot, key)
     risk, said, key = risks.of(plot, key)

@@ -9,9 +9,7 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.geodata.findings_in import read_findings
 from fieldmon.geodata.options import Upload
-from fieldmon.geodata.reported import FindingsOptions
 from fieldmon.grid import plant_at
 from fieldmon.project import Project, Remark, Results, Setup, results_from
 
@@ -101,6 +99,10 @@ def record_stops(choices: Choices, plants: np.ndarray, found: list[int]) -> str:
 @saying
 def record_file(choices: Choices, name: str, data: bytes) -> str:
     """Record findings from a file: a route given out and filled in, a table, positions."""
+    # what reads files is half a second to import
+    from fieldmon.geodata.findings_in import read_findings  # noqa: PLC0415
+    from fieldmon.geodata.reported import FindingsOptions  # noqa: PLC0415
+
     options = FindingsOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
     options = options.choose("day", choices.day)
     read = read_findings(Upload(name, data), choices.plot.grid, options)

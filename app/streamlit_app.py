@@ -11,8 +11,8 @@ sys.path[:] = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolv
 if str(Path(__file__).resolve().parents[1]) not in sys.path:
     sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from app import cached, keeping, remembered, texts  # noqa: E402 - after the path is right
-from app.choices import choose, is_dark  # noqa: E402
+# little more than this is needed for a first look at the map: the rest is loaded below
+from app import early, remembered, texts, warming  # noqa: E402 - after the path is right
 from fieldmon.errors import FieldmonError  # noqa: E402
 
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
@@ -25,13 +25,13 @@ st.html(
     "min-height:2.5rem;padding:.25rem .75rem;margin:0}"
     ".st-key-start_scouting [data-testid=stElementContainer]{margin:0}</style>"
 )
-if is_dark():
+if early.is_dark():
     # Streamlit writes white on the pale green of the dark theme: 2:1, where AA asks for 4.5:1
     st.html(
         "<style>[data-testid^=stBaseButton-primary],[data-testid^=stBaseButton-primary] *,"
         "[data-tag],[data-tag] *{color:#0b1f14!important}</style>"
     )
-cached.warm()
+warming.start()
 
 
 def view(name: str):  # noqa: ANN201 - a page's module
@@ -44,15 +44,20 @@ def page(name: str, title: str, icon: str, path: str = "") -> st.Page:
     path = path or name
 
     def run() -> None:
-        chosen = choose()
         # a box of its own, empty or not: a map below that moves by a place forgets its zoom
-        with st.container():
+        said = st.container()
+        places = (early.places(),) if name == "today" else ()
+        from app import keeping  # noqa: PLC0415 - the outline is on its way
+        from app.choices import choose  # noqa: PLC0415
+
+        chosen = choose(*places)
+        with said:
             keeping.said()
         if chosen.choices is None:
             view("plot").bring(chosen.problem)
             return
         try:
-            view(name).show(chosen.choices)
+            view(name).show(chosen.choices, *places)
         except FieldmonError as error:
             st.error(str(error))
 
@@ -63,6 +68,8 @@ def page(name: str, title: str, icon: str, path: str = "") -> st.Page:
 
 def page_prior() -> None:
     """Show the study with prior information, on the chosen plot too."""
+    from app.choices import choose  # noqa: PLC0415 - as above
+
     view("prior_study").show(choose().choices)
 
 
@@ -92,3 +99,4 @@ turned = st.navigation(
 )
 remembered.turn(turned.url_path)
 turned.run()
+warming.start().shown.set()

@@ -7,9 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from fieldmon.compiled import loop
 from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
@@ -138,8 +136,10 @@ class PlantGrid:
     @cached_property
     def linked(self) -> Linked:
         """Neighbours as in `adjacent`, each linked with its own entry for the plant."""
+        from fieldmon.neighbours import link  # noqa: PLC0415 - a quarter second to import
+
         back = np.empty(len(self.adjacent.plant), np.int32)
-        _link(self.adjacent, back)
+        link(*self.adjacent, back)
         back.setflags(write=False)
         return Linked(*self.adjacent, back)
 
@@ -204,6 +204,8 @@ def nearest_plants(
     Positions further than `max_m` from every plant get plant -1 and an infinite distance. Where
     both faces of a plant are inspected, the one with the lower index is returned.
     """
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
+
     tree = cKDTree(grid.xy_m)
     within_m = np.nextafter(max_m, np.inf)
     distance_m, plant = tree.query(grid.frame.xy_m(lonlat), distance_upper_bound=within_m)
@@ -218,14 +220,3 @@ def _line_faces(grid: PlantGrid) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     new_line = np.diff(grid.row_line, prepend=-1) != 0
     new_face = new_line | (np.diff(grid.side, prepend=0) != 0)
     return first[new_line], first[new_face][np.cumsum(new_face) - 1]
-
-
-@loop
-def _link(adjacent: Csr, back: NDArray[np.int32]) -> None:
-    start, plant = adjacent
-    for i in range(start.size - 1):
-        for e in range(start[i], start[i + 1]):
-            back[e] = e
-            for other in range(start[plant[e]], start[plant[e] + 1]):
-                if plant[other] == i:
-                    back[e] = other

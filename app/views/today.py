@@ -12,23 +12,23 @@ from fieldmon.geodata.routes import RouteNotes, route_geojson
 
 if TYPE_CHECKING:
     from app.choices import Choices
+    from app.early import Places
     from fieldmon.monitor import Today
 
 
-def show(choices: Choices) -> None:
+def show(choices: Choices, places: Places) -> None:
     """Plan the day and show it."""
     today = choices.today()
-    st.subheader(f"{choices.name} · {choices.units.day(choices.day)}")
-    with st.container():  # one place above the map, however much is said there
+    places.heading.subheader(f"{choices.name} · {choices.units.day(choices.day)}")
+    with places.figures:  # one place above the map, however much is said there
         panels.route_figures(choices, today)
         panels.said_of_day(choices, today)
-    picture = st.container()
     shown = remembered.show(
         st.pills, texts.LAYERS, list(texts.LAYER_NAMES), key="layers",
         default=["plants", "route", "numbers", "hot"],
         format_func=texts.LAYER_NAMES.__getitem__, selection_mode="multi",
     )  # fmt: skip
-    with picture:
+    with places.picture:
         panels.draw(choices, _layers(choices, today, shown), "map")
     _hand_out(choices, today)
     st.markdown(f"**{texts.LEGEND_CHANCE}**{maps.chance_legend()}", unsafe_allow_html=True)

@@ -27,7 +27,7 @@ from rasterio.io import MemoryFile
 from rasterio.transform import from_bounds
 from streamlit.testing.v1 import AppTest
 
-from app import cached
+from app import warming
 from fieldmon.first_use import FIRST_USE
 from fieldmon.project import Project
 
@@ -386,13 +386,16 @@ def test_while_loops_are_compiled_the_page_says_so_and_shows_the_outline(monkeyp
     class Ready:
         asked = 0
 
+        def is_set(self):
+            return False
+
         def wait(self, _):
             self.asked += 1
             if self.asked > 2:
                 st.stop()
             return False
 
-    monkeypatch.setattr(cached, "warm", lambda: SimpleNamespace(ready=Ready()))
+    monkeypatch.setattr(warming, "start", lambda: SimpleNamespace(ready=Ready()))
     monkeypatch.setattr(FIRST_USE, "compiled", 7)
     app = opened()
     assert "7 parts" in app.info[0].value

@@ -120,12 +120,12 @@ def processor_s() -> dict[str, float]:
             names[int(pid)], parents[int(pid)] = name, int(fields[1])
             spent[int(pid)] = sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
     total = {"server": 0.0, "browser": 0.0}
-    for pid in spent:
+    for pid, seconds in spent.items():
         line = [pid]
         while line[-1] in parents:
             line.append(parents[line[-1]])
         if os.getpid() in line[1:] and names[pid] != "node":
-            total["browser" if names[pid].startswith("chrom") else "server"] += spent[pid]
+            total["browser" if names[pid].startswith("chrom") else "server"] += seconds
     return total
 
 

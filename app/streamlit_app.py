@@ -47,7 +47,8 @@ def page(name: str, title: str, icon: str, path: str = "") -> st.Page:
         # a box of its own, empty or not: a map below that moves by a place forgets its zoom
         said = st.container()
         places = (early.places(),) if name == "today" else ()
-        from app import keeping  # noqa: PLC0415 - the outline is on its way
+        warming.start().load(map_sent=bool(places))
+        from app import keeping  # noqa: PLC0415 - as just loaded
         from app.choices import choose  # noqa: PLC0415
 
         chosen = choose(*places)

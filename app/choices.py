@@ -17,7 +17,7 @@ from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.monitor import Plot, planting_of
 from fieldmon.planting import Planting
 
-from . import cached, files, maps, remembered, risks, seasons, texts
+from . import cached, canopies, files, maps, remembered, risks, seasons, texts
 from .edits import Edit, edited
 from .files import File, Heard
 from .units import AREAS_M2, DATES, LENGTHS, Units
@@ -243,11 +243,12 @@ def _unsaved(where: str, above: DeltaGenerator) -> Choices | None:
     field, plot_key, heard = _field(plot_file, plants, plant_key)
     _wait(above, field)
     plot, key = _plot(field, plot_key, plants)
+    plot, gaps, key = canopies.of(plot, key)
     records, more, key = _records(record_file, plot, key)
     risk, said, key = risks.of(plot, key)
     robot, sampler, day = _work(where)
     return Choices(
-        key, plot, records, (*heard, *more, *said), robot, sampler, day, read_units(), None,
+        key, plot, records, (*heard, *gaps, *more, *said), robot, sampler, day, read_units(), None,
         plot_key, risk,
     )  # fmt: skip
 

@@ -174,7 +174,12 @@ RISK_MEANINGS = {
     "score": "scores: far above the average is much more risk",
 }
 RISK_SHARE, RISK_LOW = "Plants infested for this reason (%)", "Low numbers are the risky ones"
-RISK_IS = "Risk of the plants: {low:.1%} to {high:.1%}, {mean:.1%} on average."
+CANOPY, CANOPY_FILE = "Missing plants from a raster", "GeoTIFF: canopy height, NDVI"
+CANOPY_NOTE = (
+    "No plant stands where the canopy is low. Rows and aisles stay as they are; plants that the "
+    "raster does not show count as there."
+)
+CANOPY_BELOW = "A plant is missing where the raster is below"
 RECORDS, RECORDS_NONE = "Records up to", "There are no records of this plot."
 RECORDS_SHOWN = "{shown} of {all} records shown ({found} with pests, {clean} without)."
 UNDATED = "Records without a date are always shown."

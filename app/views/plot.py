@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 import streamlit as st
 
-from app import drawing, files, maps, panels, risks, texts
+from app import canopies, drawing, files, maps, panels, risks, texts
 from app.choices import row_settings
 from fieldmon.errors import PlotError
 
@@ -43,6 +43,7 @@ def show(choices: Choices) -> None:
         if choices.project is None:
             drawing.rows(choices.plot_key)
             drawing.tools(choices)
+            canopies.bring()
             risks.bring()
         else:
             st.info(texts.FIXED)

@@ -186,13 +186,7 @@ def test_the_map_tells_three_states_apart_by_shape_and_the_history_of_a_plant(ap
 
 
 def test_a_picture_of_the_ground_lies_under_the_plants_where_it_is(app):
-    west, south, east, north = 35.1, 30.3, 35.2, 30.4
-    with MemoryFile() as memory:
-        shape = {"width": 400, "height": 400, "count": 1, "dtype": "uint8", "driver": "GTiff"}
-        place = from_bounds(west, south, east, north, 400, 400)
-        with memory.open(**shape, crs="EPSG:4326", transform=place) as picture:
-            picture.write(np.full((1, 400, 400), 90, np.uint8))
-        data = memory.read()
+    data = geotiff(np.full((400, 400), 90, np.uint8))
     go(app, "map")
     app.pills(key="map_layers").set_value(["backdrop"]).run()
     app.file_uploader(key="ground_file").upload("ground.tif", data).run()
@@ -358,22 +352,51 @@ def study_page():
     study.show()
 
 
-def test_a_raster_of_risk_changes_the_chances_and_the_season_keeps_it(app, seasons_folder):
-    west, south, east, north = 35.1, 30.3, 35.2, 30.4
-    rows = np.repeat(np.linspace(40, 0, 400, dtype=np.float32)[:, None], 400, axis=1)
+def geotiff(values, edges=(35.1, 30.3, 35.2, 30.4)):
+    """Return a raster ``(h, w)`` over the sample estate as the bytes of a GeoTIFF."""
+    high, wide = values.shape
     with MemoryFile() as memory:
-        shape = {"width": 400, "height": 400, "count": 1, "dtype": "float32", "driver": "GTiff"}
-        place = from_bounds(west, south, east, north, 400, 400)
-        with memory.open(**shape, crs="EPSG:4326", transform=place) as raster:
-            raster.write(rows[None])
-        data = memory.read()
+        shape = {"width": wide, "height": high, "count": 1, "dtype": values.dtype}
+        place = from_bounds(*edges, wide, high)
+        with memory.open(**shape, driver="GTiff", crs="EPSG:4326", transform=place) as raster:
+            raster.write(values[None])
+        return memory.read()
+
+
+def test_plants_that_a_raster_shows_to_be_missing_are_not_laid(app):
+    go(app, "plot")
+    every = np.array([p["p"] for p in layer(app, "plants")["data"]])
+    west, east = every[:, 0].min(), every[:, 0].max()
+    low, high = every[:, 1].min(), every[:, 1].max()
+    half = np.repeat(np.array([[0.2, 1.5]], np.float32), 50, axis=1).repeat(50, axis=0)
+    # the middle half of the plot from west to east, and beyond it to the north and south
+    quarter = (east - west) / 4
+    data = geotiff(half, (west + quarter, low - 0.001, east - quarter, high + 0.001))
+    app.file_uploader(key="canopy_file").upload("canopy.tif", data).run()
+    left = np.array([p["p"] for p in layer(app, "plants")["data"]])
+    gone = (every[:, 0] > west + 1.05 * quarter) & (every[:, 0] < west + 1.95 * quarter)
+    assert gone.sum() > 500
+    assert not set(map(tuple, every[gone])) & set(map(tuple, left))
+    stays = (every[:, 0] < west + 0.95 * quarter) | (every[:, 0] > west + 2.05 * quarter)
+    assert set(map(tuple, every[stays])) <= set(map(tuple, left))
+    assert f"{len(every) - len(left)} of {len(every)} plants are missing" in texts_of(app)
+    assert "have no value on the raster and count as there" in texts_of(app)
+    app.number_input(key="canopy_below").set_value(2.0).run()
+    assert len(layer(app, "plants")["data"]) < len(left)
+    press(app, "Take it out")
+    assert len(layer(app, "plants")["data"]) == len(every)
+
+
+def test_a_raster_of_risk_changes_the_chances_and_the_season_keeps_it(app, seasons_folder):
+    rows = np.repeat(np.linspace(40, 0, 400, dtype=np.float32)[:, None], 400, axis=1)
+    data = geotiff(rows)
     before = float(metric(app, "Expected finds"))
     go(app, "plot")
     app.file_uploader(key="risk_file").upload("risk.tif", data).run()
     assert "must hold values in 0..1" in app.error[0].value, "percent were taken for chances"
     app.selectbox(key="risk_meaning").set_value("percent").run()
     assert not app.error
-    assert "Risk of the plants" in texts_of(app)
+    assert "Risk by percent: 0.1" in texts_of(app)
     go(app, "today")
     assert float(metric(app, "Expected finds")) > before
     begun(app)

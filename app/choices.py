@@ -34,6 +34,7 @@ LAST_SAMPLE_DAY = date(2026, 11, 16)
 #: what is put into cache keys for the sample estate's files
 _SAMPLE = "sample/"
 _DAY = "day {season}"
+_ROOMS = {"field_map": maps.MOST_PX, "plot_map": maps.HALF_PX, "season_map": maps.HALF_PX}
 # also the word in the address
 _WHERE = "season"
 
@@ -90,11 +91,6 @@ class Choices:
         return "" if self.project is None else cached.revision(self.project)
 
     @property
-    def phone(self) -> bool:
-        """Return whether the page is shown on a phone, by what its browser says."""
-        return _is_phone()
-
-    @property
     def dark(self) -> bool:
         """Return whether the page is dark."""
         return is_dark()
@@ -133,6 +129,11 @@ def _map_px() -> int:
     return 400 if _is_phone() else 520
 
 
+def room_px(name: str) -> tuple[int, int]:
+    """Return the room that a map has on this device, by the map's name."""
+    return maps.PHONE_PX if _is_phone() else _ROOMS.get(name, maps.PAGE_PX)
+
+
 def choose() -> Chosen:
     """Show the sidebar; return the choices, or the problem that keeps from them."""
     above = st.empty()
@@ -160,7 +161,7 @@ def _wait(above: DeltaGenerator, field: Field | None = None) -> None:
                 said = st.empty()
                 if field is not None:
                     st.pydeck_chart(
-                        maps.outline(field, dark=is_dark(), phone=_is_phone()), key="outline",
+                        maps.outline(field, room_px("outline"), dark=is_dark()), key="outline",
                         height=_map_px(), alt=texts.OUTLINE_ALT.format(name=field.name),
                     )  # fmt: skip
         said.info(texts.COMPILING.format(n=FIRST_USE.compiled))

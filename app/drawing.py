@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -15,6 +16,7 @@ from .edits import GATE, NO_GO, PATH, Edit, points_of
 if TYPE_CHECKING:
     from .choices import Choices
     from .edits import Points
+    from .ruler import Clicked
 
 _NAMES = {GATE: texts.DRAW_KINDS["gate"], PATH: texts.DRAW_KINDS["path"],
           NO_GO: texts.DRAW_KINDS["no_go"]}  # fmt: skip
@@ -69,11 +71,7 @@ def layers(choices: Choices) -> list:
         shown.append(maps.places([list(field.gate)], "gate", maps.GATE, "gate"))
     if not _kind():
         return shown
-    return [
-        *shown,
-        *maps.drawing(_points(choices)),
-        maps.clickable(choices.plot.grid, texts.DRAW_HERE),
-    ]
+    return [*shown, *maps.drawing(_points(choices))]
 
 
 def plain_plants(choices: Choices) -> list:
@@ -87,11 +85,9 @@ def plain_plants(choices: Choices) -> list:
     return cached.layers(f"plain {choices.key}", make)
 
 
-def take(choices: Choices, objects: dict) -> None:
-    """Take a click on the map as a point of what is being drawn."""
-    hits = objects.get("clicks", []) if _kind() else []
-    if hits:
-        _put(choices, ((float(hits[0]["p"][0]), float(hits[0]["p"][1])),))
+def clicks(choices: Choices) -> Clicked | None:
+    """Return what takes clicks on the map as points of what is being drawn; None: nothing is."""
+    return partial(_put, choices) if _kind() else None
 
 
 def _kind() -> str:
@@ -105,8 +101,9 @@ def _points(choices: Choices) -> Points:
 
 
 def _put(choices: Choices, points: Points) -> None:
-    st.session_state[f"drawing {choices.plot_key}"] = (*_points(choices), *points)
-    if _kind() == GATE:
+    made = points[-1:] if _kind() == GATE else (*_points(choices), *points)
+    st.session_state[f"drawing {choices.plot_key}"] = made
+    if _kind() == GATE and made:
         _finish(choices)
 
 

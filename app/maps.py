@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from fieldmon.hotspots import HotSpots
     from fieldmon.route import Route
 
-    from .units import Units
 
 Colour = tuple[int, int, int]
 Layer = pdk.Layer
@@ -53,7 +52,8 @@ POINTS_AT_MOST = 20_000
 _PICTURE_AT_MOST = 2048
 _ARROWS = 40
 _NUMBERS = 24
-_VIEW_PX, _PHONE_PX = (720, 480), (340, 380)
+#: room for a map, width and height: a whole page, most or half of it beside something else
+PAGE_PX, MOST_PX, HALF_PX, PHONE_PX = (720, 480), (580, 480), (470, 480), (340, 380)
 _TILE_PX = 512
 # days since a plant was inspected: fresh is pale green, long ago is dark
 AGE_FROM = (0, 1, 3, 7, 14)
@@ -63,7 +63,6 @@ AGE_COLOURS: tuple[Colour, ...] = (
 # after a layer's name: the same layer once more
 RENAMED = "~"
 _EMPTY = 30  # opacity of a plant that nobody looked at: an outline with next to nothing in it
-_LATTICE = 100
 # layers are not changed once made; their texts go when they do
 _WRITTEN: WeakKeyDictionary[Layer, str] = WeakKeyDictionary()
 
@@ -142,35 +141,38 @@ def plain(n: int) -> Shade:
     return Shade.of([(90, 150, 90)], np.zeros(n, np.int64))
 
 
-def deck(grid: PlantGrid, layers: list[Layer], *, phone: bool = False) -> Deck:
-    """Return the map of a plot; its first view depends on the plot and the device alone."""
+def deck(
+    grid: PlantGrid, layers: list[Layer], room_px: tuple[int, int] = PAGE_PX
+) -> Deck:  # fmt: skip
+    """Return the map of a plot; its first view depends on the plot and the room for it alone."""
     return Deck(
         layers=layers,
         initial_view_state=view(
-            grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m)), phone=phone
+            grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m)), room_px
         ),
         map_provider=None,
         tooltip={"html": "{t}", "style": {"fontSize": "13px"}},
     )
 
 
-def outline(field: Field, *, dark: bool = False, phone: bool = False) -> Deck:
+def outline(
+    field: Field, room_px: tuple[int, int] = PAGE_PX, *, dark: bool = False
+) -> Deck:  # fmt: skip
     """Return the map of a plot on which no plants are laid yet."""
     return Deck(
         layers=[boundary(field, dark=dark)],
-        initial_view_state=view(shapely.get_coordinates(field.boundary), phone=phone),
+        initial_view_state=view(shapely.get_coordinates(field.boundary), room_px),
         map_provider=None,
     )
 
 
-def view(corners: NDArray[np.float64], *, phone: bool = False) -> pdk.ViewState:
-    """Return the view that holds corners ``(n, 2)`` lon/lat on a laptop's map, or on a phone's."""
+def view(corners: NDArray[np.float64], room_px: tuple[int, int]) -> pdk.ViewState:
+    """Return the view that holds corners ``(n, 2)`` lon/lat where there is so much room."""
     (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
     low, high = (_mercator(lat) for lat in (south, north))
-    size_px = _PHONE_PX if phone else _VIEW_PX
     room = [
         np.log2(360.0 * px * 0.85 / (_TILE_PX * span))
-        for px, span in zip(size_px, (east - west, high - low), strict=True)
+        for px, span in zip(room_px, (east - west, high - low), strict=True)
         if span > 0
     ]
     return pdk.ViewState(
@@ -480,65 +482,12 @@ def drawing(points: tuple[tuple[float, float], ...]) -> list[Layer]:
     ]  # fmt: skip
 
 
-def clickable(grid: PlantGrid, note: str) -> Layer:
-    """Return a lattice of places all over and around the plot, unseen, that can be clicked on."""
-    corners = grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m))
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    margin = 0.08 * (high - low)
-    lon, lat = (
-        np.linspace(a - m, b + m, _LATTICE) for a, b, m in zip(low, high, margin, strict=True)
-    )
-    step_m = 111_320.0 * float(lat[1] - lat[0])
-    rows = [{"p": [x, y], "t": note} for x in lon.round(7).tolist() for y in lat.round(7).tolist()]
-    return Layer(
-        "ScatterplotLayer", rows, id="clicks", get_position="p", get_radius=0.75 * step_m,
-        get_fill_color=[0, 0, 0, 2], pickable=True, auto_highlight=True,
-        highlight_color=[0, 140, 90, 120],
-    )  # fmt: skip
-
-
 def backdrop(uri: str, corners: list[list[float]]) -> Layer:
     """Return a picture of the ground; corners from lower left over upper left, lon/lat."""
     return Layer(
         "BitmapLayer", None, id="backdrop", image=pdk.types.String(uri), bounds=corners,
         opacity=0.8,
     )  # fmt: skip
-
-
-def scale(grid: PlantGrid, units: Units, *, dark: bool = False) -> tuple[list[Layer], str]:
-    """Return a bar of a round length under the plot and a north arrow beside it; and its text."""
-    corners = grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m))
-    (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
-    metres_deg = 111_320.0 * np.cos(np.deg2rad((south + north) / 2))
-    bar_m, text = units.bar_m(max((east - west) * metres_deg / 4, 1.0))
-    ink = [235, 235, 235] if dark else [40, 40, 40]
-    y = float(south - (north - south) * 0.04)
-    ends = [[float(west), y], [float(west + bar_m / metres_deg), y]]
-    middle = [(ends[0][0] + ends[1][0]) / 2, y]
-    tip = float(max(north - south, (east - west) / 2)) * 0.07
-    side = tip * 0.28 * 111_320.0 / metres_deg
-    foot = [float(east), float(north)]
-    arrow = [[foot[0], foot[1] + tip], [foot[0] - side, foot[1]], [foot[0], foot[1] + tip * 0.25],
-             [foot[0] + side, foot[1]]]  # fmt: skip
-    layers = [
-        Layer(
-            "PathLayer", [{"path": ends}], id="scale", get_path="path", get_color=ink,
-            get_width=0.1, width_min_pixels=4,
-        ),
-        Layer(
-            "TextLayer", [{"p": middle, "n": text}], id="scale-text", get_position="p",
-            get_text="n", get_size=13, get_color=ink, get_alignment_baseline="'top'",
-            get_pixel_offset=[0, 6],
-        ),
-        Layer("PolygonLayer", [{"p": arrow}], id="north", get_polygon="p", get_fill_color=ink,
-              stroked=False),
-        Layer(
-            "TextLayer", [{"p": [foot[0], foot[1] + tip], "n": "N"}], id="north-text",
-            get_position="p", get_text="n", get_size=15, get_color=ink,
-            get_alignment_baseline="'bottom'", get_pixel_offset=[0, -2],
-        ),
-    ]  # fmt: skip
-    return layers, text
 
 
 def legend(items: list[tuple[Colour, str]], *, signs: tuple[str, ...] = ()) -> str:

@@ -19,7 +19,8 @@ from fieldmon.grid import plant_at, row_label
 from fieldmon.history import FOUND
 from fieldmon.prior import usable
 
-from . import cached, maps, remembered, texts
+from . import cached, maps, remembered, ruler, texts
+from .choices import room_px
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -176,24 +177,29 @@ def with_marks(choices: Choices, layers: list, shown: list[str]) -> list:
     return layers
 
 
-def draw(choices: Choices, layers: list, key: str, tap: Tapped | None = None) -> None:
-    """Show a map with outline, scale and north; `tap` is called once for each tap on it."""
+def draw(
+    choices: Choices, layers: list, key: str, tap: Tapped | None = None,
+    clicked: ruler.Clicked | None = None,
+) -> None:  # fmt: skip
+    """Show a map with outline, scale and north.
+
+    `tap` is called once for each thing that is tapped, `clicked` with every position clicked on.
+    """
     grid = choices.plot.grid
-    bar, text = maps.scale(grid, choices.units, dark=choices.dark)
     route = next((layer for layer in layers if layer.id == "route"), None)
     alt = texts.MAP_ALT.format(
         name=choices.plot.field.name, plants=len(grid), finds=int((states_of(choices) == 1).sum()),
         stops=0 if route is None else len(route_of_day(choices).route),
     )  # fmt: skip
     outline = maps.boundary(choices.plot.field, dark=choices.dark)
-    picture = maps.deck(grid, [outline, *layers, *bar], phone=choices.phone)
+    picture = maps.deck(grid, [outline, *layers], room_px(key))
     picture.renamed = st.session_state.get(f"renamed {key}", frozenset())
     # a callback, since what was tapped stays selected in all the runs that follow
     st.pydeck_chart(
         picture, height=choices.map_px, key=key, alt=alt,
         on_select="ignore" if tap is None else partial(_tapped, key, tap),
     )  # fmt: skip
-    st.session_state["bar"] = text
+    ruler.show(key, picture.initial_view_state, choices.units, clicked)
 
 
 def _tapped(key: str, tap: Tapped) -> None:
@@ -207,8 +213,8 @@ def _tapped(key: str, tap: Tapped) -> None:
 
 
 def captions(parts: Sequence[str]) -> None:
-    """Show what the signs of the map last drawn mean."""
-    st.caption(" · ".join([*parts, texts.NORTH.format(bar=st.session_state["bar"])]))
+    """Show what the signs of a map mean."""
+    st.caption(" · ".join(parts))
 
 
 def route_figures(choices: Choices, today: Today) -> None:

@@ -87,7 +87,8 @@ LEGEND_HOT = "Purple outlines: hot spots, where finds cluster more than chance a
 LEGEND_RECORDS = "Records: filled where pests were seen, empty where not"
 LEGEND_STATES = {"found": "found", "clean": "looked clean", "never": "never inspected"}
 LEGEND_TRUTH = "Black dots: infested and not yet found (only a simulation knows)"
-NORTH = "North is up; the bar is {bar} long."
+RULER_FIRST = " (before zooming)"
+RULER_ALT = "The scale bar is {bar} long; the arrow points north."
 SEASON_INTRO = (
     "A simulated season on this plot. The start is drawn from the chance map; insects spread to "
     "neighbouring plants at night; every sampler meets the same insects. Detection is all finds "
@@ -161,7 +162,6 @@ DRAW_KINDS = {"": "nothing", "gate": "the gate", "path": "points of a path",
               "no_go": "corners of a no-go area"}  # fmt: skip
 DRAW_TYPED = "or type positions (lon,lat lon,lat ...)"
 DRAW_ADD, DRAW_DONE, DRAW_UNDO, DRAW_DROP = "Add", "Finish", "Undo the last one", "Drop points"
-DRAW_HERE = "click: here"
 DRAW_POINTS = "{n} point(s) so far."
 DRAW_NOTE = "Insects come in along paths; a no-go area carries no plants and is not driven through."
 RISK, RISK_FILE = "Risk from a raster", "GeoTIFF: NDVI, elevation, a risk map"

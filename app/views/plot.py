@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -75,7 +74,7 @@ def _map(choices: Choices) -> None:
         *maps.records(records, dark=choices.dark),
         *drawing.layers(choices),
     ]
-    panels.draw(choices, layers, "plot_map", partial(drawing.take, choices))
+    panels.draw(choices, layers, "plot_map", clicked=drawing.clicks(choices))
     panels.captions([texts.LEGEND_RECORDS, *([said] if said else [])])
     if not len(choices.records):
         st.caption(texts.RECORDS_NONE)

@@ -37,6 +37,18 @@ class Units:
             return f"{value_m / 1000.0:.2f} km"
         return f"{value_m / LENGTHS[self.length]:.{decimals}f} {self.length}"
 
+    def shown(self, value_m: float) -> float:
+        """Return a length as a number in the chosen unit, precise to less than a millimetre."""
+        return round(value_m / LENGTHS[self.length], 4)
+
+    def in_metres(self, shown: float) -> float:
+        """Return what `shown` showed, to the millimetre."""
+        return round(shown * LENGTHS[self.length], 3)
+
+    def limits(self, *values_m: float) -> tuple[float, ...]:
+        """Return lengths as limits of a box in the chosen unit."""
+        return tuple(round(value_m / LENGTHS[self.length], 1) for value_m in values_m)
+
     def square(self, value_m2: float) -> str:
         """Return an area."""
         return f"{value_m2 / AREAS_M2[self.area]:,.2f} {self.area}"

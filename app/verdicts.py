@@ -14,10 +14,14 @@ if TYPE_CHECKING:
     from .comparing import Arm, Outcome
 
 
+def short(sampler: str) -> str:
+    """Return a sampler's name without its description."""
+    return texts.SAMPLERS[sampler].split(":")[0]
+
+
 def arm_name(sampler: str, hours: float, look_s: float) -> str:
     """Return what to call a way of working."""
-    short = texts.SAMPLERS[sampler].split(":")[0]
-    return texts.ARM_NAME.format(sampler=short, hours=hours, look=look_s)
+    return texts.ARM_NAME.format(sampler=short(sampler), hours=hours, look=look_s)
 
 
 def name(arm: Arm) -> str:

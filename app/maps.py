@@ -17,6 +17,8 @@ from pydeck.bindings.json_tools import default_serialize
 
 from fieldmon.grid import row_label
 
+from . import texts
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -39,6 +41,7 @@ FOUND: Colour = (213, 30, 30)
 CLEAN: Colour = (90, 160, 230)
 NEVER: Colour = (150, 150, 145)
 TRUTH: Colour = (0, 0, 0)
+TRUTH_IN_DARK: Colour = (255, 255, 255)
 ROUTE: Colour = (20, 80, 200)
 ROUTE_IN_DARK: Colour = (110, 220, 255)
 GATE: Colour = (0, 140, 90)
@@ -219,7 +222,12 @@ def plants(
         label.line.tolist(), label.number.tolist(), which.tolist(), strict=True,
     )  # fmt: skip
     rows = [
-        {"p": place, "c": colour, "i": plant, "t": f"row {line}, plant {number}<br>{note[plant]}"}
+        {
+            "p": place,
+            "c": colour,
+            "i": plant,
+            "t": texts.TIP_PLANT.format(row=line, plant=number, note=note[plant]),
+        }
         for place, colour, line, number, plant in columns
     ]
     return Layer(
@@ -239,13 +247,21 @@ def plants(
 
 
 def finds(grid: PlantGrid, state: NDArray[np.int8]) -> list[Layer]:
-    """Return a dark ring with a pale rim round each find: told by shape, not by colour alone."""
+    """Return a dark ring with a pale rim round each find: told by shape, not by colour alone.
+
+    Where finds stand close, the rings run together, but none covers a find.
+    """
     here = np.round(grid.lonlat(np.flatnonzero(state == 1)), 7).tolist()
-    size = 0.55 * min(grid.plant_spacing_m, grid.row_spacing_m)
-    return [
-        _ring(f"finds{k}", here, size, (colour, pixels))
+    least_m = min(grid.plant_spacing_m, grid.row_spacing_m)
+    rings = [
+        _ring(f"finds{k}", here, 0.55 * least_m, (colour, pixels))
         for k, (colour, pixels) in enumerate([((255, 255, 255), 4.5), ((20, 0, 0), 2.0)])
     ]
+    dots = Layer(
+        "ScatterplotLayer", [{"p": p} for p in here], id="found", get_position="p",
+        get_fill_color=list(FOUND), get_radius=0.4 * least_m, radius_min_pixels=2,
+    )  # fmt: skip
+    return [*rings, dots]
 
 
 def chosen(grid: PlantGrid, plant: int) -> list[Layer]:
@@ -316,7 +332,7 @@ def route(the_route: Route, *, numbers: bool = True, dark: bool = False) -> list
             get_fill_color=colour, stroked=False,
         ),
         Layer(
-            "ScatterplotLayer", [{"p": gate, "t": "gate: start and end"}], id="gate",
+            "ScatterplotLayer", [{"p": gate, "t": texts.TIP_GATE}], id="gate",
             get_position="p", get_radius=3, radius_min_pixels=7, filled=False, stroked=True,
             get_line_color=list(GATE), line_width_min_pixels=3, pickable=True,
         ),
@@ -372,7 +388,7 @@ def with_hot(
         own = shapely.multipoints(grid.xy_m[spots.of_plant == k])
         shape = grid.frame.geometry_lonlat(shapely.buffer(shapely.convex_hull(own), margin_m))
         corners = np.round(shapely.get_coordinates(shape.exterior), 7).tolist()
-        text = f"hot spot: {spots.found[k]} found of {spots.inspected[k]} inspected"
+        text = texts.TIP_HOT.format(found=spots.found[k], inspected=spots.inspected[k])
         rows.append({"p": corners, "t": text})
     colour = HOT_IN_DARK if dark else HOT
     tint = Layer("PolygonLayer", rows, id="hot", get_polygon="p", get_fill_color=[*colour, 20],
@@ -387,7 +403,7 @@ def with_hot(
 def paths(field: Field) -> list[Layer]:
     """Return the paths along which insects come in."""
     rows = [
-        {"path": np.round(shapely.get_coordinates(line), 7).tolist(), "t": "path"}
+        {"path": np.round(shapely.get_coordinates(line), 7).tolist(), "t": texts.TIP_PATH}
         for line in shapely.get_parts(field.paths)
     ]
     return [
@@ -403,7 +419,7 @@ def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
         {
             "p": place,
             "c": [*colour, 220 if seen == 1 else 0],
-            "t": f"record of {day}: {'found' if seen == 1 else 'nothing' if seen == 0 else '?'}",
+            "t": texts.TIP_RECORD.format(day=day, result=texts.TIP_SEEN.get(seen, "?")),
         }
         for place, seen, day in zip(
             np.round(observations.lonlat, 7).tolist(),
@@ -421,13 +437,14 @@ def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
     ]  # fmt: skip
 
 
-def truth(grid: PlantGrid, infested: NDArray[np.bool_]) -> list[Layer]:
+def truth(grid: PlantGrid, infested: NDArray[np.bool_], *, dark: bool = False) -> list[Layer]:
     """Return dots on plants that are infested, as only a simulation can know."""
     here = np.round(grid.lonlat(np.flatnonzero(infested)), 7).tolist()
     return [
         Layer(
-            "ScatterplotLayer", [{"p": p, "t": "infested"} for p in here], id="truth",
-            get_position="p", get_fill_color=list(TRUTH), get_radius=0.5, radius_min_pixels=2,
+            "ScatterplotLayer", [{"p": p, "t": texts.TIP_INFESTED} for p in here], id="truth",
+            get_position="p", get_fill_color=list(TRUTH_IN_DARK if dark else TRUTH),
+            get_radius=0.5, radius_min_pixels=2,
         )
     ]  # fmt: skip
 
@@ -453,7 +470,7 @@ def playback(the_route: Route, second: float, *, dark: bool = False) -> list[Lay
             get_fill_color=[*colour, 150], get_radius=0.5, radius_min_pixels=2,
         ),
         Layer(
-            "ScatterplotLayer", [{"p": here, "t": "here"}], id="robot", get_position="p",
+            "ScatterplotLayer", [{"p": here, "t": texts.TIP_HERE}], id="robot", get_position="p",
             get_fill_color=[255, 210, 0], get_radius=1.5, radius_min_pixels=8, stroked=True,
             get_line_color=[0, 0, 0], line_width_min_pixels=3, pickable=True,
         ),
@@ -478,7 +495,7 @@ def drawing(points: tuple[tuple[float, float], ...]) -> list[Layer]:
             "PathLayer", [{"path": here}] if len(here) > 1 else [], id="drawing", get_path="path",
             get_color=list(GATE), width_min_pixels=3, get_width=0.4,
         ),
-        places(here, "corners", GATE, "corner"),
+        places(here, "corners", GATE, texts.TIP_CORNER),
     ]  # fmt: skip
 
 

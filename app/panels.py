@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from fieldmon.field import Observations
     from fieldmon.geodata.handoff import HandoffPlan
+    from fieldmon.grid import PlantGrid
     from fieldmon.hotspots import HotSpots
     from fieldmon.monitor import Plot, Today
     from fieldmon.route import Route
@@ -121,7 +122,7 @@ def _plant_layers(choices: Choices, shade_by: str, rows: tuple[int, int] | None)
     extra = []
     if shade_by == "chance":
         chance = chance_of(choices)
-        shade, note = maps.by_chance(chance), [f"{c:.1%} chance" for c in chance.tolist()]
+        shade, note = maps.by_chance(chance), _chances(chance)
     else:
         state, ages = states_of(choices), ages_of(choices)
         shade = maps.by_state(state) if shade_by == "state" else maps.by_age(ages)
@@ -138,8 +139,13 @@ def _plant_layers(choices: Choices, shade_by: str, rows: tuple[int, int] | None)
 def state_notes(state: cached.Array) -> list[str]:
     """Return each plant's state in words."""
     names = texts.LEGEND_STATES
-    said = {1: names["found"], 0: names["clean"], -1: names["never"]}
+    words = ((1, names["found"]), (0, names["clean"]), (-1, names["never"]))
+    said = {value: texts.TIP_STATE.format(state=word) for value, word in words}
     return [said[s] for s in state.tolist()]
+
+
+def _chances(chance: cached.Array) -> list[str]:
+    return [texts.TIP_CHANCE.format(chance=c) for c in chance.tolist()]
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,6 +216,11 @@ def _tapped(key: str, tap: Tapped) -> None:
     renamed = st.session_state.get(f"renamed {key}", frozenset())
     st.session_state[f"renamed {key}"] = renamed ^ objects.keys()
     tap(objects)
+
+
+def signs(shown: Sequence[str]) -> None:
+    """Show what the signs of the layers shown mean."""
+    captions([text for name, text in texts.LEGENDS.items() if name in shown])
 
 
 def captions(parts: Sequence[str]) -> None:
@@ -361,8 +372,9 @@ def _looks(choices: Choices, plant: int) -> list[str]:
     return lines or [texts.HISTORY_NEVER]
 
 
-def meanings(spots: HotSpots) -> list[str]:
-    """Return what each hot spot means, in words."""
+def meanings(choices: Choices) -> list[str]:
+    """Return where each hot spot is and what it means, in words."""
+    spots, grid = spots_of(choices), choices.plot.grid
     if not len(spots):
         return [texts.HOT_NONE]
     said = []
@@ -371,11 +383,21 @@ def meanings(spots: HotSpots) -> list[str]:
         chance = texts.CHANCE_P_SMALL if p < 1e-4 else texts.CHANCE_P.format(n=max(round(1 / p), 1))
         said.append(
             texts.HOT_MEANS.format(
+                rows=_place(grid, np.flatnonzero(spots.of_plant == k)),
                 found=spots.found[k], inspected=spots.inspected[k], plants=spots.plants[k],
                 expected=spots.expected[k], p=chance,
             )
         )  # fmt: skip
     return said
+
+
+def _place(grid: PlantGrid, plants: cached.Array) -> str:
+    """Return which rows and which of their plants these are, in words."""
+    label = row_label(grid, plants)
+    first, last = int(label.line.min()), int(label.line.max())
+    said = texts.HOT_ROW if first == last else texts.HOT_ROWS
+    low, high = int(label.number.min()), int(label.number.max())
+    return said.format(first=first, last=last, low=low, high=high)
 
 
 def remarks_on_records(choices: Choices) -> list[str]:

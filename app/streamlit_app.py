@@ -31,6 +31,12 @@ if is_dark():
         "<style>[data-testid^=stBaseButton-primary],[data-testid^=stBaseButton-primary] *,"
         "[data-tag],[data-tag] *{color:#0b1f14!important}</style>"
     )
+else:
+    # captions and charts' words are 4.3:1 and 3.7:1 on white by themselves
+    st.html(
+        "<style>[data-testid=stCaptionContainer],[data-testid=stVegaLiteChart] text"
+        "{color:#59625c!important;fill:#59625c!important}</style>"
+    )
 cached.warm()
 
 

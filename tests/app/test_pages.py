@@ -77,13 +77,39 @@ def test_shorter_hours_give_a_shorter_route_on_every_page(app):
 
 def test_rows_can_be_turned_and_set_apart(app):
     go(app, "plot")
-    row_box(app, "row_bearing_deg").set_value(158.0).run()
-    row_box(app, "row_spacing_m").set_value(8.0).run()
+    row_box(app, "row_bearing").set_value(158.0).run()
+    row_box(app, "row_spacing").set_value(8.0).run()
     assert not app.exception
     assert metric(app, "Row bearing") == "158.0°"
     assert 1500 < len(layer(app, "plants")["data"]) < 2000
     go(app, "today")
     assert 1500 < len(layer(app, "plants")["data"]) < 2000
+
+
+def test_spacings_are_set_in_the_chosen_unit_and_carried_over(app):
+    go(app, "plot")
+    row_box(app, "row_spacing").set_value(8.0).run()
+    row_box(app, "headland").set_value(50.0).run()
+    row_box(app, "headland").set_value(4.0).run()
+    plants = metric(app, "Plants")
+    app.selectbox(key="length").set_value("ft").run()
+    assert row_box(app, "row_spacing").label == "Row to row (ft)"
+    assert row_box(app, "row_spacing").value == pytest.approx(26.2467)
+    assert row_box(app, "headland").value == pytest.approx(13.1234)
+    assert row_box(app, "plant_spacing").value is None
+    assert metric(app, "Plants") == plants
+    assert metric(app, "Rows / plants apart").startswith("26.2 ft")
+    row_box(app, "headland").set_value(160.0).run()
+    row_box(app, "headland").set_value(20.0).run()
+    row_box(app, "plant_spacing").set_value(20.0).run()
+    fewer = metric(app, "Plants")
+    assert int(fewer.replace(",", "")) < int(plants.replace(",", "")) / 1.8
+    go(app, "today")
+    app.selectbox(key="length").set_value("m").run()
+    go(app, "plot")
+    assert row_box(app, "plant_spacing").value == pytest.approx(6.096)
+    assert row_box(app, "row_spacing").value == pytest.approx(8.0)
+    assert metric(app, "Plants") == fewer
 
 
 def test_layers_are_switched_off_and_on_while_the_view_stays(app):
@@ -97,11 +123,11 @@ def test_layers_are_switched_off_and_on_while_the_view_stays(app):
 def test_rows_set_by_hand_that_leave_no_plant_can_be_set_again(app, tmp_path):
     upload(app, plot=("plot.zip", zipped(tmp_path, square(0.0006)), "application/zip"))
     plants = metric(app, "Plants")
-    row_box(app, "headland_m").set_value(40.0).run()
+    row_box(app, "headland").set_value(40.0).run()
     assert "headland" in app.error[0].value
     go(app, "today")
     assert app.error
-    row_box(app, "headland_m").set_value(4.0).run()
+    row_box(app, "headland").set_value(4.0).run()
     assert not app.error
     go(app, "plot")
     assert metric(app, "Plants") == plants
@@ -109,7 +135,7 @@ def test_rows_set_by_hand_that_leave_no_plant_can_be_set_again(app, tmp_path):
 
 def test_rows_set_by_hand_are_those_of_one_plot(app):
     go(app, "plot")
-    row_box(app, "row_bearing_deg").set_value(10.0).run()
+    row_box(app, "row_bearing").set_value(10.0).run()
     other = app.selectbox(key="feature sample/paran_estate.zip").set_value(1).run()
     assert metric(other, "Row bearing") != "10.0°"
     app.selectbox(key="feature sample/paran_estate.zip").set_value(0).run()
@@ -138,7 +164,7 @@ def test_a_scout_is_planned_for_too(app):
 
 def test_too_short_a_day_is_said_in_a_sentence(app):
     go(app, "plot")
-    row_box(app, "headland_m").set_value(40.0).run()
+    row_box(app, "headland").set_value(40.0).run()
     app.slider(key="hours Robot").set_value(0.5).run()
     assert not app.exception
 
@@ -284,7 +310,7 @@ def test_an_uploaded_plot_and_records_are_planned(app, tmp_path):
     assert not app.exception
     assert heading(app).startswith("שדה")
     go(app, "today")
-    worst = max(layer(app, "plants")["data"], key=lambda p: float(p["t"].split("<br>")[1][:-8]))
+    worst = max(layer(app, "plants")["data"], key=lambda p: float(p["t"].split(": ")[1][:-8]))
     assert worst["p"] == pytest.approx([35.1505, 30.3605], abs=4e-5)
 
 

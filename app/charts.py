@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 _COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7F7F7F"]
 # more lines than colours: the next ones are dashed
 _DASHES = [[1, 0], [6, 3], [2, 2]]
-_LEGEND = alt.Legend(orient="top", title=None, columns=2, labelLimit=300, symbolSize=300)
+_LEGEND = alt.Legend(orient="top", title=None, columns=2, labelLimit=300, symbolType="stroke",
+                     symbolSize=300, symbolStrokeWidth=3, symbolOpacity=1)  # fmt: skip
 _GREY = "#7F7F7F"
 
 

@@ -56,7 +56,7 @@ _PICTURE_AT_MOST = 2048
 _ARROWS = 40
 _NUMBERS = 24
 #: room for a map, width and height: a whole page, most or half of it beside something else
-PAGE_PX, MOST_PX, HALF_PX, PHONE_PX = (720, 480), (580, 480), (470, 480), (340, 380)
+PAGE_PX, MOST_PX, HALF_PX, PHONE_PX = (720, 480), (620, 480), (500, 480), (340, 380)
 _TILE_PX = 512
 # days since a plant was inspected: fresh is pale green, long ago is dark
 AGE_FROM = (0, 1, 3, 7, 14)

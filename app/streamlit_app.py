@@ -35,7 +35,7 @@ else:
     # captions and charts' words are 4.3:1 and 3.7:1 on white by themselves
     st.html(
         "<style>[data-testid=stCaptionContainer],[data-testid=stVegaLiteChart] text"
-        "{color:#59625c!important;fill:#59625c!important}</style>"
+        "{color:#59625c!important;fill:#59625c!important;opacity:1}</style>"
     )
 cached.warm()
 

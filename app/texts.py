@@ -314,6 +314,7 @@ WORSE = "{percent:+.0f} % loss ({low:+.0f} to {high:+.0f})"
 ONE_SEASON = "(one season: no interval)"
 COLUMN_WAY, COLUMN_LOSS, COLUMN_FOUND = "way of working", "infested plant-days", "found at the end"
 COLUMN_VISITED, COLUMN_HALF, COLUMN_VERDICT = "inspected a day", "half found on day", "verdict"
+WAY = "Way of working"
 USE_THIS = "Use this way of working"
 VERDICT = (
     "**{best}** is best: {loss:,.0f} infested plant-days, {percent:.0f} % less than {second} "

@@ -76,8 +76,8 @@ def _result(made: Study, table_csv: str, report: str) -> None:
         chart = charts.curves(_curves(part), (texts.DAY_AXIS, texts.DETECTION_AXIS))
         st.altair_chart(chart, alt=texts.STUDY_ALT.format(title=part.title))
     if made.compared:
-        st.dataframe(pd.read_csv(io.StringIO(csv_text(made.compared))))
-    st.dataframe(pd.read_csv(io.StringIO(table_csv)), height=300)
+        st.dataframe(pd.read_csv(io.StringIO(csv_text(made.compared))), hide_index=True)
+    st.dataframe(pd.read_csv(io.StringIO(table_csv)), height=300, hide_index=True)
     with st.container(horizontal=True):
         st.download_button(texts.STUDY_REPORT, report, "prior.html", "text/html", on_click="ignore")
         st.download_button(texts.STUDY_CSV, table_csv, "prior.csv", "text/csv", on_click="ignore")

@@ -38,7 +38,7 @@ def show() -> None:
     for part in made.tables:
         st.markdown(f"**{part.title}**")
         st.markdown("\n".join(f"- {sentence}" for sentence in part.summary))
-    st.dataframe(pd.read_csv(io.StringIO(table_csv)), height=400)
+    st.dataframe(pd.read_csv(io.StringIO(table_csv)), height=400, hide_index=True)
     with st.container(horizontal=True):
         st.download_button(
             texts.STUDY_REPORT, report, f"no_prior_{table}.html", "text/html", on_click="ignore"

@@ -252,7 +252,7 @@ def undo(
     Example: fieldmon undo season.gpkg
     """
     if (batch is not None) + (inspection is not None) + change > 1:
-        raise SettingError("Give one of --batch, --inspection and --change.")
+        raise SettingError("Give --batch, --inspection or --change, not two of them.")
     if change:
         setup = _open(season).undo_change()
         typer.echo(

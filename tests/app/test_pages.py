@@ -271,7 +271,7 @@ def test_ways_of_working_are_compared_and_the_best_is_put_to_use(app):
     table = app.dataframe[0].value
     assert len(table) == 3
     assert table["verdict"].iloc[0] == "★ best"
-    naive = next(b for b in app.selectbox if b.label == "On the map")
+    naive = next(b for b in app.selectbox if b.label == "Way of working")
     naive.set_value(next(o for o in naive.options if o.startswith("Naive"))).run()
     press(app, "Use this way of working")
     assert app.selectbox(key="sampler").value == "naive"

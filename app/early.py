@@ -54,9 +54,12 @@ def places() -> Places:
 
     The browser loads what draws maps only when it is sent one, and meanwhile the day is planned.
     """
-    made = Places(st.empty(), st.empty(), st.container(), st.empty())
-    is_sample = remembered.value(WHERE, texts.SAMPLE) == texts.SAMPLE
-    if is_sample and not warming.start().ready.is_set():
+    above, heading, figures, picture = st.empty(), *(st.container() for _ in range(3))
+    if warming.start().ready.is_set():
+        return Places(above, heading, figures, picture)
+    # where an outline gives way to the map; later there is none, or the map would lose its zoom
+    made = Places(above, heading, figures, picture.empty())
+    if remembered.value(WHERE, texts.SAMPLE) == texts.SAMPLE:
         with suppress(FieldmonError):  # it is said where the plot is wanted
             outline(made.picture, sample()[0])
     return made
@@ -71,7 +74,7 @@ def sample() -> tuple[Field, ...]:
 def outline(picture: DeltaGenerator, field: Field) -> None:
     """Show a plot on which no plants are laid yet."""
     picture.pydeck_chart(
-        maps.outline(field, dark=is_dark(), phone=is_phone()), key="outline",
+        maps.outline(field, room_px(), dark=is_dark()), key="outline",
         height=map_px(), alt=texts.OUTLINE_ALT.format(name=field.name),
     )  # fmt: skip
 
@@ -84,6 +87,11 @@ def is_phone() -> bool:
 def is_dark() -> bool:
     """Return whether the page is dark."""
     return st.context.theme.get("type") == "dark"
+
+
+def room_px() -> tuple[int, int]:
+    """Return the room that a map over the whole page has on this device."""
+    return maps.PHONE_PX if is_phone() else maps.PAGE_PX
 
 
 def map_px() -> int:

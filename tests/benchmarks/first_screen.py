@@ -124,7 +124,7 @@ def processor_s() -> dict[str, float]:
         line = [pid]
         while line[-1] in parents:
             line.append(parents[line[-1]])
-        if os.getpid() in line[1:] and names[pid] != "node":
+        if os.getpid() in line[1:] and names[pid] not in {"node", "MainThread"}:
             total["browser" if names[pid].startswith("chrom") else "server"] += seconds
     return total
 

@@ -141,14 +141,14 @@ def room_px(name: str) -> tuple[int, int]:
 
 def choose(places: Places | None = None) -> Chosen:
     """Show the sidebar; return the choices, or the problem that keeps from them."""
-    above, picture = (st.empty(), None) if places is None else (places.above, places.picture)
+    above, chart = (st.empty(), None) if places is None else (places.above, places.chart)
     with st.sidebar:
         where = _where()
         try:
             if where not in (texts.SAMPLE, texts.UPLOAD):
                 _wait(above)
                 return Chosen(_open(where))
-            return Chosen(_unsaved(where, above, picture))
+            return Chosen(_unsaved(where, above, chart))
         except FieldmonError as error:
             return Chosen(problem=error)
         finally:
@@ -156,12 +156,12 @@ def choose(places: Places | None = None) -> Chosen:
 
 
 def _wait(
-    above: DeltaGenerator, picture: DeltaGenerator | None = None, field: Field | None = None
+    above: DeltaGenerator, chart: DeltaGenerator | None = None, field: Field | None = None
 ) -> None:
     """Show the outline until plants can be laid, and how far compiling is, once an installation."""
     ready = warming.start().ready
-    if field is not None and picture is not None and not ready.is_set():
-        early.outline(picture, field)
+    if field is not None and chart is not None and not ready.is_set():
+        early.outline(chart, field)
     while not ready.wait(0.5):
         if FIRST_USE.compiled:
             above.info(texts.COMPILING.format(n=FIRST_USE.compiled))
@@ -238,7 +238,7 @@ def _change(name: str, choices: Choices) -> None:
                 st.rerun()
 
 
-def _unsaved(where: str, above: DeltaGenerator, picture: DeltaGenerator | None) -> Choices | None:
+def _unsaved(where: str, above: DeltaGenerator, chart: DeltaGenerator | None) -> Choices | None:
     if where == texts.SAMPLE:
         st.caption(texts.SAMPLE_NOTE)
         plot_file, record_file, plant_file = (
@@ -252,7 +252,7 @@ def _unsaved(where: str, above: DeltaGenerator, picture: DeltaGenerator | None) 
             return None
     plants, plant_key = _plants(plant_file)
     field, plot_key, heard = _field(plot_file, plants, plant_key)
-    _wait(above, picture, field)
+    _wait(above, chart, field)
     plot, key = _plot(field, plot_key, plants)
     plot, gaps, key = canopies.of(plot, key)
     records, more, key = _records(record_file, plot, key)

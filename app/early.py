@@ -40,13 +40,16 @@ class Places:
     heading, figures
         What stands over the map.
     picture
-        The map.
+        The map, and what belongs to it.
+    chart
+        The map itself, in there.
     """
 
     above: DeltaGenerator
     heading: DeltaGenerator
     figures: DeltaGenerator
     picture: DeltaGenerator
+    chart: DeltaGenerator
 
 
 def places() -> Places:
@@ -56,12 +59,12 @@ def places() -> Places:
     """
     above, heading, figures, picture = st.empty(), *(st.container() for _ in range(3))
     if warming.start().ready.is_set():
-        return Places(above, heading, figures, picture)
+        return Places(above, heading, figures, picture, picture)
     # where an outline gives way to the map; later there is none, or the map would lose its zoom
-    made = Places(above, heading, figures, picture.empty())
+    made = Places(above, heading, figures, picture, picture.empty())
     if remembered.value(WHERE, texts.SAMPLE) == texts.SAMPLE:
         with suppress(FieldmonError):  # it is said where the plot is wanted
-            outline(made.picture, sample()[0])
+            outline(made.chart, sample()[0])
     return made
 
 
@@ -71,9 +74,9 @@ def sample() -> tuple[Field, ...]:
     return reading.read_plots(SAMPLE / PLOTS).value
 
 
-def outline(picture: DeltaGenerator, field: Field) -> None:
+def outline(chart: DeltaGenerator, field: Field) -> None:
     """Show a plot on which no plants are laid yet."""
-    picture.pydeck_chart(
+    chart.pydeck_chart(
         maps.outline(field, room_px(), dark=is_dark()), key="outline",
         height=map_px(), alt=texts.OUTLINE_ALT.format(name=field.name),
     )  # fmt: skip

@@ -25,6 +25,8 @@ from .choices import room_px
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from streamlit.delta_generator import DeltaGenerator
+
     from fieldmon.field import Observations
     from fieldmon.geodata.handoff import HandoffPlan
     from fieldmon.grid import PlantGrid
@@ -185,9 +187,9 @@ def with_marks(choices: Choices, layers: list, shown: list[str]) -> list:
 
 def draw(
     choices: Choices, layers: list, key: str, tap: Tapped | None = None,
-    clicked: ruler.Clicked | None = None,
+    clicked: ruler.Clicked | None = None, chart: DeltaGenerator | None = None,
 ) -> None:  # fmt: skip
-    """Show a map with outline, scale and north.
+    """Show a map with outline, scale and north, in `chart` if there is a place for it already.
 
     `tap` is called once for each thing that is tapped, `clicked` with every position clicked on.
     """
@@ -201,7 +203,7 @@ def draw(
     picture = maps.deck(grid, [outline, *layers], room_px(key))
     picture.renamed = st.session_state.get(f"renamed {key}", frozenset())
     # a callback, since what was tapped stays selected in all the runs that follow
-    st.pydeck_chart(
+    (chart or st).pydeck_chart(
         picture, height=choices.map_px, key=key, alt=alt,
         on_select="ignore" if tap is None else partial(_tapped, key, tap),
     )  # fmt: skip

@@ -29,7 +29,7 @@ def show(choices: Choices, places: Places) -> None:
         format_func=texts.LAYER_NAMES.__getitem__, selection_mode="multi",
     )  # fmt: skip
     with places.picture:
-        panels.draw(choices, _layers(choices, today, shown), "map")
+        panels.draw(choices, _layers(choices, today, shown), "map", chart=places.chart)
     _hand_out(choices, today)
     st.markdown(f"**{texts.LEGEND_CHANCE}**{maps.chance_legend()}", unsafe_allow_html=True)
     panels.signs(shown)

@@ -449,7 +449,8 @@ def test_while_loops_are_compiled_the_page_says_so_and_shows_the_outline(monkeyp
                 st.stop()
             return False
 
-    monkeypatch.setattr(warming, "start", lambda: SimpleNamespace(ready=Ready()))
+    waiting = SimpleNamespace(ready=Ready(), load=lambda **_: None)
+    monkeypatch.setattr(warming, "start", lambda: waiting)
     monkeypatch.setattr(FIRST_USE, "compiled", 7)
     app = opened()
     assert "7 parts" in app.info[0].value

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import json
+import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakKeyDictionary
@@ -321,7 +322,9 @@ def _picture(grid: PlantGrid, shade: Shade) -> Layer:
     image = Image.fromarray(pixels.reshape(raster.tall, raster.wide))
     image.putpalette(bytes(3) + shade.table[:, :3].tobytes())
     file = io.BytesIO()
-    image.save(file, "PNG", transparency=bytes(1) + shade.table[:, 3].tobytes(), compress_level=1)
+    # rows are runs of one colour: looked for as such, they pack as well as at the highest level
+    opacity = bytes(1) + shade.table[:, 3].tobytes()
+    image.save(file, "PNG", transparency=opacity, compress_type=zlib.Z_RLE)
     uri = "data:image/png;base64," + base64.b64encode(file.getvalue()).decode()
     return Layer(
         "BitmapLayer",

@@ -178,7 +178,7 @@ def files(n_plants):
     lonlat = lay(field, Planting()).lonlat()
     lines = ["date;lat;lon;count"]
     for lon, lat in lonlat[rng.integers(0, len(lonlat), 10_000)]:
-        when = today - timedelta(days=int(rng.integers(1, 60)))
+        when = today - timedelta(days=int(rng.integers(1, 200)))
         lines.append(f"{when:%d.%m.%Y};{lat:.6f};{lon:.6f};{int(rng.random() < 0.02)}")
     plot = shapely.to_geojson(field.boundary).encode()
     return len(lonlat), [
@@ -270,15 +270,15 @@ def acts(page):
         page.get_by_role("spinbutton", name="month").first.click()
         page.keyboard.press("ArrowDown")
 
-    enter = functools.partial(page.keyboard.press, "Enter")
+    close = functools.partial(page.keyboard.press, "Escape")
     link = page.get_by_role("link", name="Today", exact=True)
     return [
         Act("opening Today", link.hover, link.click),
         *map(picked, SAMPLERS),
-        Act("another day: Adaptive", month_before, enter),
+        Act("another day: Adaptive", month_before, close),
         picked("Naive"),
-        Act("another day: Naive", month_before, enter),
-        Act("another day: Naive", month_before, enter),
+        Act("another day: Naive", month_before, close),
+        Act("another day: Naive", month_before, close),
     ]
 
 

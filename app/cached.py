@@ -20,8 +20,9 @@ from fieldmon.aisles import Aisles
 from fieldmon.chance import Chance
 from fieldmon.field import PRESENT, Field, Observations
 from fieldmon.geodata import guard, reading
-from fieldmon.geodata.findings import Finding, Severity, seen
-from fieldmon.geodata.rasters import read_backdrop, read_raster
+from fieldmon.geodata.findings import Finding, Severity
+from fieldmon.geodata.raster_plants import read_missing, read_risk
+from fieldmon.geodata.rasters import read_backdrop
 from fieldmon.hotspots import HotSpots, hot_spots, record_states
 from fieldmon.metrics import SeasonFigures, figures
 from fieldmon.monitor import Plans, Plot, Today, first_day, plan_from
@@ -29,7 +30,6 @@ from fieldmon.planting import rectangle
 from fieldmon.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.project import Project
 from fieldmon.project.store import get_meta
-from fieldmon.risk import RiskSettings, risk_chance
 from fieldmon.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.season import Day, SeasonSettings, Start, days
@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from fieldmon.geodata.raster_values import Backdrop, RasterOptions
     from fieldmon.planting import Planting
     from fieldmon.project import Remark
+    from fieldmon.risk import RiskSettings
     from fieldmon.route import Route
 
     from .figures import DayFigures, Known
@@ -298,11 +299,20 @@ def risk(
     _plot: Plot,
 ) -> Imported[Array]:
     """Return the risk of a plot's plants from a raster; `key` stands for raster and plot."""
-    read = read_raster(_source, options, _plot.field)
-    chance = risk_chance(read.value.of_plants(_plot.grid), settings)
-    low, high, mean = np.nanmin(chance), np.nanmax(chance), np.nanmean(chance)
-    said = seen(texts.RISK_IS.format(low=low, high=high, mean=mean))
-    return read.having(chance, [said])
+    return read_risk(_source, options, _plot, settings)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def without_missing(
+    key: str,  # noqa: ARG001
+    options: RasterOptions,
+    below: float,
+    _source: Source,
+    _plot: Plot,
+) -> Imported[Plot]:
+    """Return a plot without the plants that a raster shows to be missing; `key` as above."""
+    read = read_missing(_source, options, _plot, below)
+    return read.having(_plot.without(read.value) if read.value.any() else _plot)
 
 
 @st.cache_resource(max_entries=_MAPS)

@@ -18,6 +18,8 @@ from pydeck.bindings.json_tools import default_serialize
 
 from fieldmon.grid import row_label
 
+from . import texts
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -27,8 +29,6 @@ if TYPE_CHECKING:
     from fieldmon.grid import PlantGrid
     from fieldmon.hotspots import HotSpots
     from fieldmon.route import Route
-
-    from .units import Units
 
     #: what is said of some plants, in words
     Notes = Callable[[NDArray[np.intp]], list[str]]
@@ -46,6 +46,7 @@ FOUND: Colour = (213, 30, 30)
 CLEAN: Colour = (90, 160, 230)
 NEVER: Colour = (150, 150, 145)
 TRUTH: Colour = (0, 0, 0)
+TRUTH_IN_DARK: Colour = (255, 255, 255)
 ROUTE: Colour = (20, 80, 200)
 ROUTE_IN_DARK: Colour = (110, 220, 255)
 GATE: Colour = (0, 140, 90)
@@ -59,7 +60,8 @@ POINTS_AT_MOST = 20_000
 _PICTURE_AT_MOST = 2048
 _ARROWS = 40
 _NUMBERS = 24
-_VIEW_PX, _PHONE_PX = (720, 480), (340, 380)
+#: room for a map, width and height: a whole page, most or half of it beside something else
+PAGE_PX, MOST_PX, HALF_PX, PHONE_PX = (720, 480), (620, 480), (500, 480), (340, 380)
 _TILE_PX = 512
 # days since a plant was inspected: fresh is pale green, long ago is dark
 AGE_FROM = (0, 1, 3, 7, 14)
@@ -69,7 +71,6 @@ AGE_COLOURS: tuple[Colour, ...] = (
 # after a layer's name: the same layer once more
 RENAMED = "~"
 _EMPTY = 30  # opacity of a plant that nobody looked at: an outline with next to nothing in it
-_LATTICE = 100
 # layers are not changed once made; their texts go when they do
 _WRITTEN: WeakKeyDictionary[Layer, str] = WeakKeyDictionary()
 # likewise for plots
@@ -158,35 +159,38 @@ def unsaid(which: NDArray[np.intp]) -> list[str]:
     return [""] * len(which)
 
 
-def deck(grid: PlantGrid, layers: list[Layer], *, phone: bool = False) -> Deck:
-    """Return the map of a plot; its first view depends on the plot and the device alone."""
+def deck(
+    grid: PlantGrid, layers: list[Layer], room_px: tuple[int, int] = PAGE_PX
+) -> Deck:  # fmt: skip
+    """Return the map of a plot; its first view depends on the plot and the room for it alone."""
     return Deck(
         layers=layers,
         initial_view_state=view(
-            grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m)), phone=phone
+            grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m)), room_px
         ),
         map_provider=None,
         tooltip={"html": "{t}", "style": {"fontSize": "13px"}},
     )
 
 
-def outline(field: Field, *, dark: bool = False, phone: bool = False) -> Deck:
+def outline(
+    field: Field, room_px: tuple[int, int] = PAGE_PX, *, dark: bool = False
+) -> Deck:  # fmt: skip
     """Return the map of a plot on which no plants are laid yet."""
     return Deck(
         layers=[boundary(field, dark=dark)],
-        initial_view_state=view(shapely.get_coordinates(field.boundary), phone=phone),
+        initial_view_state=view(shapely.get_coordinates(field.boundary), room_px),
         map_provider=None,
     )
 
 
-def view(corners: NDArray[np.float64], *, phone: bool = False) -> pdk.ViewState:
-    """Return the view that holds corners ``(n, 2)`` lon/lat on a laptop's map, or on a phone's."""
+def view(corners: NDArray[np.float64], room_px: tuple[int, int]) -> pdk.ViewState:
+    """Return the view that holds corners ``(n, 2)`` lon/lat where there is so much room."""
     (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
     low, high = (_mercator(lat) for lat in (south, north))
-    size_px = _PHONE_PX if phone else _VIEW_PX
     room = [
         np.log2(360.0 * px * 0.85 / (_TILE_PX * span))
-        for px, span in zip(size_px, (east - west, high - low), strict=True)
+        for px, span in zip(room_px, (east - west, high - low), strict=True)
         if span > 0
     ]
     return pdk.ViewState(
@@ -233,7 +237,12 @@ def plants(
         label.line.tolist(), label.number.tolist(), which.tolist(), notes(which), strict=True,
     )  # fmt: skip
     rows = [
-        {"p": place, "c": colour, "i": plant, "t": f"row {line}, plant {number}<br>{note}"}
+        {
+            "p": place,
+            "c": colour,
+            "i": plant,
+            "t": texts.TIP_PLANT.format(row=line, plant=number, note=note),
+        }
         for place, colour, line, number, plant, note in columns
     ]
     return Layer(
@@ -253,13 +262,21 @@ def plants(
 
 
 def finds(grid: PlantGrid, state: NDArray[np.int8]) -> list[Layer]:
-    """Return a dark ring with a pale rim round each find: told by shape, not by colour alone."""
+    """Return a dark ring with a pale rim round each find: told by shape, not by colour alone.
+
+    Where finds stand close, the rings run together, but none covers a find.
+    """
     here = np.round(grid.lonlat(np.flatnonzero(state == 1)), 7).tolist()
-    size = 0.55 * min(grid.plant_spacing_m, grid.row_spacing_m)
-    return [
-        _ring(f"finds{k}", here, size, (colour, pixels))
+    least_m = min(grid.plant_spacing_m, grid.row_spacing_m)
+    rings = [
+        _ring(f"finds{k}", here, 0.55 * least_m, (colour, pixels))
         for k, (colour, pixels) in enumerate([((255, 255, 255), 4.5), ((20, 0, 0), 2.0)])
     ]
+    dots = Layer(
+        "ScatterplotLayer", [{"p": p} for p in here], id="found", get_position="p",
+        get_fill_color=list(FOUND), get_radius=0.4 * least_m, radius_min_pixels=2,
+    )  # fmt: skip
+    return [*rings, dots]
 
 
 def chosen(grid: PlantGrid, plant: int) -> list[Layer]:
@@ -353,7 +370,7 @@ def route(the_route: Route, *, numbers: bool = True, dark: bool = False) -> list
             get_fill_color=colour, stroked=False,
         ),
         Layer(
-            "ScatterplotLayer", [{"p": gate, "t": "gate: start and end"}], id="gate",
+            "ScatterplotLayer", [{"p": gate, "t": texts.TIP_GATE}], id="gate",
             get_position="p", get_radius=3, radius_min_pixels=7, filled=False, stroked=True,
             get_line_color=list(GATE), line_width_min_pixels=3, pickable=True,
         ),
@@ -408,7 +425,7 @@ def hot(grid: PlantGrid, spots: HotSpots, *, dark: bool = False) -> list[Layer]:
         own = shapely.multipoints(grid.xy_m[inside[spots.of_plant[inside] == k]])
         shape = grid.frame.geometry_lonlat(shapely.buffer(shapely.convex_hull(own), margin_m))
         corners = np.round(shapely.get_coordinates(shape.exterior), 7).tolist()
-        text = f"hot spot: {spots.found[k]} found of {spots.inspected[k]} inspected"
+        text = texts.TIP_HOT.format(found=spots.found[k], inspected=spots.inspected[k])
         rows.append({"p": corners, "t": text})
     colour = HOT_IN_DARK if dark else HOT
     return [
@@ -429,7 +446,7 @@ def with_hot(layers: list[Layer], spots: list[Layer]) -> list[Layer]:
 def paths(field: Field) -> list[Layer]:
     """Return the paths along which insects come in."""
     rows = [
-        {"path": np.round(shapely.get_coordinates(line), 7).tolist(), "t": "path"}
+        {"path": np.round(shapely.get_coordinates(line), 7).tolist(), "t": texts.TIP_PATH}
         for line in shapely.get_parts(field.paths)
     ]
     return [
@@ -445,7 +462,7 @@ def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
         {
             "p": place,
             "c": [*colour, 220 if seen == 1 else 0],
-            "t": f"record of {day}: {'found' if seen == 1 else 'nothing' if seen == 0 else '?'}",
+            "t": texts.TIP_RECORD.format(day=day, result=texts.TIP_SEEN.get(seen, "?")),
         }
         for place, seen, day in zip(
             np.round(observations.lonlat, 7).tolist(),
@@ -463,13 +480,14 @@ def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
     ]  # fmt: skip
 
 
-def truth(grid: PlantGrid, infested: NDArray[np.bool_]) -> list[Layer]:
+def truth(grid: PlantGrid, infested: NDArray[np.bool_], *, dark: bool = False) -> list[Layer]:
     """Return dots on plants that are infested, as only a simulation can know."""
     here = np.round(grid.lonlat(np.flatnonzero(infested)), 7).tolist()
     return [
         Layer(
-            "ScatterplotLayer", [{"p": p, "t": "infested"} for p in here], id="truth",
-            get_position="p", get_fill_color=list(TRUTH), get_radius=0.5, radius_min_pixels=2,
+            "ScatterplotLayer", [{"p": p, "t": texts.TIP_INFESTED} for p in here], id="truth",
+            get_position="p", get_fill_color=list(TRUTH_IN_DARK if dark else TRUTH),
+            get_radius=0.5, radius_min_pixels=2,
         )
     ]  # fmt: skip
 
@@ -495,7 +513,7 @@ def playback(the_route: Route, second: float, *, dark: bool = False) -> list[Lay
             get_fill_color=[*colour, 150], get_radius=0.5, radius_min_pixels=2,
         ),
         Layer(
-            "ScatterplotLayer", [{"p": here, "t": "here"}], id="robot", get_position="p",
+            "ScatterplotLayer", [{"p": here, "t": texts.TIP_HERE}], id="robot", get_position="p",
             get_fill_color=[255, 210, 0], get_radius=1.5, radius_min_pixels=8, stroked=True,
             get_line_color=[0, 0, 0], line_width_min_pixels=3, pickable=True,
         ),
@@ -520,25 +538,8 @@ def drawing(points: tuple[tuple[float, float], ...]) -> list[Layer]:
             "PathLayer", [{"path": here}] if len(here) > 1 else [], id="drawing", get_path="path",
             get_color=list(GATE), width_min_pixels=3, get_width=0.4,
         ),
-        places(here, "corners", GATE, "corner"),
+        places(here, "corners", GATE, texts.TIP_CORNER),
     ]  # fmt: skip
-
-
-def clickable(grid: PlantGrid, note: str) -> Layer:
-    """Return a lattice of places all over and around the plot, unseen, that can be clicked on."""
-    corners = grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m))
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    margin = 0.08 * (high - low)
-    lon, lat = (
-        np.linspace(a - m, b + m, _LATTICE) for a, b, m in zip(low, high, margin, strict=True)
-    )
-    step_m = 111_320.0 * float(lat[1] - lat[0])
-    rows = [{"p": [x, y], "t": note} for x in lon.round(7).tolist() for y in lat.round(7).tolist()]
-    return Layer(
-        "ScatterplotLayer", rows, id="clicks", get_position="p", get_radius=0.75 * step_m,
-        get_fill_color=[0, 0, 0, 2], pickable=True, auto_highlight=True,
-        highlight_color=[0, 140, 90, 120],
-    )  # fmt: skip
 
 
 def backdrop(uri: str, corners: list[list[float]]) -> Layer:
@@ -547,42 +548,6 @@ def backdrop(uri: str, corners: list[list[float]]) -> Layer:
         "BitmapLayer", None, id="backdrop", image=pdk.types.String(uri), bounds=corners,
         opacity=0.8,
     )  # fmt: skip
-
-
-def scale(grid: PlantGrid, units: Units, *, dark: bool = False) -> tuple[list[Layer], str]:
-    """Return a bar of a round length under the plot and a north arrow beside it; and its text."""
-    corners = grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m))
-    (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
-    metres_deg = 111_320.0 * np.cos(np.deg2rad((south + north) / 2))
-    bar_m, text = units.bar_m(max((east - west) * metres_deg / 4, 1.0))
-    ink = [235, 235, 235] if dark else [40, 40, 40]
-    y = float(south - (north - south) * 0.04)
-    ends = [[float(west), y], [float(west + bar_m / metres_deg), y]]
-    middle = [(ends[0][0] + ends[1][0]) / 2, y]
-    tip = float(max(north - south, (east - west) / 2)) * 0.07
-    side = tip * 0.28 * 111_320.0 / metres_deg
-    foot = [float(east), float(north)]
-    arrow = [[foot[0], foot[1] + tip], [foot[0] - side, foot[1]], [foot[0], foot[1] + tip * 0.25],
-             [foot[0] + side, foot[1]]]  # fmt: skip
-    layers = [
-        Layer(
-            "PathLayer", [{"path": ends}], id="scale", get_path="path", get_color=ink,
-            get_width=0.1, width_min_pixels=4,
-        ),
-        Layer(
-            "TextLayer", [{"p": middle, "n": text}], id="scale-text", get_position="p",
-            get_text="n", get_size=13, get_color=ink, get_alignment_baseline="'top'",
-            get_pixel_offset=[0, 6],
-        ),
-        Layer("PolygonLayer", [{"p": arrow}], id="north", get_polygon="p", get_fill_color=ink,
-              stroked=False),
-        Layer(
-            "TextLayer", [{"p": [foot[0], foot[1] + tip], "n": "N"}], id="north-text",
-            get_position="p", get_text="n", get_size=15, get_color=ink,
-            get_alignment_baseline="'bottom'", get_pixel_offset=[0, -2],
-        ),
-    ]  # fmt: skip
-    return layers, text
 
 
 def legend(items: list[tuple[Colour, str]], *, signs: tuple[str, ...] = ()) -> str:

@@ -21,7 +21,8 @@ from fieldmon.grid import plant_at, row_label
 from fieldmon.history import FOUND
 from fieldmon.prior import usable
 
-from . import cached, maps, remembered, texts
+from . import cached, maps, remembered, ruler, texts
+from .choices import room_px
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from fieldmon.field import Observations
     from fieldmon.geodata.handoff import HandoffPlan
     from fieldmon.geodata.handoff.door import Format
+    from fieldmon.grid import PlantGrid
     from fieldmon.hotspots import HotSpots
     from fieldmon.monitor import Plot, Today
     from fieldmon.route import Route
@@ -152,13 +154,14 @@ def _plant_layers(choices: Choices, shade_by: str, rows: tuple[int, int] | None)
 
 
 def _chance_notes(chance: cached.Array, which: NDArray[np.intp]) -> list[str]:
-    return [f"{c:.1%} chance" for c in chance[which].tolist()]
+    return [texts.TIP_CHANCE.format(chance=c) for c in chance[which].tolist()]
 
 
 def state_notes(state: cached.Array, which: NDArray[np.intp]) -> list[str]:
     """Return the state of some plants in words."""
     names = texts.LEGEND_STATES
-    said = {1: names["found"], 0: names["clean"], -1: names["never"]}
+    words = ((1, names["found"]), (0, names["clean"]), (-1, names["never"]))
+    said = {value: texts.TIP_STATE.format(state=word) for value, word in words}
     return [said[s] for s in state[which].tolist()]
 
 
@@ -204,24 +207,29 @@ def _hot_layers(choices: Choices) -> list:
     return cached.layers(f"hot {key}", make)
 
 
-def draw(choices: Choices, layers: list, key: str, tap: Tapped | None = None) -> None:
-    """Show a map with outline, scale and north; `tap` is called once for each tap on it."""
+def draw(
+    choices: Choices, layers: list, key: str, tap: Tapped | None = None,
+    clicked: ruler.Clicked | None = None,
+) -> None:  # fmt: skip
+    """Show a map with outline, scale and north.
+
+    `tap` is called once for each thing that is tapped, `clicked` with every position clicked on.
+    """
     grid = choices.plot.grid
-    bar, text = maps.scale(grid, choices.units, dark=choices.dark)
     route = next((layer for layer in layers if layer.id == "route"), None)
     alt = texts.MAP_ALT.format(
         name=choices.plot.field.name, plants=len(grid), finds=int((states_of(choices) == 1).sum()),
         stops=0 if route is None else len(route_of_day(choices).route),
     )  # fmt: skip
     outline = maps.boundary(choices.plot.field, dark=choices.dark)
-    picture = maps.deck(grid, [outline, *layers, *bar], phone=choices.phone)
+    picture = maps.deck(grid, [outline, *layers], room_px(key))
     picture.renamed = st.session_state.get(f"renamed {key}", frozenset())
     # a callback, since what was tapped stays selected in all the runs that follow
     st.pydeck_chart(
         picture, height=choices.map_px, key=key, alt=alt,
         on_select="ignore" if tap is None else partial(_tapped, key, tap),
     )  # fmt: skip
-    st.session_state["bar"] = text
+    ruler.show(key, picture.initial_view_state, choices.units, clicked)
 
 
 def _tapped(key: str, tap: Tapped) -> None:
@@ -234,9 +242,14 @@ def _tapped(key: str, tap: Tapped) -> None:
     tap(objects)
 
 
+def signs(shown: Sequence[str]) -> None:
+    """Show what the signs of the layers shown mean."""
+    captions([text for name, text in texts.LEGENDS.items() if name in shown])
+
+
 def captions(parts: Sequence[str]) -> None:
-    """Show what the signs of the map last drawn mean."""
-    st.caption(" · ".join([*parts, texts.NORTH.format(bar=st.session_state["bar"])]))
+    """Show what the signs of a map mean."""
+    st.caption(" · ".join(parts))
 
 
 def route_figures(choices: Choices, today: Today) -> None:
@@ -383,8 +396,9 @@ def _looks(choices: Choices, plant: int) -> list[str]:
     return lines or [texts.HISTORY_NEVER]
 
 
-def meanings(spots: HotSpots) -> list[str]:
-    """Return what each hot spot means, in words."""
+def meanings(choices: Choices) -> list[str]:
+    """Return where each hot spot is and what it means, in words."""
+    spots, grid = spots_of(choices), choices.plot.grid
     if not len(spots):
         return [texts.HOT_NONE]
     said = []
@@ -393,11 +407,21 @@ def meanings(spots: HotSpots) -> list[str]:
         chance = texts.CHANCE_P_SMALL if p < 1e-4 else texts.CHANCE_P.format(n=max(round(1 / p), 1))
         said.append(
             texts.HOT_MEANS.format(
+                rows=_place(grid, np.flatnonzero(spots.of_plant == k)),
                 found=spots.found[k], inspected=spots.inspected[k], plants=spots.plants[k],
                 expected=spots.expected[k], p=chance,
             )
         )  # fmt: skip
     return said
+
+
+def _place(grid: PlantGrid, plants: cached.Array) -> str:
+    """Return which rows and which of their plants these are, in words."""
+    label = row_label(grid, plants)
+    first, last = int(label.line.min()), int(label.line.max())
+    said = texts.HOT_ROW if first == last else texts.HOT_ROWS
+    low, high = int(label.number.min()), int(label.number.max())
+    return said.format(first=first, last=last, low=low, high=high)
 
 
 def remarks_on_records(choices: Choices) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,11 +39,7 @@ class Step:
 
 def now() -> datetime:
     """Return the local time where the scout stands, as the browser tells it."""
-    minutes = st.context.timezone_offset
-    if minutes is None:
-        return datetime.now().astimezone().replace(tzinfo=None)
-    utc = datetime.now().astimezone().utctimetuple()
-    return datetime(*utc[:6]) - timedelta(minutes=minutes)  # noqa: DTZ001 - local time is meant
+    return keeping.local(datetime.now(UTC)).replace(microsecond=0)
 
 
 def give_out(choices: Choices) -> None:

@@ -33,7 +33,7 @@ def show(choices: Choices) -> None:
         panels.draw(choices, _layers(choices, today, shown), "map")
     _hand_out(choices, today)
     st.markdown(f"**{texts.LEGEND_CHANCE}**{maps.chance_legend()}", unsafe_allow_html=True)
-    panels.captions([texts.LEGEND_ROUTE, texts.LEGEND_HOT, texts.LEGEND_RECORDS])
+    panels.signs(shown)
     if choices.project is None:
         keeping.begin(choices)
     else:

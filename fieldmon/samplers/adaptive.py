@@ -68,18 +68,20 @@ class _Mind(NamedTuple):
 class _Rows(NamedTuple):
     """What each way of driving each row comes to, ``(r, 4)``.
 
-    And what each plant gains at the price, and the seconds of its look, ``(n,)``; `pays` is room
-    for the plants of one row with a gain, `most` the most that a find in each `_BLOCK` of plants
-    in line is expected to be worth, -1 where that has changed.
+    And the plants of each row that are worth their stop at the price, ``n_pays (r,)`` of them
+    from where the row starts in `pays`, with what each gains and the seconds of its look,
+    ``(n,)``; `most` is the most that a find in each `_BLOCK` of plants in line is expected to be
+    worth, -1 where that has changed.
     """
 
     net: Float
     seconds: Float
     last: Int
+    stale: NDArray[np.bool_]
+    n_pays: Int
+    pays: NDArray[np.int32]
     gain: Float
     stop_s: Float
-    stale: NDArray[np.bool_]
-    pays: Int
     most: Float
 
     @classmethod
@@ -87,9 +89,10 @@ class _Rows(NamedTuple):
         """Return room for so many plants and rows."""
         ways = n_rows, _WAYS
         last, stale = np.full(ways, _NOWHERE), np.ones(n_rows, np.bool_)
-        gain, stop_s, pays = np.zeros(n), np.zeros(n), np.empty(n, np.int64)
+        n_pays, pays = np.zeros(n_rows, np.int64), np.empty(n, np.int32)
         most = np.full(n // _BLOCK + 1, -1.0)
-        return cls(np.zeros(ways), np.zeros(ways), last, gain, stop_s, stale, pays, most)
+        room = np.empty(n), np.empty(n)
+        return cls(np.zeros(ways), np.zeros(ways), last, stale, n_pays, pays, *room, most)
 
 
 class _Onward(NamedTuple):
@@ -546,42 +549,55 @@ def _value_row(
     mind, rows, looks = work
     row, price = state
     first, end = ground.row_start[row], ground.row_start[row + 1]
-    if rows.last[row, 0] >= 0:
-        rows.gain[first:end] = 0.0
-        rows.last[row] = _NOWHERE
+    rows.last[row] = _NOWHERE
+    pays = _pays_from(looks, price)
     previous, before, n = _NOWHERE, 0, 0
     for block in range(first // _BLOCK, (end - 1) // _BLOCK + 1):
-        if _best_look(looks, 1.0, _most_in(mind, rows, block), price)[0] <= 0.0:
+        if _most_in(mind, rows, block) < pays:
             continue
         for i in range(max(first, block * _BLOCK), min(end, (block + 1) * _BLOCK)):
+            if mind.worth[i] * mind.chance[i] < pays:
+                continue
             gain, taken = _best_look(looks, mind.worth[i], mind.chance[i], price)
             if gain > 0.0 and previous == i - 1 and previous >= 0:
                 chance = _after_clean(mind, i, looks.detects[before])
                 gain, taken = _best_look(looks, mind.worth[i], chance, price)
             if gain > 0.0:
-                rows.gain[i], rows.stop_s[i] = gain, looks.stop_s[taken]
+                rows.gain[first + n], rows.stop_s[first + n] = gain, looks.stop_s[taken]
                 previous, before = i, taken
-                rows.pays[n] = i
+                rows.pays[first + n] = i
                 n += 1
+    rows.n_pays[row] = n
     if n == 0:
         return
     for way in range(2, _WAYS):
-        _in_and_out(ground, clock, rows, (row, way, n), price)
-    _through(ground, clock, rows, (row, n), price)
+        _in_and_out(ground, clock, rows, (row, way), price)
+    _through(ground, clock, rows, row, price)
 
 
-@part
+@inlined
+def _pays_from(looks: Looks, price: float) -> float:
+    """Return what a find must be expected to be worth for any look to pay; a little less."""
+    least = np.inf
+    for k in range(looks.stop_s.size):
+        least = min(least, looks.stop_s[k] / looks.detects[k])
+    return price * least * _NEARLY
+
+
+@inlined
 def _most_in(mind: _Mind, rows: _Rows, block: int) -> float:
     """Return the most that a find in a block is expected to be worth."""
-    if rows.most[block] < 0.0:
+    most = rows.most[block]
+    if most < 0.0:
         most = 0.0
         for i in range(block * _BLOCK, min((block + 1) * _BLOCK, mind.worth.size)):
             most = max(most, mind.worth[i] * mind.chance[i])
         rows.most[block] = most
-    return float(rows.most[block])
+    return float(most)
 
 
-@part
+# copied: handing over all of a mind takes longer than this
+@inlined
 def _after_clean(mind: _Mind, i: int, detects: float) -> float:
     """Return the chance of plant i once the one before it was looked at and seemed clean."""
     p, e = mind.chance[i], mind.behind[i]
@@ -594,17 +610,19 @@ def _after_clean(mind: _Mind, i: int, detects: float) -> float:
 
 @part
 def _in_and_out(
-    ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int, int], price: float
+    ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int], price: float
 ) -> None:
     """Value a row that is left by the end it was entered by, as far in as pays best."""
-    row, way, n = state
+    row, way = state
     entry_m = ground.end_x_m[row, way - 2]
+    first, n = ground.row_start[row], rows.n_pays[row]
     best, best_s, last = -np.inf, 0.0, _NOWHERE
     gains, looking_s = 0.0, 0.0
     for k in range(n):
-        i = rows.pays[k] if way == 2 else rows.pays[n - 1 - k]
-        gains += rows.gain[i]
-        looking_s += rows.stop_s[i]
+        place = first + k if way == 2 else first + n - 1 - k
+        i = rows.pays[place]
+        gains += rows.gain[place]
+        looking_s += rows.stop_s[place]
         drive_s = 2.0 * abs(ground.x_m[i] - entry_m) / clock.speed_m_s
         net = gains - price * drive_s
         if net > best:
@@ -613,20 +631,18 @@ def _in_and_out(
 
 
 @part
-def _through(
-    ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int], price: float
-) -> None:
+def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) -> None:
     """Value a row that is driven from end to end, either way."""
-    row, n = state
+    first, n = ground.row_start[row], rows.n_pays[row]
     gains, looking_s = 0.0, 0.0
-    for k in range(n):
-        gains += rows.gain[rows.pays[k]]
-        looking_s += rows.stop_s[rows.pays[k]]
+    for place in range(first, first + n):
+        gains += rows.gain[place]
+        looking_s += rows.stop_s[place]
     drive_s = (ground.end_x_m[row, 1] - ground.end_x_m[row, 0]) / clock.speed_m_s
     for way in range(2):
         rows.net[row, way] = gains - price * drive_s
         rows.seconds[row, way] = drive_s + looking_s
-        rows.last[row, way] = rows.pays[n - 1] if way == 0 else rows.pays[0]
+        rows.last[row, way] = rows.pays[first + n - 1] if way == 0 else rows.pays[first]
 
 
 @part
@@ -756,19 +772,23 @@ def _along(
     """Value one direction along a row: all the way out, and there and back as far as it pays."""
     at, end, price = state
     row = _row_of(ground, at)
+    first, n = ground.row_start[row], rows.n_pays[row]
     gains, looking_s, farthest = 0.0, 0.0, _NOWHERE
     either.fetch[end], either.fetch_s[end], either.turn[end] = 0.0, 0.0, _NOWHERE
-    i = at - 1 if end == 0 else at + 1
-    while ground.row_start[row] <= i < ground.row_start[row + 1]:
-        if rows.gain[i] > 0.0:
-            gains += rows.gain[i]
-            looking_s += rows.stop_s[i]
-            farthest = i
-            way_s = 2.0 * abs(ground.x_m[i] - ground.x_m[at]) / clock.speed_m_s
-            if gains - price * way_s > either.fetch[end]:
-                either.fetch[end], either.turn[end] = gains - price * way_s, i
-                either.fetch_s[end] = way_s + looking_s
-        i = i - 1 if end == 0 else i + 1
+    step = -1 if end == 0 else 1
+    place = first + np.searchsorted(rows.pays[first : first + n], at)
+    if end == 0 or (place < first + n and rows.pays[place] == at):
+        place += step
+    while first <= place < first + n:
+        i = rows.pays[place]
+        gains += rows.gain[place]
+        looking_s += rows.stop_s[place]
+        farthest = i
+        way_s = 2.0 * abs(ground.x_m[i] - ground.x_m[at]) / clock.speed_m_s
+        if gains - price * way_s > either.fetch[end]:
+            either.fetch[end], either.turn[end] = gains - price * way_s, i
+            either.fetch_s[end] = way_s + looking_s
+        place += step
     out_s = abs(ground.end_x_m[row, end] - ground.x_m[at]) / clock.speed_m_s
     either.ahead[end], either.ahead_s[end] = gains - price * out_s, out_s + looking_s
     either.last[end] = farthest

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 # the upper bits of a positive float64 rise with it, in 8 steps an octave: 7 to 13 % each
 _LEVEL_BITS = 49
 _OCTAVE = 8
+# bounds stay bounds however their sums are rounded
+_A_LITTLE_MORE, _A_LITTLE_LESS = 1.0 + 1e-9, 1.0 - 1e-9
 
 
 class _Open(NamedTuple):
@@ -111,6 +113,7 @@ def _walk(
     adjacent, lane_y_m, chance_bits, would_find = plants
     closed, opened = lists
     now_s, k, left = 0.0, 0, 0
+    home_s = _farthest_home_s(ground, clock)
     while k < stops.plant.size:
         if left == 0:
             room = int(at_once * ((clock.seconds_left - now_s) // clock.visit_s))
@@ -118,7 +121,8 @@ def _walk(
             if left == 0:
                 break
         plant, way_s = _nearest(ground, clock, opened, lane_y_m, at)
-        if not in_time(ground, clock, plant, now_s + way_s):
+        late = now_s + way_s + clock.visit_s + home_s > clock.seconds_left
+        if late and not in_time(ground, clock, plant, now_s + way_s):
             break
         now_s += way_s
         stops.plant[k], stops.arrive_s[k] = plant, now_s
@@ -133,6 +137,17 @@ def _walk(
             for e in range(adjacent.start[plant], adjacent.start[plant + 1]):
                 left += _open(ground, opened, closed, adjacent.plant[e])
     return k
+
+
+@part
+def _farthest_home_s(ground: Ground, clock: Clock) -> float:
+    """Return seconds in which the robot is home from anywhere; 0 if it does not return."""
+    farthest_m, gate = 0.0, ground.between_m.shape[0] - 1
+    for row in range(ground.end_x_m.shape[0]):
+        out_m = max(ground.between_m[2 * row, gate], ground.between_m[2 * row + 1, gate])
+        along_m = ground.end_x_m[row, 1] - ground.end_x_m[row, 0]
+        farthest_m = max(farthest_m, out_m + along_m)
+    return farthest_m * _A_LITTLE_MORE / clock.speed_m_s if clock.returns else 0.0
 
 
 @inlined
@@ -155,7 +170,10 @@ def _refill(
     plants: tuple[NDArray[np.bool_], NDArray[np.int64]],
     limits: tuple[int, int],
 ) -> int:
-    """Open the suspicious plants that are not closed, `room` at most; return how many."""
+    """Open the suspicious plants that are not closed, `room` at most; return how many.
+
+    Called when none is open.
+    """
     closed, chance_bits = plants
     room, steps = limits
     most = np.int64(0)
@@ -168,6 +186,36 @@ def _refill(
         # written either way: to foresee which ones come into question is what costs
         opened.asked[n] = plant
         n += (top - (chance_bits[plant] >> _LEVEL_BITS) <= steps) & (not closed[plant])
+    least, even = steps + 1, 0
+    if n > room:
+        least, even = _least_of(opened, chance_bits, (n, room), (top, steps))
+    joined, row, in_row = 0, 0, 0
+    for plant in opened.asked[:n]:
+        below = top - (chance_bits[plant] >> _LEVEL_BITS)
+        if below >= least:
+            if below > least or even == 0:
+                continue
+            even -= 1
+        if in_row == 0 or ground.row[plant] != row:
+            row, in_row = 0 + ground.row[plant], 0
+            opened.low[row] = plant
+        in_row += 1
+        opened.flag[plant] = True
+        opened.n_open[row], opened.high[row] = in_row, plant
+        joined += 1
+    return joined
+
+
+@part
+def _least_of(
+    opened: _Open,
+    chance_bits: NDArray[np.int64],
+    asked: tuple[int, int],
+    levels: tuple[np.int64, int],
+) -> tuple[int, int]:
+    """Return the lowest level of which some have room, and how many of that one."""
+    n, room = asked
+    top, steps = levels
     opened.tally[:] = 0
     for plant in opened.asked[:n]:
         below = top - (chance_bits[plant] >> _LEVEL_BITS)
@@ -178,14 +226,7 @@ def _refill(
     while least < most_below and above + opened.tally[least] < room:
         above += opened.tally[least]
         least += 1
-    even = room - above
-    joined = 0
-    for plant in opened.asked[:n]:
-        below = top - (chance_bits[plant] >> _LEVEL_BITS)
-        if below < least or (below == least and even > 0):
-            even -= below == least
-            joined += _open(ground, opened, closed, plant)
-    return joined
+    return least, room - above
 
 
 @inlined
@@ -195,18 +236,21 @@ def _nearest(
     """Return the open plant that is reached first from `at` (a plant or the gate), and the seconds.
 
     Rows are looked at outward from the robot's own, as their lanes ascend with y, until driving
-    straight across to the next one would already take longer than to the best plant so far.
+    out of its aisle and straight across to the next one would already take longer than to the
+    best plant so far.
     """
     best, best_s = -1, np.inf
-    own = 0 if at < 0 else ground.row[at]
+    own, out_m = 0, 0.0
+    if at >= 0:
+        own = ground.row[at]
+        low_m, high_m = ground.end_x_m[own, 0], ground.end_x_m[own, 1]
+        out_m = min(abs(ground.x_m[at] - low_m), abs(high_m - ground.x_m[at]))
     for step in (1, -1):
         row = own if step == 1 else own - 1
         while 0 <= row < opened.n_open.size:
-            if at >= 0:
-                across_s = abs(lane_y_m[row] - lane_y_m[own]) / clock.speed_m_s
-                if ground.corridor[row] != ground.corridor[own]:
-                    across_s += clock.row_change_s
-                if across_s > best_s:
+            if at >= 0 and ground.corridor[row] != ground.corridor[own]:
+                least_m = (abs(lane_y_m[row] - lane_y_m[own]) + out_m) * _A_LITTLE_LESS
+                if least_m / clock.speed_m_s + clock.row_change_s > best_s:
                     break
             if opened.n_open[row] > 0:
                 plant, plant_s = _nearest_in(ground, clock, opened, at, row)
@@ -253,23 +297,25 @@ def _nearest_along(
     """Return the open plant of a row in the same aisle that is reached first, and the seconds."""
     best, best_s = -1, np.inf
     start, end = ground.row_start[row], ground.row_start[row + 1]
-    middle = at
+    middle, turn_s = at, 0.0
     if row != ground.row[at]:
         middle = start + np.searchsorted(ground.x_m[start:end], ground.x_m[at])
+        turn_s = clock.turn_180_s if ground.side[row] != ground.side[ground.row[at]] else 0.0
     plant = max(middle, opened.low[row])
     while plant <= opened.high[row] and not opened.flag[plant]:
         plant += 1
     if plant <= opened.high[row]:
-        best, best_s = plant, travel_s(ground, clock, at, plant)
+        best, best_s = plant, abs(ground.x_m[at] - ground.x_m[plant]) / clock.speed_m_s + turn_s
     else:
         # none from here on up: not to be looked through again
         opened.high[row] = min(opened.high[row], middle - 1)
     plant = min(middle - 1, opened.high[row])
     while plant >= opened.low[row]:
-        if (ground.x_m[at] - ground.x_m[plant]) / clock.speed_m_s >= best_s:
+        way_s = (ground.x_m[at] - ground.x_m[plant]) / clock.speed_m_s
+        if way_s >= best_s:
             return best, best_s
         if opened.flag[plant]:
-            plant_s = travel_s(ground, clock, at, plant)
+            plant_s = abs(way_s) + turn_s
             return (plant, plant_s) if plant_s < best_s else (best, best_s)
         plant -= 1
     opened.low[row] = max(opened.low[row], middle)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from shapely import MultiPolygon, box
 
+from app import ruler
 from app.comparing import Arm, Asked, Comparison, curve, estimate, outcomes
 from app.edits import Edit, edited, points_of
 from app.units import DATES, Units
@@ -126,10 +127,30 @@ def test_units_say_what_they_measure():
 
 def test_the_scale_bar_is_round_and_fits():
     for unit, factor in (("m", 1.0), ("ft", 0.3048)):
-        for room_m in (1.0, 7.0, 33.0, 480.0, 3000.0):
+        for room_m in (1.0, 7.0, 33.0, 480.0, 990.0):
             bar_m, text = Units(unit).bar_m(room_m)
             number = bar_m / factor
             assert number == pytest.approx(round(number))
             assert f"{number:.0f}"[0] in "125"
-            assert bar_m <= room_m or number == pytest.approx(1.0)
+            assert 0.35 * room_m < bar_m <= room_m
             assert text == f"{number:.0f} {unit}"
+
+
+def test_long_scale_bars_are_in_kilometres_or_miles():
+    assert Units("m").bar_m(3000.0) == (2000.0, "2 km")
+    assert Units("ft").bar_m(3500.0) == (2 * 1609.344, "2 mi")
+    assert Units("m").bar_m(0.01) == (0.1, "0.1 m")
+    for unit in ("m", "ft"):
+        metres = [length_m for length_m, _ in Units(unit).lengths()]
+        assert metres == sorted(metres)
+
+
+def test_each_click_on_a_map_is_heard_once_though_the_browser_tells_of_the_last_ones(monkeypatch):
+    state = {"ruler_a": {"points": [[5, 35.1, 30.1], [9, 35.2, 30.2]]}}
+    monkeypatch.setattr(ruler.st, "session_state", state)
+    assert ruler.new_points("ruler_a") == ((35.1, 30.1), (35.2, 30.2))
+    assert ruler.new_points("ruler_a") == ()
+    state["ruler_a"] = {"points": [[9, 35.2, 30.2], [11, 35.3, 30.3], [12, 35.4, 30.4]]}
+    assert ruler.new_points("ruler_a") == ((35.3, 30.3), (35.4, 30.4))
+    state["ruler_a"] = {"points": None}
+    assert ruler.new_points("ruler_a") == ()

@@ -20,7 +20,7 @@ import numpy as np
 
 from app import maps
 from fieldmon.aisles import Aisles
-from fieldmon.belief import MeanField, Pairs, overnight
+from fieldmon.belief import MeanField, Pairs, overnight, pairs
 from fieldmon.chance import Chance
 from fieldmon.field import ABSENT, PRESENT, Observations
 from fieldmon.geodata.routes import RouteNotes, write_route
@@ -78,7 +78,9 @@ def measure(n_plants):
     took["a night, a tenth infested"], _ = best_of(lambda: night(grid, infested, spread, key))
     took["a night of the chance map"], _ = best_of(lambda: overnight(chance, grid, spread))
     last = np.full(n, NEVER, np.int32)
-    scene = Scene(aisles, Robot(), chance, last, seconds_left=Robot().day_s)
+    # as the app, the commands and a season plan: with what is believed of plants side by side
+    took["what is believed of neighbours"], both = best_of(lambda: pairs(chance, grid))
+    scene = Scene(aisles, Robot(), chance, last, seconds_left=Robot().day_s, both=both)
     for name in SAMPLERS:
         took[f"a day's plan and route: {name}"], _ = best_of(
             lambda name=name: route_of(scene, plan_day(scene, sampler(name)))

@@ -12,9 +12,9 @@ from fieldmon.geodata.options import Upload
 
 
 def test_damaged_files_leave_only_sentences():
-    tally = fuzz.fuzz(200, seconds=12.0)
+    tally = fuzz.fuzz(100, seconds=250.0)
     assert tally.failures == []
-    assert tally.outcomes.total() > 20
+    assert tally.outcomes.total() == 100
     assert tally.outcomes["refused"] > 0
     assert tally.outcomes["came in"] > 0
 

@@ -12,6 +12,7 @@ from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+    from scipy.spatial import cKDTree
     from shapely import MultiPolygon
 
     from fieldmon.frame import Frame
@@ -161,6 +162,13 @@ class PlantGrid:
         plants.setflags(write=False)
         return plants
 
+    @cached_property
+    def tree(self) -> cKDTree:
+        """The plants by position. Rows are even: halving boxes is as quick to ask, and to make."""
+        from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
+
+        return cKDTree(self.xy_m, compact_nodes=False, balanced_tree=False)
+
     @property
     def along_m(self) -> NDArray[np.float64]:
         """Position of each plant along its row, ``(n,)``."""
@@ -204,11 +212,8 @@ def nearest_plants(
     Positions further than `max_m` from every plant get plant -1 and an infinite distance. Where
     both faces of a plant are inspected, the one with the lower index is returned.
     """
-    from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
-
-    tree = cKDTree(grid.xy_m)
     within_m = np.nextafter(max_m, np.inf)
-    distance_m, plant = tree.query(grid.frame.xy_m(lonlat), distance_upper_bound=within_m)
+    distance_m, plant = grid.tree.query(grid.frame.xy_m(lonlat), distance_upper_bound=within_m)
     plant = np.where(plant == len(grid), -1, plant)
     first_face = (plant >= 0) & (grid.twin[plant] >= 0) & (grid.twin[plant] < plant)
     return np.where(first_face, grid.twin[plant], plant), distance_m

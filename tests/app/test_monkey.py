@@ -132,4 +132,4 @@ def test_random_clicks_raise_nothing():
             done.append(poke(rng, *rng.choice(widgets(app))))
             app.run()
         assert not app.exception, "\n".join([*done[-12:], str(app.exception[0].message)])
-    assert len(set(done)) > CLICKS / 3
+    assert len(set(done)) > min(CLICKS / 3, 200)

@@ -7,9 +7,7 @@ leaves out, beside a key that stands for them.
 
 from __future__ import annotations
 
-import io
 import threading
-import zipfile
 from functools import cache
 from hashlib import sha256
 from typing import TYPE_CHECKING
@@ -23,14 +21,13 @@ from fieldmon.chance import Chance
 from fieldmon.field import PRESENT, Field, Observations
 from fieldmon.geodata import guard, reading
 from fieldmon.geodata.findings import Finding, Severity
-from fieldmon.geodata.handoff import FORMATS
 from fieldmon.geodata.raster_plants import read_missing, read_risk
 from fieldmon.geodata.rasters import read_backdrop
 from fieldmon.hotspots import HotSpots, hot_spots, record_states
 from fieldmon.metrics import SeasonFigures, figures
-from fieldmon.monitor import Plans, Plot, Today, first_day
+from fieldmon.monitor import Plans, Plot, Today, first_day, plan_from
 from fieldmon.planting import rectangle
-from fieldmon.prior import start_infested
+from fieldmon.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.project import Project
 from fieldmon.project.store import get_meta
 from fieldmon.robot import Robot
@@ -51,7 +48,6 @@ if TYPE_CHECKING:
     from shapely import MultiLineString
 
     from fieldmon.geodata.findings import Imported
-    from fieldmon.geodata.handoff import HandoffPlan
     from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
     from fieldmon.geodata.raster_values import Backdrop, RasterOptions
     from fieldmon.planting import Planting
@@ -150,7 +146,7 @@ def plot_around(key: str, planting: Planting | None, _plants: np.ndarray) -> Plo
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
 def today(
-    key: str,  # noqa: ARG001
+    key: str,
     day: str,
     robot: Robot,
     sampler_name: str,
@@ -158,9 +154,21 @@ def today(
     _known: tuple[Observations, Array | None],
 ) -> Today:
     """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
-    plans = Plans(robot, sampler(sampler_name))
+    chance = believed(key, day, _plot, _known)
+    return plan_from(_plot, chance, Plans(robot, sampler(sampler_name)))
+
+
+@st.cache_resource(max_entries=_FEW)
+def believed(
+    key: str,  # noqa: ARG001
+    day: str,
+    _plot: Plot,
+    _known: tuple[Observations, Array | None],
+) -> Array:
+    """Return the chance map of a day, whoever is to work on it; `key` as above."""
     records, at_risk = _known
-    return first_day(_plot, records, np.datetime64(day, "D"), plans, at_risk)
+    on = np.datetime64(day, "D")
+    return prior_chance(_plot.grid, _plot.field, records, on, PriorSettings(), at_risk)
 
 
 @st.cache_resource(max_entries=_FEW)
@@ -274,19 +282,6 @@ def days_of(season: Project, until: date) -> list[str]:
     """Return the days of a season from the first up to one, ISO."""
     first = np.datetime64(season.setup.begins, "D")
     return [str(day) for day in np.arange(first, np.datetime64(until, "D") + 1)]
-
-
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
-def handoff(key: str, name: str, _plan: HandoffPlan) -> tuple[str, bytes]:  # noqa: ARG001
-    """Return a day in one of the formats: its ending and bytes, several files as one zip."""
-    made = FORMATS[name].make(_plan)
-    if len(made) == 1:
-        return next(iter(made.items()))
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        for ending, data in made.items():
-            archive.writestr(f"route{ending}", data)
-    return f".{name}.zip", packed.getvalue()
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)

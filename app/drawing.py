@@ -86,7 +86,7 @@ def plain_plants(choices: Choices) -> list:
 
     def make() -> list:
         shade = maps.plain(len(grid))
-        return [maps.plants(grid, shade, [""] * len(grid))]
+        return [maps.plants(grid, shade, maps.unsaid)]
 
     return cached.layers(f"plain {choices.key}", make)
 

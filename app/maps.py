@@ -5,8 +5,9 @@ from __future__ import annotations
 import base64
 import io
 import json
+import zlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -20,6 +21,8 @@ from fieldmon.grid import row_label
 from . import texts
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.field import Field, Observations
@@ -27,6 +30,8 @@ if TYPE_CHECKING:
     from fieldmon.hotspots import HotSpots
     from fieldmon.route import Route
 
+    #: what is said of some plants, in words
+    Notes = Callable[[NDArray[np.intp]], list[str]]
 
 Colour = tuple[int, int, int]
 Layer = pdk.Layer
@@ -68,6 +73,8 @@ RENAMED = "~"
 _EMPTY = 30  # opacity of a plant that nobody looked at: an outline with next to nothing in it
 # layers are not changed once made; their texts go when they do
 _WRITTEN: WeakKeyDictionary[Layer, str] = WeakKeyDictionary()
+# likewise for plots
+_RASTERS: WeakKeyDictionary[PlantGrid, _Raster] = WeakKeyDictionary()
 
 
 class Deck(pdk.Deck):
@@ -110,27 +117,30 @@ def _json(thing: object) -> str:
 
 @dataclass(frozen=True)
 class Shade:
-    """A colour for every plant, ``(n, 4)`` uint8, and its rank: higher ranks win a pixel."""
+    """A colour for every plant by its rank ``(n,)``; higher ranks win a pixel.
 
-    colour: NDArray[np.uint8]
-    rank: NDArray[np.int64]
+    ``table`` is ``(k, 4)`` uint8, a colour with its opacity for each rank.
+    """
+
+    table: NDArray[np.uint8]
+    rank: NDArray[np.uint8]
 
     @classmethod
     def of(cls, colours: list[tuple[int, ...]], rank: NDArray[np.integer]) -> Shade:
-        """Return the shade that takes each plant's colour by its rank; no opacity is full."""
+        """Return the shade of these colours, a rank each; where no opacity is named, it is full."""
         table = np.array([(*c, 255) if len(c) == 3 else c for c in colours], np.uint8)
-        return cls(table[rank], rank.astype(np.int64))
+        return cls(table, rank.astype(np.uint8))
 
 
 def by_chance(chance: NDArray[np.float64]) -> Shade:
     """Return plants shaded by their chance of infestation, in the legend's classes."""
     rank = np.searchsorted(CHANCE_FROM, chance, side="right") - 1
-    return Shade.of(list(CHANCE_COLOURS), rank)
+    return Shade.of([*CHANCE_COLOURS], rank)
 
 
 def by_state(state: NDArray[np.int8]) -> Shade:
     """Return plants shaded as found (1), clean (0) or never inspected (-1: an empty ring)."""
-    return Shade.of([(*NEVER, _EMPTY), CLEAN, FOUND], state.astype(np.int64) + 1)
+    return Shade.of([(*NEVER, _EMPTY), CLEAN, FOUND], state + np.int8(1))
 
 
 def by_age(days: NDArray[np.integer]) -> Shade:
@@ -141,7 +151,12 @@ def by_age(days: NDArray[np.integer]) -> Shade:
 
 def plain(n: int) -> Shade:
     """Return n plants in one colour."""
-    return Shade.of([(90, 150, 90)], np.zeros(n, np.int64))
+    return Shade.of([(90, 150, 90)], np.zeros(n, np.uint8))
+
+
+def unsaid(which: NDArray[np.intp]) -> list[str]:
+    """Return nothing to say of each of these plants."""
+    return [""] * len(which)
 
 
 def deck(
@@ -207,7 +222,7 @@ def boundary(field: Field, *, dark: bool = False) -> Layer:
 
 
 def plants(
-    grid: PlantGrid, shade: Shade, note: list[str], part: NDArray[np.intp] | None = None
+    grid: PlantGrid, shade: Shade, notes: Notes, part: NDArray[np.intp] | None = None
 ) -> Layer:
     """Return the plants: points with a note each, or one picture if there are very many.
 
@@ -218,17 +233,17 @@ def plants(
     which = np.arange(len(grid)) if part is None else part
     label = row_label(grid, which)
     columns = zip(
-        np.round(grid.lonlat(which), 7).tolist(), shade.colour[which].tolist(),
-        label.line.tolist(), label.number.tolist(), which.tolist(), strict=True,
+        np.round(grid.lonlat(which), 7).tolist(), shade.table[shade.rank[which]].tolist(),
+        label.line.tolist(), label.number.tolist(), which.tolist(), notes(which), strict=True,
     )  # fmt: skip
     rows = [
         {
             "p": place,
             "c": colour,
             "i": plant,
-            "t": texts.TIP_PLANT.format(row=line, plant=number, note=note[plant]),
+            "t": texts.TIP_PLANT.format(row=line, plant=number, note=note),
         }
-        for place, colour, line, number, plant in columns
+        for place, colour, line, number, plant, note in columns
     ]
     return Layer(
         "ScatterplotLayer",
@@ -289,28 +304,51 @@ def _ring(
     )  # fmt: skip
 
 
-def _picture(grid: PlantGrid, shade: Shade) -> Layer:
-    """Return the plants as one picture, the most important plant of each pixel on top."""
+class _Raster(NamedTuple):
+    """A picture of a plot: its size, its corners lon/lat, and the pixel of each plant ``(n,)``."""
+
+    tall: int
+    wide: int
+    corners: list[list[float]]
+    pixel: NDArray[np.intp]
+
+
+def _raster(grid: PlantGrid) -> _Raster:
+    kept = _RASTERS.get(grid)
+    if kept is not None:
+        return kept
     low, high = grid.xy_m.min(axis=0), grid.xy_m.max(axis=0)
     step = np.array([grid.plant_spacing_m, grid.row_spacing_m])
     step = np.maximum(step, (high - low) / _PICTURE_AT_MOST)
     low, high = low - step / 2, high + step / 2
-    wide, tall = np.ceil((high - low) / step).astype(int)
-    column, line = np.floor((grid.xy_m - low) / step).astype(int).T
-    image = np.zeros((tall, wide, 4), np.uint8)
-    order = np.argsort(shade.rank, kind="stable")
-    image[tall - 1 - line[order], column[order]] = shade.colour[order]
-    file = io.BytesIO()
-    Image.fromarray(image).save(file, "PNG")
+    wide, tall = np.ceil((high - low) / step).astype(int).tolist()
+    column, line = np.floor((grid.xy_m - low) / step).astype(np.intp).T
     right, top = low + step * [wide, tall]
     corners = [[low[0], low[1]], [low[0], top], [right, top], [right, low[1]]]
+    lonlat = grid.frame.lonlat(corners).tolist()
+    _RASTERS[grid] = _Raster(tall, wide, lonlat, (tall - 1 - line) * wide + column)
+    return _RASTERS[grid]
+
+
+def _picture(grid: PlantGrid, shade: Shade) -> Layer:
+    """Return the plants as one picture, the most important plant of each pixel on top."""
+    raster = _raster(grid)
+    # one number a pixel, looked up in a table of colours; 0 is the ground between plants
+    pixels = np.zeros(raster.tall * raster.wide, np.uint8)
+    np.maximum.at(pixels, raster.pixel, shade.rank + np.uint8(1))
+    image = Image.fromarray(pixels.reshape(raster.tall, raster.wide))
+    image.putpalette(bytes(3) + shade.table[:, :3].tobytes())
+    file = io.BytesIO()
+    # rows are runs of one colour: looked for as such, they pack as well as at the highest level
+    opacity = bytes(1) + shade.table[:, 3].tobytes()
+    image.save(file, "PNG", transparency=opacity, compress_type=zlib.Z_RLE)
     uri = "data:image/png;base64," + base64.b64encode(file.getvalue()).decode()
     return Layer(
         "BitmapLayer",
         None,
         id="plants",
         image=pdk.types.String(uri),
-        bounds=grid.frame.lonlat(corners).tolist(),
+        bounds=raster.corners,
         texture_parameters={"magFilter": "nearest", "minFilter": "nearest"},
     )
 
@@ -376,28 +414,33 @@ def _arrows(the_route: Route) -> list[dict[str, Any]]:
     return [{"p": corner} for corner in lonlat.tolist()]
 
 
-def with_hot(
-    layers: list[Layer], grid: PlantGrid, spots: HotSpots, *, dark: bool = False
-) -> list[Layer]:
-    """Return the layers with each hot spot outlined, its tint under plants that can be tapped."""
+def hot(grid: PlantGrid, spots: HotSpots, *, dark: bool = False) -> list[Layer]:
+    """Return the hot spots, if there are any: their tint, and their outlines."""
     if not len(spots):
-        return layers
+        return []
     rows = []
     margin_m = 0.75 * max(grid.row_spacing_m, grid.plant_spacing_m)
+    inside = np.flatnonzero(spots.of_plant >= 0)
     for k in range(len(spots)):
-        own = shapely.multipoints(grid.xy_m[spots.of_plant == k])
+        own = shapely.multipoints(grid.xy_m[inside[spots.of_plant[inside] == k]])
         shape = grid.frame.geometry_lonlat(shapely.buffer(shapely.convex_hull(own), margin_m))
         corners = np.round(shapely.get_coordinates(shape.exterior), 7).tolist()
         text = texts.TIP_HOT.format(found=spots.found[k], inspected=spots.inspected[k])
         rows.append({"p": corners, "t": text})
     colour = HOT_IN_DARK if dark else HOT
-    tint = Layer("PolygonLayer", rows, id="hot", get_polygon="p", get_fill_color=[*colour, 20],
-                 stroked=False, pickable=True)  # fmt: skip
-    edge = Layer("PathLayer", rows, id="hot-edge", get_path="p", get_color=list(colour),
-                 width_min_pixels=3, get_width=0.4)  # fmt: skip
+    return [
+        Layer("PolygonLayer", rows, id="hot", get_polygon="p", get_fill_color=[*colour, 20],
+              stroked=False, pickable=True),
+        Layer("PathLayer", rows, id="hot-edge", get_path="p", get_color=list(colour),
+              width_min_pixels=3, get_width=0.4),
+    ]  # fmt: skip
+
+
+def with_hot(layers: list[Layer], spots: list[Layer]) -> list[Layer]:
+    """Return the layers with hot spots outlined, their tint under plants that can be tapped."""
     points = [k for k, layer in enumerate(layers) if layer.type == "ScatterplotLayer"]
     under = min([*points, len(layers)])
-    return [*layers[:under], tint, *layers[under:], edge]
+    return [*layers[:under], *spots[:1], *layers[under:], *spots[1:]]
 
 
 def paths(field: Field) -> list[Layer]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
 from dataclasses import dataclass
 from datetime import datetime, time, timedelta
 from functools import partial
@@ -25,8 +27,11 @@ from .choices import room_px
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from numpy.typing import NDArray
+
     from fieldmon.field import Observations
     from fieldmon.geodata.handoff import HandoffPlan
+    from fieldmon.geodata.handoff.door import Format
     from fieldmon.grid import PlantGrid
     from fieldmon.hotspots import HotSpots
     from fieldmon.monitor import Plot, Today
@@ -66,12 +71,24 @@ def other_formats(choices: Choices, plan: HandoffPlan) -> None:
     """Offer the route in the formats of robots, phones and paper."""
     name = st.selectbox(texts.FORMAT, list(FORMATS), key="format", filter_mode=None,
                         format_func=lambda one: f"{one}: {FORMATS[one].reader}")  # fmt: skip
-    key = f"{choices.key} {choices.revision} {choices.day} {choices.robot} {choices.sampler}"
-    ending, data = cached.handoff(f"{name} {key}", name, plan)
+    chosen = FORMATS[name]
+    ending = f".{name}.zip" if chosen.several else chosen.endings[0]
     st.download_button(
-        texts.DOWNLOAD_AS.format(reader=FORMATS[name].reader), data,
+        texts.DOWNLOAD_AS.format(reader=chosen.reader), partial(_handed_off, chosen, plan),
         f"route_{choices.day}{ending}", key="download_format", on_click="ignore",
     )  # fmt: skip
+
+
+def _handed_off(chosen: Format, plan: HandoffPlan) -> bytes:
+    """Return a day in a format, several files as one zip; made when somebody wants it."""
+    made = chosen.make(plan)
+    if not chosen.several:
+        return next(iter(made.values()))
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for ending, data in made.items():
+            archive.writestr(f"route{ending}", data)
+    return packed.getvalue()
 
 
 def chance_of(choices: Choices) -> cached.Array:
@@ -111,8 +128,8 @@ def ages_of(choices: Choices) -> cached.Array:
 
 
 def plant_layers(choices: Choices, shade_by: str, rows: tuple[int, int] | None = None) -> list:
-    """Return the plants' layers, made once for all that they depend on."""
-    key = f"{choices.key} {choices.revision} {choices.day} {choices.robot} {choices.sampler}"
+    """Return the plants' layers, made once for what is known of them, whoever is to go there."""
+    key = f"{choices.key} {choices.revision} {choices.day}"
     make = partial(_plant_layers, choices, shade_by, rows)
     return cached.layers(f"plants {shade_by} {rows} {key}", make)
 
@@ -122,30 +139,30 @@ def _plant_layers(choices: Choices, shade_by: str, rows: tuple[int, int] | None)
     extra = []
     if shade_by == "chance":
         chance = chance_of(choices)
-        shade, note = maps.by_chance(chance), _chances(chance)
+        shade, notes = maps.by_chance(chance), partial(_chance_notes, chance)
     else:
         state, ages = states_of(choices), ages_of(choices)
         shade = maps.by_state(state) if shade_by == "state" else maps.by_age(ages)
         extra = maps.finds(grid, state)
-        note = state_notes(state)
-    layers = [maps.plants(grid, shade, note)]
+        notes = partial(state_notes, state)
+    layers = [maps.plants(grid, shade, notes)]
     if rows is not None and len(grid) > maps.POINTS_AT_MOST:
         line = grid.row_line[grid.row] + 1
         part = np.flatnonzero((line >= rows[0]) & (line <= rows[1]))[: maps.POINTS_AT_MOST]
-        layers.append(maps.plants(grid, shade, note, part))
+        layers.append(maps.plants(grid, shade, notes, part))
     return [*layers, *extra]
 
 
-def state_notes(state: cached.Array) -> list[str]:
-    """Return each plant's state in words."""
+def _chance_notes(chance: cached.Array, which: NDArray[np.intp]) -> list[str]:
+    return [texts.TIP_CHANCE.format(chance=c) for c in chance[which].tolist()]
+
+
+def state_notes(state: cached.Array, which: NDArray[np.intp]) -> list[str]:
+    """Return the state of some plants in words."""
     names = texts.LEGEND_STATES
     words = ((1, names["found"]), (0, names["clean"]), (-1, names["never"]))
     said = {value: texts.TIP_STATE.format(state=word) for value, word in words}
-    return [said[s] for s in state.tolist()]
-
-
-def _chances(chance: cached.Array) -> list[str]:
-    return [texts.TIP_CHANCE.format(chance=c) for c in chance.tolist()]
+    return [said[s] for s in state[which].tolist()]
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,11 +193,18 @@ def route_layers(choices: Choices, route: Route, *, numbers: bool) -> list:
 def with_marks(choices: Choices, layers: list, shown: list[str]) -> list:
     """Return the layers with hot spots and records, where these are to be shown."""
     if "hot" in shown:
-        spots = spots_of(choices)
-        layers = maps.with_hot(layers, choices.plot.grid, spots, dark=choices.dark)
+        layers = maps.with_hot(layers, _hot_layers(choices))
     if "records" in shown:
         layers = layers + maps.records(choices.records, dark=choices.dark)
     return layers
+
+
+def _hot_layers(choices: Choices) -> list:
+    def make() -> list:
+        return maps.hot(choices.plot.grid, spots_of(choices), dark=choices.dark)
+
+    key = f"{choices.key} {choices.revision} {choices.day} {choices.dark}"
+    return cached.layers(f"hot {key}", make)
 
 
 def draw(

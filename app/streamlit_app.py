@@ -18,8 +18,12 @@ from fieldmon.errors import FieldmonError  # noqa: E402
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
 # Streamlit leaves a hand's breadth above the page, which a phone cannot spare; names in Hebrew or
 # Arabic are set from the right, each by its own first letter
+# what moves is drawn sixty times a second: without a graphics card that takes seconds from a map
+# that is being made, so placeholders stand still and the sign of working turns in steps
 st.html(
     "<style>[data-testid=stMainBlockContainer]{padding-top:4rem;padding-bottom:3rem}"
+    "[data-testid=stSkeleton],[data-testid=stSkeleton] *{animation:none!important}"
+    "[data-testid=stSpinnerIcon]{animation-timing-function:steps(6)!important}"
     "h1,h2,h3,[data-testid=stMarkdownContainer] p{unicode-bidi:plaintext}"
     ".st-key-start_scouting a{border:1px solid rgba(128,128,128,.5);border-radius:.5rem;"
     "min-height:2.5rem;padding:.25rem .75rem;margin:0}"

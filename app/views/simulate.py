@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -70,11 +71,12 @@ def _map(choices: Choices, season: list[Day], number: int) -> None:
         last_inspected=np.full(len(grid), NEVER, np.int32), seconds_left=choices.robot.day_s,
     )  # fmt: skip
     layers = [
-        maps.plants(grid, maps.by_state(state), panels.state_notes(state)),
+        maps.plants(grid, maps.by_state(state), partial(panels.state_notes, state)),
         *maps.finds(grid, state),
         *maps.route(route_of(scene, day.work), numbers=False, dark=choices.dark),
     ]
-    layers = maps.with_hot(layers, grid, hot_spots(grid, state), dark=choices.dark)
+    spots = maps.hot(grid, hot_spots(grid, state), dark=choices.dark)
+    layers = maps.with_hot(layers, spots)
     signs = [texts.LEGEND_ROUTE, texts.LEGEND_HOT]
     if st.toggle(texts.SHOW_TRUTH, key="truth"):
         signs.append(texts.LEGEND_TRUTH)

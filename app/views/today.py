@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -58,8 +59,9 @@ def _hand_out(choices: Choices, today: Today) -> None:
         return
     notes = RouteNotes(choices.plot.field.name, choices.sampler, panels.starts(choices, today))
     with st.container(horizontal=True):
+        made = partial(route_geojson, today.route, notes)
         st.download_button(
-            texts.DOWNLOAD, route_geojson(today.route, notes), f"route_{choices.day}.geojson",
+            texts.DOWNLOAD, made, f"route_{choices.day}.geojson",
             "application/geo+json", type="primary", on_click="ignore",
         )  # fmt: skip
         with st.popover(texts.OTHER_FORMATS):

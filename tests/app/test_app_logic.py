@@ -1,16 +1,21 @@
 """What stands behind the pages, without a page."""
 
+import base64
+from io import BytesIO
+
 import numpy as np
 import pytest
+from PIL import Image
 from shapely import MultiPolygon, box
 
-from app import ruler
+from app import maps, ruler
 from app.comparing import Arm, Asked, Comparison, curve, estimate, outcomes
 from app.edits import Edit, edited, points_of
 from app.units import DATES, Units
 from fieldmon.errors import SettingError
 from fieldmon.field import Field
 from fieldmon.monitor import Plot
+from fieldmon.planting import rectangle
 from fieldmon.robot import Robot
 
 SQUARE = MultiPolygon([box(35.15, 30.36, 35.1506, 30.3606)])
@@ -154,3 +159,21 @@ def test_each_click_on_a_map_is_heard_once_though_the_browser_tells_of_the_last_
     assert ruler.new_points("ruler_a") == ((35.3, 30.3), (35.4, 30.4))
     state["ruler_a"] = {"points": None}
     assert ruler.new_points("ruler_a") == ()
+
+
+def test_each_pixel_of_a_picture_shows_the_most_important_plant_on_it(monkeypatch):
+    monkeypatch.setattr(maps, "_PICTURE_AT_MOST", 7)
+    grid = rectangle(20, 30)
+    shade = maps.by_state(np.random.default_rng(3).choice([-1, 0, 1], 600, p=[0.8, 0.1, 0.1]))
+    layer = maps._picture(grid, shade)
+    packed = layer.image.value.split(",")[1]
+    image = np.array(Image.open(BytesIO(base64.b64decode(packed))).convert("RGBA"))
+    (west, south), _, (east, north), _ = layer.bounds
+    across, down = ((grid.lonlat() - [west, north]) / [east - west, south - north]).T
+    tall, wide = image.shape[:2]
+    pixel = (down * tall).astype(int) * wide + (across * wide).astype(int)
+    best = np.zeros(tall * wide, int)
+    np.maximum.at(best, pixel, shade.rank + 1)
+    table = np.vstack([[0, 0, 0, 0], shade.table])
+    assert (image.reshape(-1, 4) == table[best]).all()
+    assert len(np.unique(best)) > 2

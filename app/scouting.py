@@ -11,6 +11,7 @@ import streamlit as st
 
 from fieldmon.grid import row_label
 from fieldmon.project import Results
+from fieldmon.project.setup import seconds
 
 from . import cached, keeping, panels, texts
 from .keeping import CLEAN, FOUND, SKIPPED
@@ -142,9 +143,13 @@ def undo(choices: Choices, batch: int) -> str:
 
 @keeping.saying
 def longer(choices: Choices) -> str:
-    """Make the working day an hour longer."""
-    setup = choices.project.setup
-    robot = replace(setup.robot, hours=min(setup.robot.hours + 1.0, 24.0))
+    """Make the working day an hour longer than it is, and than the work has taken so far."""
+    setup, history = choices.project.setup, choices.project.history
+    second = history.inspections.on(setup.day(choices.on)).second
+    # a scout who came in the evening is hours beyond the end
+    gone_s = np.nanmax(np.append(second, 0.0)) - seconds(setup.starts)
+    hours = max(setup.robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
+    robot = replace(setup.robot, hours=float(min(hours, 24.0)))
     choices.project.change(replace(setup, robot=robot), setup)
     return texts.NOW_USED.format(name=f"{robot.hours:g} h")
 

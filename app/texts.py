@@ -221,7 +221,7 @@ SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspe
           "age": "days since inspected"}  # fmt: skip
 MAP_LAYERS = {"route": "route", "numbers": "stop numbers", "hot": "hot spots",
               "records": "records", "backdrop": "picture"}  # fmt: skip
-MAP_DAY, MAP_CLOCK, PLAY, PAUSE = "Day", "Time of the day", "Play the day", "Pause"
+MAP_DAY, MAP_CLOCK, PLAY, PAUSE = "Day", "Time of the day", "Play", "Pause"
 ROWS_CLOSE, ROWS_CLOSE_HELP = "Rows shown plant by plant", "Other rows are shown as one picture."
 BACKDROP = "Picture of the ground (GeoTIFF)"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
@@ -336,7 +336,7 @@ REPORT_FOUND, REPORT_IN_ROW = "Found that day", "Row {row}"
 REPORT_TICK = "found?"
 SPEED, DETECTS = "Speed", "Finds what is there with a chance of"
 
-PRIOR = "Study, prior information"
+PRIOR = "Study, prior"
 PRIOR_TITLE = "The thesis's samplers with prior information"
 PRIOR_INTRO = (
     "Chapter 5 of A. Yehoshua's thesis (2023), made again: Dynamic, Naive and Bouncy with the "

@@ -51,7 +51,7 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
             texts.COLUMN_WAY: [name(o.arm) for o in ranked],
             texts.COLUMN_LOSS: [_interval(o.loss, "{:,.0f}") for o in ranked],
             texts.COLUMN_FOUND: [
-                _interval(_share(o.detection_pct), "{:.1f}", " %") for o in ranked
+                _interval(_share(o.detection_pct), "{:.3g}", " %") for o in ranked
             ],
             texts.COLUMN_VISITED: [f"{o.visited_pct:.1f} %" for o in ranked],
             texts.COLUMN_HALF: ["-" if o.half_day is None else f"{o.half_day:g}" for o in ranked],

@@ -177,6 +177,20 @@ def test_one_plant_is_recorded_and_undone_on_the_season_page(app, season):
     assert not len(season().history.inspections)
 
 
+def test_one_hour_more_is_one_however_late_it_is(app, season):
+    project, setup = season(), season().setup
+    project.change(replace(setup, robot=setup.robot.with_hours(2.0)), setup)
+    evening = Results.of(np.array([7]), np.array([0]), np.datetime64("2026-11-16"),
+                         second=np.array([17 * 3600.0 + 1320.0]))  # fmt: skip
+    project.record(evening, "scout mode")
+    go(app, "scout")
+    assert "Done for today" in texts_of(app)
+    tap(app, "scout_hour")
+    assert "Done for today" not in texts_of(app)
+    assert season().setup.robot.hours == 12.5
+    tap(app, "scout_clean")
+
+
 def test_a_treatment_and_changes_of_settings_are_taken_back(app, season):
     before = metric(go(app, "season"), "Still infested")
     next(b for b in app.button if b.label == "Note the treatment").click()

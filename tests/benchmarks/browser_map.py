@@ -15,8 +15,9 @@ sent
 drawn
     from there until the picture stands (looked at by screenshots, which cost a tenth of a second)
 
-and the seconds that the server went on with tables and downloads, while the map was drawn. Drawing
-is by software: a browser with a graphics card is quicker.
+the whole, the sum of the last three (m+s+d), and the seconds that the server went on with tables
+and downloads, while the map was drawn. Drawing is by software: a browser with a graphics card is
+quicker.
 """
 
 from __future__ import annotations
@@ -79,7 +80,7 @@ class Took(NamedTuple):
     sent: float
     drawn: float
     whole: float
-    after: float
+    tables: float
     size: int
 
 
@@ -242,7 +243,7 @@ def _parts(page, log, start, stood):
     there = min(at for at, length in came if at > sent - 0.05 and length >= size)
     return Took(
         asked=begun - start, plan=plan, map=sent - begun - plan, sent=there - sent,
-        drawn=stood - there, whole=stood - start, after=max(run[1] for run in runs) - sent,
+        drawn=stood - there, whole=stood - start, tables=max(run[1] for run in runs) - sent,
         size=size,
     )  # fmt: skip
 
@@ -302,7 +303,7 @@ def main():
     asked = parser.parse_args()
     n_plants, uploads = files(asked.plants)
     sys.stdout.write(f"{n_plants:,} plants\n")
-    columns = ("asked", "plan", "map", "sent", "drawn", "whole", "- plan", "after", "kB")
+    columns = ("asked", "plan", "map", "sent", "drawn", "whole", "m+s+d", "tables", "kB")
     sys.stdout.write(f"{'':28s}{''.join(f'{name:>8s}' for name in columns)}\n")
     with contextlib.ExitStack() as stack:
         address, log = stack.enter_context(
@@ -317,7 +318,7 @@ def main():
         for number, (what, reach, act) in enumerate(acts(page)):
             reach()
             took = redrawn(page, log, act)
-            seconds = (*took[:6], took.whole - took.plan, took.after)
+            seconds = (*took[:6], took.map + took.sent + took.drawn, took.tables)
             told = "".join(f"{second:8.2f}" for second in seconds)
             sys.stdout.write(f"{what:28s}{told}{took.size / 1000:8.0f}\n")
             sys.stdout.flush()

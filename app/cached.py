@@ -7,33 +7,23 @@ leaves out, beside a key that stands for them.
 
 from __future__ import annotations
 
-import io
-import threading
-import zipfile
-from functools import cache
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
 import numpy as np
 import streamlit as st
-from shapely import MultiPolygon
 
-from fieldmon.aisles import Aisles
 from fieldmon.chance import Chance
-from fieldmon.field import PRESENT, Field, Observations
-from fieldmon.geodata import guard, reading
-from fieldmon.geodata.findings import Finding, Severity, seen
-from fieldmon.geodata.handoff import FORMATS
-from fieldmon.geodata.rasters import read_backdrop, read_raster
+from fieldmon.geodata import reading
+from fieldmon.geodata.findings import Finding, Severity
+from fieldmon.geodata.raster_plants import read_missing, read_risk
+from fieldmon.geodata.rasters import read_backdrop
 from fieldmon.hotspots import HotSpots, hot_spots, record_states
 from fieldmon.metrics import SeasonFigures, figures
-from fieldmon.monitor import Plans, Plot, Today, first_day
-from fieldmon.planting import rectangle
-from fieldmon.prior import start_infested
+from fieldmon.monitor import Plans, Plot, Today, plan_from
+from fieldmon.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.project import Project
 from fieldmon.project.store import get_meta
-from fieldmon.risk import RiskSettings, risk_chance
-from fieldmon.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.season import Day, SeasonSettings, Start, days
 from fieldmon.spread import Spread
@@ -50,12 +40,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiLineString
 
+    from fieldmon.field import Field, Observations
     from fieldmon.geodata.findings import Imported
-    from fieldmon.geodata.handoff import HandoffPlan
     from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
     from fieldmon.geodata.raster_values import Backdrop, RasterOptions
     from fieldmon.planting import Planting
     from fieldmon.project import Remark
+    from fieldmon.risk import RiskSettings
+    from fieldmon.robot import Robot
     from fieldmon.route import Route
 
     from .figures import DayFigures, Known
@@ -70,39 +62,6 @@ _MAPS = 60
 def digest(data: bytes) -> str:
     """Return what stands for a file's bytes in keys."""
     return sha256(data).hexdigest()
-
-
-class Warming(threading.Thread):
-    """Starts the file reader and compiles the samplers while the person is still looking."""
-
-    def __init__(self) -> None:
-        super().__init__(daemon=True)
-        #: set once what Today needs is compiled
-        self.ready = threading.Event()
-
-    def run(self) -> None:
-        """Plan a day on a few plants, then simulate with what Compare and Simulate begin with."""
-        try:
-            guard.warm()
-            corners = [(35.15, 30.36), (35.1504, 30.3601), (35.1503, 30.3604), (35.15, 30.3603)]
-            a_plot = Plot.of(Field("", MultiPolygon([(corners, [])])))
-            record = Observations.of(np.array([(35.1502, 30.3602)]), np.array([PRESENT]))
-            first_day(a_plot, record, np.datetime64("2026-11-16"), Plans())
-            hot_spots(a_plot.grid, record_states(a_plot.grid, record))
-        finally:
-            self.ready.set()
-        for name in ("adaptive", "dynamic", "naive"):
-            start = Start(np.ones(9, np.bool_), np.full(9, 0.1))
-            settings, aisles = SeasonSettings(n_days=2), Aisles.of(rectangle(3, 3))
-            list(days(aisles, Robot(), sampler(name), start, settings, Chance(0)))
-
-
-@cache
-def warm() -> Warming:
-    """Start warming, once for all sessions."""
-    warming = Warming()
-    warming.start()
-    return warming
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
@@ -149,7 +108,7 @@ def plot_around(key: str, planting: Planting | None, _plants: np.ndarray) -> Plo
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
 def today(
-    key: str,  # noqa: ARG001
+    key: str,
     day: str,
     robot: Robot,
     sampler_name: str,
@@ -157,9 +116,21 @@ def today(
     _known: tuple[Observations, Array | None],
 ) -> Today:
     """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
-    plans = Plans(robot, sampler(sampler_name))
+    chance = believed(key, day, _plot, _known)
+    return plan_from(_plot, chance, Plans(robot, sampler(sampler_name)))
+
+
+@st.cache_resource(max_entries=_FEW)
+def believed(
+    key: str,  # noqa: ARG001
+    day: str,
+    _plot: Plot,
+    _known: tuple[Observations, Array | None],
+) -> Array:
+    """Return the chance map of a day, whoever is to work on it; `key` as above."""
     records, at_risk = _known
-    return first_day(_plot, records, np.datetime64(day, "D"), plans, at_risk)
+    on = np.datetime64(day, "D")
+    return prior_chance(_plot.grid, _plot.field, records, on, PriorSettings(), at_risk)
 
 
 @st.cache_resource(max_entries=_FEW)
@@ -276,19 +247,6 @@ def days_of(season: Project, until: date) -> list[str]:
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
-def handoff(key: str, name: str, _plan: HandoffPlan) -> tuple[str, bytes]:  # noqa: ARG001
-    """Return a day in one of the formats: its ending and bytes, several files as one zip."""
-    made = FORMATS[name].make(_plan)
-    if len(made) == 1:
-        return next(iter(made.items()))
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        for ending, data in made.items():
-            archive.writestr(f"route{ending}", data)
-    return f".{name}.zip", packed.getvalue()
-
-
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
 def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Backdrop:  # noqa: ARG001
     """Return a picture of the ground about a plot."""
     return read_backdrop(_source, options, _near).value
@@ -303,11 +261,20 @@ def risk(
     _plot: Plot,
 ) -> Imported[Array]:
     """Return the risk of a plot's plants from a raster; `key` stands for raster and plot."""
-    read = read_raster(_source, options, _plot.field)
-    chance = risk_chance(read.value.of_plants(_plot.grid), settings)
-    low, high, mean = np.nanmin(chance), np.nanmax(chance), np.nanmean(chance)
-    said = seen(texts.RISK_IS.format(low=low, high=high, mean=mean))
-    return read.having(chance, [said])
+    return read_risk(_source, options, _plot, settings)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def without_missing(
+    key: str,  # noqa: ARG001
+    options: RasterOptions,
+    below: float,
+    _source: Source,
+    _plot: Plot,
+) -> Imported[Plot]:
+    """Return a plot without the plants that a raster shows to be missing; `key` as above."""
+    read = read_missing(_source, options, _plot, below)
+    return read.having(_plot.without(read.value) if read.value.any() else _plot)
 
 
 @st.cache_resource(max_entries=_MAPS)

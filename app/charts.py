@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import altair as alt
 import pandas as pd
 
+from . import texts
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -16,34 +18,60 @@ if TYPE_CHECKING:
     from .figures import DayFigures
 
 # Okabe & Ito's colours for the colour-blind
-_COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
+# the last one grey, not black, which the dark page swallows
+_COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7F7F7F"]
+# more lines than colours: the next ones are dashed
+_DASHES = [[1, 0], [6, 3], [2, 2]]
+_LEGEND = alt.Legend(orient="top", title=None, columns=2, labelLimit=300, symbolType="stroke",
+                     symbolSize=300, symbolStrokeWidth=3, symbolOpacity=1)  # fmt: skip
+_GREY = "#7F7F7F"
 
 
 def detection(seasons: dict[str, SeasonFigures], day: int, axes: tuple[str, str]) -> alt.LayerChart:
     """Return detection per day, a line for each sampler, with a rule at the day shown."""
     table = pd.concat(
-        pd.DataFrame(
-            {"sampler": name, "day": range(1, len(f.found) + 1), "detection": f.detection_pct}
-        )
+        pd.DataFrame({"way": name, "day": range(1, len(f.found) + 1), "mean": f.detection_pct})
         for name, f in seasons.items()
     )
-    x = alt.X("day:Q", title=axes[0], axis=alt.Axis(tickMinStep=1))
-    lines = (
+    lines = _lines(table, list(seasons), axes)
+    rule = (
+        alt.Chart(pd.DataFrame({"day": [day]}))
+        .mark_rule(strokeDash=[4, 4], color=_GREY)
+        .encode(x="day:Q")
+    )
+    return alt.layer(lines, rule).properties(height=280)
+
+
+def curves(table: pd.DataFrame, axes: tuple[str, str]) -> alt.Chart:
+    """Return a line for each column of a table whose index counts days."""
+    long = table.rename_axis("day").reset_index().melt("day", var_name="way", value_name="mean")
+    return _lines(long, list(table.columns), axes).properties(height=320)
+
+
+def _lines(table: pd.DataFrame, ways: list[str], axes: tuple[str, str]) -> alt.Chart:
+    """Return the mean by day, a line for each way, told apart by colour and by dashes."""
+    tooltip = [alt.Tooltip("way", title=texts.COLUMN_WAY), alt.Tooltip("day", title=axes[0]),
+               alt.Tooltip("mean:Q", title=axes[1], format=".1f")]  # fmt: skip
+    return (
         alt.Chart(table)
         .mark_line(point=True, strokeWidth=2.5)
         .encode(
-            x=x,
-            y=alt.Y("detection:Q", title=axes[1], scale=alt.Scale(domain=[0, 100])),
-            color=alt.Color(
-                "sampler:N",
-                scale=alt.Scale(domain=list(seasons), range=_COLOURS[: len(seasons)]),
-                legend=alt.Legend(orient="top", title=None, columns=2),
-            ),
-            tooltip=["sampler", "day", alt.Tooltip("detection:Q", format=".1f")],
+            x=alt.X("day:Q", title=axes[0], axis=alt.Axis(tickMinStep=1)),
+            y=alt.Y("mean:Q", title=axes[1], scale=alt.Scale(domain=[0, 100])),
+            color=alt.Color("way:N", scale=_scale(ways, _COLOURS), legend=_LEGEND),
+            strokeDash=alt.StrokeDash("way:N", scale=_dashes(ways), legend=_LEGEND),
+            tooltip=tooltip,
         )
     )
-    rule = alt.Chart(pd.DataFrame({"day": [day]})).mark_rule(strokeDash=[4, 4]).encode(x="day:Q")
-    return alt.layer(lines, rule).properties(height=280)
+
+
+def _scale(ways: list[str], colours: list[str]) -> alt.Scale:
+    return alt.Scale(domain=ways, range=[colours[k % len(colours)] for k in range(len(ways))])
+
+
+def _dashes(ways: list[str]) -> alt.Scale:
+    dashes = [_DASHES[k // len(_COLOURS) % len(_DASHES)] for k in range(len(ways))]
+    return alt.Scale(domain=ways, range=dashes)
 
 
 def found(figures: SeasonFigures, axes: tuple[str, str]) -> alt.Chart:
@@ -55,7 +83,7 @@ def found(figures: SeasonFigures, axes: tuple[str, str]) -> alt.Chart:
         .encode(
             x=alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0)),
             y=alt.Y("found:Q", title=axes[1]),
-            tooltip=["day", "found"],
+            tooltip=[alt.Tooltip("day", title=axes[0]), alt.Tooltip("found", title=axes[1])],
         )
         .properties(height=200)
     )
@@ -73,23 +101,15 @@ def bands(
                       "high": high})
         for name, (mean, low, high) in curves.items()
     )  # fmt: skip
-    colour = alt.Color(
-        "way:N",
-        scale=alt.Scale(domain=list(curves), range=_many(len(curves))),
-        legend=alt.Legend(orient="top", title=None, columns=2, labelLimit=300),
-    )
-    base = alt.Chart(table).encode(
-        x=alt.X("day:Q", title=axes[0], axis=alt.Axis(tickMinStep=1)), color=colour
-    )
-    y = alt.Y("mean:Q", title=axes[1], scale=alt.Scale(domain=[0, 100]))
-    tooltip = [
-        "way",
-        "day",
-        *(alt.Tooltip(f"{c}:Q", format=".1f") for c in ("mean", "low", "high")),
-    ]
-    band = base.mark_area(opacity=0.18).encode(y="low:Q", y2="high:Q")
-    line = base.mark_line(point=True, strokeWidth=2.5).encode(y=y, tooltip=tooltip)
-    return alt.layer(band, line).properties(height=320)
+    band = (
+        alt.Chart(table)
+        .mark_area(opacity=0.18)
+        .encode(
+            x="day:Q", y=alt.Y("low:Q", title=axes[1]), y2="high:Q",
+            color=alt.Color("way:N", scale=_scale(list(curves), _COLOURS), legend=_LEGEND),
+        )
+    )  # fmt: skip
+    return alt.layer(band, _lines(table, list(curves), axes)).properties(height=320)
 
 
 def season_days(days: list[DayFigures], axes: tuple[str, str, str]) -> alt.LayerChart:
@@ -102,7 +122,8 @@ def season_days(days: list[DayFigures], axes: tuple[str, str, str]) -> alt.Layer
         }
     )
     x = alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True))
-    tip = ["day", "inspected", "found"]
+    tip = [alt.Tooltip("day", title=axes[0]), alt.Tooltip("inspected", title=axes[1]),
+           alt.Tooltip("found", title=axes[2])]  # fmt: skip
     bars = (
         alt.Chart(table)
         .mark_bar(color=_COLOURS[5])
@@ -128,9 +149,16 @@ def still_out(days: list[DayFigures], axes: tuple[str, str]) -> alt.LayerChart:
     )
     base = alt.Chart(table).encode(
         x=alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True)),
-        tooltip=["day", alt.Tooltip("expected:Q", format=".1f"), "low", "high"],
-    )
-    band = base.mark_bar(opacity=0.3, color=_COLOURS[0], width=10).encode(y="low:Q", y2="high:Q")
+        tooltip=[
+            alt.Tooltip("day", title=axes[0]),
+            alt.Tooltip("expected:Q", title=axes[1], format=".1f"),
+            alt.Tooltip("low", title=texts.LEAST), alt.Tooltip("high", title=texts.MOST),
+        ],
+    )  # fmt: skip
+    # an edge, since the pale bar alone is next to nothing on a dark page
+    band = base.mark_bar(
+        fillOpacity=0.3, color=_COLOURS[0], stroke=_COLOURS[0], strokeWidth=1, width=10
+    ).encode(y="low:Q", y2="high:Q")
     line = base.mark_line(point=True, color=_COLOURS[0]).encode(
         y=alt.Y("expected:Q", title=axes[1])
     )
@@ -148,11 +176,7 @@ def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64],
         .encode(
             x=alt.X("row:Q", title=axes[0], axis=alt.Axis(tickMinStep=1, format="d")),
             y=alt.Y("days:Q", title=axes[1], axis=alt.Axis(tickMinStep=1, format="d")),
-            tooltip=["row", "days"],
+            tooltip=[alt.Tooltip("row", title=axes[0]), alt.Tooltip("days", title=axes[1])],
         )
         .properties(height=180)
     )
-
-
-def _many(n: int) -> list[str]:
-    return [_COLOURS[k % len(_COLOURS)] for k in range(n)]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from datetime import date, datetime
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -17,7 +16,20 @@ from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.monitor import Plot, planting_of
 from fieldmon.planting import Planting
 
-from . import cached, files, maps, remembered, risks, seasons, texts
+from . import (
+    cached,
+    canopies,
+    early,
+    files,
+    maps,
+    remembered,
+    risks,
+    seasons,
+    texts,
+    verdicts,
+    warming,
+)
+from .early import SAMPLE, WHERE
 from .edits import Edit, edited
 from .files import File, Heard
 from .units import AREAS_M2, DATES, LENGTHS, Units
@@ -29,13 +41,20 @@ if TYPE_CHECKING:
     from fieldmon.project import Project
     from fieldmon.robot import Robot
 
-SAMPLE = Path(__file__).resolve().parents[1] / "sample_data"
+    from .early import Places
+
 LAST_SAMPLE_DAY = date(2026, 11, 16)
 #: what is put into cache keys for the sample estate's files
 _SAMPLE = "sample/"
 _DAY = "day {season}"
-# also the word in the address
-_WHERE = "season"
+# what is said of rows by hand, in the chosen unit
+_LENGTHS = ("row_spacing", "plant_spacing", "headland")
+# a sampler's box is too narrow for more than its name
+_NAMED = {
+    "format_func": verdicts.short,
+    "help": "\n".join(f"- {is_}" for is_ in texts.SAMPLERS.values()),
+}
+_ROOMS = {"field_map": maps.MOST_PX, "plot_map": maps.HALF_PX, "season_map": maps.HALF_PX}
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,19 +109,14 @@ class Choices:
         return "" if self.project is None else cached.revision(self.project)
 
     @property
-    def phone(self) -> bool:
-        """Return whether the page is shown on a phone, by what its browser says."""
-        return _is_phone()
-
-    @property
     def dark(self) -> bool:
         """Return whether the page is dark."""
-        return is_dark()
+        return early.is_dark()
 
     @property
     def map_px(self) -> int:
         """Return the height of the map: half a phone's screen, more on a laptop."""
-        return _map_px()
+        return early.map_px()
 
     def today(self) -> Today:
         """Return the planned day: what is left of it, once something of it was recorded."""
@@ -120,73 +134,60 @@ class Chosen:
     problem: FieldmonError | None = None
 
 
-def _is_phone() -> bool:
-    return "Mobi" in (st.context.headers.get("User-Agent") or "")
+def room_px(name: str) -> tuple[int, int]:
+    """Return the room that a map has on this device, by the map's name."""
+    return _ROOMS[name] if name in _ROOMS and not early.is_phone() else early.room_px()
 
 
-def is_dark() -> bool:
-    """Return whether the page is dark."""
-    return st.context.theme.get("type") == "dark"
-
-
-def _map_px() -> int:
-    return 400 if _is_phone() else 520
-
-
-def choose() -> Chosen:
+def choose(places: Places | None = None) -> Chosen:
     """Show the sidebar; return the choices, or the problem that keeps from them."""
-    above = st.empty()
+    above, chart = (st.empty(), None) if places is None else (places.above, places.chart)
     with st.sidebar:
         where = _where()
         try:
             if where not in (texts.SAMPLE, texts.UPLOAD):
                 _wait(above)
                 return Chosen(_open(where))
-            return Chosen(_unsaved(where, above))
+            return Chosen(_unsaved(where, above, chart))
         except FieldmonError as error:
             return Chosen(problem=error)
         finally:
             _units()
 
 
-def _wait(above: DeltaGenerator, field: Field | None = None) -> None:
-    """Show how far compiling is, which an installation does once, and meanwhile the outline."""
-    warming, said = cached.warm(), None
-    while not warming.ready.wait(0.5):
-        if not FIRST_USE.compiled:
-            continue
-        if said is None:
-            with above.container():
-                said = st.empty()
-                if field is not None:
-                    st.pydeck_chart(
-                        maps.outline(field, dark=is_dark(), phone=_is_phone()), key="outline",
-                        height=_map_px(), alt=texts.OUTLINE_ALT.format(name=field.name),
-                    )  # fmt: skip
-        said.info(texts.COMPILING.format(n=FIRST_USE.compiled))
+def _wait(
+    above: DeltaGenerator, chart: DeltaGenerator | None = None, field: Field | None = None
+) -> None:
+    """Show the outline until plants can be laid, and how far compiling is, once an installation."""
+    ready = warming.start().ready
+    if field is not None and chart is not None and not ready.is_set():
+        early.outline(chart, field)
+    while not ready.wait(0.5):
+        if FIRST_USE.compiled:
+            above.info(texts.COMPILING.format(n=FIRST_USE.compiled))
     above.empty()
 
 
 def _where() -> str:
     options = [texts.SAMPLE, texts.UPLOAD, *seasons.names()]
-    remembered.first(_WHERE, st.query_params.get(_WHERE))
-    if remembered.value(_WHERE) not in options:
-        st.session_state[_WHERE] = texts.SAMPLE
+    remembered.first(WHERE, st.query_params.get(WHERE))
+    if remembered.value(WHERE) not in options:
+        st.session_state[WHERE] = texts.SAMPLE
     chosen = remembered.show(
-        st.selectbox, texts.PLOT_FROM, options, key=_WHERE, help=texts.PLOT_FROM_HELP,
+        st.selectbox, texts.PLOT_FROM, options, key=WHERE, help=texts.PLOT_FROM_HELP,
         filter_mode=None,
     )  # fmt: skip
     # the address leads back to the season after a reload, and to another person's screen
     if chosen == texts.SAMPLE:
-        st.query_params.pop(_WHERE, None)
-    elif st.query_params.get(_WHERE) != chosen:
-        st.query_params[_WHERE] = chosen
+        st.query_params.pop(WHERE, None)
+    elif st.query_params.get(WHERE) != chosen:
+        st.query_params[WHERE] = chosen
     return chosen
 
 
 def open_season(name: str) -> None:
     """Let the season of this name be open from the next run on (for callbacks)."""
-    st.session_state[_WHERE] = name
+    st.session_state[WHERE] = name
 
 
 def _open(name: str) -> Choices:
@@ -209,15 +210,19 @@ def _change(name: str, choices: Choices) -> None:
     """Show who works in the season that is open, and change it on demand."""
     project = choices.project
     with st.expander(texts.WHO):
-        setup = project.setup
+        setup, before = project.setup, project.before_change()
         key = f"{name} {setup.robot.hours} {setup.robot.look_s} {setup.sampler}"
-        hours = st.slider(texts.HOURS, 0.5, 16.0, setup.robot.hours, 0.5, key=f"hours {key}")
-        look = st.slider(texts.LOOK, 20, 60, int(setup.robot.look_s), 5, key=f"look {key}")
+        # a command, or "one hour more", may have set what is beyond the usual
+        usual_s = setup.robot.look_s
+        hours = st.slider(texts.HOURS, min(0.5, setup.robot.hours), max(16.0, setup.robot.hours),
+                          setup.robot.hours, 0.5, key=f"hours {key}")  # fmt: skip
+        look = st.slider(texts.LOOK, min(20.0, usual_s), max(60.0, usual_s), usual_s, 5.0,
+                         format="%g", key=f"look {key}")  # fmt: skip
         names = list(texts.SAMPLERS)
         sampler = st.selectbox(
-            texts.SAMPLER, names, names.index(setup.sampler),
-            format_func=texts.SAMPLERS.__getitem__, key=f"sampler {key}",
-        )  # fmt: skip
+            texts.SAMPLER, names, names.index(setup.sampler), key=f"sampler {key}", **_NAMED
+        )
+        st.caption(texts.SAMPLERS[sampler].partition(": ")[2])
         robot = replace(setup.robot, hours=float(hours), look_s=float(look))
         wanted = replace(setup, robot=robot, sampler=sampler)
         if wanted != setup:
@@ -225,13 +230,19 @@ def _change(name: str, choices: Choices) -> None:
             if st.button(texts.CHANGE, type="primary", key="change_setup"):
                 project.change(wanted, setup)
                 st.rerun()
+        if before is not None:
+            back = verdicts.arm_name(before.sampler, before.robot.hours, before.robot.look_s)
+            label = texts.UNDO_CHANGE.format(way=back, starts=f"{before.starts:%H:%M}")
+            if st.button(label, key="undo_change", icon=":material/undo:"):
+                project.undo_change()
+                st.rerun()
 
 
-def _unsaved(where: str, above: DeltaGenerator) -> Choices | None:
+def _unsaved(where: str, above: DeltaGenerator, chart: DeltaGenerator | None) -> Choices | None:
     if where == texts.SAMPLE:
         st.caption(texts.SAMPLE_NOTE)
         plot_file, record_file, plant_file = (
-            _sample("paran_estate.zip"), _sample("mite_records.csv"), None,
+            _sample(early.PLOTS), _sample("mite_records.csv"), None,
         )  # fmt: skip
     else:
         brought = files.brought()
@@ -241,13 +252,14 @@ def _unsaved(where: str, above: DeltaGenerator) -> Choices | None:
             return None
     plants, plant_key = _plants(plant_file)
     field, plot_key, heard = _field(plot_file, plants, plant_key)
-    _wait(above, field)
+    _wait(above, chart, field)
     plot, key = _plot(field, plot_key, plants)
+    plot, gaps, key = canopies.of(plot, key)
     records, more, key = _records(record_file, plot, key)
     risk, said, key = risks.of(plot, key)
     robot, sampler, day = _work(where)
     return Choices(
-        key, plot, records, (*heard, *more, *said), robot, sampler, day, read_units(), None,
+        key, plot, records, (*heard, *gaps, *more, *said), robot, sampler, day, read_units(), None,
         plot_key, risk,
     )  # fmt: skip
 
@@ -299,12 +311,13 @@ def draw(plot_key: str, edits: tuple[Edit, ...]) -> None:
 
 def row_settings(plot_key: str) -> dict[str, float | None]:
     """Return what was said about a plot's rows by hand; None: found, or as the file says."""
-    said = {
-        name: remembered.value(f"{name} {plot_key}")
-        for name in ("row_bearing_deg", "row_spacing_m", "plant_spacing_m", "headland_m")
-    }
+    said, units = {}, read_units()
+    for name in _LENGTHS:
+        shown = remembered.value(f"{name} {plot_key}")
+        said[f"{name}_m"] = None if shown is None else units.in_metres(shown)
     both = remembered.value(f"both_faces {plot_key}")
-    return {**said, "faces": 2 if both else None}
+    bearing = remembered.value(f"row_bearing {plot_key}")
+    return {**said, "row_bearing_deg": bearing, "faces": 2 if both else None}
 
 
 def _plot(field: Field | None, key: str, plants: cached.Array | None) -> tuple[Plot, str]:
@@ -358,8 +371,9 @@ def _work(where: str) -> tuple[Robot, str, str]:
                                default=int(base.look_s))  # fmt: skip
         sampler = remembered.show(
             st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), key="sampler",
-            default=next(iter(texts.SAMPLERS)), format_func=texts.SAMPLERS.__getitem__,
+            default=next(iter(texts.SAMPLERS)), **_NAMED,
         )  # fmt: skip
+        st.caption(texts.SAMPLERS[sampler].partition(": ")[2])
     return replace(base, hours=float(hours), look_s=float(look)), sampler, str(day)
 
 
@@ -369,8 +383,17 @@ def _units() -> None:
             ("length", texts.LENGTH, LENGTHS), ("area", texts.AREA, AREAS_M2),
             ("date_like", texts.DATE_LIKE, DATES),
         ):  # fmt: skip
-            remembered.show(st.selectbox, label, list(options), key=key,
-                            default=next(iter(options)), filter_mode=None)  # fmt: skip
+            remembered.show(
+                st.selectbox, label, list(options), key=key, default=next(iter(options)),
+                filter_mode=None, on_change=_carry_over, args=(read_units(),),
+            )  # fmt: skip
+
+
+def _carry_over(before: Units) -> None:
+    """Carry lengths that boxes hold over into the unit that is now chosen."""
+    units = read_units()
+    if units.length != before.length:
+        remembered.change(_LENGTHS, lambda shown: units.shown(before.in_metres(shown)))
 
 
 def read_units() -> Units:

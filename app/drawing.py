@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
+from fieldmon.planting import Planting
 
 from . import cached, keeping, maps, remembered, texts
-from .choices import draw, drawn, laid
+from .choices import draw, drawn, laid, read_units
 from .edits import GATE, NO_GO, PATH, Edit, points_of
 
 if TYPE_CHECKING:
     from .choices import Choices
     from .edits import Points
+    from .ruler import Clicked
 
 _NAMES = {GATE: texts.DRAW_KINDS["gate"], PATH: texts.DRAW_KINDS["path"],
           NO_GO: texts.DRAW_KINDS["no_go"]}  # fmt: skip
@@ -24,16 +27,21 @@ def rows(plot_key: str) -> None:
     """Show what was found of a plot's rows, to be set by hand."""
     with st.expander(texts.ROWS, expanded=True):
         st.caption(texts.FOUND_ROWS)
-        for key, label, limits, help_ in (
-            ("row_bearing_deg", texts.BEARING, (0.0, 360.0, 0.5), texts.BEARING_HELP),
-            ("row_spacing_m", texts.ROW_SPACING, (0.1, 50.0, 0.1), texts.SPACING_HELP),
-            ("plant_spacing_m", texts.PLANT_SPACING, (0.1, 50.0, 0.1), texts.SPACING_HELP),
+        remembered.show(st.number_input, texts.BEARING, 0.0, 360.0, step=0.5,
+                        help=texts.BEARING_HELP, key=f"row_bearing {plot_key}")  # fmt: skip
+        units, usual = read_units(), Planting()
+        rows_m, plants_m = usual.row_spacing_m, usual.plant_spacing_m
+        help_ = texts.SPACING_HELP.format(rows=units.metres(rows_m), plants=units.metres(plants_m))
+        for name, label, default_m in (
+            ("row_spacing", texts.ROW_SPACING, None),
+            ("plant_spacing", texts.PLANT_SPACING, None),
+            ("headland", texts.HEADLAND, usual.headland_m),
         ):
-            low, high, step = limits
-            remembered.show(st.number_input, label, low, high, step=step, help=help_,
-                            key=f"{key} {plot_key}")  # fmt: skip
-        remembered.show(st.number_input, texts.HEADLAND, 0.1, 50.0, step=0.5, default=4.0,
-                        key=f"headland_m {plot_key}")  # fmt: skip
+            remembered.show(
+                st.number_input, label.format(unit=units.length), *units.limits(0.1, 50.0),
+                step=0.1, help=help_ if default_m is None else None, key=f"{name} {plot_key}",
+                default=None if default_m is None else units.shown(default_m),
+            )  # fmt: skip
         remembered.show(st.toggle, texts.BOTH_FACES, key=f"both_faces {plot_key}", default=False)
 
 
@@ -69,11 +77,7 @@ def layers(choices: Choices) -> list:
         shown.append(maps.places([list(field.gate)], "gate", maps.GATE, "gate"))
     if not _kind():
         return shown
-    return [
-        *shown,
-        *maps.drawing(_points(choices)),
-        maps.clickable(choices.plot.grid, texts.DRAW_HERE),
-    ]
+    return [*shown, *maps.drawing(_points(choices))]
 
 
 def plain_plants(choices: Choices) -> list:
@@ -82,16 +86,14 @@ def plain_plants(choices: Choices) -> list:
 
     def make() -> list:
         shade = maps.plain(len(grid))
-        return [maps.plants(grid, shade, [""] * len(grid))]
+        return [maps.plants(grid, shade, maps.unsaid)]
 
     return cached.layers(f"plain {choices.key}", make)
 
 
-def take(choices: Choices, objects: dict) -> None:
-    """Take a click on the map as a point of what is being drawn."""
-    hits = objects.get("clicks", []) if _kind() else []
-    if hits:
-        _put(choices, ((float(hits[0]["p"][0]), float(hits[0]["p"][1])),))
+def clicks(choices: Choices) -> Clicked | None:
+    """Return what takes clicks on the map as points of what is being drawn; None: nothing is."""
+    return partial(_put, choices) if _kind() else None
 
 
 def _kind() -> str:
@@ -105,8 +107,9 @@ def _points(choices: Choices) -> Points:
 
 
 def _put(choices: Choices, points: Points) -> None:
-    st.session_state[f"drawing {choices.plot_key}"] = (*_points(choices), *points)
-    if _kind() == GATE:
+    made = points[-1:] if _kind() == GATE else (*_points(choices), *points)
+    st.session_state[f"drawing {choices.plot_key}"] = made
+    if _kind() == GATE and made:
         _finish(choices)
 
 

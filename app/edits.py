@@ -10,6 +10,8 @@ from shapely import LineString, MultiLineString, MultiPolygon, Polygon
 
 from fieldmon.errors import SettingError
 
+from . import texts
+
 if TYPE_CHECKING:
     from fieldmon.field import Field
 
@@ -37,14 +39,12 @@ class Edit:
         least = NEEDED[self.kind]
         if len(self.lonlat) < least:
             raise SettingError(
-                f"A {self.kind.replace('_', '-')} needs {least} points or more, "
-                f"but {len(self.lonlat)} are given. Add points on the map, or type them."
+                texts.DRAW_LEAST.format(
+                    what=texts.DRAW_WHAT[self.kind], least=least, n=len(self.lonlat)
+                )
             )
         if self.kind == NO_GO and not Polygon(self.lonlat).is_valid:
-            raise SettingError(
-                "The edge of a no-go area must not cross itself, but it does. "
-                "Give its corners in order, one way round."
-            )
+            raise SettingError(texts.DRAW_CROSSED)
 
 
 def edited(field: Field, edits: tuple[Edit, ...]) -> Field:
@@ -69,12 +69,8 @@ def points_of(text: str) -> Points:
         try:
             lon, lat = (float(number) for number in part.split(","))
         except ValueError:
-            raise SettingError(
-                f"A position must be written lon,lat such as 35.1503,30.3601, but it is {part!r}."
-            ) from None
+            raise SettingError(texts.DRAW_WRITTEN.format(text=part)) from None
         if not (-180 <= lon <= 180 and -90 <= lat <= 90):
-            raise SettingError(
-                f"A longitude lies in -180..180 and a latitude in -90..90, but this is {part!r}."
-            )
+            raise SettingError(texts.DRAW_RANGE.format(text=part))
         made.append((lon, lat))
     return tuple(made)

@@ -67,11 +67,31 @@ def _take(kind: str) -> None:
     brought()[kind] = File(key, uploads[0] if len(uploads) == 1 else uploads)
 
 
-def bring_one(label: str, kept_as: str) -> File | None:
-    """Show a box for a single file; return the one that the session keeps under a name."""
+def bring_one(label: str, kept_as: str) -> None:
+    """Show a box for a single file, which the session keeps under a name."""
     st.file_uploader(label, key=f"{kept_as}_file", on_change=_take_one, args=(kept_as,))
+
+
+def kept_one(kept_as: str) -> None:
+    """Show which file is kept under a name and what is wrong with it; take it out on demand."""
     kept: File | None = st.session_state.get(kept_as)
-    return kept
+    if kept is None:
+        return
+    st.caption(texts.KEPT_FILE.format(name=texts.isolated(kept.source.name)))
+    st.button(texts.FORGET_FILE, key=f"forget {kept_as}", on_click=_forget_one, args=(kept_as,))
+    problem = st.session_state.get(f"{kept_as} problem")
+    if problem is not None:
+        st.session_state["asking"] = kept.key
+        say(problem)
+
+
+def trouble(kept_as: str, problem: FieldmonError | None) -> None:
+    """Keep what is wrong with the file kept under a name."""
+    st.session_state[f"{kept_as} problem"] = problem
+
+
+def _forget_one(kept_as: str) -> None:
+    st.session_state.pop(kept_as, None)
 
 
 def _take_one(kept_as: str) -> None:

@@ -17,9 +17,8 @@ if TYPE_CHECKING:
 
 def bring() -> None:
     """Show the box for the picture; other sessions do not see it."""
-    kept = files.bring_one(texts.BACKDROP, "ground")
-    if kept is not None:
-        st.caption(texts.KEPT_FILE.format(name=texts.isolated(kept.source.name)))
+    files.bring_one(texts.BACKDROP, "ground")
+    files.kept_one("ground")
 
 
 def layers(choices: Choices) -> list:

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.geodata.findings_in import read_findings
 from fieldmon.geodata.options import Upload
-from fieldmon.geodata.reported import FindingsOptions
 from fieldmon.grid import plant_at
 from fieldmon.project import Project, Remark, Results, Setup, results_from
 
@@ -87,7 +86,7 @@ def record_one(choices: Choices) -> str:
     results = Results.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day), count=counted
     )
-    return _recorded(choices, results, "typed in")
+    return _recorded(choices, results, texts.TYPED_IN)
 
 
 @saying
@@ -95,12 +94,17 @@ def record_stops(choices: Choices, plants: np.ndarray, found: list[int]) -> str:
     """Record the first stops of the route: those marked as found, the others as clean."""
     done = plants[: int(st.session_state["stops_done"])]
     result = np.where(np.isin(np.arange(len(done)) + 1, found), FOUND, CLEAN)
-    return _recorded(choices, Results.of(done, result, np.datetime64(choices.day)), "route table")
+    results = Results.of(done, result, np.datetime64(choices.day))
+    return _recorded(choices, results, texts.ROUTE_TABLE)
 
 
 @saying
 def record_file(choices: Choices, name: str, data: bytes) -> str:
     """Record findings from a file: a route given out and filled in, a table, positions."""
+    # what reads files is half a second to import
+    from fieldmon.geodata.findings_in import read_findings  # noqa: PLC0415
+    from fieldmon.geodata.reported import FindingsOptions  # noqa: PLC0415
+
     options = FindingsOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
     options = options.choose("day", choices.day)
     read = read_findings(Upload(name, data), choices.plot.grid, options)
@@ -123,8 +127,9 @@ def undo(choices: Choices, batch: int) -> str:
 def treat(choices: Choices) -> str:
     """Note that the whole plot was treated."""
     state = st.session_state
-    choices.project.treat(choices.on, state["efficacy"] / 100, product=state["product"])
-    return texts.TREATED
+    share, product = state["efficacy"] / 100, state["product"]
+    done = choices.project.treat(choices.on, share, product=product)
+    return texts.TREATED if done.new else texts.TREATED_BEFORE
 
 
 @saying
@@ -142,16 +147,26 @@ def use(choices: Choices, sampler: str, hours: float, look_s: float) -> str:
     return texts.NOW_USED.format(name=verdicts.arm_name(sampler, hours, look_s))
 
 
+def local(at: datetime) -> datetime:
+    """Return a moment in the time of the person's browser, without a zone."""
+    minutes = st.context.timezone_offset
+    if minutes is None:
+        return at.astimezone().replace(tzinfo=None)
+    return at.astimezone(UTC).replace(tzinfo=None) - timedelta(minutes=minutes)
+
+
 def batches(choices: Choices) -> None:
     """Show what was recorded, the last one first, each with its undo."""
     for batch in choices.project.batches()[:20]:
         if not batch.rows:
             continue
         left, right = st.columns([4, 1], vertical_alignment="center")
-        undone = f" ({texts.UNDONE})" if batch.undone else ""
-        when = batch.at
-        left.markdown(f"{when[:16].replace('T', ' ')} · {batch.source or batch.kind} · "
-                      f"{batch.rows}{undone}")  # fmt: skip
+        at = local(datetime.fromisoformat(batch.at))
+        said = texts.BATCHES_SAID[batch.kind].format(
+            day=choices.units.day(at.date()), time=f"{at:%H:%M}", n=batch.rows,
+            source=texts.isolated(batch.source) if batch.source else "",
+        )  # fmt: skip
+        left.markdown(said + (f" ({texts.UNDONE})" if batch.undone else ""))
         if not batch.undone:
             right.button(texts.UNDO, key=f"undo {batch.number}", on_click=undo,
                          args=(choices, batch.number))  # fmt: skip

@@ -5,8 +5,9 @@ from __future__ import annotations
 import base64
 import io
 import json
+import zlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -17,7 +18,11 @@ from pydeck.bindings.json_tools import default_serialize
 
 from fieldmon.grid import row_label
 
+from . import texts
+
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.field import Field, Observations
@@ -25,7 +30,8 @@ if TYPE_CHECKING:
     from fieldmon.hotspots import HotSpots
     from fieldmon.route import Route
 
-    from .units import Units
+    #: what is said of some plants, in words
+    Notes = Callable[[NDArray[np.intp]], list[str]]
 
 Colour = tuple[int, int, int]
 Layer = pdk.Layer
@@ -40,6 +46,7 @@ FOUND: Colour = (213, 30, 30)
 CLEAN: Colour = (90, 160, 230)
 NEVER: Colour = (150, 150, 145)
 TRUTH: Colour = (0, 0, 0)
+TRUTH_IN_DARK: Colour = (255, 255, 255)
 ROUTE: Colour = (20, 80, 200)
 ROUTE_IN_DARK: Colour = (110, 220, 255)
 GATE: Colour = (0, 140, 90)
@@ -53,7 +60,8 @@ POINTS_AT_MOST = 20_000
 _PICTURE_AT_MOST = 2048
 _ARROWS = 40
 _NUMBERS = 24
-_VIEW_PX, _PHONE_PX = (720, 480), (340, 380)
+#: room for a map, width and height: a whole page, most or half of it beside something else
+PAGE_PX, MOST_PX, HALF_PX, PHONE_PX = (720, 480), (620, 480), (500, 480), (340, 380)
 _TILE_PX = 512
 # days since a plant was inspected: fresh is pale green, long ago is dark
 AGE_FROM = (0, 1, 3, 7, 14)
@@ -63,9 +71,10 @@ AGE_COLOURS: tuple[Colour, ...] = (
 # after a layer's name: the same layer once more
 RENAMED = "~"
 _EMPTY = 30  # opacity of a plant that nobody looked at: an outline with next to nothing in it
-_LATTICE = 100
 # layers are not changed once made; their texts go when they do
 _WRITTEN: WeakKeyDictionary[Layer, str] = WeakKeyDictionary()
+# likewise for plots
+_RASTERS: WeakKeyDictionary[PlantGrid, _Raster] = WeakKeyDictionary()
 
 
 class Deck(pdk.Deck):
@@ -108,27 +117,30 @@ def _json(thing: object) -> str:
 
 @dataclass(frozen=True)
 class Shade:
-    """A colour for every plant, ``(n, 4)`` uint8, and its rank: higher ranks win a pixel."""
+    """A colour for every plant by its rank ``(n,)``; higher ranks win a pixel.
 
-    colour: NDArray[np.uint8]
-    rank: NDArray[np.int64]
+    ``table`` is ``(k, 4)`` uint8, a colour with its opacity for each rank.
+    """
+
+    table: NDArray[np.uint8]
+    rank: NDArray[np.uint8]
 
     @classmethod
     def of(cls, colours: list[tuple[int, ...]], rank: NDArray[np.integer]) -> Shade:
-        """Return the shade that takes each plant's colour by its rank; no opacity is full."""
+        """Return the shade of these colours, a rank each; where no opacity is named, it is full."""
         table = np.array([(*c, 255) if len(c) == 3 else c for c in colours], np.uint8)
-        return cls(table[rank], rank.astype(np.int64))
+        return cls(table, rank.astype(np.uint8))
 
 
 def by_chance(chance: NDArray[np.float64]) -> Shade:
     """Return plants shaded by their chance of infestation, in the legend's classes."""
     rank = np.searchsorted(CHANCE_FROM, chance, side="right") - 1
-    return Shade.of(list(CHANCE_COLOURS), rank)
+    return Shade.of([*CHANCE_COLOURS], rank)
 
 
 def by_state(state: NDArray[np.int8]) -> Shade:
     """Return plants shaded as found (1), clean (0) or never inspected (-1: an empty ring)."""
-    return Shade.of([(*NEVER, _EMPTY), CLEAN, FOUND], state.astype(np.int64) + 1)
+    return Shade.of([(*NEVER, _EMPTY), CLEAN, FOUND], state + np.int8(1))
 
 
 def by_age(days: NDArray[np.integer]) -> Shade:
@@ -139,38 +151,46 @@ def by_age(days: NDArray[np.integer]) -> Shade:
 
 def plain(n: int) -> Shade:
     """Return n plants in one colour."""
-    return Shade.of([(90, 150, 90)], np.zeros(n, np.int64))
+    return Shade.of([(90, 150, 90)], np.zeros(n, np.uint8))
 
 
-def deck(grid: PlantGrid, layers: list[Layer], *, phone: bool = False) -> Deck:
-    """Return the map of a plot; its first view depends on the plot and the device alone."""
+def unsaid(which: NDArray[np.intp]) -> list[str]:
+    """Return nothing to say of each of these plants."""
+    return [""] * len(which)
+
+
+def deck(
+    grid: PlantGrid, layers: list[Layer], room_px: tuple[int, int] = PAGE_PX
+) -> Deck:  # fmt: skip
+    """Return the map of a plot; its first view depends on the plot and the room for it alone."""
     return Deck(
         layers=layers,
         initial_view_state=view(
-            grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m)), phone=phone
+            grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m)), room_px
         ),
         map_provider=None,
         tooltip={"html": "{t}", "style": {"fontSize": "13px"}},
     )
 
 
-def outline(field: Field, *, dark: bool = False, phone: bool = False) -> Deck:
+def outline(
+    field: Field, room_px: tuple[int, int] = PAGE_PX, *, dark: bool = False
+) -> Deck:  # fmt: skip
     """Return the map of a plot on which no plants are laid yet."""
     return Deck(
         layers=[boundary(field, dark=dark)],
-        initial_view_state=view(shapely.get_coordinates(field.boundary), phone=phone),
+        initial_view_state=view(shapely.get_coordinates(field.boundary), room_px),
         map_provider=None,
     )
 
 
-def view(corners: NDArray[np.float64], *, phone: bool = False) -> pdk.ViewState:
-    """Return the view that holds corners ``(n, 2)`` lon/lat on a laptop's map, or on a phone's."""
+def view(corners: NDArray[np.float64], room_px: tuple[int, int]) -> pdk.ViewState:
+    """Return the view that holds corners ``(n, 2)`` lon/lat where there is so much room."""
     (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
     low, high = (_mercator(lat) for lat in (south, north))
-    size_px = _PHONE_PX if phone else _VIEW_PX
     room = [
         np.log2(360.0 * px * 0.85 / (_TILE_PX * span))
-        for px, span in zip(size_px, (east - west, high - low), strict=True)
+        for px, span in zip(room_px, (east - west, high - low), strict=True)
         if span > 0
     ]
     return pdk.ViewState(
@@ -202,7 +222,7 @@ def boundary(field: Field, *, dark: bool = False) -> Layer:
 
 
 def plants(
-    grid: PlantGrid, shade: Shade, note: list[str], part: NDArray[np.intp] | None = None
+    grid: PlantGrid, shade: Shade, notes: Notes, part: NDArray[np.intp] | None = None
 ) -> Layer:
     """Return the plants: points with a note each, or one picture if there are very many.
 
@@ -213,12 +233,17 @@ def plants(
     which = np.arange(len(grid)) if part is None else part
     label = row_label(grid, which)
     columns = zip(
-        np.round(grid.lonlat(which), 7).tolist(), shade.colour[which].tolist(),
-        label.line.tolist(), label.number.tolist(), which.tolist(), strict=True,
+        np.round(grid.lonlat(which), 7).tolist(), shade.table[shade.rank[which]].tolist(),
+        label.line.tolist(), label.number.tolist(), which.tolist(), notes(which), strict=True,
     )  # fmt: skip
     rows = [
-        {"p": place, "c": colour, "i": plant, "t": f"row {line}, plant {number}<br>{note[plant]}"}
-        for place, colour, line, number, plant in columns
+        {
+            "p": place,
+            "c": colour,
+            "i": plant,
+            "t": texts.TIP_PLANT.format(row=line, plant=number, note=note),
+        }
+        for place, colour, line, number, plant, note in columns
     ]
     return Layer(
         "ScatterplotLayer",
@@ -237,13 +262,21 @@ def plants(
 
 
 def finds(grid: PlantGrid, state: NDArray[np.int8]) -> list[Layer]:
-    """Return a dark ring with a pale rim round each find: told by shape, not by colour alone."""
+    """Return a dark ring with a pale rim round each find: told by shape, not by colour alone.
+
+    Where finds stand close, the rings run together, but none covers a find.
+    """
     here = np.round(grid.lonlat(np.flatnonzero(state == 1)), 7).tolist()
-    size = 0.55 * min(grid.plant_spacing_m, grid.row_spacing_m)
-    return [
-        _ring(f"finds{k}", here, size, (colour, pixels))
+    least_m = min(grid.plant_spacing_m, grid.row_spacing_m)
+    rings = [
+        _ring(f"finds{k}", here, 0.55 * least_m, (colour, pixels))
         for k, (colour, pixels) in enumerate([((255, 255, 255), 4.5), ((20, 0, 0), 2.0)])
     ]
+    dots = Layer(
+        "ScatterplotLayer", [{"p": p} for p in here], id="found", get_position="p",
+        get_fill_color=list(FOUND), get_radius=0.4 * least_m, radius_min_pixels=2,
+    )  # fmt: skip
+    return [*rings, dots]
 
 
 def chosen(grid: PlantGrid, plant: int) -> list[Layer]:
@@ -271,28 +304,51 @@ def _ring(
     )  # fmt: skip
 
 
-def _picture(grid: PlantGrid, shade: Shade) -> Layer:
-    """Return the plants as one picture, the most important plant of each pixel on top."""
+class _Raster(NamedTuple):
+    """A picture of a plot: its size, its corners lon/lat, and the pixel of each plant ``(n,)``."""
+
+    tall: int
+    wide: int
+    corners: list[list[float]]
+    pixel: NDArray[np.intp]
+
+
+def _raster(grid: PlantGrid) -> _Raster:
+    kept = _RASTERS.get(grid)
+    if kept is not None:
+        return kept
     low, high = grid.xy_m.min(axis=0), grid.xy_m.max(axis=0)
     step = np.array([grid.plant_spacing_m, grid.row_spacing_m])
     step = np.maximum(step, (high - low) / _PICTURE_AT_MOST)
     low, high = low - step / 2, high + step / 2
-    wide, tall = np.ceil((high - low) / step).astype(int)
-    column, line = np.floor((grid.xy_m - low) / step).astype(int).T
-    image = np.zeros((tall, wide, 4), np.uint8)
-    order = np.argsort(shade.rank, kind="stable")
-    image[tall - 1 - line[order], column[order]] = shade.colour[order]
-    file = io.BytesIO()
-    Image.fromarray(image).save(file, "PNG")
+    wide, tall = np.ceil((high - low) / step).astype(int).tolist()
+    column, line = np.floor((grid.xy_m - low) / step).astype(np.intp).T
     right, top = low + step * [wide, tall]
     corners = [[low[0], low[1]], [low[0], top], [right, top], [right, low[1]]]
+    lonlat = grid.frame.lonlat(corners).tolist()
+    _RASTERS[grid] = _Raster(tall, wide, lonlat, (tall - 1 - line) * wide + column)
+    return _RASTERS[grid]
+
+
+def _picture(grid: PlantGrid, shade: Shade) -> Layer:
+    """Return the plants as one picture, the most important plant of each pixel on top."""
+    raster = _raster(grid)
+    # one number a pixel, looked up in a table of colours; 0 is the ground between plants
+    pixels = np.zeros(raster.tall * raster.wide, np.uint8)
+    np.maximum.at(pixels, raster.pixel, shade.rank + np.uint8(1))
+    image = Image.fromarray(pixels.reshape(raster.tall, raster.wide))
+    image.putpalette(bytes(3) + shade.table[:, :3].tobytes())
+    file = io.BytesIO()
+    # rows are runs of one colour: looked for as such, they pack as well as at the highest level
+    opacity = bytes(1) + shade.table[:, 3].tobytes()
+    image.save(file, "PNG", transparency=opacity, compress_type=zlib.Z_RLE)
     uri = "data:image/png;base64," + base64.b64encode(file.getvalue()).decode()
     return Layer(
         "BitmapLayer",
         None,
         id="plants",
         image=pdk.types.String(uri),
-        bounds=grid.frame.lonlat(corners).tolist(),
+        bounds=raster.corners,
         texture_parameters={"magFilter": "nearest", "minFilter": "nearest"},
     )
 
@@ -314,7 +370,7 @@ def route(the_route: Route, *, numbers: bool = True, dark: bool = False) -> list
             get_fill_color=colour, stroked=False,
         ),
         Layer(
-            "ScatterplotLayer", [{"p": gate, "t": "gate: start and end"}], id="gate",
+            "ScatterplotLayer", [{"p": gate, "t": texts.TIP_GATE}], id="gate",
             get_position="p", get_radius=3, radius_min_pixels=7, filled=False, stroked=True,
             get_line_color=list(GATE), line_width_min_pixels=3, pickable=True,
         ),
@@ -358,34 +414,39 @@ def _arrows(the_route: Route) -> list[dict[str, Any]]:
     return [{"p": corner} for corner in lonlat.tolist()]
 
 
-def with_hot(
-    layers: list[Layer], grid: PlantGrid, spots: HotSpots, *, dark: bool = False
-) -> list[Layer]:
-    """Return the layers with each hot spot outlined, its tint under plants that can be tapped."""
+def hot(grid: PlantGrid, spots: HotSpots, *, dark: bool = False) -> list[Layer]:
+    """Return the hot spots, if there are any: their tint, and their outlines."""
     if not len(spots):
-        return layers
+        return []
     rows = []
     margin_m = 0.75 * max(grid.row_spacing_m, grid.plant_spacing_m)
+    inside = np.flatnonzero(spots.of_plant >= 0)
     for k in range(len(spots)):
-        own = shapely.multipoints(grid.xy_m[spots.of_plant == k])
+        own = shapely.multipoints(grid.xy_m[inside[spots.of_plant[inside] == k]])
         shape = grid.frame.geometry_lonlat(shapely.buffer(shapely.convex_hull(own), margin_m))
         corners = np.round(shapely.get_coordinates(shape.exterior), 7).tolist()
-        text = f"hot spot: {spots.found[k]} found of {spots.inspected[k]} inspected"
+        text = texts.TIP_HOT.format(found=spots.found[k], inspected=spots.inspected[k])
         rows.append({"p": corners, "t": text})
     colour = HOT_IN_DARK if dark else HOT
-    tint = Layer("PolygonLayer", rows, id="hot", get_polygon="p", get_fill_color=[*colour, 20],
-                 stroked=False, pickable=True)  # fmt: skip
-    edge = Layer("PathLayer", rows, id="hot-edge", get_path="p", get_color=list(colour),
-                 width_min_pixels=3, get_width=0.4)  # fmt: skip
+    return [
+        Layer("PolygonLayer", rows, id="hot", get_polygon="p", get_fill_color=[*colour, 20],
+              stroked=False, pickable=True),
+        Layer("PathLayer", rows, id="hot-edge", get_path="p", get_color=list(colour),
+              width_min_pixels=3, get_width=0.4),
+    ]  # fmt: skip
+
+
+def with_hot(layers: list[Layer], spots: list[Layer]) -> list[Layer]:
+    """Return the layers with hot spots outlined, their tint under plants that can be tapped."""
     points = [k for k, layer in enumerate(layers) if layer.type == "ScatterplotLayer"]
     under = min([*points, len(layers)])
-    return [*layers[:under], tint, *layers[under:], edge]
+    return [*layers[:under], *spots[:1], *layers[under:], *spots[1:]]
 
 
 def paths(field: Field) -> list[Layer]:
     """Return the paths along which insects come in."""
     rows = [
-        {"path": np.round(shapely.get_coordinates(line), 7).tolist(), "t": "path"}
+        {"path": np.round(shapely.get_coordinates(line), 7).tolist(), "t": texts.TIP_PATH}
         for line in shapely.get_parts(field.paths)
     ]
     return [
@@ -401,7 +462,7 @@ def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
         {
             "p": place,
             "c": [*colour, 220 if seen == 1 else 0],
-            "t": f"record of {day}: {'found' if seen == 1 else 'nothing' if seen == 0 else '?'}",
+            "t": texts.TIP_RECORD.format(day=day, result=texts.TIP_SEEN.get(seen, "?")),
         }
         for place, seen, day in zip(
             np.round(observations.lonlat, 7).tolist(),
@@ -419,13 +480,14 @@ def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
     ]  # fmt: skip
 
 
-def truth(grid: PlantGrid, infested: NDArray[np.bool_]) -> list[Layer]:
+def truth(grid: PlantGrid, infested: NDArray[np.bool_], *, dark: bool = False) -> list[Layer]:
     """Return dots on plants that are infested, as only a simulation can know."""
     here = np.round(grid.lonlat(np.flatnonzero(infested)), 7).tolist()
     return [
         Layer(
-            "ScatterplotLayer", [{"p": p, "t": "infested"} for p in here], id="truth",
-            get_position="p", get_fill_color=list(TRUTH), get_radius=0.5, radius_min_pixels=2,
+            "ScatterplotLayer", [{"p": p, "t": texts.TIP_INFESTED} for p in here], id="truth",
+            get_position="p", get_fill_color=list(TRUTH_IN_DARK if dark else TRUTH),
+            get_radius=0.5, radius_min_pixels=2,
         )
     ]  # fmt: skip
 
@@ -451,7 +513,7 @@ def playback(the_route: Route, second: float, *, dark: bool = False) -> list[Lay
             get_fill_color=[*colour, 150], get_radius=0.5, radius_min_pixels=2,
         ),
         Layer(
-            "ScatterplotLayer", [{"p": here, "t": "here"}], id="robot", get_position="p",
+            "ScatterplotLayer", [{"p": here, "t": texts.TIP_HERE}], id="robot", get_position="p",
             get_fill_color=[255, 210, 0], get_radius=1.5, radius_min_pixels=8, stroked=True,
             get_line_color=[0, 0, 0], line_width_min_pixels=3, pickable=True,
         ),
@@ -476,25 +538,8 @@ def drawing(points: tuple[tuple[float, float], ...]) -> list[Layer]:
             "PathLayer", [{"path": here}] if len(here) > 1 else [], id="drawing", get_path="path",
             get_color=list(GATE), width_min_pixels=3, get_width=0.4,
         ),
-        places(here, "corners", GATE, "corner"),
+        places(here, "corners", GATE, texts.TIP_CORNER),
     ]  # fmt: skip
-
-
-def clickable(grid: PlantGrid, note: str) -> Layer:
-    """Return a lattice of places all over and around the plot, unseen, that can be clicked on."""
-    corners = grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m))
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    margin = 0.08 * (high - low)
-    lon, lat = (
-        np.linspace(a - m, b + m, _LATTICE) for a, b, m in zip(low, high, margin, strict=True)
-    )
-    step_m = 111_320.0 * float(lat[1] - lat[0])
-    rows = [{"p": [x, y], "t": note} for x in lon.round(7).tolist() for y in lat.round(7).tolist()]
-    return Layer(
-        "ScatterplotLayer", rows, id="clicks", get_position="p", get_radius=0.75 * step_m,
-        get_fill_color=[0, 0, 0, 2], pickable=True, auto_highlight=True,
-        highlight_color=[0, 140, 90, 120],
-    )  # fmt: skip
 
 
 def backdrop(uri: str, corners: list[list[float]]) -> Layer:
@@ -503,42 +548,6 @@ def backdrop(uri: str, corners: list[list[float]]) -> Layer:
         "BitmapLayer", None, id="backdrop", image=pdk.types.String(uri), bounds=corners,
         opacity=0.8,
     )  # fmt: skip
-
-
-def scale(grid: PlantGrid, units: Units, *, dark: bool = False) -> tuple[list[Layer], str]:
-    """Return a bar of a round length under the plot and a north arrow beside it; and its text."""
-    corners = grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m))
-    (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
-    metres_deg = 111_320.0 * np.cos(np.deg2rad((south + north) / 2))
-    bar_m, text = units.bar_m(max((east - west) * metres_deg / 4, 1.0))
-    ink = [235, 235, 235] if dark else [40, 40, 40]
-    y = float(south - (north - south) * 0.04)
-    ends = [[float(west), y], [float(west + bar_m / metres_deg), y]]
-    middle = [(ends[0][0] + ends[1][0]) / 2, y]
-    tip = float(max(north - south, (east - west) / 2)) * 0.07
-    side = tip * 0.28 * 111_320.0 / metres_deg
-    foot = [float(east), float(north)]
-    arrow = [[foot[0], foot[1] + tip], [foot[0] - side, foot[1]], [foot[0], foot[1] + tip * 0.25],
-             [foot[0] + side, foot[1]]]  # fmt: skip
-    layers = [
-        Layer(
-            "PathLayer", [{"path": ends}], id="scale", get_path="path", get_color=ink,
-            get_width=0.1, width_min_pixels=4,
-        ),
-        Layer(
-            "TextLayer", [{"p": middle, "n": text}], id="scale-text", get_position="p",
-            get_text="n", get_size=13, get_color=ink, get_alignment_baseline="'top'",
-            get_pixel_offset=[0, 6],
-        ),
-        Layer("PolygonLayer", [{"p": arrow}], id="north", get_polygon="p", get_fill_color=ink,
-              stroked=False),
-        Layer(
-            "TextLayer", [{"p": [foot[0], foot[1] + tip], "n": "N"}], id="north-text",
-            get_position="p", get_text="n", get_size=15, get_color=ink,
-            get_alignment_baseline="'bottom'", get_pixel_offset=[0, -2],
-        ),
-    ]  # fmt: skip
-    return layers, text
 
 
 def legend(items: list[tuple[Colour, str]], *, signs: tuple[str, ...] = ()) -> str:

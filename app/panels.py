@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
 from dataclasses import dataclass
 from datetime import datetime, time, timedelta
 from functools import partial
@@ -19,13 +21,19 @@ from fieldmon.grid import plant_at, row_label
 from fieldmon.history import FOUND
 from fieldmon.prior import usable
 
-from . import cached, maps, remembered, texts
+from . import cached, maps, remembered, ruler, texts
+from .choices import room_px
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from numpy.typing import NDArray
+    from streamlit.delta_generator import DeltaGenerator
+
     from fieldmon.field import Observations
     from fieldmon.geodata.handoff import HandoffPlan
+    from fieldmon.geodata.handoff.door import Format
+    from fieldmon.grid import PlantGrid
     from fieldmon.hotspots import HotSpots
     from fieldmon.monitor import Plot, Today
     from fieldmon.route import Route
@@ -64,12 +72,24 @@ def other_formats(choices: Choices, plan: HandoffPlan) -> None:
     """Offer the route in the formats of robots, phones and paper."""
     name = st.selectbox(texts.FORMAT, list(FORMATS), key="format", filter_mode=None,
                         format_func=lambda one: f"{one}: {FORMATS[one].reader}")  # fmt: skip
-    key = f"{choices.key} {choices.revision} {choices.day} {choices.robot} {choices.sampler}"
-    ending, data = cached.handoff(f"{name} {key}", name, plan)
+    chosen = FORMATS[name]
+    ending = f".{name}.zip" if chosen.several else chosen.endings[0]
     st.download_button(
-        texts.DOWNLOAD_AS.format(reader=FORMATS[name].reader), data,
+        texts.DOWNLOAD_AS.format(reader=chosen.reader), partial(_handed_off, chosen, plan),
         f"route_{choices.day}{ending}", key="download_format", on_click="ignore",
     )  # fmt: skip
+
+
+def _handed_off(chosen: Format, plan: HandoffPlan) -> bytes:
+    """Return a day in a format, several files as one zip; made when somebody wants it."""
+    made = chosen.make(plan)
+    if not chosen.several:
+        return next(iter(made.values()))
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for ending, data in made.items():
+            archive.writestr(f"route{ending}", data)
+    return packed.getvalue()
 
 
 def chance_of(choices: Choices) -> cached.Array:
@@ -109,8 +129,8 @@ def ages_of(choices: Choices) -> cached.Array:
 
 
 def plant_layers(choices: Choices, shade_by: str, rows: tuple[int, int] | None = None) -> list:
-    """Return the plants' layers, made once for all that they depend on."""
-    key = f"{choices.key} {choices.revision} {choices.day} {choices.robot} {choices.sampler}"
+    """Return the plants' layers, made once for what is known of them, whoever is to go there."""
+    key = f"{choices.key} {choices.revision} {choices.day}"
     make = partial(_plant_layers, choices, shade_by, rows)
     return cached.layers(f"plants {shade_by} {rows} {key}", make)
 
@@ -120,25 +140,30 @@ def _plant_layers(choices: Choices, shade_by: str, rows: tuple[int, int] | None)
     extra = []
     if shade_by == "chance":
         chance = chance_of(choices)
-        shade, note = maps.by_chance(chance), [f"{c:.1%} chance" for c in chance.tolist()]
+        shade, notes = maps.by_chance(chance), partial(_chance_notes, chance)
     else:
         state, ages = states_of(choices), ages_of(choices)
         shade = maps.by_state(state) if shade_by == "state" else maps.by_age(ages)
         extra = maps.finds(grid, state)
-        note = state_notes(state)
-    layers = [maps.plants(grid, shade, note)]
+        notes = partial(state_notes, state)
+    layers = [maps.plants(grid, shade, notes)]
     if rows is not None and len(grid) > maps.POINTS_AT_MOST:
         line = grid.row_line[grid.row] + 1
         part = np.flatnonzero((line >= rows[0]) & (line <= rows[1]))[: maps.POINTS_AT_MOST]
-        layers.append(maps.plants(grid, shade, note, part))
+        layers.append(maps.plants(grid, shade, notes, part))
     return [*layers, *extra]
 
 
-def state_notes(state: cached.Array) -> list[str]:
-    """Return each plant's state in words."""
+def _chance_notes(chance: cached.Array, which: NDArray[np.intp]) -> list[str]:
+    return [texts.TIP_CHANCE.format(chance=c) for c in chance[which].tolist()]
+
+
+def state_notes(state: cached.Array, which: NDArray[np.intp]) -> list[str]:
+    """Return the state of some plants in words."""
     names = texts.LEGEND_STATES
-    said = {1: names["found"], 0: names["clean"], -1: names["never"]}
-    return [said[s] for s in state.tolist()]
+    words = ((1, names["found"]), (0, names["clean"]), (-1, names["never"]))
+    said = {value: texts.TIP_STATE.format(state=word) for value, word in words}
+    return [said[s] for s in state[which].tolist()]
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,31 +194,43 @@ def route_layers(choices: Choices, route: Route, *, numbers: bool) -> list:
 def with_marks(choices: Choices, layers: list, shown: list[str]) -> list:
     """Return the layers with hot spots and records, where these are to be shown."""
     if "hot" in shown:
-        spots = spots_of(choices)
-        layers = maps.with_hot(layers, choices.plot.grid, spots, dark=choices.dark)
+        layers = maps.with_hot(layers, _hot_layers(choices))
     if "records" in shown:
         layers = layers + maps.records(choices.records, dark=choices.dark)
     return layers
 
 
-def draw(choices: Choices, layers: list, key: str, tap: Tapped | None = None) -> None:
-    """Show a map with outline, scale and north; `tap` is called once for each tap on it."""
+def _hot_layers(choices: Choices) -> list:
+    def make() -> list:
+        return maps.hot(choices.plot.grid, spots_of(choices), dark=choices.dark)
+
+    key = f"{choices.key} {choices.revision} {choices.day} {choices.dark}"
+    return cached.layers(f"hot {key}", make)
+
+
+def draw(
+    choices: Choices, layers: list, key: str, tap: Tapped | None = None,
+    clicked: ruler.Clicked | None = None, chart: DeltaGenerator | None = None,
+) -> None:  # fmt: skip
+    """Show a map with outline, scale and north, in `chart` if there is a place for it already.
+
+    `tap` is called once for each thing that is tapped, `clicked` with every position clicked on.
+    """
     grid = choices.plot.grid
-    bar, text = maps.scale(grid, choices.units, dark=choices.dark)
     route = next((layer for layer in layers if layer.id == "route"), None)
     alt = texts.MAP_ALT.format(
         name=choices.plot.field.name, plants=len(grid), finds=int((states_of(choices) == 1).sum()),
         stops=0 if route is None else len(route_of_day(choices).route),
     )  # fmt: skip
     outline = maps.boundary(choices.plot.field, dark=choices.dark)
-    picture = maps.deck(grid, [outline, *layers, *bar], phone=choices.phone)
+    picture = maps.deck(grid, [outline, *layers], room_px(key))
     picture.renamed = st.session_state.get(f"renamed {key}", frozenset())
     # a callback, since what was tapped stays selected in all the runs that follow
-    st.pydeck_chart(
+    (chart or st).pydeck_chart(
         picture, height=choices.map_px, key=key, alt=alt,
         on_select="ignore" if tap is None else partial(_tapped, key, tap),
     )  # fmt: skip
-    st.session_state["bar"] = text
+    ruler.show(key, picture.initial_view_state, choices.units, clicked)
 
 
 def _tapped(key: str, tap: Tapped) -> None:
@@ -206,9 +243,14 @@ def _tapped(key: str, tap: Tapped) -> None:
     tap(objects)
 
 
+def signs(shown: Sequence[str]) -> None:
+    """Show what the signs of the layers shown mean."""
+    captions([text for name, text in texts.LEGENDS.items() if name in shown])
+
+
 def captions(parts: Sequence[str]) -> None:
-    """Show what the signs of the map last drawn mean."""
-    st.caption(" · ".join([*parts, texts.NORTH.format(bar=st.session_state["bar"])]))
+    """Show what the signs of a map mean."""
+    st.caption(" · ".join(parts))
 
 
 def route_figures(choices: Choices, today: Today) -> None:
@@ -355,8 +397,9 @@ def _looks(choices: Choices, plant: int) -> list[str]:
     return lines or [texts.HISTORY_NEVER]
 
 
-def meanings(spots: HotSpots) -> list[str]:
-    """Return what each hot spot means, in words."""
+def meanings(choices: Choices) -> list[str]:
+    """Return where each hot spot is and what it means, in words."""
+    spots, grid = spots_of(choices), choices.plot.grid
     if not len(spots):
         return [texts.HOT_NONE]
     said = []
@@ -365,11 +408,21 @@ def meanings(spots: HotSpots) -> list[str]:
         chance = texts.CHANCE_P_SMALL if p < 1e-4 else texts.CHANCE_P.format(n=max(round(1 / p), 1))
         said.append(
             texts.HOT_MEANS.format(
+                rows=_place(grid, np.flatnonzero(spots.of_plant == k)),
                 found=spots.found[k], inspected=spots.inspected[k], plants=spots.plants[k],
                 expected=spots.expected[k], p=chance,
             )
         )  # fmt: skip
     return said
+
+
+def _place(grid: PlantGrid, plants: cached.Array) -> str:
+    """Return which rows and which of their plants these are, in words."""
+    label = row_label(grid, plants)
+    first, last = int(label.line.min()), int(label.line.max())
+    said = texts.HOT_ROW if first == last else texts.HOT_ROWS
+    low, high = int(label.number.min()), int(label.number.max())
+    return said.format(first=first, last=last, low=low, high=high)
 
 
 def remarks_on_records(choices: Choices) -> list[str]:

@@ -63,8 +63,9 @@ def _route(choices: Choices) -> None:
     with st.form("route_form", border=False, enter_to_submit=False):
         st.caption(texts.RECORD_REST)
         st.number_input(texts.RECORD_STOPS, 0, len(plants), len(plants), key="stops_done")
-        marked = st.data_editor(table, height=230, disabled=list(table.columns[:2]),
-                                key=f"marks {choices.day} {len(plants)}")  # fmt: skip
+        with st.container(key="route_marks"):
+            marked = st.data_editor(table, height=230, disabled=list(table.columns[:2]),
+                                    key=f"marks {choices.day} {len(plants)}")  # fmt: skip
         pressed = st.form_submit_button(texts.RECORD_BUTTON, type="primary")
     if pressed:
         found = marked.index[marked[texts.LEGEND_STATES["found"]]].tolist()

@@ -39,6 +39,18 @@ def value(key: str, default: object = None) -> Any:  # noqa: ANN401 - whatever t
     return kept
 
 
+def change(names: tuple[str, ...], new: Callable[[Any], Any]) -> None:
+    """Change the values of all widgets whose keys begin with one of the names (for callbacks)."""
+    for key, (page, kept) in list(_values().items()):
+        now = st.session_state.get(key, kept)
+        if key.split(" ")[0] in names and now is not None:
+            _values()[key] = (page, new(now))
+            # another unit, other limits: its own default must lie within them too
+            st.session_state.setdefault(_BEGINS, {})[key] = new(now)
+            if key in st.session_state:
+                st.session_state[key] = new(now)
+
+
 def show(
     widget: Callable[..., T], *arguments: object, key: str, default: object = None,
     **settings: object,

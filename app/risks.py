@@ -16,14 +16,13 @@ from .files import Heard
 if TYPE_CHECKING:
     from fieldmon.monitor import Plot
 
-_FILE, _PROBLEM = "risk", "risk problem"
+_FILE = "risk"
 _MEANING, _SHARE, _LOW = "risk_meaning", "risk_share", "risk_low"
 
 
 def bring() -> None:
-    """Show the box for the raster, what its numbers mean, and what is wrong with it."""
-    kept = st.session_state.get(_FILE)
-    with st.expander(texts.RISK, expanded=kept is not None):
+    """Show the box for the raster, and what its numbers mean."""
+    with st.expander(texts.RISK, expanded=_FILE in st.session_state):
         st.caption(texts.RISK_NOTE)
         files.bring_one(texts.RISK_FILE, _FILE)
         remembered.show(st.selectbox, texts.RISK_MEANS, list(texts.RISK_MEANINGS), key=_MEANING,
@@ -33,18 +32,7 @@ def bring() -> None:
             remembered.show(st.number_input, texts.RISK_SHARE, 0.1, 50.0, step=0.5, key=_SHARE,
                             default=2.0)  # fmt: skip
             remembered.show(st.toggle, texts.RISK_LOW, key=_LOW, default=False)
-        if kept is None:
-            return
-        st.caption(texts.KEPT_FILE.format(name=texts.isolated(kept.source.name)))
-        st.button(texts.FORGET_FILE, key="forget risk", on_click=_forget)
-        problem = st.session_state.get(_PROBLEM)
-        if problem is not None:
-            st.session_state["asking"] = kept.key
-            files.say(problem)
-
-
-def _forget() -> None:
-    st.session_state.pop(_FILE, None)
+        files.kept_one(_FILE)
 
 
 def of(plot: Plot, key: str) -> tuple[cached.Array | None, tuple[Heard, ...], str]:
@@ -53,7 +41,6 @@ def of(plot: Plot, key: str) -> tuple[cached.Array | None, tuple[Heard, ...], st
     A raster that cannot be used is left out; the page where it was brought says why.
     """
     file = st.session_state.get(_FILE)
-    st.session_state[_PROBLEM] = None
     if file is None:
         return None, (), key
     try:
@@ -61,8 +48,9 @@ def of(plot: Plot, key: str) -> tuple[cached.Array | None, tuple[Heard, ...], st
         key_of_risk = f"{key} risk {file.key} {settings} {options}"
         read = cached.risk(key_of_risk, options, settings, file.source, plot)
     except FieldmonError as error:
-        st.session_state[_PROBLEM] = error
+        files.trouble(_FILE, error)
         return None, (), key
+    files.trouble(_FILE, None)
     return read.value, tuple(Heard(file.key, finding) for finding in read.findings), key_of_risk
 
 

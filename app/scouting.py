@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +11,7 @@ import streamlit as st
 
 from fieldmon.grid import row_label
 from fieldmon.project import Results
+from fieldmon.project.setup import seconds
 
 from . import cached, keeping, panels, texts
 from .keeping import CLEAN, FOUND, SKIPPED
@@ -39,11 +40,7 @@ class Step:
 
 def now() -> datetime:
     """Return the local time where the scout stands, as the browser tells it."""
-    minutes = st.context.timezone_offset
-    if minutes is None:
-        return datetime.now().astimezone().replace(tzinfo=None)
-    utc = datetime.now().astimezone().utctimetuple()
-    return datetime(*utc[:6]) - timedelta(minutes=minutes)  # noqa: DTZ001 - local time is meant
+    return keeping.local(datetime.now(UTC)).replace(microsecond=0)
 
 
 def give_out(choices: Choices) -> None:
@@ -146,9 +143,13 @@ def undo(choices: Choices, batch: int) -> str:
 
 @keeping.saying
 def longer(choices: Choices) -> str:
-    """Make the working day an hour longer."""
-    setup = choices.project.setup
-    robot = replace(setup.robot, hours=min(setup.robot.hours + 1.0, 24.0))
+    """Make the working day an hour longer than it is, and than the work has taken so far."""
+    setup, history = choices.project.setup, choices.project.history
+    second = history.inspections.on(setup.day(choices.on)).second
+    # a scout who came in the evening is hours beyond the end
+    gone_s = np.nanmax(np.append(second, 0.0)) - seconds(setup.starts)
+    hours = max(setup.robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
+    robot = replace(setup.robot, hours=float(min(hours, 24.0)))
     choices.project.change(replace(setup, robot=robot), setup)
     return texts.NOW_USED.format(name=f"{robot.hours:g} h")
 

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 from fieldmon.errors import SettingError
 from fieldmon.project import is_season
 
+from . import texts
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -37,14 +39,9 @@ def names() -> list[str]:
 def path_of(name: str) -> Path:
     """Return the file of a season; raise `SettingError` if the name leads out of the folder."""
     if not name or re.search(r'[\\/:*?"<>|\x00-\x1f]', name) or name.startswith("."):
-        raise SettingError(
-            "A season's name must be letters, digits, spaces and dashes, without "
-            f'\\ / : * ? " < > | and no dot in front, but it is {name!r}.'
-        )
+        raise SettingError(texts.SEASON_NAMED.format(name=name))
     if len(name) > _LONGEST:
-        raise SettingError(
-            f"A season's name must have {_LONGEST} letters at most, but it has {len(name)}."
-        )
+        raise SettingError(texts.SEASON_LONG.format(most=_LONGEST, n=len(name)))
     return folder() / f"{name}{_ENDING}"
 
 

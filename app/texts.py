@@ -31,8 +31,9 @@ EMPTY = (
 ROWS = "Rows"
 BEARING = "Row bearing (degrees from north)"
 BEARING_HELP = "Leave empty to have it found from the boundary or the plants."
-ROW_SPACING, PLANT_SPACING, HEADLAND = "Row to row (m)", "Plant to plant (m)", "Headland (m)"
-SPACING_HELP = "Leave empty for what the file says, or else 4 m and 3 m."
+ROW_SPACING, PLANT_SPACING = "Row to row ({unit})", "Plant to plant ({unit})"
+HEADLAND = "Headland ({unit})"
+SPACING_HELP = "Leave empty for what the file says, or else {rows} and {plants}."
 WHO = "Who inspects"
 ROBOT, SCOUT = "Robot", "Scout on foot"
 HOURS, LOOK = "Working hours", "Seconds at a plant"
@@ -43,9 +44,9 @@ SAMPLERS = {
     "naive": "Naive: every plant, row by row",
     "bouncy": "Bouncy: every second plant",
     "snake": "Snake: up one side of an aisle, down the other",
-    "snake-random": "Snake, every 1st to 4th plant by chance",
+    "snake-random": "Snake-random: every 1st to 4th plant by chance",
     "neighbor": "Neighbor: both sides of the aisle at each stop",
-    "neighbor-random": "Neighbor, every 1st to 4th stop by chance",
+    "neighbor-random": "Neighbor-random: every 1st to 4th stop by chance",
     "random": "Random: a third of the plot, drawn every day",
 }
 DATE = "Day"
@@ -81,13 +82,17 @@ LAYER_NAMES = {
     "records": "records",
 }
 LEGEND_CHANCE = "Chance that a plant is infested"
-LEGEND_ROUTE = "Route: blue line, arrows in driving direction; green ring: gate; numbers: stops"
+LEGEND_ROUTE = (
+    "Route: blue line, arrows in driving direction; green ring: gate, start and end; numbers: stops"
+)
 LEGEND_DAYS, LEGEND_NEVER = "{n} days ago", "never inspected"
 LEGEND_HOT = "Purple outlines: hot spots, where finds cluster more than chance allows"
 LEGEND_RECORDS = "Records: filled where pests were seen, empty where not"
 LEGEND_STATES = {"found": "found", "clean": "looked clean", "never": "never inspected"}
-LEGEND_TRUTH = "Black dots: infested and not yet found (only a simulation knows)"
-NORTH = "North is up; the bar is {bar} long."
+LEGENDS = {"route": LEGEND_ROUTE, "hot": LEGEND_HOT, "records": LEGEND_RECORDS}
+LEGEND_TRUTH = "Black dots (white in the dark): infested, not yet found (only a simulation knows)"
+RULER_FIRST = " (before zooming)"
+RULER_ALT = "The scale bar is {bar} long; the arrow points north."
 SEASON_INTRO = (
     "A simulated season on this plot. The start is drawn from the chance map; insects spread to "
     "neighbouring plants at night; every sampler meets the same insects. Detection is all finds "
@@ -112,16 +117,26 @@ OUTLINE_ALT = "Outline of plot {name}; its plants are not laid yet."
 STUDY_TITLE = "The thesis's samplers without prior information"
 STUDY_INTRO = (
     "Chapter 4 of A. Yehoshua's thesis (2023), made again: our mean and its interval beside each "
-    "printed figure. The seven samplers themselves run on your own plot on the Season page."
+    "printed figure. The seven samplers themselves run on your own plot on the pages Simulate and "
+    "Compare."
 )
 STUDY_TABLE, REPLICATES = "Table", "Seasons a row"
 STUDY_RUN, STUDY_REPORT = "Run", "Download the report (HTML)"
 STUDY_CSV = "Download the table (CSV)"
 STUDY_PROGRESS = "{done} of {total} rows simulated"
+STUDY_STOPPED = "Stopped. Nothing of it is kept; press Run to begin again."
+STUDY_ALT = "Found so far by day, a line a configuration: {title}."
 
 # -- who works, and how numbers are written
 CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
+UNDO_CHANGE = "Back to {way}, from {starts}"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"
+
+SEASON_NAMED = (
+    "A season's name must be letters, digits, spaces and dashes, without \\ / : * ? \" < > | and "
+    "no dot in front, but it is {name!r}."
+)
+SEASON_LONG = "A season's name must have {most} letters at most, but it has {n}."
 
 # -- today
 BEGIN_TITLE = "Keep this season"
@@ -151,6 +166,13 @@ OTHER_FORMATS, FORMAT, DOWNLOAD_AS = "Robot, phone, paper", "Format", "Download 
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
 
+# -- what stands beside a thing on the map that is pointed at
+TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start and end", "path"
+TIP_CHANCE, TIP_STATE = ": {chance:.1%} chance", ": {state}"
+TIP_HOT = "hot spot: {found} found of {inspected} inspected"
+TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
+TIP_INFESTED, TIP_HERE, TIP_CORNER = "infested", "here", "corner"
+
 # -- plot and records
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
 BEARING_IS, SPACING_IS = "Row bearing", "Rows / plants apart"
@@ -161,8 +183,17 @@ DRAW_KINDS = {"": "nothing", "gate": "the gate", "path": "points of a path",
               "no_go": "corners of a no-go area"}  # fmt: skip
 DRAW_TYPED = "or type positions (lon,lat lon,lat ...)"
 DRAW_ADD, DRAW_DONE, DRAW_UNDO, DRAW_DROP = "Add", "Finish", "Undo the last one", "Drop points"
-DRAW_HERE = "click: here"
 DRAW_POINTS = "{n} point(s) so far."
+DRAW_LEAST = (
+    "{what} needs {least} points or more, but {n} are given. Add points on the map, or type them."
+)
+DRAW_WHAT = {"gate": "A gate", "path": "A path", "no_go": "A no-go area"}
+DRAW_CROSSED = (
+    "The edge of a no-go area must not cross itself, but it does. Give its corners in order, one "
+    "way round."
+)
+DRAW_WRITTEN = "A position must be written lon,lat such as 35.1503,30.3601, but it is {text!r}."
+DRAW_RANGE = "A longitude lies in -180..180 and a latitude in -90..90, but this is {text!r}."
 DRAW_NOTE = "Insects come in along paths; a no-go area carries no plants and is not driven through."
 RISK, RISK_FILE = "Risk from a raster", "GeoTIFF: NDVI, elevation, a risk map"
 RISK_NOTE = "One more reason for a plant to be infested, beside records, edges and paths."
@@ -174,7 +205,12 @@ RISK_MEANINGS = {
     "score": "scores: far above the average is much more risk",
 }
 RISK_SHARE, RISK_LOW = "Plants infested for this reason (%)", "Low numbers are the risky ones"
-RISK_IS = "Risk of the plants: {low:.1%} to {high:.1%}, {mean:.1%} on average."
+CANOPY, CANOPY_FILE = "Missing plants from a raster", "GeoTIFF: canopy height, NDVI"
+CANOPY_NOTE = (
+    "No plant stands where the canopy is low. Rows and aisles stay as they are; plants that the "
+    "raster does not show count as there."
+)
+CANOPY_BELOW = "A plant is missing where the raster is below"
 RECORDS, RECORDS_NONE = "Records up to", "There are no records of this plot."
 RECORDS_SHOWN = "{shown} of {all} records shown ({found} with pests, {clean} without)."
 UNDATED = "Records without a date are always shown."
@@ -185,7 +221,7 @@ SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspe
           "age": "days since inspected"}  # fmt: skip
 MAP_LAYERS = {"route": "route", "numbers": "stop numbers", "hot": "hot spots",
               "records": "records", "backdrop": "picture"}  # fmt: skip
-MAP_DAY, MAP_CLOCK, PLAY, PAUSE = "Day", "Time of the day", "Play the day", "Pause"
+MAP_DAY, MAP_CLOCK, PLAY, PAUSE = "Day", "Time of the day", "Play", "Pause"
 ROWS_CLOSE, ROWS_CLOSE_HELP = "Rows shown plant by plant", "Other rows are shown as one picture."
 BACKDROP = "Picture of the ground (GeoTIFF)"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
@@ -195,11 +231,15 @@ HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
 HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}
 HOT_MEANS = (
-    "{found} found among {inspected} inspected of its {plants} plants, where {expected:.1f} would "
-    "be if finds were strewn evenly. So many by chance alone: {p}."
+    "{rows}: {found} found among {inspected} inspected of its {plants} plants, where "
+    "{expected:.1f} would be if finds were strewn evenly. So many by chance alone: {p}."
+)
+HOT_ROWS, HOT_ROW = (
+    "Rows {first} to {last}, plants {low} to {high}",
+    "Row {first}, plants {low} to {high}",
 )
 HOT_NONE = "No hot spots: finds cluster no more than chance allows."
-CHANCE_P_SMALL, CHANCE_P = "less than 1 in 10 000", "about 1 in {n:,}"
+CHANCE_P_SMALL, CHANCE_P = "less than 1 in 10,000", "about 1 in {n:,}"
 
 # -- the season
 NEEDS_SEASON = (
@@ -207,6 +247,7 @@ NEEDS_SEASON = (
     "This page shows what was found day by day. Begin a season on the Today page; then record "
     "what was found here, by hand, from a file, or with scout mode."
 )
+LEAST, MOST = "at least (90 %)", "at most (90 %)"
 EXPECTED_LEFT, EXPECTED_HELP = "Still infested", "Expected, and the interval that holds 90 %."
 CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Found of all expected"
 INSPECTED_EVER = "Inspected so far"
@@ -223,8 +264,14 @@ RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
 RECORD_REST = "So many stops from the first are recorded: clean, unless marked as found."
 RECORD_STOPS = "Stops done"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
+BATCHES_SAID = {
+    "findings": "{day} {time} · {source} · {n} plant(s)",
+    "treatment": "{day} {time} · treatment of the plot {source}",
+}
+TYPED_IN, ROUTE_TABLE = "typed in", "route table"
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
 TREAT_BUTTON, TREATED = "Note the treatment", "Treatment noted."
+TREATED_BEFORE = "This treatment was noted already; nothing changed."
 ROW_AGES, DAYS_SINCE, ROW_AXIS = "Days since each row was inspected", "days", "row"
 OUT_AXIS, INSPECTED_AXIS, DATE_AXIS = "still infested (expected)", "inspected", "day"
 NEVER_ROWS = "{n} of {all} rows were never inspected."
@@ -267,6 +314,7 @@ WORSE = "{percent:+.0f} % loss ({low:+.0f} to {high:+.0f})"
 ONE_SEASON = "(one season: no interval)"
 COLUMN_WAY, COLUMN_LOSS, COLUMN_FOUND = "way of working", "infested plant-days", "found at the end"
 COLUMN_VISITED, COLUMN_HALF, COLUMN_VERDICT = "inspected a day", "half found on day", "verdict"
+WAY = "Way of working"
 USE_THIS = "Use this way of working"
 VERDICT = (
     "**{best}** is best: {loss:,.0f} infested plant-days, {percent:.0f} % less than {second} "
@@ -288,7 +336,7 @@ REPORT_FOUND, REPORT_IN_ROW = "Found that day", "Row {row}"
 REPORT_TICK = "found?"
 SPEED, DETECTS = "Speed", "Finds what is there with a chance of"
 
-PRIOR = "Study, prior information"
+PRIOR = "Study, prior"
 PRIOR_TITLE = "The thesis's samplers with prior information"
 PRIOR_INTRO = (
     "Chapter 5 of A. Yehoshua's thesis (2023), made again: Dynamic, Naive and Bouncy with the "

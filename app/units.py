@@ -37,6 +37,18 @@ class Units:
             return f"{value_m / 1000.0:.2f} km"
         return f"{value_m / LENGTHS[self.length]:.{decimals}f} {self.length}"
 
+    def shown(self, value_m: float) -> float:
+        """Return a length as a number in the chosen unit, precise to less than a millimetre."""
+        return round(value_m / LENGTHS[self.length], 4)
+
+    def in_metres(self, shown: float) -> float:
+        """Return what `shown` showed, to the millimetre."""
+        return round(shown * LENGTHS[self.length], 3)
+
+    def limits(self, *values_m: float) -> tuple[float, ...]:
+        """Return lengths as limits of a box in the chosen unit."""
+        return tuple(round(value_m / LENGTHS[self.length], 1) for value_m in values_m)
+
     def square(self, value_m2: float) -> str:
         """Return an area."""
         return f"{value_m2 / AREAS_M2[self.area]:,.2f} {self.area}"
@@ -54,7 +66,14 @@ class Units:
 
     def bar_m(self, at_most_m: float) -> tuple[float, str]:
         """Return the longest round length up to `at_most_m`, in metres and as text."""
-        unit_m = LENGTHS[self.length]
-        rounds = [n * 10**power for power in range(5) for n in (1, 2, 5)]
-        best = max((r for r in rounds if r * unit_m <= at_most_m), default=1)
-        return best * unit_m, f"{best} {self.length}"
+        lengths = self.lengths()
+        return max([one for one in lengths if one[0] <= at_most_m], default=lengths[0])
+
+    def lengths(self) -> list[tuple[float, str]]:
+        """Return the round lengths for scale bars, shortest first: in metres and as text."""
+        long_m, long = (1000.0, "km") if self.length == "m" else (1609.344, "mi")
+        short = [(n * 10.0**power, self.length) for power in range(-1, 4) for n in (1, 2, 5)]
+        far = [(n * 10.0**power, long) for power in range(3) for n in (1, 2, 5)]
+        short_m = [(n * LENGTHS[self.length], f"{n:g} {unit}") for n, unit in short]
+        far_m = [(n * long_m, f"{n:g} {unit}") for n, unit in far]
+        return [one for one in short_m if one[0] < long_m] + far_m

@@ -14,10 +14,14 @@ if TYPE_CHECKING:
     from .comparing import Arm, Outcome
 
 
+def short(sampler: str) -> str:
+    """Return a sampler's name without its description."""
+    return texts.SAMPLERS[sampler].split(":")[0]
+
+
 def arm_name(sampler: str, hours: float, look_s: float) -> str:
     """Return what to call a way of working."""
-    short = texts.SAMPLERS[sampler].split(":")[0]
-    return texts.ARM_NAME.format(sampler=short, hours=hours, look=look_s)
+    return texts.ARM_NAME.format(sampler=short(sampler), hours=hours, look=look_s)
 
 
 def name(arm: Arm) -> str:
@@ -46,7 +50,9 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
         {
             texts.COLUMN_WAY: [name(o.arm) for o in ranked],
             texts.COLUMN_LOSS: [_interval(o.loss, "{:,.0f}") for o in ranked],
-            texts.COLUMN_FOUND: [_interval(_share(o.detection_pct), "{:.1f} %") for o in ranked],
+            texts.COLUMN_FOUND: [
+                _interval(_share(o.detection_pct), "{:.3g}", " %") for o in ranked
+            ],
             texts.COLUMN_VISITED: [f"{o.visited_pct:.1f} %" for o in ranked],
             texts.COLUMN_HALF: ["-" if o.half_day is None else f"{o.half_day:g}" for o in ranked],
             texts.COLUMN_VERDICT: [_word(o, base) for o in ranked],
@@ -59,10 +65,11 @@ def _share(e: Estimate) -> Estimate:
     return Estimate(e.mean, max(e.low, 0.0), min(e.high, 100.0))
 
 
-def _interval(e: Estimate, form: str) -> str:
+def _interval(e: Estimate, form: str, unit: str = "") -> str:
+    mean = form.format(e.mean) + unit
     if isnan(e.low):
-        return form.format(e.mean)
-    return f"{form.format(e.mean)} ({form.format(e.low)} .. {form.format(e.high)})"
+        return mean
+    return f"{mean} ({form.format(e.low)} .. {form.format(e.high)})"
 
 
 def _word(o: Outcome, base: float) -> str:

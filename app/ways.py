@@ -10,6 +10,7 @@ import streamlit as st
 
 from . import remembered, texts
 from .comparing import Arm, Asked
+from .verdicts import short
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -17,11 +18,6 @@ if TYPE_CHECKING:
     from fieldmon.season import Day
 
     from .choices import Choices
-
-
-def short(name: str) -> str:
-    """Return a sampler's name without its description."""
-    return texts.SAMPLERS[name].split(":")[0]
 
 
 def asked(choices: Choices) -> Asked:
@@ -34,7 +30,7 @@ def asked(choices: Choices) -> Asked:
     own_hours, own_look = float(choices.robot.hours), int(choices.robot.look_s)
     hours = middle.multiselect(
         texts.ARM_HOURS, sorted({2.0, 4.0, 6.0, 8.0, 10.0, 12.0, own_hours}), [own_hours],
-        key=f"arm_hours {own_hours}",
+        key=f"arm_hours {own_hours}", format_func="{:g}".format,
     )  # fmt: skip
     looks = right.multiselect(
         texts.ARM_LOOKS, sorted({20, 25, 30, 35, 40, 45, own_look}), [own_look],

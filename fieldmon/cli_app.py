@@ -30,8 +30,7 @@ def open_app(
 
     from fieldmon.geodata.guard import own_path  # noqa: PLC0415
 
-    found = importlib.util.find_spec("app")
-    if found is None or found.origin is None:
+    if importlib.util.find_spec("app") is None:
         raise SettingError("The app must be installed beside fieldmon, but it was not found.")
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -43,17 +42,15 @@ def open_app(
                 "Close what uses it, or choose another with --port."
             ) from error
     typer.echo(f"fieldmon is at http://{address}:{port} (stop it with Ctrl-C)")
-    page = Path(found.origin).with_name("streamlit_app.py")
+    # -P: -m looks in the folder one stands in first, which need not be where the app is
+    command = [sys.executable, "-P", "-m", "app.serve", *(["--browser"] if browser else [])]
     # everything else is set, with reasons, in the app's own .streamlit/config.toml
-    settings = {
-        "server.port": port,
-        "server.address": address,
-        "server.headless": str(not browser).lower(),
+    env = os.environ | {
+        "STREAMLIT_SERVER_ADDRESS": address,
+        "STREAMLIT_SERVER_PORT": str(port),
+        "FIELDMON_SEASONS": str(seasons.absolute()),
+        "PYTHONPATH": own_path(),
     }
-    flags = [f"--{name}={value}" for name, value in settings.items()]
-    command = [sys.executable, "-P", "-m", "app.serve", "run", str(page), *flags]
-    # -m looks in the folder one stands in first, which need not be where the app is
-    env = os.environ | {"FIELDMON_SEASONS": str(seasons.absolute()), "PYTHONPATH": own_path()}
     with WAITING.silent():
         ended = subprocess.run(command, check=False, env=env)  # noqa: S603 - our own
     raise typer.Exit(ended.returncode)

@@ -4,22 +4,24 @@ from __future__ import annotations
 
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Protocol
+from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeVar
 
 import typer
 
 from fieldmon.errors import ChoiceNeeded, SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.geodata.findings import Finding, Imported
-    from fieldmon.geodata.raster_values import How, Raster
+    from fieldmon.geodata.findings import Finding
+    from fieldmon.geodata.raster_values import How, RasterOptions
     from fieldmon.monitor import Plot
     from fieldmon.risk import RiskSettings
+
+Read = TypeVar("Read")
 
 Risk = Annotated[
     Path | None,
@@ -72,18 +74,13 @@ def without_missing(
             "Missing plants are found with both --canopy FILE and --canopy-below X: give both."
         )
 
-    from fieldmon.geodata.findings import seen  # noqa: PLC0415
+    from fieldmon.geodata.raster_plants import read_missing  # noqa: PLC0415
 
     flag = "--canopy-option"
-    read, how = _read(canopy, plot, _pairs(more, flag), flag)
-    values = read.value.of_plants(plot.grid, how or "highest")
-    missing = values < below
-    said = seen(
-        f"{int(missing.sum())} of {len(missing)} plants are missing (canopy below {below:g})"
-        + _unseen(values, "and count as there")
-    )
-    tell([*read.findings, said], canopy, flag)
-    return plot.without(missing) if missing.any() else plot
+    options, how = _options(_pairs(more, flag))
+    read = _asked(lambda: read_missing(canopy, options, plot, below, how), flag)
+    tell(read.findings, canopy, flag)
+    return plot.without(read.value) if read.value.any() else plot
 
 
 def risk_of(
@@ -94,22 +91,15 @@ def risk_of(
         if more:
             raise SettingError("--risk-option says how to read a raster: give it with --risk FILE.")
         return None
-    import numpy as np  # noqa: PLC0415
-
-    from fieldmon.geodata.findings import seen  # noqa: PLC0415
-    from fieldmon.risk import risk_chance  # noqa: PLC0415
+    from fieldmon.geodata.raster_plants import read_risk  # noqa: PLC0415
 
     flag = "--risk-option"
     given = _pairs(more, flag)
     settings = _risk_settings(given)
-    read, how = _read(path, plot, given, flag)
-    chance = risk_chance(read.value.of_plants(plot.grid, how or "mean"), settings)
-    said = seen(
-        f"Risk by {settings.meaning}: {np.nanmin(chance):.3g} to {np.nanmax(chance):.3g}, "
-        f"{np.nanmean(chance):.3g} on average" + _unseen(chance, "and have no risk by it")
-    )
-    tell([*read.findings, said], path, flag)
-    return chance
+    options, how = _options(given)
+    read = _asked(lambda: read_risk(path, options, plot, settings, how), flag)
+    tell(read.findings, path, flag)
+    return read.value
 
 
 def write_map(to: Path | None, plot: Plot, chance: NDArray[np.float64]) -> None:
@@ -125,25 +115,21 @@ def write_map(to: Path | None, plot: Plot, chance: NDArray[np.float64]) -> None:
     )
 
 
-def _unseen(values: NDArray[np.float64], what: str) -> str:
-    import numpy as np  # noqa: PLC0415
-
-    unseen = int(np.isnan(values).sum())
-    return f"; {unseen} have no value on the raster {what}." if unseen else "."
-
-
-def _read(
-    path: Path, plot: Plot, given: dict[str, str], flag: str
-) -> tuple[Imported[Raster], How | None]:
-    """Return the raster about the plot, and how it is to be sampled where that was said."""
-    from fieldmon.geodata.rasters import RasterOptions, read_raster  # noqa: PLC0415
+def _options(given: dict[str, str]) -> tuple[RasterOptions, How | None]:
+    """Return how a raster is read, and how it is to be sampled where that was said."""
+    from fieldmon.geodata.rasters import RasterOptions  # noqa: PLC0415
 
     how: Any = given.pop("how", None)
     options = RasterOptions()
     for name, value in given.items():
         options = options.choose(name, value)
+    return options, how
+
+
+def _asked(read: Callable[[], Read], flag: str) -> Read:
+    """Return what is read; where the raster leaves a choice, name the option to answer with."""
     try:
-        return read_raster(path, options, plot.field), how
+        return read()
     except ChoiceNeeded as question:
         answer = question.choices[0] if question.choices else "..."
         raise ChoiceNeeded(

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 SeasonFile = Annotated[Path, typer.Argument(help="The season's file, made by fieldmon init.")]
 On = Annotated[str | None, typer.Option("--date", help="The day, YYYY-MM-DD; today.")]
+UndoChange = Annotated[
+    bool, typer.Option("--change", help="Take back the last change of settings instead.")
+]
 ListBatches = Annotated[
     bool, typer.Option("--batches", help="List what was recorded, with numbers to undo.")
 ]
@@ -242,13 +245,21 @@ def undo(
     inspection: Annotated[
         int | None, typer.Option(help="Number (fid) of one inspection in the season's file.")
     ] = None,
+    change: UndoChange = False,  # noqa: FBT002 - a flag
 ) -> None:
-    """Take back what was recorded last, a batch, or one inspection; nothing is deleted.
+    """Take back what was recorded last, a batch, one inspection, or a change; nothing is deleted.
 
     Example: fieldmon undo season.gpkg
     """
-    if batch is not None and inspection is not None:
-        raise SettingError("Give --batch or --inspection, not both.")
+    if (batch is not None) + (inspection is not None) + change > 1:
+        raise SettingError("Give --batch, --inspection or --change, not two of them.")
+    if change:
+        setup = _open(season).undo_change()
+        typer.echo(
+            f"The last change was taken back: {setup.sampler}, {setup.robot.hours:g} h from "
+            f"{setup.starts:%H:%M}, {setup.robot.look_s:g} s at a plant."
+        )
+        return
     typer.echo(_open(season).undo(batch, inspection))
 
 

@@ -29,6 +29,8 @@ class Waiting:
     def __init__(self) -> None:
         self._over = threading.Event()
         self._still = threading.Event()
+        # what is wiped away stays so: nobody writes between a look at the two above and the writing
+        self._pen = threading.Lock()
         self._compiling_said = False
 
     def __enter__(self) -> None:
@@ -40,14 +42,16 @@ class Waiting:
 
     def __exit__(self, *_: object) -> None:
         """Wipe the count away."""
-        self._over.set()
-        _show(_WIPE)
+        with self._pen:
+            self._over.set()
+            _show(_WIPE)
 
     @contextmanager
     def silent(self) -> Iterator[None]:
         """Say nothing meanwhile."""
-        self._still.set()
-        _show(_WIPE)
+        with self._pen:
+            self._still.set()
+            _show(_WIPE)
         try:
             yield
         finally:
@@ -57,8 +61,13 @@ class Waiting:
         began = monotonic()
         while not self._over.wait(0.5):
             seconds = monotonic() - began
-            if seconds > _SILENT_S and not self._still.is_set() and not FIRST_USE.is_busy:
-                _show(f"\r{_WORKING.format(seconds=seconds)}\r")
+            if seconds > _SILENT_S:
+                self._say(f"\r{_WORKING.format(seconds=seconds)}\r")
+
+    def _say(self, text: str) -> None:
+        with self._pen:
+            if not (self._over.is_set() or self._still.is_set() or FIRST_USE.is_busy):
+                _show(text)
 
     def _compiling(self, compiled: int, seconds: float) -> None:
         if seconds < 1.0:

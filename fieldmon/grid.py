@@ -7,13 +7,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from fieldmon.compiled import loop
 from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+    from scipy.spatial import cKDTree
     from shapely import MultiPolygon
 
     from fieldmon.frame import Frame
@@ -138,8 +137,10 @@ class PlantGrid:
     @cached_property
     def linked(self) -> Linked:
         """Neighbours as in `adjacent`, each linked with its own entry for the plant."""
+        from fieldmon.neighbours import link  # noqa: PLC0415 - a quarter second to import
+
         back = np.empty(len(self.adjacent.plant), np.int32)
-        _link(self.adjacent, back)
+        link(*self.adjacent, back)
         back.setflags(write=False)
         return Linked(*self.adjacent, back)
 
@@ -160,6 +161,13 @@ class PlantGrid:
         plants = np.lexsort((np.where(turn % 2 == 0, place, -place), turn)).astype(np.int32)
         plants.setflags(write=False)
         return plants
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        """The plants by position. Rows are even: halving boxes is as quick to ask, and to make."""
+        from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
+
+        return cKDTree(self.xy_m, compact_nodes=False, balanced_tree=False)
 
     @property
     def along_m(self) -> NDArray[np.float64]:
@@ -204,9 +212,8 @@ def nearest_plants(
     Positions further than `max_m` from every plant get plant -1 and an infinite distance. Where
     both faces of a plant are inspected, the one with the lower index is returned.
     """
-    tree = cKDTree(grid.xy_m)
     within_m = np.nextafter(max_m, np.inf)
-    distance_m, plant = tree.query(grid.frame.xy_m(lonlat), distance_upper_bound=within_m)
+    distance_m, plant = grid.tree.query(grid.frame.xy_m(lonlat), distance_upper_bound=within_m)
     plant = np.where(plant == len(grid), -1, plant)
     first_face = (plant >= 0) & (grid.twin[plant] >= 0) & (grid.twin[plant] < plant)
     return np.where(first_face, grid.twin[plant], plant), distance_m
@@ -218,14 +225,3 @@ def _line_faces(grid: PlantGrid) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     new_line = np.diff(grid.row_line, prepend=-1) != 0
     new_face = new_line | (np.diff(grid.side, prepend=0) != 0)
     return first[new_line], first[new_face][np.cumsum(new_face) - 1]
-
-
-@loop
-def _link(adjacent: Csr, back: NDArray[np.int32]) -> None:
-    start, plant = adjacent
-    for i in range(start.size - 1):
-        for e in range(start[i], start[i + 1]):
-            back[e] = e
-            for other in range(start[plant[e]], start[plant[e] + 1]):
-                if plant[other] == i:
-                    back[e] = other

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from fieldmon.compiled import loop
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -84,3 +86,14 @@ def _nearest(
     )
     found[out_of_reach] = _NOBODY
     return found
+
+
+@loop
+def link(start: NDArray[np.int32], plant: NDArray[np.int32], back: NDArray[np.int32]) -> None:
+    """Note in `back` where each neighbour's own list has the plant; its own place if nowhere."""
+    for i in range(start.size - 1):
+        for e in range(start[i], start[i + 1]):
+            back[e] = e
+            for other in range(start[plant[e]], start[plant[e] + 1]):
+                if plant[other] == i:
+                    back[e] = other

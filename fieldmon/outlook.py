@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numba as nb
@@ -77,8 +80,7 @@ def outlook(
     if both is None:
         both = pairs(chance, grid)
     table = _table(chance, both, grid.adjacent)
-    drawn = np.empty(_DRAWS, np.int64)
-    _draw(table, key, np.zeros(len(chance), np.bool_), drawn)
+    drawn = _drawn(table, key, len(chance))
     clean = float(np.exp(np.log1p(-table[-1]).sum()))  # the same chain draws no infested plant
     expected = float(chance.sum())
     # round the loops of a lattice the drawn fields are a little off the map: put right together
@@ -87,16 +89,37 @@ def outlook(
     return Outlook(expected, int(np.floor(low)), int(np.ceil(high)), clean)
 
 
+def _drawn(table: _Table, key: np.uint64, n: int) -> NDArray[np.int64]:
+    """Return how many of n plants are infested in each drawn field; all processors draw."""
+    counts = np.empty(_DRAWS, np.int64)
+    first = np.linspace(0, _DRAWS, (os.cpu_count() or 1) + 1).astype(np.int64)
+    with ThreadPoolExecutor(len(first) - 1) as pool:
+        parts = [
+            pool.submit(_draw, table, key, (int(a), np.zeros(n, np.bool_)), counts[a:b])
+            for a, b in pairwise(first)
+        ]
+    for part in parts:
+        part.result()
+    return counts
+
+
 @loop
 def _draw(
-    table: _Table, key: np.uint64, drawn: NDArray[np.bool_], counts: NDArray[np.int64]
+    table: _Table,
+    key: np.uint64,
+    fields: tuple[int, NDArray[np.bool_]],
+    counts: NDArray[np.int64],
 ) -> None:
-    """Draw fields plant after plant, each given its neighbours drawn before; count the infested."""
+    """Count the infested of fields drawn plant after plant, given neighbours drawn before.
+
+    `fields` are the number of the first one, which its draws hang on, and room for one.
+    """
+    first, drawn = fields
     n = drawn.size
     for k in range(counts.size):
         total = 0
         for i in range(n):
-            drawn[i] = coin(key, k * n + i) < _given(table, drawn, i)
+            drawn[i] = coin(key, (first + k) * n + i) < _given(table, drawn, i)
             total += drawn[i]
         counts[k] = total
 

@@ -257,9 +257,13 @@ def outside_m(grid: PlantGrid, lonlat: Floats) -> Floats:
     off_m: Floats = 2.0 * _EARTH_M * np.arcsin(np.sqrt(np.clip(chord, 0.0, 1.0)))
     off_m[~on_earth] = np.inf
     near = off_m < _FAR_M
-    points = shapely.points(grid.frame.xy_m(lonlat[near]))
+    xy_m = grid.frame.xy_m(lonlat[near])
     shapely.prepare(grid.drivable_m)
-    off_m[near] = shapely.distance(grid.drivable_m, points)
+    # most are inside, and that is soon seen
+    beyond = ~shapely.contains_xy(grid.drivable_m, xy_m)
+    off_m[near] = 0.0
+    outer = np.flatnonzero(near)[beyond]
+    off_m[outer] = shapely.distance(grid.drivable_m, shapely.points(xy_m[beyond]))
     return off_m
 
 

@@ -150,6 +150,12 @@ def test_choices_can_be_changed(run, season):  # noqa: F811
         0.5,
     )
     assert "Nothing" in run("change", season)[1]
+    code, out, err, _ = run("undo", season, "--change")
+    assert code == 0, err
+    assert "adaptive, 1 h" in out
+    assert Project(season).setup.robot.hours == 1.0
+    code, _, err, _ = run("undo", season, "--change")
+    assert (code, "there is none" in err) == (2, True)
 
 
 def test_a_damaged_season_is_salvaged(run, season):  # noqa: F811
@@ -176,7 +182,8 @@ def test_a_damaged_season_is_salvaged(run, season):  # noqa: F811
         (["status", "none.gpkg"], "there is none"),
         (["status", str(RECORDS)], "must be the file of a season"),
         (["undo", "season.gpkg"], "nothing"),
-        (["undo", "season.gpkg", "--batch", "1", "--inspection", "1"], "not both"),
+        (["undo", "season.gpkg", "--batch", "1", "--inspection", "1"], "not two"),
+        (["undo", "season.gpkg", "--batch", "1", "--change"], "not two"),
         (["treat", "season.gpkg", "--efficacy", "5"], "0..1"),
         (["record", "season.gpkg", "none.csv"], "none.csv"),
         (["change", "season.gpkg", "--sampler", "best"], "one of"),

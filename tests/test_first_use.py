@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import threading
 import time
 
 import pytest
@@ -61,6 +62,30 @@ def test_a_long_command_counts_the_seconds_at_a_terminal_unless_a_bar_does(monke
     assert "Working" not in barred
     assert "Simulating" in barred
     assert capsys.readouterr().err.endswith("\x1b[K")
+
+
+@pytest.mark.parametrize("leaving", ["the command", "for a bar"])
+def test_no_second_is_counted_after_the_count_was_wiped_away(monkeypatch, leaving):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr(cli_waiting, "_SILENT_S", 0.0)
+    writing, written = threading.Event(), []
+
+    def slow(text):
+        if "Working" in text:
+            writing.set()
+            time.sleep(0.2)
+        written.append(text)
+
+    monkeypatch.setattr(cli_waiting, "_show", slow)
+    waiting = cli_waiting.Waiting()
+    with waiting:
+        assert writing.wait(5)
+        if leaving == "for a bar":
+            with waiting.silent():
+                time.sleep(0.4)
+                assert written[-1] == "\r\x1b[K"
+    time.sleep(0.4)
+    assert written[-1] == "\r\x1b[K"
 
 
 def test_only_the_first_use_of_an_installation_compiles(tmp_path):

@@ -34,6 +34,7 @@ SAME_ROOM = {
     ("planting", "grid"),
     ("planting", "rows"),
     ("planting", "neighbours"),
+    ("grid", "neighbours"),
     ("rows", "grid"),
     ("gaps", "grid"),
     ("risk", "prior"),

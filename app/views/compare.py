@@ -54,7 +54,7 @@ def _results(choices: Choices, running: Comparison, *, at_work: bool) -> None:
                     alt=texts.DETECTION_AXIS)  # fmt: skip
     st.dataframe(verdicts.table(ranked), hide_index=True)
     with st.container(horizontal=True, vertical_alignment="bottom"):
-        arm = st.selectbox(texts.SHOW_SAMPLER, [o.arm for o in ranked], format_func=verdicts.name,
+        arm = st.selectbox(texts.WAY, [o.arm for o in ranked], format_func=verdicts.name,
                            key=f"use_arm {running.asked.arms}", width=340)  # fmt: skip
         st.button(texts.USE_THIS, key="use_this", on_click=keeping.use,
                   args=(choices, arm.sampler, arm.hours, arm.look_s))  # fmt: skip

@@ -31,9 +31,10 @@ def show(choices: Choices) -> None:
         choices = playing.day(choices)
         playing.show(choices, _layers(choices, shade, shown, rows), on="route" in shown)
         _legend(shade)
+        panels.signs(shown)
     with right:
         panels.history(choices)
-    st.markdown("\n".join(f"- {meaning}" for meaning in panels.meanings(panels.spots_of(choices))))
+    st.markdown("\n".join(f"- {meaning}" for meaning in panels.meanings(choices)))
 
 
 def _rows(choices: Choices) -> tuple[int, int] | None:
@@ -65,4 +66,3 @@ def _legend(shade: str) -> None:
     else:
         html = maps.age_legend(texts.LEGEND_NEVER, texts.LEGEND_DAYS)
     st.markdown(f"**{texts.SHADES[shade].capitalize()}**{html}", unsafe_allow_html=True)
-    panels.captions([texts.LEGEND_ROUTE, texts.LEGEND_HOT])

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 import streamlit as st
 
-from app import drawing, files, maps, panels, risks, texts
+from app import canopies, drawing, files, maps, panels, risks, texts
 from app.choices import row_settings
 from fieldmon.errors import PlotError
 
@@ -43,6 +42,7 @@ def show(choices: Choices) -> None:
         if choices.project is None:
             drawing.rows(choices.plot_key)
             drawing.tools(choices)
+            canopies.bring()
             risks.bring()
         else:
             st.info(texts.FIXED)
@@ -74,7 +74,7 @@ def _map(choices: Choices) -> None:
         *maps.records(records, dark=choices.dark),
         *drawing.layers(choices),
     ]
-    panels.draw(choices, layers, "plot_map", partial(drawing.take, choices))
+    panels.draw(choices, layers, "plot_map", clicked=drawing.clicks(choices))
     panels.captions([texts.LEGEND_RECORDS, *([said] if said else [])])
     if not len(choices.records):
         st.caption(texts.RECORDS_NONE)

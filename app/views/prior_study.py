@@ -9,8 +9,7 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
-from app import texts
-from fieldmon.errors import FieldmonError
+from app import charts, studying, texts
 from fieldmon.prior import PriorSettings, prior_chance
 from fieldmon.thesis.with_prior.published import PARTS
 from fieldmon.thesis.with_prior.report import report_html
@@ -26,6 +25,7 @@ from fieldmon.thesis.with_prior.studies import (
 
 if TYPE_CHECKING:
     from app.choices import Choices
+    from app.studying import Progress
     from fieldmon.thesis.with_prior.studies import Part, Study
 
 
@@ -42,26 +42,22 @@ def show(choices: Choices | None) -> None:
         seeds = st.number_input(texts.REPLICATES, 2, 1000, 10, 10, key="prior_seeds", width=200)
         started = st.button(texts.STUDY_RUN, type="primary", key="prior_run")
     asked = (part, int(seeds), choices.key if choices and part == texts.PRIOR_OWN else "")
+    studying.say_stopped("prior")
     if started:
-        bar = st.progress(0.0)
-
-        def progress(done: int, total: int) -> None:
-            text = texts.STUDY_PROGRESS.format(done=done, total=total)
-            bar.progress(done / max(total, 1), text)
-
-        try:
-            if choices is not None and part == texts.PRIOR_OWN:
-                made = run_site(_site(choices), int(seeds), progress=progress)
-            else:
-                made = run_prior((part,), int(seeds), progress=progress)
-        except FieldmonError as error:
-            st.error(str(error))
+        own = choices if part == texts.PRIOR_OWN else None
+        made = studying.run("prior", lambda progress: _run(part, int(seeds), own, progress))
+        if made is None:
             return
-        bar.empty()
         st.session_state["prior_study"] = (asked, made, csv_text(rows(made)), report_html(made))
     kept = st.session_state.get("prior_study")
     if kept is not None and kept[0] == asked:
         _result(*kept[1:])
+
+
+def _run(part: str, seeds: int, own: Choices | None, progress: Progress) -> Study:
+    if own is not None:
+        return run_site(_site(own), seeds, progress=progress)
+    return run_prior((part,), seeds, progress=progress)
 
 
 def _site(choices: Choices) -> Site:
@@ -77,10 +73,11 @@ def _site(choices: Choices) -> Site:
 def _result(made: Study, table_csv: str, report: str) -> None:
     for part in made.parts:
         st.markdown(f"**{part.title}**")
-        st.line_chart(_curves(part), x_label=texts.DAY_AXIS, y_label=texts.DETECTION_AXIS)
+        chart = charts.curves(_curves(part), (texts.DAY_AXIS, texts.DETECTION_AXIS))
+        st.altair_chart(chart, alt=texts.STUDY_ALT.format(title=part.title))
     if made.compared:
-        st.dataframe(pd.read_csv(io.StringIO(csv_text(made.compared))))
-    st.dataframe(pd.read_csv(io.StringIO(table_csv)), height=300)
+        st.dataframe(pd.read_csv(io.StringIO(csv_text(made.compared))), hide_index=True)
+    st.dataframe(pd.read_csv(io.StringIO(table_csv)), height=300, hide_index=True)
     with st.container(horizontal=True):
         st.download_button(texts.STUDY_REPORT, report, "prior.html", "text/html", on_click="ignore")
         st.download_button(texts.STUDY_CSV, table_csv, "prior.csv", "text/csv", on_click="ignore")

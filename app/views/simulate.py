@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import streamlit as st
 
-from app import cached, charts, maps, panels, texts, ways
+from app import cached, charts, maps, panels, texts, verdicts, ways
 from fieldmon.hotspots import hot_spots
 from fieldmon.route import route_of
 from fieldmon.samplers import NEVER, Scene
@@ -34,21 +35,23 @@ def show(choices: Choices) -> None:
     with right:
         name = st.segmented_control(
             texts.SHOW_SAMPLER, names, default=choices.sampler, required=True,
-            key=f"season_sampler {names}",
+            format_func=verdicts.short, key=f"season_sampler {names}",
         )  # fmt: skip
         number = st.slider(texts.SHOW_DAY, 1, numbers[0], min(5, numbers[0]), key="season_day")
         _map(choices, seasons[name][0], number - 1)
     with left:
-        figures = {key: value[1] for key, value in seasons.items()}
-        st.altair_chart(charts.detection(figures, number, (texts.DAY_AXIS, texts.DETECTION_AXIS)))
+        figures = {verdicts.short(name): value[1] for name, value in seasons.items()}
+        axes = texts.DAY_AXIS, texts.DETECTION_AXIS
+        st.altair_chart(charts.detection(figures, number, axes), alt=texts.DETECTION_AXIS)
         _figures(seasons[name][0][number - 1])
-        st.altair_chart(charts.found(figures[name], (texts.DAY_AXIS, texts.FOUND_AXIS)))
+        st.altair_chart(charts.found(seasons[name][1], (texts.DAY_AXIS, texts.FOUND_AXIS)),
+                        alt=texts.FOUND_AXIS)  # fmt: skip
 
 
 def _names(choices: Choices) -> list[str]:
     usual = dict.fromkeys([choices.sampler, "naive", "bouncy", "dynamic"])
     chosen = st.multiselect(texts.COMPARED, list(texts.SAMPLERS), list(usual), key="compared",
-                            max_selections=6, format_func=ways.short)  # fmt: skip
+                            max_selections=6, format_func=verdicts.short)  # fmt: skip
     return list(dict.fromkeys([choices.sampler, *chosen]))
 
 
@@ -68,15 +71,18 @@ def _map(choices: Choices, season: list[Day], number: int) -> None:
         last_inspected=np.full(len(grid), NEVER, np.int32), seconds_left=choices.robot.day_s,
     )  # fmt: skip
     layers = [
-        maps.plants(grid, maps.by_state(state), panels.state_notes(state)),
+        maps.plants(grid, maps.by_state(state), partial(panels.state_notes, state)),
         *maps.finds(grid, state),
-        *maps.route(route_of(scene, day.work), numbers=False),
+        *maps.route(route_of(scene, day.work), numbers=False, dark=choices.dark),
     ]
-    layers = maps.with_hot(layers, grid, hot_spots(grid, state), dark=choices.dark)
+    spots = maps.hot(grid, hot_spots(grid, state), dark=choices.dark)
+    layers = maps.with_hot(layers, spots)
+    signs = [texts.LEGEND_ROUTE, texts.LEGEND_HOT]
     if st.toggle(texts.SHOW_TRUTH, key="truth"):
+        signs.append(texts.LEGEND_TRUTH)
         left = day.infested.copy()
         left[day.work.plant[day.work.found]] = False
-        layers += maps.truth(grid, left)
+        layers += maps.truth(grid, left, dark=choices.dark)
     panels.draw(choices, layers, "season_map")
     st.markdown(maps.state_legend(texts.LEGEND_STATES), unsafe_allow_html=True)
-    panels.captions([texts.LEGEND_HOT, texts.LEGEND_TRUTH])
+    panels.captions(signs)

@@ -7,8 +7,7 @@ import io
 import pandas as pd
 import streamlit as st
 
-from app import texts
-from fieldmon.errors import FieldmonError
+from app import studying, texts
 from fieldmon.thesis.cells import csv_text
 from fieldmon.thesis.report import report_html
 from fieldmon.thesis.studies import run_no_prior, table_names
@@ -26,19 +25,11 @@ def show() -> None:
         seed = st.number_input(texts.SEED, 0, 10_000, 1, key="study_seed", width=150)
         started = st.button(texts.STUDY_RUN, type="primary", key="study_run")
     asked = (table, int(replicates), int(seed))
+    studying.say_stopped("study")
     if started:
-        bar = st.progress(0.0)
-
-        def progress(done: int, total: int) -> None:
-            text = texts.STUDY_PROGRESS.format(done=done, total=total)
-            bar.progress(done / max(total, 1), text)
-
-        try:
-            made = run_no_prior(*asked, progress)
-        except FieldmonError as error:
-            st.error(str(error))
+        made = studying.run("study", lambda progress: run_no_prior(*asked, progress))
+        if made is None:
             return
-        bar.empty()
         st.session_state["study"] = (asked, made, csv_text(made.cells), report_html(made))
     kept = st.session_state.get("study")
     if kept is None or kept[0] != asked:
@@ -47,7 +38,7 @@ def show() -> None:
     for part in made.tables:
         st.markdown(f"**{part.title}**")
         st.markdown("\n".join(f"- {sentence}" for sentence in part.summary))
-    st.dataframe(pd.read_csv(io.StringIO(table_csv)), height=400)
+    st.dataframe(pd.read_csv(io.StringIO(table_csv)), height=400, hide_index=True)
     with st.container(horizontal=True):
         st.download_button(
             texts.STUDY_REPORT, report, f"no_prior_{table}.html", "text/html", on_click="ignore"

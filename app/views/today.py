@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -12,27 +13,27 @@ from fieldmon.geodata.routes import RouteNotes, route_geojson
 
 if TYPE_CHECKING:
     from app.choices import Choices
+    from app.early import Places
     from fieldmon.monitor import Today
 
 
-def show(choices: Choices) -> None:
+def show(choices: Choices, places: Places) -> None:
     """Plan the day and show it."""
     today = choices.today()
-    st.subheader(f"{choices.name} · {choices.units.day(choices.day)}")
-    with st.container():  # one place above the map, however much is said there
+    places.heading.subheader(f"{choices.name} · {choices.units.day(choices.day)}")
+    with places.figures:  # one place above the map, however much is said there
         panels.route_figures(choices, today)
         panels.said_of_day(choices, today)
-    picture = st.container()
     shown = remembered.show(
         st.pills, texts.LAYERS, list(texts.LAYER_NAMES), key="layers",
         default=["plants", "route", "numbers", "hot"],
         format_func=texts.LAYER_NAMES.__getitem__, selection_mode="multi",
     )  # fmt: skip
-    with picture:
-        panels.draw(choices, _layers(choices, today, shown), "map")
+    with places.picture:
+        panels.draw(choices, _layers(choices, today, shown), "map", chart=places.chart)
     _hand_out(choices, today)
     st.markdown(f"**{texts.LEGEND_CHANCE}**{maps.chance_legend()}", unsafe_allow_html=True)
-    panels.captions([texts.LEGEND_ROUTE, texts.LEGEND_HOT, texts.LEGEND_RECORDS])
+    panels.signs(shown)
     if choices.project is None:
         keeping.begin(choices)
     else:
@@ -58,8 +59,9 @@ def _hand_out(choices: Choices, today: Today) -> None:
         return
     notes = RouteNotes(choices.plot.field.name, choices.sampler, panels.starts(choices, today))
     with st.container(horizontal=True):
+        made = partial(route_geojson, today.route, notes)
         st.download_button(
-            texts.DOWNLOAD, route_geojson(today.route, notes), f"route_{choices.day}.geojson",
+            texts.DOWNLOAD, made, f"route_{choices.day}.geojson",
             "application/geo+json", type="primary", on_click="ignore",
         )  # fmt: skip
         with st.popover(texts.OTHER_FORMATS):

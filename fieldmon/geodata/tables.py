@@ -9,7 +9,6 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import openpyxl
 
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.geodata import limits
@@ -82,6 +81,8 @@ class _Workbook:
         self.book: Any = None
 
     def __enter__(self) -> Any:  # noqa: ANN401 - an untyped library
+        import openpyxl  # noqa: PLC0415 - a tenth of a second to import
+
         try:
             self.book = openpyxl.load_workbook(self.path, read_only=True, data_only=True)
         except Exception as bad:

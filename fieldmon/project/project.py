@@ -20,8 +20,8 @@ from fieldmon.history import FOUND, Crew, History, Treatment
 from fieldmon.hotspots import HotSpots, hot_spots
 from fieldmon.monitor import Plot, Today
 from fieldmon.prior import prior_chance
-from fieldmon.project import batches, contents, derived, kept_routes, results, schema
-from fieldmon.project.geopackage import blob, geometry, insert, touch
+from fieldmon.project import batches, choices, contents, derived, kept_routes, results, schema
+from fieldmon.project.geopackage import blob, geometry, touch
 from fieldmon.project.setup import Setup, as_json, from_json, seconds
 from fieldmon.project.store import Store, get_meta, set_meta
 from fieldmon.route import route_of
@@ -168,7 +168,7 @@ class Project:
             contents.write_remarks(db, remarks)
             if risk is not None:
                 contents.write_array(db, "risk", risk)
-            _write_setup(db, setup, {})
+            choices.write(db, as_json(setup))
             set_meta(db, "revision", "0")
             derived.refresh(db, plot, setup, history, first.morning)
         return cls(path)
@@ -196,14 +196,29 @@ class Project:
     def change(self, setup: Setup, seen: Setup) -> None:
         """Choose otherwise; raise `FileProblem` if the choices are no longer those `seen`."""
         with self._lock, self.store.writing() as db:
-            before = as_json(_setup(db))
-            if before != as_json(seen):
+            if as_json(_setup(db)) != as_json(seen):
                 raise FileProblem(
                     "The season's settings must be as they were when you looked, but another "
                     "window changed them. Look again and repeat your change."
                 )
-            _write_setup(db, setup, before)
+            choices.write(db, as_json(setup))
             self._refresh(db)
+
+    def before_change(self) -> Setup | None:
+        """Return what counted before the last change of settings; None: nothing was changed."""
+        with self.store.reading() as db:
+            parts = choices.before_now(db)
+        return None if parts is None else from_json(parts)
+
+    def undo_change(self) -> Setup:
+        """Take the last change of settings back; return what counts again.
+
+        Raise `SettingError` if there is none.
+        """
+        with self._lock, self.store.writing() as db:
+            setup = choices.undo(db)
+            self._refresh(db)
+        return setup
 
     # -- the working day
 
@@ -437,12 +452,4 @@ def _revision(db: sqlite3.Connection) -> str:
 
 
 def _setup(db: sqlite3.Connection) -> Setup:
-    parts = dict(db.execute("SELECT name, value FROM settings ORDER BY fid").fetchall())
-    return from_json(parts)
-
-
-def _write_setup(db: sqlite3.Connection, setup: Setup, before: dict[str, str]) -> None:
-    """Keep what changed; what was chosen earlier stays in the file."""
-    now = contents.utc_now()
-    changed = {name: text for name, text in as_json(setup).items() if before.get(name) != text}
-    insert(db, schema.SETTINGS, [(name, text, now) for name, text in changed.items()])
+    return from_json(choices.now(db))

@@ -1,15 +1,21 @@
 """What stands behind the pages, without a page."""
 
+import base64
+from io import BytesIO
+
 import numpy as np
 import pytest
+from PIL import Image
 from shapely import MultiPolygon, box
 
+from app import maps, ruler
 from app.comparing import Arm, Asked, Comparison, curve, estimate, outcomes
 from app.edits import Edit, edited, points_of
 from app.units import DATES, Units
 from fieldmon.errors import SettingError
 from fieldmon.field import Field
 from fieldmon.monitor import Plot
+from fieldmon.planting import rectangle
 from fieldmon.robot import Robot
 
 SQUARE = MultiPolygon([box(35.15, 30.36, 35.1506, 30.3606)])
@@ -126,10 +132,48 @@ def test_units_say_what_they_measure():
 
 def test_the_scale_bar_is_round_and_fits():
     for unit, factor in (("m", 1.0), ("ft", 0.3048)):
-        for room_m in (1.0, 7.0, 33.0, 480.0, 3000.0):
+        for room_m in (1.0, 7.0, 33.0, 480.0, 990.0):
             bar_m, text = Units(unit).bar_m(room_m)
             number = bar_m / factor
             assert number == pytest.approx(round(number))
             assert f"{number:.0f}"[0] in "125"
-            assert bar_m <= room_m or number == pytest.approx(1.0)
+            assert 0.35 * room_m < bar_m <= room_m
             assert text == f"{number:.0f} {unit}"
+
+
+def test_long_scale_bars_are_in_kilometres_or_miles():
+    assert Units("m").bar_m(3000.0) == (2000.0, "2 km")
+    assert Units("ft").bar_m(3500.0) == (2 * 1609.344, "2 mi")
+    assert Units("m").bar_m(0.01) == (0.1, "0.1 m")
+    for unit in ("m", "ft"):
+        metres = [length_m for length_m, _ in Units(unit).lengths()]
+        assert metres == sorted(metres)
+
+
+def test_each_click_on_a_map_is_heard_once_though_the_browser_tells_of_the_last_ones(monkeypatch):
+    state = {"ruler_a": {"points": [[5, 35.1, 30.1], [9, 35.2, 30.2]]}}
+    monkeypatch.setattr(ruler.st, "session_state", state)
+    assert ruler.new_points("ruler_a") == ((35.1, 30.1), (35.2, 30.2))
+    assert ruler.new_points("ruler_a") == ()
+    state["ruler_a"] = {"points": [[9, 35.2, 30.2], [11, 35.3, 30.3], [12, 35.4, 30.4]]}
+    assert ruler.new_points("ruler_a") == ((35.3, 30.3), (35.4, 30.4))
+    state["ruler_a"] = {"points": None}
+    assert ruler.new_points("ruler_a") == ()
+
+
+def test_each_pixel_of_a_picture_shows_the_most_important_plant_on_it(monkeypatch):
+    monkeypatch.setattr(maps, "_PICTURE_AT_MOST", 7)
+    grid = rectangle(20, 30)
+    shade = maps.by_state(np.random.default_rng(3).choice([-1, 0, 1], 600, p=[0.8, 0.1, 0.1]))
+    layer = maps._picture(grid, shade)
+    packed = layer.image.value.split(",")[1]
+    image = np.array(Image.open(BytesIO(base64.b64decode(packed))).convert("RGBA"))
+    (west, south), _, (east, north), _ = layer.bounds
+    across, down = ((grid.lonlat() - [west, north]) / [east - west, south - north]).T
+    tall, wide = image.shape[:2]
+    pixel = (down * tall).astype(int) * wide + (across * wide).astype(int)
+    best = np.zeros(tall * wide, int)
+    np.maximum.at(best, pixel, shade.rank + 1)
+    table = np.vstack([[0, 0, 0, 0], shade.table])
+    assert (image.reshape(-1, 4) == table[best]).all()
+    assert len(np.unique(best)) > 2

@@ -10,6 +10,7 @@ from datetime import date
 import geopandas as gpd
 import numpy as np
 import pytest
+import shapely
 from app_driving import zipped
 from PIL import Image
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
@@ -96,9 +97,9 @@ def sample():
     return plot, first_day(plot, records, np.datetime64("2026-11-16"), Plans())
 
 
-def pixels(grid, lonlat, shape):
+def pixels(grid, lonlat, shape, room_px=maps.PAGE_PX):
     """Return where lon/lat positions are on the map's picture, by Web Mercator."""
-    view = maps.deck(grid, []).initial_view_state
+    view = maps.deck(grid, [], room_px).initial_view_state
     world = 512 * 2.0**view.zoom
 
     def project(lon, lat):
@@ -184,7 +185,7 @@ def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address,
     page.get_by_role("button", name="route", exact=True).click()
     page.get_by_role("button", name="hot spots", exact=True).click()
     image = still(page)
-    place = pixels(plot.grid, plot.grid.lonlat(), image.shape)
+    place = pixels(plot.grid, plot.grid.lonlat(), image.shape, maps.MOST_PX)
     ring = (20, 0, 0)
     for own, colour, others in (
         (found, maps.FOUND, (maps.CLEAN,)),
@@ -198,8 +199,12 @@ def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address,
     assert np.mean([is_near(image, place[k], ring, reach=6) for k in found]) > 0.9
     flipped = image[::-1]
     assert np.mean([is_near(flipped, place[k], maps.FOUND, reach=1) for k in found]) < 0.3
+    px_of_m = np.hypot(*np.ptp(place, axis=0)) / np.hypot(*np.ptp(east_north(plot.grid), axis=0))
+    far_px_of_m = scale_px_of_m(page)
+    assert far_px_of_m == pytest.approx(px_of_m, rel=0.02)
     near = zoomed(page)
     assert (near != image).any(axis=2).mean() > 0.1
+    assert scale_px_of_m(page) > 2 * far_px_of_m
     day = page.get_by_role("slider", name="Day")
     for key, changed in (("ArrowLeft", True), ("ArrowRight", False)):
         day.press(key)
@@ -212,6 +217,19 @@ def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address,
     assert page.get_by_role("spinbutton", name="Row").input_value() != "1"
     ring = (255, 190, 0)
     becomes(page, lambda now: (np.abs(now - ring).max(axis=2) < 30).sum() > 50, "the ring")
+
+
+def east_north(grid):
+    """Return metres to the east and north, near enough for a small plot."""
+    lonlat = grid.lonlat()
+    return lonlat * 111_320.0 * [np.cos(np.deg2rad(lonlat[:, 1].mean())), 1.0]
+
+
+def scale_px_of_m(page):
+    """Return how many pixels a metre has by the scale bar beside the map."""
+    scale = page.get_by_role("img", name="The scale bar is")
+    metres = re.fullmatch(r"(\d+) m", scale.inner_text().strip()).group(1)
+    return scale.locator(".bar").bounding_box()["width"] / float(metres)
 
 
 def season(path, plot):
@@ -242,7 +260,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     page.get_by_text("1 of 1 records shown").wait_for(timeout=60_000)
     title = page.get_by_role("heading", name="מטע הדרים").bounding_box()
     assert title["width"] > 50
-    gate = a_gate_and_an_area_are_drawn_by_clicks(page)
+    gate, size = a_gate_and_an_area_are_drawn_by_clicks(page)
     page.get_by_role("link", name="Today").click()
     far = still(page)
     first = stops(page)
@@ -256,7 +274,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     assert moved[0] < 0.2 * moved[1], f"what is said above the map lost its zoom: {moved}"
     assert stops(page) == first
     project = Project(served_seasons / "עונה 2026.gpkg")
-    assert project.plot.field.gate == pytest.approx(gate, abs=1e-6)
+    what_was_drawn_is_where_the_clicks_were(project.plot, gate, size)
     page.get_by_role("link", name="Season").click()
     box = page.get_by_role("spinbutton", name="Stops done")
     box.wait_for(timeout=60_000)
@@ -273,7 +291,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
 
 
 def a_gate_and_an_area_are_drawn_by_clicks(page):
-    """Draw both, take the area back; return the gate."""
+    """Draw both, take the area back; return the gate and the map's size in pixels."""
     plants = page.get_by_test_id("stMetric").filter(has_text="Plants").first
     before = plants.inner_text()
     page.get_by_text("Gate, paths, no-go areas").click()
@@ -285,14 +303,37 @@ def a_gate_and_an_area_are_drawn_by_clicks(page):
     assert plants.inner_text() != before
     page.get_by_role("button", name="Undo the last one").click()
     page.get_by_text("corners of a no-go area: 3").wait_for(state="detached", timeout=60_000)
+    a_path_is_drawn_by_clicks_that_do_not_wait(page)
     draw_by_click(page, "the gate")
     click(page, 0.3, 0.3, says="the gate: 1")
     assert plants.inner_text() == before
+    size = still(page).shape
     with page.expect_download() as download:
         page.get_by_role("link", name="Today").click()
         page.get_by_role("button", name="Download the route").click()
     route = json.loads(download.value.path().read_text(encoding="utf-8"))
-    return tuple(route["features"][0]["geometry"]["coordinates"][0])
+    return tuple(route["features"][0]["geometry"]["coordinates"][0]), size
+
+
+def what_was_drawn_is_where_the_clicks_were(plot, gate, size):
+    assert plot.field.gate == pytest.approx(gate, abs=1e-6)
+    drawn = [gate, *shapely.get_coordinates(plot.field.paths)]
+    clicked = [(0.3, 0.3), (0.2, 0.2), (0.5, 0.25), (0.8, 0.2)]
+    on_map = pixels(plot.grid, drawn, size, maps.HALF_PX)
+    assert on_map == pytest.approx(np.array(clicked) * [size[1], size[0]], abs=1.5)
+
+
+def a_path_is_drawn_by_clicks_that_do_not_wait(page):
+    """Click thrice, although the server has not answered yet."""
+    draw_by_click(page, "points of a path")
+    chart = page.locator(MAP).first
+    chart.scroll_into_view_if_needed()
+    box = chart.bounding_box()
+    for across, down in ((0.2, 0.2), (0.5, 0.25), (0.8, 0.2)):
+        page.mouse.click(box["x"] + across * box["width"], box["y"] + down * box["height"])
+    page.get_by_text("3 point(s) so far").wait_for(timeout=60_000)
+    page.get_by_role("button", name="Finish").click()
+    page.get_by_text("points of a path: 3").wait_for(timeout=60_000)
 
 
 def draw_by_click(page, what):

@@ -10,11 +10,11 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def page():
     """Stand for the app's frame: AppTest cannot turn pages made of functions."""
-    from app import cached
+    from app import warming
     from app.choices import choose
     from app.views import prior_study
 
-    cached.warm()
+    warming.start()
     prior_study.show(choose().choices)
 
 

@@ -2,6 +2,7 @@
 
 import re
 import shutil
+from dataclasses import replace
 from datetime import date
 
 import numpy as np
@@ -174,6 +175,51 @@ def test_one_plant_is_recorded_and_undone_on_the_season_page(app, season):
     press(app, "Undo")
     assert metric(app, "Found") == "0"
     assert not len(season().history.inspections)
+
+
+def test_one_hour_more_is_one_however_late_it_is(app, season):
+    project, setup = season(), season().setup
+    project.change(replace(setup, robot=setup.robot.with_hours(2.0)), setup)
+    evening = Results.of(np.array([7]), np.array([0]), np.datetime64("2026-11-16"),
+                         second=np.array([17 * 3600.0 + 1320.0]))  # fmt: skip
+    project.record(evening, "scout mode")
+    go(app, "scout")
+    assert "Done for today" in texts_of(app)
+    tap(app, "scout_hour")
+    assert "Done for today" not in texts_of(app)
+    assert season().setup.robot.hours == 12.5
+    tap(app, "scout_clean")
+
+
+def test_a_treatment_and_changes_of_settings_are_taken_back(app, season):
+    before = metric(go(app, "season"), "Still infested")
+    next(b for b in app.button if b.label == "Note the treatment").click()
+    app.run()
+    assert metric(app, "Still infested") != before
+    assert "treatment of the plot" in texts_of(app)
+    press(app, "Undo")
+    assert metric(app, "Still infested") == before
+    assert "undone" in texts_of(app)
+    assert not [one for one in app.button if one.key == "undo_change"]
+    setup = season().setup
+    for hours in (7.0, 16.0):
+        next(one for one in app.slider if one.key.startswith("hours ")).set_value(hours).run()
+        press(app, "Use from now on")
+    press(app, "Back to Adaptive · 7 h · 40 s, from 06:00")
+    assert season().setup.robot.hours == 7.0
+    press(app, "Back to Adaptive · 12 h · 40 s, from 06:00")
+    assert season().setup == setup
+    assert not [one for one in app.button if one.key == "undo_change"]
+
+
+def test_more_hours_than_the_slider_had_and_odd_seconds_leave_the_page_whole(app, season):
+    project, setup = season(), season().setup
+    robot = replace(setup.robot, hours=17.0, look_s=12.5)
+    project.change(replace(setup, robot=robot), setup)
+    go(app, "today")
+    assert not app.exception
+    assert next(one for one in app.slider if one.key.startswith("hours ")).value == 17.0
+    assert not [one for one in app.button if one.key == "change_setup"]
 
 
 def test_a_file_of_findings_is_recorded_once(app, season):

@@ -117,8 +117,8 @@ def files_and_map(plot, chance, observations):
         took["opening a season's file"], _ = best_of(lambda: Project(to / "season.gpkg"))
 
     def first_map():
-        shade, note = maps.by_chance(chance), [""] * len(chance)
-        layers = [maps.plants(plot.grid, shade, note), *maps.route(today.route)]
+        plants = maps.plants(plot.grid, maps.by_chance(chance), maps.unsaid)
+        layers = [plants, *maps.route(today.route)]
         return maps.deck(plot.grid, layers).to_json()
 
     took["the first map, as sent to the browser"], _ = best_of(first_map)

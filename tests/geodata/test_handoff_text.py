@@ -65,6 +65,7 @@ def test_every_format_is_written_for_every_day(tmp_path, name, plan):
     paths = write_handoff(plan, to)
     assert sorted(tmp_path.iterdir()) == sorted(paths)
     assert all(path.stat().st_size for path in paths)
+    assert FORMATS[name].several == (len(paths) > 1)
 
 
 # --- GeoJSON: RFC 7946, rule by rule -----------------------------------------------------------

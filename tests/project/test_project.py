@@ -1,6 +1,6 @@
 """A season on disk: what comes back is what went in, and every day follows from it."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from datetime import date, time, timedelta
 
 import numpy as np
@@ -272,6 +272,41 @@ def test_settings_can_be_changed_and_the_old_ones_stay_in_the_file(season):
     with pytest.raises(FileProblem, match="another window"):
         season.change(Setup(BEGINS, sampler="bouncy"), seen)
     assert season.setup.sampler == "naive"
+
+
+def test_changes_are_taken_back_one_after_the_other_and_nothing_is_deleted(season):
+    begun = season.setup
+    assert season.before_change() is None
+    with pytest.raises(SettingError, match="there is none"):
+        season.undo_change()
+    first = replace(begun, robot=begun.robot.with_hours(2.0))
+    second = replace(first, sampler="naive", robot=begun.robot.with_hours(3.0))
+    season.record(some_results(season), "x")
+    tomorrow = BEGINS + timedelta(days=1)
+    planned = season.plan(tomorrow, keep=False).route.plant.tolist()
+    season.change(first, begun)
+    season.change(second, first)
+    assert season.before_change() == first
+    assert season.undo_change() == first
+    assert Project(season.path).setup == first
+    assert season.undo_change() == begun
+    assert season.plan(tomorrow, keep=False).route.plant.tolist() == planned
+    with pytest.raises(SettingError, match="there is none"):
+        season.undo_change()
+    season.change(second, begun)
+    season.change(begun, second)  # back by hand
+    assert season.before_change() is None
+    with season.store.reading() as db:
+        assert db.execute("SELECT count(*) FROM settings WHERE name = 'robot'").fetchone() == (7,)
+
+
+def test_a_treatment_is_undone(season):
+    before = season.evening(BEGINS)
+    season.treat(BEGINS, 0.5)
+    assert season.evening(BEGINS) == pytest.approx(before / 2)
+    season.undo()
+    assert np.array_equal(season.evening(BEGINS), before)
+    assert [(batch.kind, batch.undone) for batch in season.batches()] == [("treatment", True)]
 
 
 @pytest.mark.parametrize(

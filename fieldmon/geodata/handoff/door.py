@@ -28,11 +28,14 @@ class Format(NamedTuple):
         That tell it; the first is the usual one.
     reader
         Who reads it, in a few words.
+    several
+        Whether it takes several files.
     """
 
     make: Callable[[HandoffPlan], Made]
     endings: tuple[str, ...]
     reader: str
+    several: bool = False
 
 
 def _geojson(plan: HandoffPlan) -> Made:
@@ -96,7 +99,7 @@ def _sheet(plan: HandoffPlan) -> Made:
 #: by name; one whose ending ends another's comes later. Each is imported when it is written, as
 #: some need libraries that take a while to load
 FORMATS = {
-    "nav2": Format(_nav2, (".nav2.geojson",), "robots with Nav2 (ROS 2)"),
+    "nav2": Format(_nav2, (".nav2.geojson",), "robots with Nav2 (ROS 2)", several=True),
     "waypoints": Format(_waypoints, (".waypoints.yaml", ".yaml", ".yml"), "robots of any kind"),
     "geojson": Format(_geojson, (".geojson", ".json"), "QGIS, phones, web maps"),
     "gpkg": Format(_gpkg, (".gpkg",), "QGIS, QField, ArcGIS"),

@@ -1,0 +1,34 @@
+"""A day and a short season on a few plants: afterwards their compiled loops are loaded."""
+
+from __future__ import annotations
+
+import numpy as np
+from shapely import MultiPolygon
+
+from fieldmon.aisles import Aisles
+from fieldmon.chance import Chance
+from fieldmon.field import PRESENT, Field, Observations
+from fieldmon.hotspots import hot_spots, record_states
+from fieldmon.monitor import Plans, Plot, first_day
+from fieldmon.planting import rectangle
+from fieldmon.robot import Robot
+from fieldmon.samplers import sampler
+from fieldmon.season import SeasonSettings, Start, days
+
+_CORNERS = [(35.15, 30.36), (35.1504, 30.3601), (35.1503, 30.3604), (35.15, 30.3603)]
+
+
+def plan() -> None:
+    """Plan a day from a record, and look for hot spots, as Today does."""
+    plot = Plot.of(Field("", MultiPolygon([(_CORNERS, [])])))
+    record = Observations.of(np.array([(35.1502, 30.3602)]), np.array([PRESENT]))
+    first_day(plot, record, np.datetime64("2026-11-16"), Plans())
+    hot_spots(plot.grid, record_states(plot.grid, record))
+
+
+def simulate() -> None:
+    """Simulate with what Compare and Simulate begin with."""
+    for name in ("adaptive", "dynamic", "naive"):
+        start = Start(np.ones(9, np.bool_), np.full(9, 0.1))
+        settings, aisles = SeasonSettings(n_days=2), Aisles.of(rectangle(3, 3))
+        list(days(aisles, Robot(), sampler(name), start, settings, Chance(0)))

@@ -60,6 +60,8 @@ POINTS_AT_MOST = 20_000
 _PICTURE_AT_MOST = 2048
 _ARROWS = 40
 _NUMBERS = 24
+# how large a stop's number is, and how long the route on a small map
+_NUMBER_PX, _ROUTE_PX = (30, 17), 300
 #: room for a map, width and height: a whole page, most or half of it beside something else
 PAGE_PX, MOST_PX, HALF_PX, PHONE_PX = (720, 480), (620, 480), (500, 480), (340, 380)
 _TILE_PX = 512
@@ -381,9 +383,17 @@ def route(the_route: Route, *, numbers: bool = True, dark: bool = False) -> list
 def _numbers(the_route: Route) -> list[Layer]:
     n = len(the_route)
     every = max(1, int(np.ceil(n / _NUMBERS)))
-    shown = np.unique(np.append(np.arange(0, n, every), n - 1))
-    here = np.round(the_route.stops_lonlat()[shown], 7).tolist()
-    rows = [{"p": p, "n": str(k + 1)} for p, k in zip(here, shown.tolist(), strict=True)]
+    lonlat = the_route.stops_lonlat()
+    span = np.ptp(lonlat, axis=0)
+    # as wide and as high as a number where the whole route is in view, in degrees
+    flat = np.cos(np.radians(lonlat[0, 1]))
+    room = max(span[0] * flat, span[1]) / _ROUTE_PX * np.array(_NUMBER_PX) / [flat, 1.0]
+    shown: list[int] = []
+    for k in (0, n - 1, *range(every, n - 1, every)):
+        if k not in shown and not (np.abs(lonlat[shown] - lonlat[k]) < room).all(axis=1).any():
+            shown.append(k)
+    here = np.round(lonlat[shown], 7).tolist()
+    rows = [{"p": p, "n": str(k + 1)} for p, k in zip(here, shown, strict=True)]
     return [
         Layer(
             "TextLayer", rows, id="numbers", get_position="p", get_text="n", get_size=12,

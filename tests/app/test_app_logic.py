@@ -14,7 +14,7 @@ from app.edits import Edit, edited, points_of
 from app.units import DATES, Units
 from fieldmon.errors import SettingError
 from fieldmon.field import Field
-from fieldmon.monitor import Plot
+from fieldmon.monitor import Plans, Plot, plan_from
 from fieldmon.planting import rectangle
 from fieldmon.robot import Robot
 
@@ -177,3 +177,17 @@ def test_each_pixel_of_a_picture_shows_the_most_important_plant_on_it(monkeypatc
     table = np.vstack([[0, 0, 0, 0], shade.table])
     assert (image.reshape(-1, 4) == table[best]).all()
     assert len(np.unique(best)) > 2
+
+
+def test_numbers_of_stops_do_not_cover_each_other_where_the_whole_route_is_in_view(plot):
+    chance = np.random.default_rng(1).random(len(plot.grid))
+    route = plan_from(plot, chance, Plans()).route
+    numbers = next(layer for layer in maps.route(route) if layer.id == "numbers")
+    shown = [int(row["n"]) for row in numbers.data]
+    assert 1 in shown
+    assert 5 < len(shown) < len(route)
+    here = np.array([row["p"] for row in numbers.data])
+    span = np.ptp(route.stops_lonlat(), axis=0) * [np.cos(np.radians(here[0, 1])), 1.0]
+    px = (here[:, None] - here) * [np.cos(np.radians(here[0, 1])), 1.0] / span.max() * 300
+    beside = (np.abs(px) >= [29.9, 16.9]).any(axis=2)
+    assert beside[~np.eye(len(here), dtype=bool)].all()

@@ -1,5 +1,7 @@
 """The seven samplers without prior information, as the thesis describes them (SPEC 7.2)."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scenes import charged_s, scene_on
@@ -12,7 +14,6 @@ from fieldmon.samplers import (
     Neighbor,
     NeighborRandom,
     RandomShare,
-    Scene,
     Snake,
     SnakeRandom,
 )
@@ -26,7 +27,7 @@ P = 8
 def day(sampler, hours=24.0, grid=VINEYARD, **changes):
     scene = scene_on(grid, hours=hours)
     robot = Robot(hours=hours, returns=False)
-    scene = Scene(**{**vars(scene), "robot": robot, **changes})
+    scene = replace(scene, robot=robot, **changes)
     return scene, plan_day(scene, sampler)
 
 
@@ -34,9 +35,8 @@ def after(scene, work, day=1, **changes):
     """Return the next morning's scene."""
     last = scene.last_inspected.copy()
     last[work.plant] = scene.day
-    return Scene(
-        **{**vars(scene), "last_inspected": last, "day": day, "trail": work.plant, **changes}
-    )
+    tomorrow = replace(scene, last_inspected=last, day=day, trail=work.plant)
+    return replace(tomorrow, **changes)
 
 
 def side_by_side(plants):

@@ -3,6 +3,7 @@
 import asyncio
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -19,8 +20,13 @@ def asked(server, path, method="GET", within_s=5.0):
     async def receive():
         return {"type": "http.disconnect"}
 
-    scope = {"type": "http", "method": method, "path": path}
-    asyncio.run(asyncio.wait_for(server(scope, receive, send), within_s))
+    async def ask():
+        scope = {"type": "http", "method": method, "path": path}
+        await asyncio.wait_for(server(scope, receive, send), within_s)
+
+    # in a thread of its own: a browser's tests leave a loop running in this one
+    with ThreadPoolExecutor(1) as thread:
+        thread.submit(lambda: asyncio.run(ask())).result()
     start, body = sent
     return start["status"], dict(start["headers"]), body["body"]
 

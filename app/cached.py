@@ -274,7 +274,7 @@ def without_missing(
 ) -> Imported[Plot]:
     """Return a plot without the plants that a raster shows to be missing; `key` as above."""
     read = read_missing(_source, options, _plot, below)
-    return read.having(_plot.without(read.value) if read.value.any() else _plot)
+    return read.having(_plot.without(read.value))
 
 
 @st.cache_resource(max_entries=_MAPS)

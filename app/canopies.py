@@ -6,14 +6,12 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.errors import FieldmonError
-from fieldmon.geodata.raster_values import RasterOptions
-
 from . import cached, files, remembered, texts
-from .files import Heard
 
 if TYPE_CHECKING:
     from fieldmon.monitor import Plot
+
+    from .files import Heard
 
 _FILE, _BELOW = "canopy", "canopy_below"
 
@@ -29,20 +27,10 @@ def bring() -> None:
 
 
 def of(plot: Plot, key: str) -> tuple[Plot, tuple[Heard, ...], str]:
-    """Return the plot without the plants that are not there, what was said, and the longer key.
+    """Return the plot without the plants that are not there, what was said, and the longer key."""
+    left, heard, key = files.read_kept(_FILE, key, _below, cached.without_missing, plot)
+    return plot if left is None else left, heard, key
 
-    A raster that cannot be used is left out; the page where it was brought says why.
-    """
-    file = st.session_state.get(_FILE)
-    if file is None:
-        return plot, (), key
-    below = float(remembered.value(_BELOW, 0.5))
-    try:
-        options = files.settled(file, RasterOptions())
-        key_of_rest = f"{key} canopy {file.key} {below} {options}"
-        read = cached.without_missing(key_of_rest, options, below, file.source, plot)
-    except FieldmonError as error:
-        files.trouble(_FILE, error)
-        return plot, (), key
-    files.trouble(_FILE, None)
-    return read.value, tuple(Heard(file.key, finding) for finding in read.findings), key_of_rest
+
+def _below() -> float:
+    return float(remembered.value(_BELOW, 0.5))

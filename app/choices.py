@@ -222,7 +222,7 @@ def _change(name: str, choices: Choices) -> None:
         sampler = st.selectbox(
             texts.SAMPLER, names, names.index(setup.sampler), key=f"sampler {key}", **_NAMED
         )
-        st.caption(texts.SAMPLERS[sampler].partition(": ")[2])
+        st.caption(verdicts.described(sampler))
         robot = replace(setup.robot, hours=float(hours), look_s=float(look))
         wanted = replace(setup, robot=robot, sampler=sampler)
         if wanted != setup:
@@ -373,7 +373,7 @@ def _work(where: str) -> tuple[Robot, str, str]:
             st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), key="sampler",
             default=next(iter(texts.SAMPLERS)), **_NAMED,
         )  # fmt: skip
-        st.caption(texts.SAMPLERS[sampler].partition(": ")[2])
+        st.caption(verdicts.described(sampler))
     return replace(base, hours=float(hours), look_s=float(look)), sampler, str(day)
 
 

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import streamlit as st
 
 from fieldmon.errors import ChoiceNeeded, FieldmonError
 from fieldmon.geodata.options import Upload
+from fieldmon.geodata.raster_values import RasterOptions
 
 from . import cached, texts
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
-    from fieldmon.geodata.findings import Finding
+    from fieldmon.geodata.findings import Finding, Imported
+    from fieldmon.geodata.options import Source
+    from fieldmon.monitor import Plot
 
+S = TypeVar("S")
+T = TypeVar("T")
 PLOT, RECORDS, PLANTS = "plot", "record", "plant"
 _ICONS = {"seen": "👁", "repaired": "🔧", "guessed": "💡", "dropped": "🗑", "doubtful": "⚠️"}
 
@@ -85,9 +91,30 @@ def kept_one(kept_as: str) -> None:
         say(problem)
 
 
-def trouble(kept_as: str, problem: FieldmonError | None) -> None:
-    """Keep what is wrong with the file kept under a name."""
-    st.session_state[f"{kept_as} problem"] = problem
+def read_kept(
+    kept_as: str,
+    key: str,
+    settings: Callable[[], S],
+    read: Callable[[str, RasterOptions, S, Source, Plot], Imported[T]],
+    plot: Plot,
+) -> tuple[T | None, tuple[Heard, ...], str]:
+    """Return what the raster kept under a name says of a plot, its findings, and the longer key.
+
+    None if there is none. One that cannot be used is left out; `kept_one` says why.
+    """
+    file: File | None = st.session_state.get(kept_as)
+    if file is None:
+        return None, (), key
+    st.session_state[f"{kept_as} problem"] = None
+    try:
+        how, options = settings(), settled(file, RasterOptions())
+        longer = f"{key} {kept_as} {file.key} {how} {options}"
+        imported = read(longer, options, how, file.source, plot)
+    except FieldmonError as error:
+        st.session_state[f"{kept_as} problem"] = error
+        return None, (), key
+    heard = tuple(Heard(file.key, finding) for finding in imported.findings)
+    return imported.value, heard, longer
 
 
 def _forget_one(kept_as: str) -> None:

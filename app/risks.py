@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.errors import FieldmonError
-from fieldmon.geodata.raster_values import RasterOptions
 from fieldmon.risk import RELATIVE, RiskSettings
 
 from . import cached, files, remembered, texts
-from .files import Heard
 
 if TYPE_CHECKING:
     from fieldmon.monitor import Plot
+
+    from .files import Heard
 
 _FILE = "risk"
 _MEANING, _SHARE, _LOW = "risk_meaning", "risk_share", "risk_low"
@@ -36,22 +35,8 @@ def bring() -> None:
 
 
 def of(plot: Plot, key: str) -> tuple[cached.Array | None, tuple[Heard, ...], str]:
-    """Return the risk of each plant ``(n,)`` or None, what the import said, and the longer key.
-
-    A raster that cannot be used is left out; the page where it was brought says why.
-    """
-    file = st.session_state.get(_FILE)
-    if file is None:
-        return None, (), key
-    try:
-        settings, options = _settings(), files.settled(file, RasterOptions())
-        key_of_risk = f"{key} risk {file.key} {settings} {options}"
-        read = cached.risk(key_of_risk, options, settings, file.source, plot)
-    except FieldmonError as error:
-        files.trouble(_FILE, error)
-        return None, (), key
-    files.trouble(_FILE, None)
-    return read.value, tuple(Heard(file.key, finding) for finding in read.findings), key_of_risk
+    """Return the risk of each plant ``(n,)`` or None, what the import said, and the longer key."""
+    return files.read_kept(_FILE, key, _settings, cached.risk, plot)
 
 
 def _settings() -> RiskSettings:

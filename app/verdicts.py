@@ -19,6 +19,11 @@ def short(sampler: str) -> str:
     return texts.SAMPLERS[sampler].split(":")[0]
 
 
+def described(sampler: str) -> str:
+    """Return what a sampler does, without its name."""
+    return texts.SAMPLERS[sampler].partition(": ")[2]
+
+
 def arm_name(sampler: str, hours: float, look_s: float) -> str:
     """Return what to call a way of working."""
     return texts.ARM_NAME.format(sampler=short(sampler), hours=hours, look=look_s)

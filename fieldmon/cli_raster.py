@@ -80,7 +80,7 @@ def without_missing(
     options, how = _options(_pairs(more, flag))
     read = _asked(lambda: read_missing(canopy, options, plot, below, how), flag)
     tell(read.findings, canopy, flag)
-    return plot.without(read.value) if read.value.any() else plot
+    return plot.without(read.value)
 
 
 def risk_of(

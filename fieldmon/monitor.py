@@ -82,6 +82,8 @@ class Plot:
 
     def without(self, missing: NDArray[np.bool_]) -> Plot:
         """Return the plot without the plants marked ``(n,)``, which are not there."""
+        if not missing.any():
+            return self
         return self._with(self.field, without(self.grid, missing))
 
     @classmethod

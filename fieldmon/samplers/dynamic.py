@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 # the upper bits of a positive float64 rise with it, in 8 steps an octave: 7 to 13 % each
 _LEVEL_BITS = 49
 _OCTAVE = 8
-# bounds stay bounds however their sums are rounded
-_A_LITTLE_MORE, _A_LITTLE_LESS = 1.0 + 1e-9, 1.0 - 1e-9
+# a bound stays one however its sum is rounded
+_NEARLY = 1.0 - 1e-9
 
 
 class _Open(NamedTuple):
@@ -113,7 +113,6 @@ def _walk(
     adjacent, lane_y_m, chance_bits, would_find = plants
     closed, opened = lists
     now_s, k, left = 0.0, 0, 0
-    home_s = _farthest_home_s(ground, clock)
     while k < stops.plant.size:
         if left == 0:
             room = int(at_once * ((clock.seconds_left - now_s) // clock.visit_s))
@@ -121,8 +120,7 @@ def _walk(
             if left == 0:
                 break
         plant, way_s = _nearest(ground, clock, opened, lane_y_m, at)
-        late = now_s + way_s + clock.visit_s + home_s > clock.seconds_left
-        if late and not in_time(ground, clock, plant, now_s + way_s):
+        if not in_time(ground, clock, plant, now_s + way_s):
             break
         now_s += way_s
         stops.plant[k], stops.arrive_s[k] = plant, now_s
@@ -137,17 +135,6 @@ def _walk(
             for e in range(adjacent.start[plant], adjacent.start[plant + 1]):
                 left += _open(ground, opened, closed, adjacent.plant[e])
     return k
-
-
-@part
-def _farthest_home_s(ground: Ground, clock: Clock) -> float:
-    """Return seconds in which the robot is home from anywhere; 0 if it does not return."""
-    farthest_m, gate = 0.0, ground.between_m.shape[0] - 1
-    for row in range(ground.end_x_m.shape[0]):
-        out_m = max(ground.between_m[2 * row, gate], ground.between_m[2 * row + 1, gate])
-        along_m = ground.end_x_m[row, 1] - ground.end_x_m[row, 0]
-        farthest_m = max(farthest_m, out_m + along_m)
-    return farthest_m * _A_LITTLE_MORE / clock.speed_m_s if clock.returns else 0.0
 
 
 @inlined
@@ -249,7 +236,7 @@ def _nearest(
         row = own if step == 1 else own - 1
         while 0 <= row < opened.n_open.size:
             if at >= 0 and ground.corridor[row] != ground.corridor[own]:
-                least_m = (abs(lane_y_m[row] - lane_y_m[own]) + out_m) * _A_LITTLE_LESS
+                least_m = (abs(lane_y_m[row] - lane_y_m[own]) + out_m) * _NEARLY
                 if least_m / clock.speed_m_s + clock.row_change_s > best_s:
                     break
             if opened.n_open[row] > 0:
@@ -297,25 +284,23 @@ def _nearest_along(
     """Return the open plant of a row in the same aisle that is reached first, and the seconds."""
     best, best_s = -1, np.inf
     start, end = ground.row_start[row], ground.row_start[row + 1]
-    middle, turn_s = at, 0.0
+    middle = at
     if row != ground.row[at]:
         middle = start + np.searchsorted(ground.x_m[start:end], ground.x_m[at])
-        turn_s = clock.turn_180_s if ground.side[row] != ground.side[ground.row[at]] else 0.0
     plant = max(middle, opened.low[row])
     while plant <= opened.high[row] and not opened.flag[plant]:
         plant += 1
     if plant <= opened.high[row]:
-        best, best_s = plant, abs(ground.x_m[at] - ground.x_m[plant]) / clock.speed_m_s + turn_s
+        best, best_s = plant, travel_s(ground, clock, at, plant)
     else:
         # none from here on up: not to be looked through again
         opened.high[row] = min(opened.high[row], middle - 1)
     plant = min(middle - 1, opened.high[row])
     while plant >= opened.low[row]:
-        way_s = (ground.x_m[at] - ground.x_m[plant]) / clock.speed_m_s
-        if way_s >= best_s:
+        if (ground.x_m[at] - ground.x_m[plant]) / clock.speed_m_s >= best_s:
             return best, best_s
         if opened.flag[plant]:
-            plant_s = abs(way_s) + turn_s
+            plant_s = travel_s(ground, clock, at, plant)
             return (plant, plant_s) if plant_s < best_s else (best, best_s)
         plant -= 1
     opened.low[row] = max(opened.low[row], middle)

@@ -28,13 +28,10 @@ import functools
 import io
 import json
 import os
-import socket
-import subprocess
 import sys
 import tempfile
 import threading
 import time
-import urllib.request
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -45,14 +42,13 @@ from PIL import Image
 from playwright.sync_api import Error, sync_playwright
 
 from fieldmon.planting import Planting, lay
+from tests.benchmarks.first_screen import IDLE, MAP, ROOT, answers, started
 from tests.benchmarks.test_bench_grid import crooked_plot
 from tests.conftest import CHROMIUM, FLAGS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-MAP = "[data-testid=stDeckGlJsonChart]"
-IDLE = "[data-testid=stApp][data-test-script-state=notRunning]"
 AT_MOST_S = 40.0
 # the picture is the last one if it stays for so long
 STILL_S = 1.5
@@ -91,12 +87,10 @@ def serve():
     """Run the app as ``fieldmon app`` does, and note when it runs, plans, and hands over maps."""
     from streamlit.runtime.scriptrunner.script_runner import ScriptRunner
     from streamlit.runtime.scriptrunner_utils.script_run_context import ScriptRunContext
-    from streamlit.web import cli
 
+    from app import serve as app_server
     from fieldmon import monitor, prior
-    from fieldmon.geodata import guard
 
-    guard.warm()
     running = threading.local()
 
     def noted(what, function):
@@ -129,7 +123,8 @@ def serve():
         for name in ("prior_chance", "first_day", "plan_from"):
             if hasattr(module, name):
                 setattr(module, name, noted("plan", getattr(module, name)))
-    sys.exit(cli.main())
+    os.environ |= {app_server.ADDRESS: "127.0.0.1", app_server.PORT: sys.argv[1]}
+    app_server.main()
 
 
 def note(what, begun, ended, size=0):
@@ -140,33 +135,11 @@ def note(what, begun, ended, size=0):
 @contextlib.contextmanager
 def served(folder):
     """Start the app; give its address, and the file of its notes."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
     log = Path(folder) / "log"
-    page = Path(__file__).resolve().parents[2] / "app" / "streamlit_app.py"
-    command = [sys.executable, "-m", "tests.benchmarks.browser_map", "run", str(page),
-               f"--server.port={port}", "--server.headless=true"]  # fmt: skip
-    env = os.environ | {LOG: str(log), "FIELDMON_SEASONS": folder}
-    server = subprocess.Popen(command, env=env, stdout=subprocess.DEVNULL, start_new_session=True)
-    url = f"http://127.0.0.1:{port}"
-    try:
-        _wait_for(f"{url}/_stcore/health", server)
+    env = {LOG: str(log), "FIELDMON_SEASONS": folder}
+    with started(lambda port: ["tests.benchmarks.browser_map", str(port)], env, ROOT) as url:
+        answers(url)
         yield url, log
-    finally:
-        os.killpg(server.pid, 15)
-        server.wait(20)
-
-
-def _wait_for(url, server):
-    for _ in range(600):
-        if server.poll() is not None:
-            break
-        with contextlib.suppress(OSError), urllib.request.urlopen(url, timeout=1) as answer:  # noqa: S310 - our own
-            if answer.read() == b"ok":
-                return
-        time.sleep(0.1)
-    raise SystemExit("The app did not answer within a minute.")
 
 
 # -- the browser's side

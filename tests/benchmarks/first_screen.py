@@ -23,6 +23,7 @@ import urllib.request
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from statistics import median
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image
@@ -30,6 +31,9 @@ from playwright.sync_api import sync_playwright
 from streamlit.proto.ForwardMsg_pb2 import ForwardMsg
 
 from tests.conftest import CHROMIUM, FLAGS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 ROOT = Path(__file__).resolve().parents[2]
 IDLE = "[data-testid=stApp][data-test-script-state=notRunning]"
@@ -64,15 +68,20 @@ class Times:
 @contextmanager
 def served(tree: Path, folder: str):
     """Start the app by its command; yield its address at once."""
+    command = ["fieldmon.cli", "app", "--no-browser", "--seasons", folder, "--port"]
+    with started(lambda port: [*command, str(port)], {"PYTHONPATH": str(tree)}, tree) as url:
+        yield url
+
+
+@contextmanager
+def started(program: Callable[[int], list[str]], env: dict[str, str], folder: Path):
+    """Start a program of Python's, told a free port, in a folder; yield its address at once."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser", "--port", str(port),
-               "--seasons", folder]  # fmt: skip
-    env = os.environ | {"PYTHONPATH": str(tree)}
     server = subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
-        env=env, cwd=tree,
+        [sys.executable, "-m", *program(port)], stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL, start_new_session=True, env=os.environ | env, cwd=folder,
     )  # fmt: skip
     try:
         yield f"http://127.0.0.1:{port}"

@@ -13,20 +13,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.chance import Chance
-from fieldmon.geodata import reading
-from fieldmon.geodata.findings import Finding, Severity
-from fieldmon.geodata.raster_plants import read_missing, read_risk
-from fieldmon.geodata.rasters import read_backdrop
-from fieldmon.hotspots import HotSpots, hot_spots, record_states
-from fieldmon.metrics import SeasonFigures, figures
-from fieldmon.monitor import Plans, Plot, Today, plan_from
-from fieldmon.prior import PriorSettings, prior_chance, start_infested
-from fieldmon.project import Project
-from fieldmon.project.store import get_meta
+from fieldmon.compute.random_streams import Chance
+from fieldmon.infestation.hotspots import HotSpots, hot_spots, record_states
+from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
+from fieldmon.infestation.spread import Spread
+from fieldmon.io import read
+from fieldmon.io.import_report import Finding, Severity
+from fieldmon.io.rasters.at_plants import read_missing, read_risk
+from fieldmon.io.rasters.read import read_backdrop
+from fieldmon.monitoring import Project
+from fieldmon.monitoring.transactions import get_meta
+from fieldmon.planning.plan import Plans, Today, plan_from
+from fieldmon.plot.plot import Plot
 from fieldmon.samplers import sampler
-from fieldmon.season import Day, SeasonSettings, Start, days
-from fieldmon.spread import Spread
+from fieldmon.simulation.metrics import SeasonFigures, figures
+from fieldmon.simulation.season import Day, SeasonSettings, Start, days
 
 from . import figures as day_figures
 from . import maps, texts
@@ -40,15 +41,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiLineString
 
-    from fieldmon.field import Field, Observations
-    from fieldmon.geodata.findings import Imported
-    from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Source
-    from fieldmon.geodata.raster_values import Backdrop, RasterOptions
-    from fieldmon.planting import Planting
-    from fieldmon.project import Remark
-    from fieldmon.risk import RiskSettings
-    from fieldmon.robot import Robot
-    from fieldmon.route import Route
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.raster_risk import RiskSettings
+    from fieldmon.io.import_report import Imported
+    from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
+    from fieldmon.io.rasters.values import Backdrop, RasterOptions
+    from fieldmon.monitoring import Remark
+    from fieldmon.planning.route import Route
+    from fieldmon.plot.field import Field
+    from fieldmon.plot.layout import Planting
+    from fieldmon.plot.robot import Robot
 
     from .figures import DayFigures, Known
 
@@ -67,7 +69,7 @@ def digest(data: bytes) -> str:
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
 def plots(key: str, options: PlotOptions, _source: Source) -> Imported[tuple[Field, ...]]:  # noqa: ARG001
     """Return the plots of a file."""
-    return reading.read_plots(_source, options)
+    return read.read_plots(_source, options)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
@@ -78,20 +80,20 @@ def records(
     _near: Field,
 ) -> Imported[Observations]:
     """Return the records on and near a plot; `key` stands for the file and the plot."""
-    return reading.read_records(_source, options, near=_near)
+    return read.read_records(_source, options, near=_near)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
 def measured_plants(key: str, options: ReadOptions, _source: Source) -> np.ndarray:  # noqa: ARG001
     """Return positions of measured plants, ``(n, 2)`` degrees."""
-    lonlat: np.ndarray = reading.read_plants(_source, options).value.lonlat
+    lonlat: np.ndarray = read.read_plants(_source, options).value.lonlat
     return lonlat
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
 def paths(source: Path) -> MultiLineString:
     """Return the lines of one of the program's own files."""
-    return reading.read_lines(source).value
+    return read.read_lines(source).value
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)

@@ -9,7 +9,7 @@ import streamlit as st
 from . import cached, files, remembered, texts
 
 if TYPE_CHECKING:
-    from fieldmon.monitor import Plot
+    from fieldmon.plot.plot import Plot
 
     from .files import Heard
 

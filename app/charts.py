@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.metrics import SeasonFigures
+    from fieldmon.simulation.metrics import SeasonFigures
 
     from .figures import DayFigures
 

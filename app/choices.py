@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon import robot as robots
+from fieldmon.compute.jit_progress import FIRST_USE
 from fieldmon.errors import FieldmonError
-from fieldmon.field import Field, Observations
-from fieldmon.first_use import FIRST_USE
-from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions
-from fieldmon.monitor import Plot, planting_of
-from fieldmon.planting import Planting
+from fieldmon.infestation.observations import Observations
+from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
+from fieldmon.plot import robot as robots
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting
+from fieldmon.plot.plot import Plot, planting_of
 
 from . import (
     cached,
@@ -37,9 +38,9 @@ from .units import AREAS_M2, DATES, LENGTHS, Units
 if TYPE_CHECKING:
     from streamlit.delta_generator import DeltaGenerator
 
-    from fieldmon.monitor import Today
-    from fieldmon.project import Project
-    from fieldmon.robot import Robot
+    from fieldmon.monitoring import Project
+    from fieldmon.planning.plan import Today
+    from fieldmon.plot.robot import Robot
 
     from .early import Places
 

@@ -13,19 +13,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import stdtrit
 
-from fieldmon.chance import Chance
+from fieldmon.compute.random_streams import Chance
 from fieldmon.errors import FieldmonError
-from fieldmon.metrics import SeasonFigures, figures
-from fieldmon.prior import start_infested
+from fieldmon.infestation.prior import start_infested
+from fieldmon.infestation.spread import Spread
 from fieldmon.samplers import sampler
-from fieldmon.season import SeasonSettings, Start, days
-from fieldmon.spread import Spread
+from fieldmon.simulation.metrics import SeasonFigures, figures
+from fieldmon.simulation.season import SeasonSettings, Start, days
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.monitor import Plot
-    from fieldmon.robot import Robot
+    from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot
 
     Floats = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.planting import Planting
+from fieldmon.plot.layout import Planting
 
 from . import cached, keeping, maps, remembered, texts
 from .choices import draw, drawn, laid, read_units

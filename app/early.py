@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.geodata import reading
+from fieldmon.io import read
 
 from . import maps, remembered, texts, warming
 
 if TYPE_CHECKING:
     from streamlit.delta_generator import DeltaGenerator
 
-    from fieldmon.field import Field
+    from fieldmon.plot.field import Field
 
 SAMPLE = Path(__file__).resolve().parents[1] / "sample_data"
 PLOTS = "paran_estate.zip"
@@ -71,7 +71,7 @@ def places() -> Places:
 @cache
 def sample() -> tuple[Field, ...]:
     """Return the plots of the sample estate."""
-    return reading.read_plots(SAMPLE / PLOTS).value
+    return read.read_plots(SAMPLE / PLOTS).value
 
 
 def outline(chart: DeltaGenerator, field: Field) -> None:

@@ -13,7 +13,7 @@ from fieldmon.errors import SettingError
 from . import texts
 
 if TYPE_CHECKING:
-    from fieldmon.field import Field
+    from fieldmon.plot.field import Field
 
 GATE, PATH, NO_GO = "gate", "path", "no_go"
 NEEDED = {GATE: 1, PATH: 2, NO_GO: 3}

@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.history import FOUND
-from fieldmon.project.setup import seconds
-from fieldmon.route import route_of
-from fieldmon.samplers.scene import GATE, NEVER, Scene, driven_s
-from fieldmon.workday import Workday
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring.settings import seconds
+from fieldmon.planning.route import route_of
+from fieldmon.planning.workday import Workday
+from fieldmon.plot.travel import GATE, driven_s
+from fieldmon.samplers.base import NEVER, Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.project import Project
-    from fieldmon.route import Route
+    from fieldmon.monitoring import Project
+    from fieldmon.planning.route import Route
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import streamlit as st
 
 from fieldmon.errors import ChoiceNeeded, FieldmonError
-from fieldmon.geodata.options import Upload
-from fieldmon.geodata.raster_values import RasterOptions
+from fieldmon.io.options import Upload
+from fieldmon.io.rasters.values import RasterOptions
 
 from . import cached, texts
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from fieldmon.geodata.findings import Finding, Imported
-    from fieldmon.geodata.options import Source
-    from fieldmon.monitor import Plot
+    from fieldmon.io.import_report import Finding, Imported
+    from fieldmon.io.options import Source
+    from fieldmon.plot.plot import Plot
 
 S = TypeVar("S")
 T = TypeVar("T")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.geodata.raster_values import RasterOptions
+from fieldmon.io.rasters.values import RasterOptions
 
 from . import cached, files, maps, texts
 

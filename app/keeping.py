@@ -10,9 +10,9 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.geodata.options import Upload
-from fieldmon.grid import plant_at
-from fieldmon.project import Project, Remark, Results, Setup, results_from
+from fieldmon.io.options import Upload
+from fieldmon.monitoring import Project, Remark, Results, Setup, results_from
+from fieldmon.plot.grid import plant_at
 
 from . import cached, panels, seasons, texts, verdicts
 from .choices import open_season
@@ -102,8 +102,8 @@ def record_stops(choices: Choices, plants: np.ndarray, found: list[int]) -> str:
 def record_file(choices: Choices, name: str, data: bytes) -> str:
     """Record findings from a file: a route given out and filled in, a table, positions."""
     # what reads files is half a second to import
-    from fieldmon.geodata.findings_in import read_findings  # noqa: PLC0415
-    from fieldmon.geodata.reported import FindingsOptions  # noqa: PLC0415
+    from fieldmon.io.readers.inspections import read_findings  # noqa: PLC0415
+    from fieldmon.io.readers.reported import FindingsOptions  # noqa: PLC0415
 
     options = FindingsOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
     options = options.choose("day", choices.day)

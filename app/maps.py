@@ -16,7 +16,7 @@ import shapely
 from PIL import Image
 from pydeck.bindings.json_tools import default_serialize
 
-from fieldmon.grid import row_label
+from fieldmon.plot.grid import row_label
 
 from . import texts
 
@@ -25,10 +25,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.field import Field, Observations
-    from fieldmon.grid import PlantGrid
-    from fieldmon.hotspots import HotSpots
-    from fieldmon.route import Route
+    from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.planning.route import Route
+    from fieldmon.plot.field import Field
+    from fieldmon.plot.grid import PlantGrid
 
     #: what is said of some plants, in words
     Notes = Callable[[NDArray[np.intp]], list[str]]

@@ -14,12 +14,12 @@ import pandas as pd
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.explain import explain
-from fieldmon.field import ABSENT, PRESENT
-from fieldmon.geodata.handoff import FORMATS
-from fieldmon.grid import plant_at, row_label
-from fieldmon.history import FOUND
-from fieldmon.prior import usable
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.infestation.prior import usable
+from fieldmon.io.writers import FORMATS
+from fieldmon.planning.explain import explain
+from fieldmon.plot.grid import plant_at, row_label
 
 from . import cached, maps, remembered, ruler, texts
 from .choices import room_px
@@ -30,13 +30,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from streamlit.delta_generator import DeltaGenerator
 
-    from fieldmon.field import Observations
-    from fieldmon.geodata.handoff import HandoffPlan
-    from fieldmon.geodata.handoff.door import Format
-    from fieldmon.grid import PlantGrid
-    from fieldmon.hotspots import HotSpots
-    from fieldmon.monitor import Plot, Today
-    from fieldmon.route import Route
+    from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.io.writers import HandoffPlan
+    from fieldmon.io.writers.handoff import Format
+    from fieldmon.planning.plan import Today
+    from fieldmon.planning.route import Route
+    from fieldmon.plot.grid import PlantGrid
+    from fieldmon.plot.plot import Plot
 
     from .choices import Choices
 

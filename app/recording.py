@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 import streamlit as st
 
-from fieldmon.grid import row_label
+from fieldmon.plot.grid import row_label
 
 from . import cached, keeping, texts
 

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from fieldmon.monitor import Today
-    from fieldmon.robot import Robot
-    from fieldmon.route import Route
+    from fieldmon.planning.plan import Today
+    from fieldmon.planning.route import Route
+    from fieldmon.plot.robot import Robot
 
     from .figures import DayFigures
     from .units import Units

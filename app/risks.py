@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.risk import RELATIVE, RiskSettings
+from fieldmon.infestation.raster_risk import RELATIVE, RiskSettings
 
 from . import cached, files, remembered, texts
 
 if TYPE_CHECKING:
-    from fieldmon.monitor import Plot
+    from fieldmon.plot.plot import Plot
 
     from .files import Heard
 

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.grid import row_label
-from fieldmon.project import Results
-from fieldmon.project.setup import seconds
+from fieldmon.monitoring import Results
+from fieldmon.monitoring.settings import seconds
+from fieldmon.plot.grid import row_label
 
 from . import cached, keeping, panels, texts
 from .keeping import CLEAN, FOUND, SKIPPED
 
 if TYPE_CHECKING:
-    from fieldmon.monitor import Today
+    from fieldmon.planning.plan import Today
 
     from .choices import Choices
     from .figures import Known

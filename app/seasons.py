@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fieldmon.errors import SettingError
-from fieldmon.project import is_season
+from fieldmon.monitoring import is_season
 
 from . import texts
 

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from app import warming
-from fieldmon.geodata import guard
+from fieldmon.io.sandbox import process
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -126,7 +126,7 @@ def main() -> None:
     """Serve the app at the address and port of the environment; `--browser` opens it there."""
     address, port = os.environ[ADDRESS], int(os.environ[PORT])
     line = socket.create_server((address, port), backlog=2048)
-    guard.warm()
+    process.warm()
     if "--browser" in sys.argv and _has_screen():
         url = f"http://{address}:{port}"
         threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()

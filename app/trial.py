@@ -5,15 +5,17 @@ from __future__ import annotations
 import numpy as np
 from shapely import MultiPolygon
 
-from fieldmon.aisles import Aisles
-from fieldmon.chance import Chance
-from fieldmon.field import PRESENT, Field, Observations
-from fieldmon.hotspots import hot_spots, record_states
-from fieldmon.monitor import Plans, Plot, first_day
-from fieldmon.planting import rectangle
-from fieldmon.robot import Robot
+from fieldmon.compute.random_streams import Chance
+from fieldmon.infestation.hotspots import hot_spots, record_states
+from fieldmon.infestation.observations import PRESENT, Observations
+from fieldmon.planning.plan import Plans, first_day
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
-from fieldmon.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, Start, days
 
 _CORNERS = [(35.15, 30.36), (35.1504, 30.3601), (35.1503, 30.3604), (35.15, 30.3603)]
 

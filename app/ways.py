@@ -15,7 +15,7 @@ from .verdicts import short
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.season import Day
+    from fieldmon.simulation.season import Day
 
     from .choices import Choices
 

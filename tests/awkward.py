@@ -20,9 +20,9 @@ import pyogrio
 import shapely
 from shapely import LineString, MultiPolygon, Point, Polygon, box
 
-from fieldmon.field import Field
-from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions, Upload
-from fieldmon.geodata.places import Places, Plants
+from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Upload
+from fieldmon.io.readers.places import Places, Plants
+from fieldmon.plot.field import Field
 
 PARAN = (35.15, 30.36)
 SQUARE = box(35.15, 30.36, 35.152, 30.362)

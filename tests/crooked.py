@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.errors import PlotError
-from fieldmon.field import Field
-from fieldmon.frame import Frame
-from fieldmon.planting import Planting, lay
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.projection import Frame
 
 _part = st.floats(0.0, 1.0)
 

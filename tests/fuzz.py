@@ -23,14 +23,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import awkward
 import numpy as np
 import shapely
 
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
-from fieldmon.geodata import guard, limits, reading
-from fieldmon.geodata.options import PlotOptions, RecordOptions, Upload
-from fieldmon.geodata.reported import FindingsOptions
+from fieldmon.io import read as reading
+from fieldmon.io.options import PlotOptions, RecordOptions, Upload
+from fieldmon.io.readers.reported import FindingsOptions
+from fieldmon.io.sandbox import limits, process
+from tests import awkward
 
 #: what the clock of the reading process allows on a busy machine, and what ending it may take
 SECONDS = limits.PATIENCE * limits.READ_SECONDS + 3.0
@@ -331,7 +332,7 @@ def _check_places(lonlat: Any) -> None:
 def scratch() -> Iterator[Path]:
     """Make an empty world of files: nothing may be left in it."""
     before = Path.cwd(), dict(os.environ), tempfile.tempdir
-    guard.stop()
+    process.stop()
     with tempfile.TemporaryDirectory(prefix="fieldmon-fuzz-") as folder:
         rooms = {name: Path(folder) / name for name in ("seeds", "tmp", "home", "here")}
         for room in rooms.values():
@@ -342,7 +343,7 @@ def scratch() -> Iterator[Path]:
         try:
             yield Path(folder)
         finally:
-            guard.stop()
+            process.stop()
             os.chdir(before[0])
             os.environ.clear()
             os.environ.update(before[1])
@@ -365,7 +366,7 @@ def fuzz(n_inputs: int, first: int = 0, seconds: float = np.inf) -> Tally:
             _one(number, seed, mutated(seed, rng), tally)
             if (number - first) % 500 == 499:
                 sys.stderr.write(f"{number - first + 1} of {n_inputs}\n")
-        guard.stop()
+        process.stop()
         left = [p for room in ("tmp", "home", "here") for p in (world / room).rglob("*")]
         tally.failures += [f"a file was left: {path.name}" for path in left]
     if tally.peak_bytes > limits.MEMORY_BYTES:
@@ -385,7 +386,7 @@ def _one(number: int, seed: Seed, parts: tuple[Upload, ...], tally: Tally) -> No
         last = "".join(traceback.format_exception_only(wrong)).strip()
         tally.failures.append(f"input {number} ({seed.name}): {last[:300]}")
     took_s = time.perf_counter() - began
-    tally.peak_bytes = max(tally.peak_bytes, *guard.peaks_bytes(), 0)
+    tally.peak_bytes = max(tally.peak_bytes, *process.peaks_bytes(), 0)
     if took_s > tally.slowest_s:
         tally.slowest_s, tally.slowest = took_s, f"input {number}"
     spent = [now_s - worked_s.get(pid, 0.0) for pid, now_s in _worked_s().items()]
@@ -396,7 +397,7 @@ def _one(number: int, seed: Seed, parts: tuple[Upload, ...], tally: Tally) -> No
 
 def _worked_s() -> dict[int, float]:
     """Return how long each waiting reader has worked so far, its start included."""
-    return {one.pid: guard._work(one.pid).worked_s for one in guard._IDLE._readers}
+    return {one.pid: process._work(one.pid).worked_s for one in process._IDLE._readers}
 
 
 def main() -> None:

@@ -13,17 +13,15 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent / "geodata"))
-
 import numpy as np
 import rasterio
-from raster_files import PLOT, declared, palette, ramp, turned, write
 from rasterio.transform import from_origin
 
 from fieldmon.errors import FieldmonError
-from fieldmon.geodata import limits
-from fieldmon.geodata.options import Upload
-from fieldmon.geodata.rasters import RasterOptions, read_backdrop, read_raster
+from fieldmon.io.options import Upload
+from fieldmon.io.rasters.read import RasterOptions, read_backdrop, read_raster
+from fieldmon.io.sandbox import limits
+from tests.io.rasters.raster_files import PLOT, declared, palette, ramp, turned, write
 
 _NASTY = (0, 1, 2, 3, 7, 255, 65_535, 100_000, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF)
 #: the clock of the reading process, and what ending it may take on a busy machine

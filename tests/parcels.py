@@ -5,7 +5,7 @@ import json
 import numpy as np
 import shapely
 
-from fieldmon.frame import Frame
+from fieldmon.plot.projection import Frame
 
 
 def many(fields, n, seed=1):

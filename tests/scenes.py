@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from fieldmon.aisles import Aisles
-from fieldmon.planting import rectangle
-from fieldmon.robot import Robot
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import GATE, NEVER, Scene
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
+from tests.paths import ROOT
 
 FLOORS = [
     {"errors", "first_use", "compiled"},
@@ -111,13 +111,13 @@ def test_every_module_has_a_floor():
 @pytest.mark.parametrize(
     ("here", "line"),
     [
-        ("grid", "from fieldmon.season import days"),
-        ("belief", "from fieldmon.prior import prior_chance"),
+        ("grid", "from fieldmon.simulation.season import days"),
+        ("belief", "from fieldmon.infestation.prior import prior_chance"),
         ("season", "from fieldmon import cli"),
         ("samplers", "import geopandas"),
         ("route", "from pyproj import CRS"),
         ("geodata", "import streamlit"),
-        ("monitor", "def f():\n    from fieldmon.geodata.vector import read_plots"),
+        ("monitor", "def f():\n    from fieldmon.io.vector import read_plots"),
         ("cli", "from app import maps"),
     ],
 )

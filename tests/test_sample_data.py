@@ -5,7 +5,6 @@ import itertools
 import json
 import sys
 import zipfile
-from pathlib import Path
 
 import geopandas as gpd
 import numpy as np
@@ -15,7 +14,9 @@ import rasterio
 import rasterio.features
 import shapely
 
-HERE = Path(__file__).resolve().parents[1] / "sample_data"
+from tests.paths import SAMPLE_DATA
+
+HERE = SAMPLE_DATA
 SHAPEFILE = HERE / "paran_estate.zip"
 HEBREW = {
     "Gate": "שער",

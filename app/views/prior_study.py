@@ -10,11 +10,11 @@ import pandas as pd
 import streamlit as st
 
 from app import charts, studying, texts
-from fieldmon.prior import PriorSettings, prior_chance
-from fieldmon.thesis.with_prior.published import PARTS
-from fieldmon.thesis.with_prior.report import report_html
-from fieldmon.thesis.with_prior.sites import Site
-from fieldmon.thesis.with_prior.studies import (
+from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.studies.thesis.chapter5.published import PARTS
+from fieldmon.studies.thesis.chapter5.report import report_html
+from fieldmon.studies.thesis.chapter5.sites import Site
+from fieldmon.studies.thesis.chapter5.study import (
     TITLES,
     csv_text,
     label_of,
@@ -26,7 +26,7 @@ from fieldmon.thesis.with_prior.studies import (
 if TYPE_CHECKING:
     from app.choices import Choices
     from app.studying import Progress
-    from fieldmon.thesis.with_prior.studies import Part, Study
+    from fieldmon.studies.thesis.chapter5.study import Part, Study
 
 
 def show(choices: Choices | None) -> None:

@@ -9,13 +9,13 @@ import numpy as np
 import streamlit as st
 
 from app import cached, charts, maps, panels, texts, verdicts, ways
-from fieldmon.hotspots import hot_spots
-from fieldmon.route import route_of
+from fieldmon.infestation.hotspots import hot_spots
+from fieldmon.planning.route import route_of
 from fieldmon.samplers import NEVER, Scene
 
 if TYPE_CHECKING:
     from app.choices import Choices
-    from fieldmon.season import Day
+    from fieldmon.simulation.season import Day
 
 
 def show(choices: Choices) -> None:

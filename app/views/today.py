@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from app import keeping, maps, panels, remembered, texts
-from fieldmon.geodata.handoff import HandoffPlan
-from fieldmon.geodata.routes import RouteNotes, route_geojson
+from fieldmon.io.writers import HandoffPlan
+from fieldmon.io.writers.geojson import RouteNotes, route_geojson
 
 if TYPE_CHECKING:
     from app.choices import Choices
     from app.early import Places
-    from fieldmon.monitor import Today
+    from fieldmon.planning.plan import Today
 
 
 def show(choices: Choices, places: Places) -> None:

@@ -9,11 +9,18 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from fieldmon.errors import SettingError
+from fieldmon.plot.travel import GATE
 from fieldmon.samplers.adaptive import Adaptive
-from fieldmon.samplers.blind import Neighbor, NeighborRandom, RandomShare, Snake, SnakeRandom
+from fieldmon.samplers.base import NEVER, Sampler, Scene, Stops
 from fieldmon.samplers.dynamic import Dynamic
-from fieldmon.samplers.scene import GATE, NEVER, Sampler, Scene, Stops
-from fieldmon.samplers.sweep import Bouncy, Naive
+from fieldmon.samplers.sweeps import Bouncy, Naive
+from fieldmon.samplers.without_prior import (
+    Neighbor,
+    NeighborRandom,
+    RandomShare,
+    Snake,
+    SnakeRandom,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable

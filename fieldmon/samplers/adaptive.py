@@ -14,17 +14,18 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from fieldmon.belief import Company, Near, closeness, look, meet, near, pairs, regroup
-from fieldmon.compiled import inlined, loop, part
+from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.errors import SettingError
-from fieldmon.samplers.scene import Clock, Looks, Scene, Stops, travel_s
+from fieldmon.infestation.belief import Company, Near, closeness, look, meet, near, pairs, regroup
+from fieldmon.plot.travel import Clock, travel_s
+from fieldmon.samplers.base import Looks, Scene, Stops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.aisles import Ground
-    from fieldmon.grid import Linked
-    from fieldmon.robot import Robot
+    from fieldmon.plot.grid import Linked
+    from fieldmon.plot.robot import Robot
+    from fieldmon.plot.travel import Ground
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]

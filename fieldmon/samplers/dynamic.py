@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compiled import inlined, loop, part
+from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.errors import SettingError
-from fieldmon.samplers.scene import Clock, Scene, Stops, in_time, travel_s
+from fieldmon.plot.travel import Clock, in_time, travel_s
+from fieldmon.samplers.base import Scene, Stops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.aisles import Ground
-    from fieldmon.grid import Csr, PlantGrid
+    from fieldmon.plot.grid import Csr, PlantGrid
+    from fieldmon.plot.travel import Ground
 
 # the upper bits of a positive float64 rise with it, in 8 steps an octave: 7 to 13 % each
 _LEVEL_BITS = 49

@@ -3,14 +3,14 @@
 import json
 import zipfile
 from io import BytesIO
-from pathlib import Path
 
 import geopandas as gpd
 from shapely import box
 from streamlit.testing.v1 import AppTest
 from streamlit.util import calc_hash
 
-ROOT = Path(__file__).resolve().parents[2]
+from tests.paths import ROOT
+
 ESTATE = ROOT / "sample_data"
 PAGES = ("today", "map", "scout", "season", "compare", "plot", "report", "simulate")
 

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.paths import SHARED
+
 SHOTS = Path(__file__).with_name("screenshots")
 
 
@@ -92,7 +94,7 @@ def seasons_folder(tmp_path_factory, monkeypatch):
 @pytest.fixture(scope="session")
 def shared():
     """Return the folder of real files beside the repository."""
-    folder = Path(__file__).resolve().parents[3] / "shared" / "data"
+    folder = SHARED / "data"
     if not folder.is_dir():
         if os.environ.get("FIELDMON_REQUIRE_DATA"):
             pytest.fail(f"the real data folder {folder} must be here, but it is not")

@@ -13,10 +13,11 @@ from app.comparing import Arm, Asked, Comparison, curve, estimate, outcomes
 from app.edits import Edit, edited, points_of
 from app.units import DATES, Units
 from fieldmon.errors import SettingError
-from fieldmon.field import Field
-from fieldmon.monitor import Plans, Plot, plan_from
-from fieldmon.planting import rectangle
-from fieldmon.robot import Robot
+from fieldmon.planning.plan import Plans, plan_from
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.robot import Robot
 
 SQUARE = MultiPolygon([box(35.15, 30.36, 35.1506, 30.3606)])
 SHORT = [Arm(name, 1.0, 40.0) for name in ("naive", "dynamic")]

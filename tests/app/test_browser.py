@@ -11,16 +11,17 @@ import geopandas as gpd
 import numpy as np
 import pytest
 import shapely
-from app_driving import zipped
 from PIL import Image
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
 from app import maps
-from fieldmon.field import Observations
-from fieldmon.geodata.options import PlotOptions, RecordOptions
-from fieldmon.geodata.reading import read_lines, read_plots, read_records
-from fieldmon.monitor import Plans, Plot, first_day
-from fieldmon.project import Project, Results, Setup
+from fieldmon.infestation.observations import Observations
+from fieldmon.io.options import PlotOptions, RecordOptions
+from fieldmon.io.read import read_lines, read_plots, read_records
+from fieldmon.monitoring import Project, Results, Setup
+from fieldmon.planning.plan import Plans, first_day
+from fieldmon.plot.plot import Plot
+from tests.app.app_driving import zipped
 
 PHONE = ((390, 844), "Mozilla/5.0 (Linux; Android 14) Chrome/150.0 Mobile Safari/537.36")
 MAP = "[data-testid=stDeckGlJsonChart]"

@@ -9,11 +9,11 @@ from datetime import date
 
 import numpy as np
 import pytest
-from app_driving import PAGES, begun, go, opened
 from rasterio.io import MemoryFile
 from rasterio.transform import from_bounds
 
 from app import texts
+from tests.app.app_driving import PAGES, begun, go, opened
 
 CLICKS = int(os.environ.get("FIELDMON_MONKEY", "80"))
 # a comparison of 500 seasons or a table of the thesis takes minutes, as it should

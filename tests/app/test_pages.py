@@ -7,7 +7,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import streamlit as st
-from app_driving import (
+from rasterio.io import MemoryFile
+from rasterio.transform import from_bounds
+from streamlit.testing.v1 import AppTest
+
+from app import warming
+from fieldmon.compute.jit_progress import FIRST_USE
+from fieldmon.monitoring import Project
+from tests.app.app_driving import (
     PAGES,
     begun,
     go,
@@ -23,13 +30,6 @@ from app_driving import (
     upload,
     zipped,
 )
-from rasterio.io import MemoryFile
-from rasterio.transform import from_bounds
-from streamlit.testing.v1 import AppTest
-
-from app import warming
-from fieldmon.first_use import FIRST_USE
-from fieldmon.project import Project
 
 
 @pytest.fixture

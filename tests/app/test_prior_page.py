@@ -1,11 +1,7 @@
 """The page of the study with prior information, driven without a browser."""
 
-from pathlib import Path
-
 import pytest
 from streamlit.testing.v1 import AppTest
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 def page():

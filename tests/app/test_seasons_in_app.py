@@ -7,11 +7,11 @@ from datetime import date
 
 import numpy as np
 import pytest
-from app_driving import begun, go, heading, layer, metric, opened, press, texts_of
 
 from app import figures
 from fieldmon.errors import SettingError
-from fieldmon.project import Project, Results
+from fieldmon.monitoring import Project, Results
+from tests.app.app_driving import begun, go, heading, layer, metric, opened, press, texts_of
 
 
 @pytest.fixture(scope="module")
@@ -265,7 +265,7 @@ def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(app, se
 
 
 def record_clean(project, on, n):
-    from fieldmon.project import Results
+    from fieldmon.monitoring import Results
 
     plants = project.plan(on, keep=False).route.plant[:n]
     project.record(Results.of(plants, np.zeros(n, np.int8), np.datetime64(on)), "twin")

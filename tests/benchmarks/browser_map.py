@@ -41,7 +41,7 @@ import shapely
 from PIL import Image
 from playwright.sync_api import Error, sync_playwright
 
-from fieldmon.planting import Planting, lay
+from fieldmon.plot.layout import Planting, lay
 from tests.benchmarks.first_screen import IDLE, MAP, ROOT, answers, started
 from tests.benchmarks.test_bench_grid import crooked_plot
 from tests.conftest import CHROMIUM, FLAGS
@@ -89,7 +89,8 @@ def serve():
     from streamlit.runtime.scriptrunner_utils.script_run_context import ScriptRunContext
 
     from app import serve as app_server
-    from fieldmon import monitor, prior
+    from fieldmon.infestation import prior
+    from fieldmon.planning import plan as plan_module
 
     running = threading.local()
 
@@ -119,7 +120,7 @@ def serve():
 
     ScriptRunContext.enqueue = enqueued
     ScriptRunner._run_script = noted("run", ScriptRunner._run_script)
-    for module in (prior, monitor):
+    for module in (prior, plan_module):
         for name in ("prior_chance", "first_day", "plan_from"):
             if hasattr(module, name):
                 setattr(module, name, noted("plan", getattr(module, name)))

@@ -23,7 +23,7 @@ import numpy as np
 from playwright.sync_api import sync_playwright
 from streamlit.proto.ForwardMsg_pb2 import ForwardMsg
 
-from fieldmon.planting import Planting, lay
+from fieldmon.plot.layout import Planting, lay
 from tests.benchmarks.first_screen import IDLE, MAP, ROOT, answers, served
 from tests.benchmarks.test_bench_grid import crooked_plot
 from tests.conftest import CHROMIUM, FLAGS

@@ -31,11 +31,11 @@ from playwright.sync_api import sync_playwright
 from streamlit.proto.ForwardMsg_pb2 import ForwardMsg
 
 from tests.conftest import CHROMIUM, FLAGS
+from tests.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-ROOT = Path(__file__).resolve().parents[2]
 IDLE = "[data-testid=stApp][data-test-script-state=notRunning]"
 MAP = "[data-testid=stDeckGlJsonChart]"
 # when the browser draws on a canvas for the first time, and when the frame after that begins

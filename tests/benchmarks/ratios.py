@@ -15,17 +15,17 @@ from pathlib import Path
 
 import numpy as np
 
-from fieldmon.aisles import Aisles
-from fieldmon.chance import Chance
-from fieldmon.planting import rectangle
-from fieldmon.robot import Robot
+from fieldmon.compute.random_streams import Chance
+from fieldmon.infestation.spread import Spread, night
+from fieldmon.planning.workday import plan_day
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
-from fieldmon.spread import Spread, night
-from fieldmon.thesis import draws, listings
-from fieldmon.thesis.slips import AS_PUBLISHED
-from fieldmon.thesis.trial import Strategy, Trial, night_of, walk_of
-from fieldmon.thesis.vineyard import SCENARIOS
-from fieldmon.workday import plan_day
+from fieldmon.studies.thesis.chapter4 import draws, listings
+from fieldmon.studies.thesis.chapter4.listing_errors import AS_PUBLISHED
+from fieldmon.studies.thesis.chapter4.trial import Strategy, Trial, night_of, walk_of
+from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS
 from tests.benchmarks.scale import best_of, told
 
 SIDE = 317

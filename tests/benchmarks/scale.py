@@ -19,21 +19,22 @@ from pathlib import Path
 import numpy as np
 
 from app import maps
-from fieldmon.aisles import Aisles
-from fieldmon.belief import MeanField, Pairs, overnight, pairs
-from fieldmon.chance import Chance
-from fieldmon.field import ABSENT, PRESENT, Observations
-from fieldmon.geodata.routes import RouteNotes, write_route
-from fieldmon.monitor import Plans, Plot, plan_from
-from fieldmon.planting import Planting, lay
-from fieldmon.prior import PriorSettings, prior_chance, start_infested
-from fieldmon.project import Project, Setup
-from fieldmon.robot import Robot
-from fieldmon.route import route_of
+from fieldmon.compute.random_streams import Chance
+from fieldmon.infestation.belief import MeanField, Pairs, overnight, pairs
+from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
+from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
+from fieldmon.infestation.spread import Spread, night
+from fieldmon.io.writers.geojson import RouteNotes, write_route
+from fieldmon.monitoring import Project, Setup
+from fieldmon.planning.plan import Plans, plan_from
+from fieldmon.planning.route import route_of
+from fieldmon.planning.workday import plan_day
+from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
-from fieldmon.season import SeasonSettings, Start, days
-from fieldmon.spread import Spread, night
-from fieldmon.workday import plan_day
+from fieldmon.simulation.season import SeasonSettings, Start, days
 from tests.benchmarks.test_bench_grid import crooked_plot
 
 SIZES = (100, 1_000, 10_000, 100_000, 1_000_000)
@@ -131,7 +132,7 @@ def memory_mb():
 
 def per_visit_and_night():
     """Return the ns that a plant visit costs, and a plant's night, on 91 x 91 plants."""
-    from fieldmon.planting import rectangle
+    from fieldmon.plot.layout import rectangle
 
     aisles = Aisles.of(rectangle(91, 91))
     n = len(aisles.grid)
@@ -162,7 +163,7 @@ def seasons():
     What is believed: pairs of plants as everywhere, or plants one by one. Naive and Bouncy do not
     ask for it, so for them it is not worked out.
     """
-    from fieldmon.planting import rectangle
+    from fieldmon.plot.layout import rectangle
 
     aisles = Aisles.of(rectangle(91, 91))
     chance = np.full(len(aisles.grid), 0.02)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.aisles import Aisles, crosses_rows
-from fieldmon.field import Field
-from fieldmon.frame import Frame
-from fieldmon.planting import Planting, lay, rectangle
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.projection import Frame
+from fieldmon.plot.travel import Aisles, crosses_rows
 
 
 def skewed():

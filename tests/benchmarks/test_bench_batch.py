@@ -4,16 +4,16 @@ import csv
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
-from parcels import many, write_geojson
 
-from fieldmon.geodata.reading import read_plots
+from fieldmon.io.read import read_plots
+from tests.parcels import many, write_geojson
+from tests.paths import SAMPLE_DATA, SHARED
 
-DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
-ESTATE = Path(__file__).resolve().parents[2] / "sample_data" / "paran_estate.geojson"
+DATA = SHARED / "data"
+ESTATE = SAMPLE_DATA / "paran_estate.geojson"
 
 
 @pytest.fixture
@@ -56,20 +56,20 @@ def test_a_thousand_plots_are_planned_in_one_command(benchmark, parcels):
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_study_of_seasons(benchmark, tmp_path, workers):
     """Two workers take 1 / 1.8 of one's time or less (workers warmed up, cores free)."""
-    from fieldmon.field import Observations
-    from fieldmon.monitor import planting_of
-    from fieldmon.study import engine
-    from fieldmon.study.chunks import run_chunk
-    from fieldmon.study.design import Design, Site, chunks
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.plot.plot import planting_of
+    from fieldmon.simulation import executor
+    from fieldmon.simulation.design import Design, Site, chunks
+    from fieldmon.simulation.worker import run_chunk
 
     (field,) = (f for f in read_plots(ESTATE).value if f.name == "Gate")
     sites = (Site(field, planting_of(field), Observations.none(), np.datetime64("2026-11-02")),)
-    with engine.cluster(workers=workers) as client:
+    with executor.cluster(workers=workers) as client:
         warm = next(chunks(sites, Design(n_days=1, n_seeds=1)))
         client.run(run_chunk, warm)
 
         def study():
-            engine.run(
+            executor.run(
                 client,
                 tmp_path / str(time.monotonic_ns()),
                 sites,

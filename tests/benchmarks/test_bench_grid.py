@@ -5,10 +5,10 @@ import pytest
 import shapely
 from shapely import MultiPolygon
 
-from fieldmon.field import Field
-from fieldmon.frame import Frame
-from fieldmon.grid import nearest_plants
-from fieldmon.planting import Planting, grid_from_plants, lay, rectangle
+from fieldmon.plot.field import Field
+from fieldmon.plot.grid import nearest_plants
+from fieldmon.plot.layout import Planting, grid_from_plants, lay, rectangle
+from fieldmon.plot.projection import Frame
 
 
 def crooked_plot(n_plants):

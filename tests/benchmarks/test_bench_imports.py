@@ -5,15 +5,15 @@ import numpy as np
 import pytest
 from shapely import Polygon, box
 
-from fieldmon.geodata import guard
-from fieldmon.geodata.reading import read_plots, read_records
+from fieldmon.io.read import read_plots, read_records
+from fieldmon.io.sandbox import process
 
 ONCE = {"rounds": 3, "iterations": 1, "warmup_rounds": 1}
 
 
 @pytest.fixture(autouse=True)
 def warm():
-    guard.warm()
+    process.warm()
 
 
 def records(folder):

@@ -3,10 +3,11 @@ import pytest
 import shapely
 from shapely import MultiLineString
 
-from fieldmon.field import ABSENT, PRESENT, Field, Observations
-from fieldmon.hotspots import hot_spots, record_states
-from fieldmon.planting import rectangle
-from fieldmon.prior import PriorSettings, prior_chance, start_infested
+from fieldmon.infestation.hotspots import hot_spots, record_states
+from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
+from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import rectangle
 
 TODAY = np.datetime64("2026-05-20")
 SIZES = pytest.mark.parametrize(

@@ -2,12 +2,12 @@
 
 import pytest
 
-from fieldmon.chance import Chance
-from fieldmon.thesis.with_prior.choices import SAMPLERS
-from fieldmon.thesis.with_prior.defaults import CALIBRATED
-from fieldmon.thesis.with_prior.seasons import Luck, Trial, play
-from fieldmon.thesis.with_prior.sites import square
-from fieldmon.thesis.with_prior.studies import run_prior
+from fieldmon.compute.random_streams import Chance
+from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
+from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS
+from fieldmon.studies.thesis.chapter5.seasons import Luck, Trial, play
+from fieldmon.studies.thesis.chapter5.sites import square
+from fieldmon.studies.thesis.chapter5.study import run_prior
 
 
 @pytest.mark.parametrize("name", SAMPLERS)

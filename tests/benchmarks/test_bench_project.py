@@ -5,13 +5,14 @@ from datetime import date, timedelta
 import numpy as np
 import pytest
 
-from fieldmon.chance import Chance
-from fieldmon.field import Field, Observations
-from fieldmon.monitor import Plot
-from fieldmon.planting import Planting, rectangle
-from fieldmon.prior import start_infested
-from fieldmon.project import Project, Results, Setup
-from fieldmon.workday import outcomes
+from fieldmon.compute.random_streams import Chance
+from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.prior import start_infested
+from fieldmon.monitoring import Project, Results, Setup
+from fieldmon.planning.workday import outcomes
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.plot import Plot
 
 BEGINS = date(2026, 4, 6)
 

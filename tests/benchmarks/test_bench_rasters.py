@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from pyproj import Transformer
 
-from fieldmon.geodata.raster_values import Raster
-from fieldmon.geodata.raster_writing import write_chance_raster
-from fieldmon.planting import rectangle
+from fieldmon.io.rasters.values import Raster
+from fieldmon.io.writers.chance_raster import write_chance_raster
+from fieldmon.plot.layout import rectangle
 
 UTM = "EPSG:32636"
 

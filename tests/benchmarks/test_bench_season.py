@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from fieldmon.aisles import Aisles
-from fieldmon.chance import Chance
-from fieldmon.planting import rectangle
-from fieldmon.robot import Robot
-from fieldmon.route import route_of
+from fieldmon.compute.random_streams import Chance
+from fieldmon.infestation.spread import Spread, night
+from fieldmon.planning.route import route_of
+from fieldmon.planning.workday import plan_day
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
-from fieldmon.season import SeasonSettings, Start, days
-from fieldmon.spread import Spread, night
-from fieldmon.workday import plan_day
+from fieldmon.simulation.season import SeasonSettings, Start, days
 
 AISLES = Aisles.of(rectangle(91, 91))
 N = len(AISLES.grid)

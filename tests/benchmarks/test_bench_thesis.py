@@ -1,11 +1,11 @@
 """The thesis's simulator: one run, and all rows of its tables."""
 
-from fieldmon.chance import Chance
-from fieldmon.thesis import draws, listings
-from fieldmon.thesis.slips import AS_PUBLISHED
-from fieldmon.thesis.studies import run_no_prior
-from fieldmon.thesis.trial import Strategy, Trial, night_of, walk_of
-from fieldmon.thesis.vineyard import SCENARIOS
+from fieldmon.compute.random_streams import Chance
+from fieldmon.studies.thesis.chapter4 import draws, listings
+from fieldmon.studies.thesis.chapter4.listing_errors import AS_PUBLISHED
+from fieldmon.studies.thesis.chapter4.study import run_no_prior
+from fieldmon.studies.thesis.chapter4.trial import Strategy, Trial, night_of, walk_of
+from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS
 
 
 def test_one_published_replicate_of_three_days_in_scenario_c(benchmark):

@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
-_DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
+from tests.paths import SHARED
+
+_DATA = SHARED / "data"
 
 
 @pytest.fixture(scope="session")

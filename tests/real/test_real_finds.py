@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fieldmon.comparison.maps import LAYOUTS, maps_from, table
+from fieldmon.studies.samplers.mapped_plots import LAYOUTS, maps_from, table
 
 
 def test_on_mapped_plots_forty_percent_looks_find_about_what_dynamics_do_or_more(shared):

@@ -8,14 +8,14 @@ import pytest
 from shapely import Point
 
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.geodata.findings import Severity
-from fieldmon.geodata.geometry import area_m2
-from fieldmon.geodata.nearby import distance_m
-from fieldmon.geodata.options import PlotOptions, ReadOptions, RecordOptions
-from fieldmon.geodata.places import Places, Plants
-from fieldmon.geodata.reading import read_lines, read_plants, read_plots, read_records
-from fieldmon.grid import plant_at
-from fieldmon.planting import rectangle
+from fieldmon.io.import_report import Severity
+from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
+from fieldmon.io.parse.geometry import area_m2
+from fieldmon.io.read import read_lines, read_plants, read_plots, read_records
+from fieldmon.io.readers.nearby import distance_m
+from fieldmon.io.readers.places import Places, Plants
+from fieldmon.plot.grid import plant_at
+from fieldmon.plot.layout import rectangle
 
 ACRE_M2 = 4046.8564224
 

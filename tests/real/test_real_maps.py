@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from fieldmon.chance import Chance
-from fieldmon.geodata.plant_maps import read_plant_maps
-from fieldmon.robot import Robot
-from fieldmon.thesis.cells import spread_of
-from fieldmon.thesis.with_prior.choices import SAMPLERS
-from fieldmon.thesis.with_prior.defaults import CALIBRATED
-from fieldmon.thesis.with_prior.maps import SHARES_PCT, MapRules, inspect, run_maps
+from fieldmon.compute.random_streams import Chance
+from fieldmon.io.readers.plant_maps import read_plant_maps
+from fieldmon.plot.robot import Robot
+from fieldmon.studies.thesis.chapter4.measures import spread_of
+from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
+from fieldmon.studies.thesis.chapter5.mapped_plots import SHARES_PCT, MapRules, inspect, run_maps
+from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS
 
 QUARTER = int(np.flatnonzero(SHARES_PCT == 25.0)[0])
 RULES = MapRules(Robot(), CALIBRATED.spread)

@@ -9,11 +9,12 @@ import pytest
 import shapely
 from pyproj import Geod
 
-from fieldmon import cli
-from fieldmon.aisles import crosses_rows
-from fieldmon.geodata.options import PlotOptions, RecordOptions
-from fieldmon.geodata.reading import read_plots, read_records
-from fieldmon.monitor import Plans, Plot, first_day
+from fieldmon.cli import main
+from fieldmon.io.options import PlotOptions, RecordOptions
+from fieldmon.io.read import read_plots, read_records
+from fieldmon.planning.plan import Plans, first_day
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.travel import crosses_rows
 
 GEOD = Geod(ellps="WGS84")
 PARCELS = "parcels_orchards_vineyards"
@@ -36,7 +37,7 @@ def plan(monkeypatch, tmp_path, capsys):
         to = tmp_path / "route.geojson"
         monkeypatch.setattr(sys, "argv", ["fieldmon", "plan", *map(str, words), "-o", str(to)])
         with pytest.raises(SystemExit) as stop:
-            cli.main()
+            main.main()
         assert stop.value.code == 0
         said = capsys.readouterr().out
         return json.loads(to.read_text(encoding="utf-8"))["features"], said
@@ -84,7 +85,7 @@ def test_the_line_on_a_real_parcel_crosses_no_row(shared, name):
 
 
 def read_records_of_nowhere():
-    from fieldmon.field import Observations
+    from fieldmon.infestation.observations import Observations
 
     return Observations.none()
 

@@ -10,7 +10,7 @@ import rasterio
 from pyproj import Transformer
 
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.geodata.rasters import RasterOptions, read_backdrop, read_raster
+from fieldmon.io.rasters.read import RasterOptions, read_backdrop, read_raster
 
 TILES = [("chico_2020_70", 26910), ("claremont_2020_82", 26911)]
 

@@ -9,10 +9,10 @@ from pyproj import Geod, Proj
 from shapely import MultiPolygon
 
 from fieldmon.errors import PlotError
-from fieldmon.field import Field
-from fieldmon.grid import nearest_plants, row_label
-from fieldmon.planting import Planting, found_planting, grid_from_plants, lay
-from fieldmon.rows import distinct, rows_from_plants
+from fieldmon.plot.field import Field
+from fieldmon.plot.grid import nearest_plants, row_label
+from fieldmon.plot.layout import Planting, found_planting, grid_from_plants, lay
+from fieldmon.plot.row_detection import distinct, rows_from_plants
 
 GEOD = Geod(ellps="WGS84")
 

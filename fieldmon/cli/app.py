@@ -1,0 +1,56 @@
+"""`fieldmon app`: the app in the browser. Heavy imports wait."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fieldmon.cli.waiting import WAITING
+from fieldmon.errors import SettingError
+
+
+def open_app(
+    port: Annotated[int, typer.Option(help="Port on this machine.", min=1, max=65535)] = 8501,
+    address: Annotated[
+        str, typer.Option(help="Address to listen on; others may only see it beyond 127.0.0.1.")
+    ] = "127.0.0.1",
+    seasons: Annotated[
+        Path, typer.Option(help="Folder in which seasons are kept; made when one begins.")
+    ] = Path("seasons"),
+    browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,  # noqa: FBT002
+) -> None:
+    """Open the app in the browser. It needs no internet; stop it with Ctrl-C."""
+    import importlib.util  # noqa: PLC0415
+    import socket  # noqa: PLC0415
+    import subprocess  # noqa: PLC0415
+
+    from fieldmon.io.sandbox.process import own_path  # noqa: PLC0415
+
+    if importlib.util.find_spec("app") is None:
+        raise SettingError("The app must be installed beside fieldmon, but it was not found.")
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((address, port))
+        except OSError as error:
+            raise SettingError(
+                f"Port {port} at {address} must be free, but it is not ({error.strerror}). "
+                "Close what uses it, or choose another with --port."
+            ) from error
+    typer.echo(f"fieldmon is at http://{address}:{port} (stop it with Ctrl-C)")
+    # -P: -m looks in the folder one stands in first, which need not be where the app is
+    command = [sys.executable, "-P", "-m", "app.serve", *(["--browser"] if browser else [])]
+    # everything else is set, with reasons, in the app's own .streamlit/config.toml
+    env = os.environ | {
+        "STREAMLIT_SERVER_ADDRESS": address,
+        "STREAMLIT_SERVER_PORT": str(port),
+        "FIELDMON_SEASONS": str(seasons.absolute()),
+        "PYTHONPATH": own_path(),
+    }
+    with WAITING.silent():
+        ended = subprocess.run(command, check=False, env=env)  # noqa: S603 - our own
+    raise typer.Exit(ended.returncode)

@@ -1,0 +1,245 @@
+"""`fieldmon plan --all`: the same day on every plot of a file, side by side on all cores."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import signal
+import time
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from itertools import islice
+from multiprocessing import get_context
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from fieldmon.cli.waiting import progress
+from fieldmon.errors import FieldmonError, FileProblem
+from fieldmon.io.atomic_write import write_whole
+from fieldmon.io.readers.nearby import apart
+from fieldmon.io.writers.geojson import RouteNotes, write_route
+from fieldmon.planning.batch import plan_task
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+    from concurrent.futures import Future
+    from datetime import datetime
+    from pathlib import Path
+
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.io.readers.crews import Crew
+    from fieldmon.planning.batch import Orders, Task
+    from fieldmon.plot.field import Field
+
+SUMMARY = "summary.csv"
+_COLUMNS = (
+    *("plot", "state", "file", "plants", "rows", "stops", "hours", "drive_km"),
+    *("infested_expected", "sentence", "digest"),
+)
+# the summary on disk is never older than this while plots are planned
+_EVERY_S = 2.0
+# tasks handed to the pool at once, so that no worker waits for the next
+_AHEAD = 32
+# a name of a file may be 255 bytes long; Hebrew and Arabic take two a letter
+_NAME_BYTES = 120
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Day:
+    """What every worker process knows before its first plot.
+
+    Parameters
+    ----------
+    observations
+        Records of all plots.
+    folder
+        Where the routes go.
+    began
+        Local date and time of the start.
+    """
+
+    observations: Observations
+    folder: Path
+    began: datetime
+
+
+_day: list[Day] = []
+
+
+def plan_all(
+    plots: Iterable[tuple[Field, Crew]], orders: Orders, day: Day, workers: int | None = None
+) -> None:
+    """Plan every plot; write a route file each, and `SUMMARY` in the same folder.
+
+    A plot that cannot be planned is refused with its sentence, and the others go on. What an
+    earlier run finished with the same plot, records and orders is not planned again.
+    """
+    tasks = _tasks(plots, orders)
+    day.folder.mkdir(parents=True, exist_ok=True)
+    digests = {name: task.digest(day.observations) for name, task in tasks.items()}
+    rows = _finished(day.folder, digests)
+    left = {name: task for name, task in tasks.items() if name not in rows}
+    if len(left) < len(tasks):
+        typer.echo(f"{len(tasks) - len(left)} of {len(tasks)} plots were planned already.")
+    try:
+        _plan(left, rows, digests, day, workers or _cores())
+    finally:
+        _write(day.folder, tasks, rows)
+    _tell(rows, day.folder)
+
+
+def _tasks(plots: Iterable[tuple[Field, Crew]], orders: Orders) -> dict[str, Task]:
+    """Return the tasks by the names of their files."""
+    from fieldmon.planning.batch import (  # noqa: PLC0415 - with orders, which the caller has made
+        Task,
+    )
+
+    listed = list(plots)
+    digits = len(str(len(listed)))
+    tasks = {}
+    for number, (plot, crew) in enumerate(listed, 1):
+        stated = {"hours": crew.hours, "look_s": crew.look_s}
+        stated["speed_m_s"] = None if crew.speed_km_h is None else crew.speed_km_h / 3.6
+        known = {name: value for name, value in stated.items() if value is not None}
+        tasks[f"{number:0{digits}d}-{_plain(plot.name)}.geojson"] = Task(
+            plot, crew.who, known, orders
+        )
+    return tasks
+
+
+def _plain(name: str) -> str:
+    """Return a name without what a file's name must not hold."""
+    kept = "".join(c if c.isalnum() or c in "-_" else "_" for c in name)
+    return kept.encode()[:_NAME_BYTES].decode(errors="ignore") or "plot"
+
+
+def _finished(folder: Path, digests: dict[str, str]) -> dict[str, Row]:
+    """Return the rows of an earlier run that still hold, by the names of their files."""
+    try:
+        text = (folder / SUMMARY).read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        return {}
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileProblem(
+            f"{folder / SUMMARY} must be readable, but it is not ({error})."
+        ) from error
+    same = {row["file"]: row for row in csv.DictReader(io.StringIO(text)) if "digest" in row}
+    return {
+        name: row
+        for name, row in same.items()
+        if digests.get(name) == row["digest"]
+        and (row["state"] == "refused" or (folder / name).is_file())
+    }
+
+
+def _plan(
+    tasks: dict[str, Task], rows: dict[str, Row], digests: dict[str, str], day: Day, workers: int
+) -> None:
+    """Plan tasks in worker processes, a few ahead of them, and keep `rows` and the disk current."""
+    if not tasks:
+        return
+
+    def keep(one: Future[Row]) -> None:
+        # also those that end while a stop is on its way
+        if not one.cancelled() and one.exception() is None:
+            row = one.result()
+            rows[row["file"]] = row | {"digest": digests[row["file"]]}
+
+    pool = ProcessPoolExecutor(min(workers, len(tasks)), get_context("spawn"), _prepare, (day,))
+    names, saved = list(tasks), time.monotonic()
+    with progress("Planning", len(names)) as bar:
+        try:
+            for one in _ended(pool, tasks.items(), keep):
+                one.result()
+                bar.update(1)
+                if time.monotonic() - saved > _EVERY_S:
+                    _write(day.folder, digests, rows)
+                    saved = time.monotonic()
+        except BrokenProcessPool as error:
+            raise FileProblem(
+                "A working process ended before its plot was planned (was it killed, or is the "
+                "memory full?). What is finished is kept: run the same command again to go on."
+            ) from error
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _ended(
+    pool: ProcessPoolExecutor,
+    tasks: Iterable[tuple[str, Task]],
+    keep: Callable[[Future[Row]], None],
+) -> Iterator[Future[Row]]:
+    """Hand tasks to a pool, some ahead of it; yield each as it ends, `keep` hears of it before."""
+    waiting = iter(tasks)
+
+    def more(n: int) -> set[Future[Row]]:
+        handed = {pool.submit(_work, *item) for item in islice(waiting, n)}
+        for one in handed:
+            one.add_done_callback(keep)
+        return handed
+
+    running = more(_AHEAD)
+    while running:
+        done, running = wait(running, return_when=FIRST_COMPLETED)
+        running |= more(len(done))
+        yield from done
+
+
+def _prepare(day: Day) -> None:
+    """Make a worker process ready; the stop key is for the process that waits for it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _day[:] = [day]
+
+
+def _work(name: str, task: Task) -> Row:
+    """Plan one plot in a worker process and write its route; return its row of the summary."""
+    (day,) = _day
+    row = dict.fromkeys(_COLUMNS, "") | {"plot": task.plot.name, "file": name}
+    try:
+        today = plan_task(task, apart(day.observations, task.plot).inside)
+    except FieldmonError as error:
+        (day.folder / name).unlink(missing_ok=True)
+        return row | {"state": "refused", "sentence": str(error)}
+    route = today.route
+    write_route(
+        day.folder / name, route, RouteNotes(task.plot.name, task.orders.sampler, day.began)
+    )
+    return row | {
+        "state": "planned",
+        "plants": len(route.aisles.grid),
+        "rows": route.aisles.grid.n_rows,
+        "stops": len(route),
+        "hours": round(route.end_s / 3600, 3),
+        "drive_km": round(route.drive_m / 1000, 3),
+        "infested_expected": round(route.expected_finds, 3),
+    }
+
+
+def _write(folder: Path, order: Iterable[str], rows: dict[str, Row]) -> None:
+    text = io.StringIO()
+    table = csv.DictWriter(text, _COLUMNS)
+    table.writeheader()
+    table.writerows(rows[name] for name in order if name in rows)
+    # the mark at the beginning tells a spreadsheet that names may be in any script
+    write_whole(folder / SUMMARY, text.getvalue().encode("utf-8-sig"))
+
+
+def _tell(rows: dict[str, Row], folder: Path) -> None:
+    planned = [row for row in rows.values() if row["state"] == "planned"]
+    for row in rows.values():
+        if row["state"] == "refused":
+            typer.echo(f"refused: {row['plot']}: {row['sentence']}", err=True)
+    stops = sum(int(row["stops"]) for row in planned)
+    typer.echo(
+        f"{len(planned)} of {len(rows)} plots planned, {stops} plants in "
+        f"{sum(float(row['hours']) for row in planned):.0f} h. Routes and {SUMMARY} in {folder}"
+    )
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

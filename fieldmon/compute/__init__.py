@@ -1,0 +1,1 @@
+"""Arrays, compiled loops and named random streams: nothing of plots or pests."""

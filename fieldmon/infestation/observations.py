@@ -1,0 +1,92 @@
+"""Dated pest records as people bring them, before anything is believed of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.errors import ObservationError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+UNKNOWN, ABSENT, PRESENT = -1, 0, 1
+
+
+@dataclass(frozen=True, eq=False)
+class Observations:
+    """Dated pest records at positions, one array entry a record, in the file's order.
+
+    Parameters
+    ----------
+    lonlat
+        ``(m, 2)`` degrees.
+    present
+        ``(m,)`` int8: `PRESENT`, `ABSENT` (looked, nothing seen) or `UNKNOWN`.
+    day
+        ``(m,)`` datetime64[D]; NaT where the record has no date.
+    count
+        ``(m,)`` pests counted; NaN where only presence was noted.
+    accuracy_m
+        ``(m,)`` 1-sigma position accuracy, metres; NaN where unknown.
+    species, stage
+        ``(m,)`` text; empty where unknown.
+    leaves_sampled
+        ``(m,)`` leaves looked at; NaN where unknown.
+    """
+
+    lonlat: NDArray[np.float64]
+    present: NDArray[np.int8]
+    day: NDArray[np.datetime64]
+    count: NDArray[np.float64]
+    accuracy_m: NDArray[np.float64]
+    species: NDArray[np.str_]
+    stage: NDArray[np.str_]
+    leaves_sampled: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        m = len(self.lonlat)
+        for name, values in vars(self).items():
+            if len(values) != m:
+                raise ObservationError(
+                    f"All columns of the observations must have {m} entries, "
+                    f"but {name} has {len(values)}."
+                )
+            values.setflags(write=False)
+
+    def __len__(self) -> int:
+        """Return the number of records."""
+        return len(self.lonlat)
+
+    @classmethod
+    def of(
+        cls,
+        lonlat: NDArray[np.float64],
+        present: NDArray[np.int8],
+        day: NDArray[np.datetime64] | None = None,
+        **columns: NDArray[np.generic],
+    ) -> Observations:
+        """Return observations with every column that is not given unknown."""
+        m = len(lonlat)
+        unknown: dict[str, NDArray[np.generic]] = {
+            "count": np.full(m, np.nan),
+            "accuracy_m": np.full(m, np.nan),
+            "species": np.full(m, "", dtype=np.str_),
+            "stage": np.full(m, "", dtype=np.str_),
+            "leaves_sampled": np.full(m, np.nan),
+        }
+        days = np.full(m, "NaT", dtype="datetime64[D]") if day is None else day
+        points = np.asarray(lonlat, dtype=np.float64).reshape(-1, 2)
+        return cls(points, np.asarray(present, np.int8), days, **(unknown | columns))  # type: ignore[arg-type]
+
+    def take(self, which: NDArray[np.generic]) -> Observations:
+        """Return the records at the given indices or mask."""
+        return Observations(**{name: values[which].copy() for name, values in vars(self).items()})
+
+    @classmethod
+    def none(cls) -> Observations:
+        """Return no records at all."""
+        return cls.of(np.empty((0, 2)), np.empty(0, np.int8))

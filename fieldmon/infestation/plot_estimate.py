@@ -1,0 +1,186 @@
+"""What a chance map says of the plot as a whole: how many are still infested, and is it clean."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numba as nb
+import numpy as np
+
+from fieldmon.compute.jit import inlined, loop
+from fieldmon.compute.random_streams import coin
+from fieldmon.errors import SettingError
+from fieldmon.infestation.belief import pairs
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.grid import Csr, PlantGrid
+
+    Floats = NDArray[np.float64]
+    _Table = tuple[NDArray[np.int64], NDArray[np.int64], Floats, Floats, Floats]
+
+_DRAWS = 400
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """How many plants are infested, as believed.
+
+    Parameters
+    ----------
+    expected
+        Expected number of infested plants.
+    low, high
+        Interval that holds the number with the chance asked for (90 % unless told).
+    chance_clean
+        Chance that no plant is infested.
+    """
+
+    expected: float
+    low: int
+    high: int
+    chance_clean: float
+
+    def sentence(self) -> str:
+        """Return the outlook in words."""
+        return (
+            f"About {self.expected:.0f} plants are still infested "
+            f"(between {self.low} and {self.high}); "
+            f"the chance that the plot is clean is {self.chance_clean:.0%}."
+        )
+
+
+def outlook(
+    grid: PlantGrid,
+    chance: NDArray[np.float64],
+    both: NDArray[np.float64] | None = None,
+    sure: float = 0.9,
+    key: np.uint64 = np.uint64(0),  # noqa: B008 - a number, not a call with effects
+) -> Outlook:
+    """Return what a chance map ``(n,)`` says of the whole plot.
+
+    Parameters
+    ----------
+    both
+        Chance ``(e,)`` that two plants side by side are both infested (`Belief.both`); without
+        it they share their fate as :func:`fieldmon.infestation.belief.pairs` has it. Taken as independent,
+        the number would seem far surer than it is.
+    sure
+        Chance that the interval holds the number.
+    key
+        Which fields are drawn for the interval: the same key, the same answer.
+    """
+    if not 0.0 < sure < 1.0:
+        raise SettingError(f"'sure' must be a chance between 0 and 1, but it is {sure}.")
+    if both is None:
+        both = pairs(chance, grid)
+    table = _table(chance, both, grid.adjacent)
+    drawn = _drawn(table, key, len(chance))
+    clean = float(np.exp(np.log1p(-table[-1]).sum()))  # the same chain draws no infested plant
+    expected = float(chance.sum())
+    # round the loops of a lattice the drawn fields are a little off the map: put right together
+    counts = drawn * (expected / max(float(drawn.mean()), 1e-9))
+    low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
+    return Outlook(expected, int(np.floor(low)), int(np.ceil(high)), clean)
+
+
+def _drawn(table: _Table, key: np.uint64, n: int) -> NDArray[np.int64]:
+    """Return how many of n plants are infested in each drawn field; all processors draw."""
+    counts = np.empty(_DRAWS, np.int64)
+    first = np.linspace(0, _DRAWS, (os.cpu_count() or 1) + 1).astype(np.int64)
+    with ThreadPoolExecutor(len(first) - 1) as pool:
+        parts = [
+            pool.submit(_draw, table, key, (int(a), np.zeros(n, np.bool_)), counts[a:b])
+            for a, b in pairwise(first)
+        ]
+    for part in parts:
+        part.result()
+    return counts
+
+
+@loop
+def _draw(
+    table: _Table,
+    key: np.uint64,
+    fields: tuple[int, NDArray[np.bool_]],
+    counts: NDArray[np.int64],
+) -> None:
+    """Count the infested of fields drawn plant after plant, given neighbours drawn before.
+
+    `fields` are the number of the first one, which its draws hang on, and room for one.
+    """
+    first, drawn = fields
+    n = drawn.size
+    for k in range(counts.size):
+        total = 0
+        for i in range(n):
+            drawn[i] = coin(key, (first + k) * n + i) < _given(table, drawn, i)
+            total += drawn[i]
+        counts[k] = total
+
+
+@nb.njit(cache=True, nogil=True)
+def draw_fields(
+    believed: tuple[NDArray[np.float64], NDArray[np.float64]],
+    adjacent: Csr,
+    key: np.uint64,
+    fields: NDArray[np.bool_],
+) -> None:
+    """Draw whole fields ``(m, n)`` in place from ``chance (n,)`` and ``both (e,)``."""
+    chance, both = believed
+    table = _table(chance, both, adjacent)
+    for k in range(fields.shape[0]):
+        for i in range(chance.size):
+            fields[k, i] = coin(key, k * chance.size + i) < _given(table, fields[k], i)
+
+
+@nb.njit(cache=True)
+def _table(chance: NDArray[np.float64], both: NDArray[np.float64], adjacent: Csr) -> _Table:
+    """Return what a neighbour of lower number does to each plant's odds: drawn hundreds of times.
+
+    Start of each plant's neighbours, the neighbours, the factor of an infested and of a clean one,
+    the odds without any, and the chance if all are clean.
+    """
+    n = chance.size
+    start = np.zeros(n + 1, np.int64)
+    plant = np.empty(adjacent.plant.size, np.int64)
+    factor = np.empty((adjacent.plant.size, 2))
+    odds = chance / (1.0 - chance)
+    alone = np.empty(n)
+    at = 0
+    for i in range(n):
+        p, given = chance[i], odds[i]
+        for e in range(adjacent.start[i], adjacent.start[i + 1]):
+            j = adjacent.plant[e]
+            if j > i:
+                continue
+            q = chance[j]
+            c = min(both[e], p, q)
+            plant[at] = j
+            factor[at, 0] = (1.0 - c / p) / max(1.0 - (q - c) / (1.0 - p), 1e-9)
+            factor[at, 1] = (c / p) / max((q - c) / (1.0 - p), 1e-9)
+            given *= factor[at, 0]
+            at += 1
+        start[i + 1] = at
+        alone[i] = min(given / (1.0 + given), 1.0 - 1e-9)
+    return start, plant[:at], factor[:at], odds, alone
+
+
+@inlined
+def _given(table: _Table, drawn: NDArray[np.bool_], i: int) -> float:
+    """Return the chance of plant i given its neighbours of lower number."""
+    start, plant, factor, odds, alone = table
+    infested = 0
+    for e in range(start[i], start[i + 1]):
+        infested += drawn[plant[e]]
+    if infested == 0:
+        return float(alone[i])
+    given = odds[i]
+    for e in range(start[i], start[i + 1]):
+        given *= factor[e, int(drawn[plant[e]])]
+    return float(min(given / (1.0 + given), 1.0 - 1e-9))

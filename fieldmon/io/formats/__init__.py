@@ -1,0 +1,1 @@
+"""Files by their format: each becomes a layer of geometries and columns."""

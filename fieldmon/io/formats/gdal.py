@@ -1,0 +1,122 @@
+"""Vector files that GDAL reads; `guard` has taken from it what leads to other files."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pyogrio.raw
+import shapely
+from pyogrio.errors import DataLayerError, DataSourceError
+
+from fieldmon.errors import FileProblem
+from fieldmon.io.formats.layer import Layer
+from fieldmon.io.import_report import Finding, doubtful, repaired, seen
+from fieldmon.io.parse.text import Decoder
+from fieldmon.io.sandbox import limits
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+_UNREADABLE = (DataSourceError, DataLayerError, RuntimeError, ValueError, OSError)
+_BYTE_FOR_BYTE = "ISO-8859-1"
+
+
+class Listed(NamedTuple):
+    """A layer by name, with the type of its geometry (None for a plain table)."""
+
+    name: str
+    geometry_type: str | None
+
+
+def list_layers(path: Path, name: str) -> list[Listed]:
+    """Return the layers of a staged file."""
+    try:
+        listed = pyogrio.list_layers(path)
+    except _UNREADABLE as bad:
+        raise _unreadable(name, bad) from bad
+    return [Listed(str(layer), kind) for layer, kind in listed]
+
+
+def read_layer(path: Path, name: str, layer: str | None, encoding: str | None = None) -> Layer:
+    """Return one layer of a staged file."""
+    try:
+        info = pyogrio.read_info(path, layer=layer, encoding=encoding, force_feature_count=True)
+        meta, _, wkb, values = pyogrio.raw.read(
+            path,
+            layer=layer,
+            encoding=encoding,
+            datetime_as_string=True,
+            # room is made for as many as are asked for, whether they exist or not
+            max_features=min(max(int(info["features"]), 1), limits.FEATURES) + 1,
+        )
+    except _UNREADABLE as bad:
+        raise _unreadable(name, bad) from bad
+    n_features = len(wkb) if wkb is not None else len(values[0]) if len(values) else 0
+    limits.check("features", n_features, limits.FEATURES, name)
+    columns = {
+        str(field): _objects(column) for field, column in zip(meta["fields"], values, strict=True)
+    }
+    limits.check("columns", len(columns), limits.COLUMNS, name)
+    geometry = None if wkb is None else shapely.from_wkb(wkb, on_invalid="ignore")
+    if geometry is not None:
+        n_vertices = int(shapely.get_num_coordinates(geometry).sum())
+        limits.check("vertices", n_vertices, limits.VERTICES, name)
+    return Layer(layer or name, columns, geometry, meta["crs"])
+
+
+def read_shapefile(path: Path, name: str, encoding: str | None) -> Layer:
+    """Return a staged shapefile, its text read by its own evidence, with what is missing said."""
+    findings: list[Finding] = []
+    if not path.with_suffix(".shx").exists():
+        findings.append(repaired("The index (.shx) was missing and was made anew."))
+    if not path.with_suffix(".dbf").exists():
+        findings.append(seen("The table (.dbf) is missing: there are shapes only."))
+    try:
+        raw = read_layer(path, name, None, _BYTE_FOR_BYTE)
+    except (FileProblem, UnboundLocalError):  # the latter is pyogrio's own, for a broken .prj
+        if not path.with_suffix(".prj").exists():
+            raise
+        path.with_suffix(".prj").unlink()
+        findings.append(doubtful("The coordinate system (.prj) cannot be understood; it was left."))
+        raw = read_layer(path, name, None, _BYTE_FOR_BYTE)
+    decoder = Decoder(_all_bytes(raw), _stated_encoding(path), encoding)
+    columns = {
+        decoder(_bytes(column)): _decoded(values, decoder) for column, values in raw.columns.items()
+    }
+    return Layer(name, columns, raw.geometry, raw.crs, (*findings, *decoder.findings))
+
+
+def _stated_encoding(path: Path) -> str | None:
+    stated = path.with_suffix(".cpg")
+    return stated.read_bytes()[:40].decode("ascii", "ignore") if stated.exists() else None
+
+
+def _all_bytes(layer: Layer) -> list[bytes]:
+    values = (v for column in layer.columns.values() for v in column if isinstance(v, str))
+    return [*(_bytes(name) for name in layer.columns), *(_bytes(v) for v in values)]
+
+
+def _decoded(values: NDArray[np.object_], decoder: Decoder) -> NDArray[np.object_]:
+    decoded = np.empty(len(values), dtype=object)
+    decoded[:] = [decoder(_bytes(v)) if isinstance(v, str) else v for v in values]
+    return decoded
+
+
+def _bytes(text: str) -> bytes:
+    return text.encode("latin-1", errors="replace")
+
+
+def _objects(column: NDArray[Any]) -> NDArray[np.object_]:
+    values = np.empty(len(column), dtype=object)
+    values[:] = column.tolist()
+    return values
+
+
+def _unreadable(name: str, bad: Exception) -> FileProblem:
+    return FileProblem(
+        f"{name} must be a whole file of its kind, but it cannot be read ({bad}). "
+        "Export or download it again."
+    )

@@ -1,0 +1,227 @@
+"""GeoJSON, read feature by feature: one bad feature is dropped and named, the rest is kept."""
+
+from __future__ import annotations
+
+import gc
+import json
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+from shapely.errors import ShapelyError
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.formats.layer import Layer
+from fieldmon.io.import_report import Finding, dropped, seen
+from fieldmon.io.parse.text import decode
+from fieldmon.io.sandbox import limits
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+_WGS84 = "OGC:CRS84"
+_GEOMETRIES = frozenset(
+    {
+        "Point",
+        "MultiPoint",
+        "LineString",
+        "MultiLineString",
+        "Polygon",
+        "MultiPolygon",
+        "GeometryCollection",
+    }
+)
+
+#: what a geometry that is none may raise
+_NOT_GEOMETRY = (
+    *(ShapelyError, ValueError, TypeError, LookupError, AttributeError),
+    *(RecursionError, OverflowError),
+)
+
+
+def read_geojson(path: Path, name: str, encoding: str | None) -> Layer:
+    """Return the one layer of a GeoJSON file (also newline-delimited)."""
+    content, findings = decode(path.read_bytes(), encoding)
+    root = _parsed(content, name)
+    features = _features(root, name)
+    limits.check("features", len(features), limits.FEATURES, name)
+    geometry, more = _geometries(features, name)
+    properties = [_properties(feature) for feature in features]
+    columns = _columns(properties, name)
+    crs, crs_findings = _crs(root)
+    return Layer(name, columns, geometry, crs, (*findings, *more, *crs_findings))
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Keep Python from looking for garbage where millions of lists are made and none is left."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
+
+
+def _parsed(content: str, name: str) -> dict[str, Any]:
+    try:
+        with _no_collection():
+            root = json.loads(content)
+    except json.JSONDecodeError as bad:
+        lines = _line_by_line(content)
+        if lines is None:
+            raise FileProblem(
+                f"{name} must be whole GeoJSON, but it breaks off or errs in line {bad.lineno}: "
+                f"{bad.msg}. Export or download it again."
+            ) from bad
+        root = lines
+    except (RecursionError, ValueError) as bad:
+        raise FileProblem(
+            f"{name} must be GeoJSON as map programs write it, but it is nested or numbered "
+            "beyond reason. Do not trust this file."
+        ) from bad
+    if isinstance(root, list):
+        root = {"type": "FeatureCollection", "features": root}
+    if not isinstance(root, dict):
+        raise FileProblem(f"{name} must be GeoJSON, but it holds no object. Choose another file.")
+    return root
+
+
+def _line_by_line(content: str) -> list[Any] | None:
+    """Return the features of newline-delimited GeoJSON, or None where it is none."""
+    lines = [line.strip("\x1e \t\r") for line in content.split("\n")]
+    try:
+        return [json.loads(line) for line in lines if line]
+    except (RecursionError, ValueError):
+        return None
+
+
+def _features(root: dict[str, Any], name: str) -> list[dict[str, Any]]:
+    kind = root.get("type")
+    if kind == "FeatureCollection" and isinstance(root.get("features"), list):
+        return [f if isinstance(f, dict) else {} for f in root["features"]]
+    if kind == "Feature":
+        return [root]
+    if isinstance(kind, str) and kind in _GEOMETRIES:
+        return [{"type": "Feature", "properties": {}, "geometry": root}]
+    if kind == "Topology":
+        raise FileProblem(f"{name} is TopoJSON. Export it as GeoJSON or GeoPackage.")
+    if "rings" in root or "geometryType" in root:
+        raise FileProblem(f"{name} is Esri JSON. Export it as GeoJSON or GeoPackage.")
+    raise FileProblem(
+        f"{name} must be a GeoJSON feature or collection of features, but its type is {kind!r}. "
+        "Export it as GeoJSON."
+    )
+
+
+def _crs(root: dict[str, Any]) -> tuple[str | None, list[Finding]]:
+    """Return what the old `crs` member says; without one it is WGS84 (RFC 7946)."""
+    stated = root.get("crs")
+    if stated is None:
+        return _WGS84, []
+    if not isinstance(stated, dict) or stated.get("type") == "link":
+        raise ChoiceNeeded(
+            "The file leaves its coordinate system to another file or address, which is not "
+            "followed. Name the coordinate system.",
+            "crs",
+        )
+    properties = stated.get("properties")
+    name = properties.get("name") if isinstance(properties, dict) else None
+    if isinstance(name, str):
+        return name, []
+    return None, [seen("The file says that its coordinate system is unknown.")]
+
+
+def _properties(feature: dict[str, Any]) -> dict[str, Any]:
+    properties = feature.get("properties")
+    own = properties if isinstance(properties, dict) else {}
+    if "id" in feature and "id" not in own:
+        return {**own, "id": feature["id"]}
+    return own
+
+
+def _columns(properties: list[dict[str, Any]], file: str) -> dict[str, NDArray[np.object_]]:
+    names = dict.fromkeys(name for row in properties for name in row)
+    limits.check("columns", len(names), limits.COLUMNS, file)
+    columns = {}
+    for name in names:
+        values = np.empty(len(properties), dtype=object)
+        values[:] = [_cell(row.get(name)) for row in properties]
+        columns[name] = values
+    return columns
+
+
+def _cell(value: object) -> object:
+    if value is None or isinstance(value, str | int | float):
+        return value
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _geometries(
+    features: list[dict[str, Any]], name: str
+) -> tuple[NDArray[np.object_], list[Finding]]:
+    geometry = np.full(len(features), None, dtype=object)
+    broken = []
+    n_vertices = 0
+    for i, feature in enumerate(features):
+        stated = feature.get("geometry")
+        if stated is None:
+            continue
+        try:
+            geometry[i] = _geometry(stated)
+        except _NOT_GEOMETRY:
+            broken.append(i)
+            continue
+        n_vertices += int(shapely.get_num_coordinates(geometry[i]))
+        limits.check("vertices", n_vertices, limits.VERTICES, name)
+    findings = [
+        dropped("The geometry cannot be understood and is left out.", f"feature {i + 1}")
+        for i in broken
+    ]
+    return geometry, findings
+
+
+def _geometry(stated: dict[str, Any]) -> shapely.Geometry:
+    kind = stated["type"]
+    if kind == "GeometryCollection":
+        return shapely.GeometryCollection([_geometry(part) for part in stated["geometries"]])
+    return _BUILDERS[kind](stated["coordinates"])
+
+
+def _points(stated: list[Any]) -> NDArray[np.float64]:
+    """Return ``(n, 2)`` or ``(n, 3)`` coordinates."""
+    try:
+        coordinates = np.array(stated, dtype=np.float64)
+    except ValueError:  # some with height, some without
+        coordinates = np.array([[float(p[0]), float(p[1])] for p in stated])
+    if len(coordinates) == 0:
+        return np.empty((0, 2))
+    if coordinates.ndim != 2 or coordinates.shape[1] < 2:
+        raise ValueError("a position must have two coordinates")
+    return coordinates[:, :3]
+
+
+def _polygon(stated: list[Any]) -> shapely.Polygon:
+    rings = [_points(ring) for ring in stated]
+    if not rings or len(rings[0]) == 0:
+        return shapely.Polygon()
+    return shapely.Polygon(rings[0], [ring for ring in rings[1:] if len(ring)])
+
+
+def _point(stated: list[Any]) -> shapely.Point:
+    return shapely.Point(_points([stated])[0]) if stated else shapely.Point()
+
+
+_BUILDERS: dict[str, Callable[[Any], shapely.Geometry]] = {
+    "Point": _point,
+    "MultiPoint": lambda stated: shapely.MultiPoint(_points(stated)),
+    "LineString": lambda stated: shapely.LineString(_points(stated)),
+    "MultiLineString": lambda stated: shapely.MultiLineString([_points(s) for s in stated]),
+    "Polygon": _polygon,
+    "MultiPolygon": lambda stated: shapely.MultiPolygon(
+        [p for p in map(_polygon, stated) if not p.is_empty]
+    ),
+}

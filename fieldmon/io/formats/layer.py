@@ -1,0 +1,136 @@
+"""What every vector file and every table becomes first: geometry, columns, a coordinate system."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import shapely
+
+from fieldmon.errors import ChoiceNeeded
+from fieldmon.io.import_report import dropped, seen
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.io.import_report import Finding
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """One layer or table, as the file has it: nothing transformed, nothing repaired.
+
+    Parameters
+    ----------
+    name
+        Of the layer, sheet or file.
+    columns
+        Name -> ``(n,)`` values: text, numbers, or None.
+    geometry
+        ``(n,)`` shapely geometries or None, in the file's coordinates; None for a table.
+    crs
+        As the file states it (authority code, WKT or PROJJSON); None where it does not.
+    findings
+        What reading it had to say.
+    """
+
+    name: str
+    columns: dict[str, NDArray[np.object_]]
+    geometry: NDArray[np.object_] | None = None
+    crs: str | None = None
+    findings: tuple[Finding, ...] = ()
+
+    def __len__(self) -> int:
+        """Return the number of features or records."""
+        if self.geometry is not None:
+            return len(self.geometry)
+        return len(next(iter(self.columns.values()), ()))
+
+    def take(self, which: NDArray[np.generic]) -> Layer:
+        """Return the features at the given indices or mask."""
+        return Layer(
+            self.name,
+            {name: values[which] for name, values in self.columns.items()},
+            None if self.geometry is None else self.geometry[which],
+            self.crs,
+            self.findings,
+        )
+
+    def saying(self, *more: Finding) -> Layer:
+        """Return the same layer with more findings."""
+        return replace(self, findings=(*self.findings, *more))
+
+    def checked(self) -> Layer:
+        """Return the layer flat, without geometries whose coordinates are no numbers."""
+        if self.geometry is None:
+            return self
+        findings = []
+        if shapely.has_z(self.geometry).any() or shapely.has_m(self.geometry).any():
+            findings.append(seen("Heights and measures (Z, M) are not used."))
+        flat = shapely.force_2d(self.geometry)
+        coordinates, feature = shapely.get_coordinates(flat, return_index=True)
+        broken = np.unique(feature[~np.isfinite(coordinates).all(axis=1)])
+        flat[broken] = None
+        if len(broken):
+            said = f"{len(broken)} feature(s) have coordinates that are no numbers; left out."
+            findings.append(dropped(said, f"feature {broken[0] + 1}"))
+        return replace(self, geometry=flat, findings=(*self.findings, *findings))
+
+    def where(self, condition: str | None) -> Layer:
+        """Return the features that fulfil ``column=value``; all of them for None."""
+        if condition is None:
+            return self
+        column, _, value = condition.partition("=")
+        named = self.column(column.strip())
+        kept = np.array([text(v) == value.strip() for v in named], dtype=bool)
+        if not kept.any():
+            offers = tuple(f"{column}={v}" for v in sorted({text(v) for v in named})[:50])
+            raise ChoiceNeeded(
+                f"The choice {condition!r} must fit at least one feature, but it fits none. "
+                f"Column {column} holds: {', '.join(o.partition('=')[2] for o in offers[:10])}.",
+                "where",
+                offers,
+            )
+        return self.take(kept)
+
+    def column(self, name: str) -> NDArray[np.object_]:
+        """Return a column by its name, capitals aside; raise `ChoiceNeeded` where there is none."""
+        if name in self.columns:
+            return self.columns[name]
+        for own, values in self.columns.items():
+            if own.casefold() == name.casefold():
+                return values
+        raise ChoiceNeeded(
+            f"There must be a column {name!r}, but the columns are "
+            f"{', '.join(self.columns) or 'none at all'}. Choose one of them.",
+            "columns",
+            tuple(self.columns),
+        )
+
+
+def text(value: object) -> str:
+    """Return a cell as the text a person would see; empty for a missing one."""
+    if value is None or (isinstance(value, float) and np.isnan(value)):
+        return ""
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        return str(int(value))
+    return str(value).strip()
+
+
+class LayerInfo(NamedTuple):
+    """One layer that a source holds.
+
+    Parameters
+    ----------
+    member
+        File in the archive or folder; hand it back as ``options.member``.
+    layer
+        Layer or sheet; hand it back as ``options.layer``.
+    geometry_type
+        As the file states it; None for a plain table.
+    """
+
+    member: str
+    layer: str
+    geometry_type: str | None

@@ -1,0 +1,1 @@
+"""What cells, columns and coordinates mean, by their own evidence."""

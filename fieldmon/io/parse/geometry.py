@@ -1,0 +1,190 @@
+"""Areas as they come from a file, made fit for a plot, and every change said."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import pyproj
+import shapely
+from shapely import MultiPolygon, Polygon
+from shapely.errors import GEOSException
+
+from fieldmon.io.import_report import Finding, doubtful, dropped, repaired
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+_GEOD = pyproj.Geod(ellps="WGS84")
+#: a plot smaller or larger than this is questioned
+SMALLEST_M2, LARGEST_M2 = 10.0, 100_000_000.0
+#: a part smaller or narrower than this carries no plant
+_SLIVER_M2, _SLIVER_WIDTH_M = 1.0, 0.1
+_REASONS = {
+    "Self-intersection": "its outline crosses itself",
+    "Ring Self-intersection": "its outline touches itself",
+    "Hole lies outside shell": "a hole lies outside it",
+    "Holes are nested": "a hole lies in a hole",
+    "Nested holes": "a hole lies in a hole",
+    "Nested shells": "a part lies inside another",
+    "Duplicate Rings": "a ring is there twice",
+    "Interior is disconnected": "holes cut it into pieces",
+    "Too few points in geometry component": "a ring has too few corners",
+}
+
+
+def area_m2(geometry: shapely.Geometry) -> float:
+    """Return the area of a lon/lat geometry on the ellipsoid."""
+    return float(_measured(geometry).area_m2.sum())
+
+
+class _Measured(NamedTuple):
+    """Area without holes, and length of the outlines, of each polygon ``(n,)``."""
+
+    area_m2: Floats
+    perimeter_m: Floats
+
+
+def _measured(geometry: shapely.Geometry) -> _Measured:
+    """Return the measures of a lon/lat geometry's polygons.
+
+    The area between a parallel and the equator has a closed form on the ellipsoid (Snyder 1987,
+    Map Projections, eq. 3-12), so that of a ring is one sum; sides count as straight in a map that
+    keeps areas, which for a side of 1 km is geodesic to some centimetres.
+    """
+    polygons = _polygons(geometry).geoms
+    rings, polygon = shapely.get_rings(list(polygons), return_index=True)
+    lonlat, ring = shapely.get_coordinates(rings, return_index=True)
+    lon, lat = np.deg2rad(lonlat).T
+    sin = np.sin(lat)
+    eccentricity = np.sqrt(_GEOD.es)
+    whole = (1 - _GEOD.es) * (
+        sin / (1 - _GEOD.es * sin**2) + np.arctanh(eccentricity * sin) / eccentricity
+    )
+    first = np.searchsorted(ring, np.arange(len(rings)))
+    band = whole - whole[first][ring]  # from the ring's first corner, so that no digits are lost
+    inside = ring[1:] == ring[:-1]
+    east = np.where(inside, (np.diff(lon) + np.pi) % (2 * np.pi) - np.pi, 0.0)
+    swept = _GEOD.a**2 / 2 * east * (band[1:] + band[:-1]) / 2
+    area = np.abs(np.bincount(ring[1:], swept, len(rings)))
+    area[np.diff(polygon, prepend=-1) == 0] *= -1  # all but the first ring of a polygon are holes
+    curve = np.sqrt(1 - _GEOD.es * ((sin[1:] + sin[:-1]) / 2) ** 2)
+    x = east * _GEOD.a / curve * np.cos((lat[1:] + lat[:-1]) / 2)
+    y = np.where(inside, np.diff(lat), 0.0) * _GEOD.a * (1 - _GEOD.es) / curve**3
+    length = np.bincount(ring[1:], np.hypot(x, y), len(rings))
+    n = len(polygons)
+    of_polygon = (np.bincount(polygon, values, n).astype(np.float64) for values in (area, length))
+    return _Measured(*of_polygon)
+
+
+class Sorted(NamedTuple):
+    """Masks ``(n,)`` of features by what they are; none of them for a missing geometry."""
+
+    areas: NDArray[np.bool_]
+    lines: NDArray[np.bool_]
+    points: NDArray[np.bool_]
+
+
+def sort_out(geometry: NDArray[np.object_]) -> Sorted:
+    """Return which features are areas, lines or points; a collection is the most it holds."""
+    there = ~shapely.is_missing(geometry) & ~shapely.is_empty(geometry)
+    dimensions = np.where(there, shapely.get_dimensions(geometry), -1)
+    return Sorted(dimensions == 2, dimensions == 1, dimensions == 0)
+
+
+def closed_lines(geometry: NDArray[np.object_]) -> NDArray[np.bool_]:
+    """Return which features are lines that end where they begin: outlines drawn as lines."""
+    parts_closed = [
+        g is not None
+        and g.geom_type in {"LineString", "MultiLineString"}
+        and not g.is_empty
+        and all(p.is_closed and len(p.coords) >= 4 for p in shapely.get_parts(g))
+        for g in geometry
+    ]
+    return np.array(parts_closed, dtype=bool)
+
+
+def filled(line: shapely.Geometry) -> MultiPolygon:
+    """Return the area inside lines that end where they begin."""
+    return MultiPolygon([Polygon(part.coords) for part in shapely.get_parts(line)])
+
+
+def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Finding]]:
+    """Return one feature's lon/lat area as a valid MultiPolygon (empty where nothing is left)."""
+    drawn = _polygons(area)
+    whole, findings = drawn, []
+    if not shapely.is_valid(drawn):
+        why = _plain(shapely.is_valid_reason(drawn))
+        try:
+            whole = _polygons(shapely.make_valid(drawn, method="structure", keep_collapsed=False))
+        except GEOSException as bad:
+            said = f"The shape is broken ({why}) beyond repair: {bad}."
+            return MultiPolygon(), [dropped(said, name)]
+    measured = _measured(whole)
+    if whole is not drawn:
+        findings.append(_repaired(drawn, whole, measured, name, why))
+    is_wide = _is_wide(measured)
+    if not is_wide.all():
+        whole = MultiPolygon([p for p, wide in zip(whole.geoms, is_wide, strict=True) if wide])
+        findings.append(
+            dropped(
+                f"{int((~is_wide).sum())} part(s) too small or narrow for a plant were left out "
+                f"(under {_SLIVER_M2:g} m2 or {_SLIVER_WIDTH_M:g} m wide).",
+                name,
+            )
+        )
+    if not whole.is_empty:
+        findings += _questions(float(measured.area_m2[is_wide].sum()), name)
+    return whole, findings
+
+
+def _repaired(
+    drawn: MultiPolygon, whole: MultiPolygon, now: _Measured, name: str, why: str
+) -> Finding:
+    """Return what to say of an area made valid: parts that overlap are one, holes stay holes."""
+    parts = "" if len(whole.geoms) == len(drawn.geoms) else f" in {len(whole.geoms)} part(s)"
+    change = f"{_amount(area_m2(drawn))} as drawn, {_amount(now.area_m2.sum())}{parts} now"
+    return repaired(f"The shape was not valid ({why}) and was repaired: {change}.", name)
+
+
+def _polygons(geometry: shapely.Geometry) -> MultiPolygon:
+    """Return the polygons of any geometry."""
+    parts = shapely.get_parts(geometry)
+    while (shapely.get_type_id(parts) >= 4).any():
+        parts = shapely.get_parts(parts)
+    kept = parts[(shapely.get_type_id(parts) == 3) & ~shapely.is_empty(parts)]
+    return MultiPolygon(list(kept))
+
+
+def _is_wide(measured: _Measured) -> NDArray[np.bool_]:
+    """Return which parts ``(n,)`` have room for a plant."""
+    width_m = 2 * measured.area_m2 / np.maximum(measured.perimeter_m, 1e-9)
+    return (measured.area_m2 >= _SLIVER_M2) & (width_m >= _SLIVER_WIDTH_M)
+
+
+def _questions(area: float, name: str) -> list[Finding]:
+    if SMALLEST_M2 <= area <= LARGEST_M2:
+        return []
+    return [
+        doubtful(
+            f"A plot has {_amount(SMALLEST_M2)} to {_amount(LARGEST_M2)} as a rule, but this one "
+            f"has {_amount(area)}. Check the coordinate system and the choice of feature.",
+            name,
+        )
+    ]
+
+
+def _amount(area: float) -> str:
+    return f"{area:.4g} m2" if area < 1000 else f"{area / 10_000:.5g} ha"
+
+
+def _plain(reason: str) -> str:
+    """Return GEOS's reason in words, with its place as people write it."""
+    what, _, where = reason.partition("[")
+    words = _REASONS.get(what.strip(), what.strip())
+    numbers = where.rstrip("]").split()
+    if len(numbers) < 2:
+        return words
+    return f"{words} at {float(numbers[0]):.6f}, {float(numbers[1]):.6f}"

@@ -1,0 +1,156 @@
+"""Put a layer on the earth: its coordinate system, its order of axes, degrees WGS84 out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.import_report import Finding, Remedy, doubtful, repaired, seen
+from fieldmon.io.parse.crs import ask_for_crs, km_between, system, utm_zone, way_from
+
+if TYPE_CHECKING:
+    import pyproj
+    from numpy.typing import NDArray
+
+    from fieldmon.io.options import ReadOptions
+
+_DEGREE_M = 111_320.0
+_FAR_KM = 20.0
+_LOOKED_AT = 5_000
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """Coordinates on the earth.
+
+    Parameters
+    ----------
+    lonlat
+        ``(n, 2)`` degrees WGS84.
+    step_m
+        Coarsest step that all coordinates of the file are whole multiples of: how they are rounded.
+    findings
+        What was found on the way.
+    """
+
+    lonlat: NDArray[np.float64]
+    step_m: float
+    findings: tuple[Finding, ...]
+
+
+def place_geometry(
+    geometry: NDArray[np.object_], stated: str | None, options: ReadOptions
+) -> tuple[NDArray[np.object_], tuple[Finding, ...]]:
+    """Return geometries ``(n,)`` in degrees WGS84, lon/lat, and what was found on the way."""
+    placed = place(np.asarray(shapely.get_coordinates(geometry)), stated, options)
+    moved = geometry.copy()
+    shapely.set_coordinates(moved, placed.lonlat)
+    return moved, placed.findings
+
+
+def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> Placed:
+    """Return degrees WGS84 for a file's coordinates ``(n, 2)``; ask where they cannot be known."""
+    findings: list[Finding] = []
+    if not np.isfinite(xy).all():
+        raise FileProblem(
+            "All coordinates must be numbers, but some are infinite or none. Export the file again."
+        )
+    if options.swap_axes:
+        xy = xy[:, ::-1]
+        findings.append(seen("First and second coordinate were exchanged, as asked."))
+    if options.crs is not None and stated is not None:
+        findings.append(seen(f"The coordinate system named by hand, {options.crs}, was used."))
+    wanted = options.crs or stated
+    if wanted is None:
+        raise ask_for_crs(xy, options, "The file does not say in which coordinate system it is.")
+    crs = system(wanted)
+    _check_range(xy, crs, options)
+    xy, more = _without_zone(xy, crs)
+    way = way_from(crs, _middle(xy))
+    lonlat = way.lonlat(xy)
+    _check_landing(lonlat, crs)
+    step_m = _step(xy) * (_DEGREE_M if crs.is_geographic else 1.0)
+    found = (*findings, *more, *way.findings(), *_distance(lonlat, options))
+    return Placed(lonlat, step_m, found)
+
+
+def _middle(xy: NDArray[np.float64]) -> tuple[float, float]:
+    return float(np.median(xy[:, 0])), float(np.median(xy[:, 1]))
+
+
+def _check_range(xy: NDArray[np.float64], crs: pyproj.CRS, options: ReadOptions) -> None:
+    """Ask where degrees are none, or are in the wrong order."""
+    if not crs.is_geographic or crs.axis_info[0].unit_name != "degree":
+        return
+    first, second = np.abs(xy[:, 0]), np.abs(xy[:, 1])
+    if (first <= 360).all() and (second <= 90).all():
+        return
+    if (second <= 360).all() and (first <= 90).all():
+        raise ChoiceNeeded(
+            f"Latitudes must lie in -90..90, but there is {xy[np.argmax(second), 1]:.6g}: "
+            "longitude and latitude seem to be in the wrong order. Exchange them if that is so.",
+            "swap_axes",
+            ("no" if options.swap_axes else "yes",),
+        )
+    raise ask_for_crs(
+        xy, options, f"The file says {crs.name}, in degrees, but its coordinates are no degrees."
+    )
+
+
+def _without_zone(
+    xy: NDArray[np.float64], crs: pyproj.CRS
+) -> tuple[NDArray[np.float64], list[Finding]]:
+    """Return coordinates without the zone number that some offices write before the easting."""
+    zone = utm_zone(crs)
+    prefixed = np.floor(xy[:, 0] / 1e6)
+    if zone is None or not (prefixed == zone).all() or crs.coordinate_operation is None:
+        return xy, []
+    false_easting = next(
+        (p.value for p in crs.coordinate_operation.params if p.name == "False easting"), 500_000.0
+    )
+    if float(false_easting) > 1e6:  # the system itself counts the zone in
+        return xy, []
+    bare = xy - np.array([zone * 1e6, 0.0])
+    return bare, [repaired(f"The zone number {zone} in front of the eastings was taken off.")]
+
+
+def _check_landing(lonlat: NDArray[np.float64], crs: pyproj.CRS) -> None:
+    if not (np.isfinite(lonlat).all() and (np.abs(lonlat[:, 1]) <= 90).all()):
+        raise FileProblem(
+            f"All coordinates must lie where {crs.name} is defined, but some do not. "
+            "Check the coordinate system and name the right one."
+        )
+
+
+def _distance(lonlat: NDArray[np.float64], options: ReadOptions) -> list[Finding]:
+    """Return a doubt where the file lies far from the place named by hand."""
+    if options.near is None:
+        return []
+    lon, lat = _middle(lonlat)
+    away = km_between(options.near, (lon, lat))
+    if away <= _FAR_KM:
+        return []
+    swapped = km_between(options.near, (lat, lon)) if abs(lon) <= 90 else np.inf
+    if swapped < away / 10:
+        remedy = Remedy("swap_axes", "yes", "Exchange longitude and latitude")
+        return [
+            doubtful(
+                f"It lies {away:.0f} km from the place nearby, but {swapped:.0f} km from it with "
+                "longitude and latitude exchanged.",
+                remedy=remedy,
+            )
+        ]
+    return [doubtful(f"It lies {away:.0f} km from the place nearby.")]
+
+
+def _step(xy: NDArray[np.float64]) -> float:
+    """Return the step of rounding: 0.001 where all coordinates have at most three decimals."""
+    some = xy[:: max(1, len(xy) // _LOOKED_AT)]
+    for decimals in range(9):
+        if np.abs(np.round(some, decimals) - some).max(initial=0.0) < 1e-10:
+            return float(10.0**-decimals)
+    return 0.0

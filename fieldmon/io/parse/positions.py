@@ -1,0 +1,300 @@
+"""Where the features or records of a layer are, in whichever way it says so."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyproj
+import shapely
+from pyproj.exceptions import CRSError
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.import_report import Finding, Remedy, doubtful, dropped, guessed, repaired, seen
+from fieldmon.io.parse.columns import find
+from fieldmon.io.parse.geometry import sort_out
+from fieldmon.io.parse.georeference import place
+from fieldmon.io.parse.values import (
+    all_degrees,
+    hemispheres,
+    is_missing,
+    numbers,
+    pairs,
+    plain_numbers,
+)
+from fieldmon.io.readers.places import Named, Places, by_plant, by_plot
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.io.options import ReadOptions
+
+_WGS84 = "OGC:CRS84"
+#: coordinates rounded to more than this cannot tell neighbouring plants apart; five decimals of a
+#: degree, 1.1 m, still can
+_COARSE_M = 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class Located:
+    """The features of a layer that have a position.
+
+    Parameters
+    ----------
+    layer
+        Those features.
+    lonlat
+        ``(n, 2)`` degrees.
+    accuracy_m
+        ``(n,)`` what the way of writing positions leaves open; NaN where that is nothing.
+    findings
+        What was found on the way.
+    """
+
+    layer: Layer
+    lonlat: NDArray[np.float64]
+    accuracy_m: NDArray[np.float64]
+    findings: tuple[Finding, ...]
+
+
+def located(layer: Layer, options: ReadOptions, places: Places | None = None) -> Located:
+    """Return the features of a layer that have a position, or name a place that has one."""
+    if layer.geometry is not None:
+        return _points(layer, options)
+    way = _way(layer, options)
+    if way is not None:
+        return _by_coordinates(layer, options, *way)
+    return _by_name(layer, options, places or Places())
+
+
+def _points(layer: Layer, options: ReadOptions) -> Located:
+    geometry = layer.geometry
+    areas, lines, points = sort_out(np.asarray(geometry))
+    if geometry is None or not points.any():
+        raise FileProblem(
+            f"{layer.name} must hold points, but it holds {int(areas.sum())} area(s) and "
+            f"{int(lines.sum())} line(s). Choose another file or layer."
+        )
+    findings = []
+    others = len(layer) - int(points.sum())
+    if others:
+        findings.append(dropped(f"{others} feature(s) that are no points were left out."))
+    single, index = shapely.get_parts(geometry[points], return_index=True)
+    kept = layer.take(np.flatnonzero(points)[index])
+    placed = place(shapely.get_coordinates(single), layer.crs, options)
+    accuracy, coarse = _rounding(placed.step_m, len(kept))
+    return Located(kept, placed.lonlat, accuracy, (*findings, *placed.findings, *coarse))
+
+
+def _way(layer: Layer, options: ReadOptions) -> tuple[str, tuple[str, ...]] | None:
+    """Return how a table gives positions, and in which columns; None where it gives none."""
+    by_hand = {role for role, _ in options.columns}
+
+    def named(*roles: str) -> tuple[str, ...]:
+        return tuple(n for r in roles if (n := options.column(r) or find(r, layer.columns)))
+
+    degrees, metres, together = named("lon", "lat"), named("x", "y"), named("position")
+    if len(metres) == 2 and by_hand & {"x", "y"}:
+        return "metres", metres
+    if len(degrees) == 2 and "position" not in by_hand:
+        return "degrees", degrees
+    if together and ("position" in by_hand or _holds_pairs(layer, together[0])):
+        return "together", together
+    if len(metres) == 2 and not _are_numbers_of_plants(layer, metres):
+        return "metres", metres
+    return None
+
+
+def _holds_pairs(layer: Layer, name: str) -> bool:
+    some = [text(v) for v in layer.column(name)[:50] if not is_missing(v)]
+    return bool(some) and bool(np.isfinite(pairs(some).values).any())
+
+
+def _are_numbers_of_plants(layer: Layer, names: tuple[str, ...]) -> bool:
+    """Return whether x and y are small whole numbers: places in a grid, not on the earth."""
+    xy = np.stack([numbers(layer.column(name)) for name in names], axis=1)
+    xy = xy[np.isfinite(xy).all(axis=1)]
+    return len(xy) > 0 and bool(((xy == np.round(xy)) & (xy >= 0) & (xy < 2000)).all())
+
+
+def _by_coordinates(
+    layer: Layer, options: ReadOptions, how: str, names: tuple[str, ...]
+) -> Located:
+    shown = " and ".join(repr(name) for name in names)
+    xy, crs, findings = _coordinates(layer, options, how, names)
+    stated, more = _stated_crs(layer, options)
+    there = _finite(xy)
+    if not there.any():
+        raise FileProblem(
+            f"Column(s) {shown} of {layer.name} must hold positions, but not one record has any"
+            f"{_for_instance(layer, names, there)}. Correct them or name other columns."
+        )
+    if not there.all():
+        findings.append(
+            dropped(
+                f"{int((~there).sum())} record(s) without a usable position were left out"
+                f"{_for_instance(layer, names, there)}."
+            )
+        )
+    placed = place(xy[there], stated or crs, options)
+    accuracy, coarse = _rounding(placed.step_m, int(there.sum()))
+    found = (seen(f"Positions are in column(s) {shown}."), *findings, *more)
+    return Located(
+        layer.take(np.flatnonzero(there)),
+        placed.lonlat,
+        accuracy,
+        (*found, *placed.findings, *coarse),
+    )
+
+
+def _finite(xy: NDArray[np.float64]) -> NDArray[np.bool_]:
+    return np.asarray(np.isfinite(xy).all(axis=1), dtype=bool)
+
+
+def _coordinates(
+    layer: Layer, options: ReadOptions, how: str, names: tuple[str, ...]
+) -> tuple[NDArray[np.float64], str | None, list[Finding]]:
+    """Return what the columns hold ``(n, 2)``, its coordinate system if that is sure, findings."""
+    columns = [layer.column(name) for name in names]
+    if how == "metres":
+        return np.stack([numbers(c, options.decimal) for c in columns], axis=1), None, []
+    if how == "together":
+        read = pairs([text(v) for v in columns[0]])
+        return read.values, _WGS84, _order_of(read.is_certain, names[0])
+    xy = np.stack([all_degrees(c, options.decimal) for c in columns], axis=1)
+    if _letters_are_crossed(layer, names):
+        said = "Longitudes stood in the column of latitudes; exchanged."
+        return xy[:, ::-1], _WGS84, [repaired(said)]
+    return xy, _WGS84, []
+
+
+def _letters_are_crossed(layer: Layer, names: tuple[str, ...]) -> bool:
+    columns = [layer.column(name) for name in names]
+    if any(plain_numbers(column) is not None for column in columns):
+        return False
+    lon, lat = (hemispheres(text(v) for v in column) for column in columns)
+    return bool(lon | lat) and lon <= set("NS") and lat <= set("EW")
+
+
+def _order_of(is_certain: bool, name: str) -> list[Finding]:  # noqa: FBT001 - one caller
+    if is_certain:
+        return []
+    return [
+        guessed(
+            "Both coordinates stand in one column; they were read as latitude, longitude.",
+            name,
+            Remedy("swap_axes", "yes", "Read as longitude, latitude"),
+        )
+    ]
+
+
+def _for_instance(layer: Layer, names: tuple[str, ...], there: NDArray[np.bool_]) -> str:
+    for i in np.flatnonzero(~there):
+        cells = [text(layer.column(name)[i]) for name in names]
+        if any(not is_missing(cell) for cell in cells):
+            return f", for instance {' / '.join(cells)!r} in record {i + 1}"
+    return ""
+
+
+def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Finding]]:
+    """Return the coordinate system that a column of the table states for all of its records."""
+    name = options.column("crs") or find("crs", layer.columns)
+    if name is None or options.crs is not None:
+        return None, []
+    stated = {text(v) for v in layer.column(name) if not is_missing(v)}
+    if name == find("date", layer.columns) and not any(map(_known_system, sorted(stated)[:20])):
+        return None, []  # Datum: the day in German, the system in English
+    if len(stated) > 1:
+        raise ChoiceNeeded(
+            f"All records must be in one coordinate system, but column {name!r} names "
+            f"{len(stated)}: {', '.join(sorted(stated)[:5])}. Choose the records of one of them.",
+            "where",
+            tuple(f"{name}={value}" for value in sorted(stated)),
+        )
+    for value in stated:
+        known = _known_system(value)
+        if known is None:
+            said = f"It names the coordinate system {value!r}, which is not known."
+            return None, [doubtful(said, name)]
+        return known, [seen(f"Column {name!r} names the coordinate system {value}.")]
+    return None, []
+
+
+def _known_system(value: str) -> str | None:
+    known = f"EPSG:{value}" if re.fullmatch(r"\d{4,6}", value) else value
+    try:
+        pyproj.CRS.from_user_input(known)
+    except CRSError:
+        return None
+    return known
+
+
+def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
+    """Return the records that name a plant or a plot, at the place they name."""
+    row = options.column("row") or find("row", layer.columns)
+    taken = frozenset({row} if row else ())
+    plant = options.column("plant") or find("plant", layer.columns, taken)
+    told = options.column("plot")  # "" says that no column names a plot
+    plot = find("plot", layer.columns) if told is None else told
+    if plant and (row or not plot) and (places.plants or not plot):
+        rows = None if row is None else layer.column(row)
+        _check_one_plot(layer, plot)
+        named = by_plant(rows, layer.column(plant), places)
+    elif plot and places.plants is not None and not places.plots:
+        named = by_plant(None, layer.column(plot), places)
+    elif plot:
+        named = by_plot(layer.column(plot), places)
+    else:
+        raise ChoiceNeeded(
+            f"{layer.name} must have a column of longitudes and one of latitudes (or eastings and "
+            "northings, or rows and plants), but none were recognised among: "
+            f"{', '.join(layer.columns)}. Name them.",
+            "columns",
+            tuple(layer.columns),
+        )
+    return _kept(layer, named)
+
+
+def _check_one_plot(layer: Layer, plot: str | None) -> None:
+    """Ask for one plot: row 3, plant 7 is another place on each."""
+    if not plot:
+        return
+    names = sorted({text(v) for v in layer.column(plot)} - {""})
+    if len(names) > 1:
+        raise ChoiceNeeded(
+            f"Records that name rows and plants must be of one plot, but column {plot!r} names "
+            f"{len(names)}: {', '.join(names[:12])}. Choose the records of one of them, "
+            "or say that no column names a plot: columns=plot=.",
+            "where",
+            tuple(f"{plot}={name}" for name in names),
+        )
+
+
+def _kept(layer: Layer, named: Named) -> Located:
+    there = _finite(named.lonlat)
+    if not there.any():
+        said = " ".join(finding.sentence for finding in named.findings)
+        raise FileProblem(
+            f"Records of {layer.name} must name places that are known, but none does. {said}"
+        )
+    return Located(
+        layer.take(np.flatnonzero(there)),
+        named.lonlat[there],
+        named.accuracy_m[there],
+        named.findings,
+    )
+
+
+def _rounding(step_m: float, n: int) -> tuple[NDArray[np.float64], list[Finding]]:
+    """Return the accuracy that rounding leaves ``(n,)``, and a doubt where that is too little."""
+    if step_m <= _COARSE_M:
+        return np.full(n, np.nan), []
+    return np.full(n, step_m / np.sqrt(6)), [  # both axes, each even over the step
+        doubtful(
+            f"Coordinates are rounded to about {step_m:.3g} m: too coarse to name a plant. "
+            "They are used with that accuracy."
+        )
+    ]

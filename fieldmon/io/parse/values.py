@@ -1,0 +1,410 @@
+"""Cells as people write them: numbers, positions, dates, counts, yes and no."""
+
+from __future__ import annotations
+
+import re
+from datetime import date, timedelta
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.io.formats.layer import text
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from numpy.typing import NDArray
+
+    from fieldmon.io.options import DateOrder
+
+    Float = NDArray[np.float64]
+
+MISSING = frozenset(
+    {"", "na", "n/a", "n.a.", "nan", "null", "none given", "-", "--", "?", ".", "nd", "n.d."}
+    | {"unknown", "missing", "#n/a", "<na>", "-9999", "-999", "nat", "unbekannt", "לא ידוע"}
+)
+_YES = frozenset(
+    {"yes", "y", "true", "t", "present", "positive", "pos", "p", "+", "1", "x", "found", "detected"}
+    | {"infested", "infected", "diseased", "ja", "si", "sí", "oui", "sim", "כן", "נמצא", "נגוע"}
+    | {"presente", "présent", "vorhanden", "some", "few", "many", "low", "medium", "high", "v", "✓"}
+)
+_NO = frozenset(
+    {"no", "false", "f", "absent", "negative", "neg", "n", "0", "none", "nil", "zero", "clean"}
+    | {"not found", "not detected", "healthy", "nein", "non", "não", "nao", "לא", "לא נמצא", "נקי"}
+    | {"ausente", "keine", "ninguno", "aucun", "nothing", "אין"}
+)
+
+
+def is_missing(value: object) -> bool:
+    """Return whether a cell holds nothing, or a word for nothing known."""
+    return text(value).casefold() in MISSING
+
+
+_GROUPED = re.compile(r"[-+]?\d{1,3}([.,]\d{3})+")
+_COMMA = re.compile(r"[-+]?(\d{1,3}(\.\d{3})+|\d+),\d+")
+_POINT = re.compile(r"[-+]?(\d{1,3}(,\d{3})+|\d+)\.\d+")
+
+
+def could_be_thousands(cell: str) -> bool:
+    """Return whether 1,234 may mean more than a thousand, or little more than one."""
+    return bool(_GROUPED.fullmatch(cell))
+
+
+def decimal_mark(cells: Iterable[str]) -> str | None:
+    """Return the decimal mark that cells speak for; None where they speak for none."""
+    commas = points = 0
+    for cell in cells:
+        commas += bool(_COMMA.fullmatch(cell))
+        points += bool(_POINT.fullmatch(cell))
+    return None if commas == points == 0 else "," if commas > points else "."
+
+
+def number(cell: str, decimal: str = ".") -> float:
+    """Return a number from a cell, NaN where it is none; thousands may be set apart."""
+    bare = re.sub(r"[\s\u00a0\u202f'’_]", "", cell).replace("\u2212", "-")
+    other = "," if decimal == "." else "."
+    if other in bare:
+        whole = bare.split(decimal, maxsplit=1)[0]
+        if not re.fullmatch(rf"[-+]?\d{{1,3}}(\{other}\d{{3}})+", whole):
+            return np.nan
+        bare = bare.replace(other, "")
+    try:
+        return float(bare.replace(decimal, "."))
+    except ValueError:
+        return np.nan
+
+
+def plain_numbers(column: NDArray[np.object_]) -> Float | None:
+    """Return a column as numbers ``(n,)`` if all it holds are plain ones or nothing, else None."""
+    try:
+        return np.array([np.nan if v is None else v for v in column.tolist()], dtype=np.float64)
+    except (ValueError, TypeError):
+        return None
+
+
+def numbers(column: NDArray[np.object_], decimal: str | None = None) -> Float:
+    """Return a column as numbers ``(n,)``; NaN where missing or not a number."""
+    read = plain_numbers(column)
+    if read is not None:
+        return read
+    cells = [text(v) for v in column]
+    mark = decimal or decimal_mark(cells) or "."
+    return np.array([np.nan if c.casefold() in MISSING else number(c, mark) for c in cells])
+
+
+class Counted(NamedTuple):
+    """What a cell for a count says: how many, and whether there is anything."""
+
+    number: float
+    present: int
+    is_rough: bool
+
+
+_BOUND = re.compile(r"^(<=|>=|<|>|~|≈|≤|≥|ca\.?|about|approx\.?)?\s*([\d.,]+)\s*(\+)?$")
+_RANGE = re.compile(r"^([\d.,]+)\s*(?:-|–|to|bis|a)\s*([\d.,]+)$")
+
+
+def counted(cell: str, decimal: str = ".") -> Counted:
+    """Return what a cell for a count says; zero is absence, a missing cell is nothing known."""
+    word = cell.strip().casefold()
+    if word in MISSING:
+        return Counted(np.nan, UNKNOWN, is_rough=False)
+    value = number(cell, decimal)
+    if np.isfinite(value):
+        if value < 0:
+            return Counted(np.nan, UNKNOWN, is_rough=True)
+        return Counted(value, PRESENT if value > 0 else ABSENT, is_rough=False)
+    if word in _NO:
+        return Counted(0.0, ABSENT, is_rough=False)
+    if word in _YES:
+        return Counted(np.nan, PRESENT, is_rough=False)
+    return _roughly(word, decimal)
+
+
+def _roughly(word: str, decimal: str) -> Counted:
+    between = _RANGE.match(word)
+    if between:
+        low, high = (number(part, decimal) for part in between.groups())
+        return Counted((low + high) / 2, PRESENT if high > 0 else ABSENT, is_rough=True)
+    bound = _BOUND.match(word)
+    if not bound:
+        return Counted(np.nan, UNKNOWN, is_rough=True)
+    sign, digits, _ = bound.groups()
+    value = number(digits, decimal)
+    if sign in {"<", "<=", "≤"}:
+        # fewer than 5 were seen, so some were; fewer than 1 may be none
+        some = value > 1 or (sign != "<" and value >= 1)
+        return Counted(np.nan, PRESENT if some else UNKNOWN, is_rough=True)
+    return Counted(value, PRESENT if value > 0 else UNKNOWN, is_rough=True)
+
+
+def presence(cell: str) -> int:
+    """Return `PRESENT`, `ABSENT` or `UNKNOWN` for a cell that says whether."""
+    word = cell.strip().casefold()
+    if word in MISSING:
+        return UNKNOWN
+    if word in _NO:
+        return ABSENT
+    if word in _YES:
+        return PRESENT
+    return counted(cell).present
+
+
+# --- positions ---------------------------------------------------------------------------------
+
+_HEMISPHERE = re.compile(r"^([NSEW])\s*(.*)$|^(.*?)\s*([NSEW])$", re.IGNORECASE)
+_DMS = re.compile(
+    r"^([-+]?\d{1,3})\s*(?:°|º|d|deg|:|\s)\s*"
+    r"(\d{1,2}(?:[.,]\d+)?)\s*(?:'|′|’|m|min|:|\s|$)\s*"
+    r"(?:(\d{1,2}(?:[.,]\d+)?)\s*(?:\"|″|”|''|s|sec)?)?$",
+    re.IGNORECASE,
+)
+
+
+def degrees(cell: str, decimal: str = ".") -> float:
+    """Return degrees from decimal degrees, degrees-minutes-seconds or ``N 31.2``; NaN for neither.
+
+    Minutes and seconds must be below 60: ``07.16.5046`` is not a coordinate to guess, and neither
+    is the letter O, which is east in German and west in Spanish.
+    """
+    sign, bare = _signed(cell.strip())
+    bare = re.sub(r"\s+", " ", bare).replace(" °", "°").replace(" º", "º")
+    # a blank here stands between degrees and minutes, never between thousands
+    value = np.nan if " " in bare else number(bare.rstrip("°º"), decimal)
+    if np.isfinite(value):
+        return sign * value
+    parts = _DMS.match(bare)
+    if not parts:
+        return np.nan
+    whole, minutes, seconds = (float((p or "0").replace(",", ".")) for p in parts.groups())
+    if minutes >= 60 or seconds >= 60 or (seconds and not minutes.is_integer()):
+        return np.nan
+    if bare.startswith("-"):
+        sign, whole = -sign, -whole
+    return sign * (whole + minutes / 60 + seconds / 3600)
+
+
+def _signed(cell: str) -> tuple[float, str]:
+    found = _HEMISPHERE.match(cell)
+    if not found:
+        return 1.0, cell
+    letter = (found.group(1) or found.group(4)).upper()
+    rest = found.group(2) if found.group(1) else found.group(3)
+    return (-1.0 if letter in "SW" else 1.0), rest.strip()
+
+
+def all_degrees(column: NDArray[np.object_], decimal: str | None = None) -> Float:
+    """Return a column of coordinates as degrees ``(n,)``; NaN where a cell holds none."""
+    read = plain_numbers(column)
+    if read is not None:
+        return read
+    cells = [text(v) for v in column]
+    mark = decimal or decimal_mark(cells) or "."
+    return np.array([degrees(c, mark) for c in cells])
+
+
+def hemispheres(cells: Iterable[str]) -> set[str]:
+    """Return the letters N, S, E, W with which cells say where they lie."""
+    found = (_HEMISPHERE.match(cell.strip()) for cell in set(cells))
+    return {(m.group(1) or m.group(4)).upper() for m in found if m}
+
+
+class Pairs(NamedTuple):
+    """Positions that stand in one cell: ``(n, 2)`` lon, lat; NaN for none; is their order sure."""
+
+    values: NDArray[np.float64]
+    is_certain: bool
+
+
+_WKT_POINT = re.compile(r"^POINT\s*Z?M?\s*\(\s*(\S+)\s+([^\s)]+).*\)$", re.IGNORECASE)
+
+
+def pairs(cells: list[str]) -> Pairs:
+    """Return positions from cells that hold both coordinates.
+
+    WKT is longitude, latitude; letters say which is which; else latitude comes first, as people
+    write it, unless a first number is beyond 90.
+    """
+    values = np.full((len(cells), 2), np.nan)
+    sure = np.zeros(len(cells), dtype=bool)
+    for i, cell in enumerate(cells):
+        values[i], sure[i] = _pair(cell.strip())
+    read = np.isfinite(values).all(axis=1)
+    if (np.abs(values[read & ~sure, 1]) > 90).any():
+        values[~sure] = values[~sure][:, ::-1]
+        sure[:] = True
+    return Pairs(values, bool(sure[read].all()))
+
+
+def _pair(cell: str) -> tuple[tuple[float, float], bool]:
+    nothing = (np.nan, np.nan)
+    wkt = _WKT_POINT.match(cell)
+    if wkt:
+        return (number(wkt.group(1)), number(wkt.group(2))), True
+    parts = _halves(cell)
+    if parts is None:
+        return nothing, False
+    first, second = (degrees(part, "," if ";" in cell else ".") for part in parts)
+    letters = [hemispheres([part]) for part in parts]
+    if letters[0] <= set("EW") and letters[1] <= set("NS") and all(letters):
+        return (first, second), True
+    if letters[0] <= set("NS") and letters[1] <= set("EW"):
+        return (second, first), all(letters)
+    return nothing, False
+
+
+def _halves(cell: str) -> list[str] | None:
+    for mark in (";", ",", "/"):
+        parts = [part.strip() for part in cell.split(mark)]
+        if len(parts) == 2 and all(parts):
+            return parts
+    lettered = re.match(r"^(.*?[NS])\s*(.*[EW])$|^([NS].*?)\s*([EW].*)$", cell, re.IGNORECASE)
+    if lettered:
+        return [part for part in lettered.groups() if part]
+    parts = cell.split()
+    return parts if len(parts) == 2 else None
+
+
+# --- dates -------------------------------------------------------------------------------------
+
+_ISO = re.compile(r"^(\d{4})[-/.](\d{1,2})[-/.](\d{1,2})(?:[T\s].*)?$")
+_COMPACT = re.compile(r"^(\d{4})(\d{2})(\d{2})$")
+_NUMERIC = re.compile(r"^(\d{1,2})[-/. ](\d{1,2})[-/. ](\d{2}|\d{4})(?:[,T\s].*)?$")
+_NAMED = re.compile(r"^(\d{1,2})[-/. ]*([^\W\d_]{3,})\.?[-/., ]*(\d{2}|\d{4})(?:[,T\s].*)?$")
+_NAMED_US = re.compile(
+    r"^([^\W\d_]{3,})\.?[-/ ]*(\d{1,2})(?:st|nd|rd|th)?[-/., ]+(\d{4})(?:\s.*)?$"
+)
+_MONTHS = {
+    word: month
+    for month, words in enumerate(
+        (
+            "jan january januar ene enero janv janvier gennaio janeiro ינואר",
+            "feb february februar feb febrero fevr février febbraio fevereiro פברואר",
+            "mar march märz maerz mrz marzo mars março מרץ",
+            "apr april abr abril avr avril aprile אפריל",
+            "may mai mayo maggio maio מאי",
+            "jun june juni junio juin giugno junho יוני",
+            "jul july juli julio juil juillet luglio julho יולי",
+            "aug august ago agosto aout août אוגוסט",
+            "sep sept september septiembre septembre settembre setembro ספטמבר",
+            "oct october okt oktober octubre octobre ottobre outubro אוקטובר",
+            "nov november noviembre novembre novembro נובמבר",
+            "dec december dez dezember dic diciembre décembre dicembre dezembro דצמבר",
+        ),
+        start=1,
+    )
+    for word in words.split()
+}
+_EXCEL_ZERO = date(1899, 12, 30)
+_EXCEL_RANGE = (20_000, 80_000)  # 1954 to 2119: what a serial number of a day can be here
+
+
+class Dated(NamedTuple):
+    """A column of dates: the days, and what is unclear about them."""
+
+    day: NDArray[np.datetime64]
+    order: DateOrder | None
+    is_ambiguous: bool
+    n_broken: int
+    broken: tuple[str, ...]
+    n_serial: int
+
+
+def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> Dated:
+    """Return a column as days; NaT where missing or no date.
+
+    The order of day and month is the one told; else the only one that fits all of the column. Where
+    both fit, `is_ambiguous` is true and the days are read day first.
+    """
+    cells = [text(v) for v in column]
+    distinct = sorted(set(cells))
+    numeric = [found for c in distinct if (found := _NUMERIC.match(c))]
+    day_first = all(int(m.group(2)) <= 12 for m in numeric)
+    month_first = all(int(m.group(1)) <= 12 for m in numeric)
+    same = all(m.group(1).zfill(2) == m.group(2).zfill(2) for m in numeric)
+    ambiguous = bool(numeric) and order is None and day_first and month_first and not same
+    used: DateOrder = order or ("mdy" if month_first and not day_first else "dmy")
+    known = {c: _day(c, used) for c in distinct}
+    days = np.array([known[c] or "NaT" for c in cells], dtype="datetime64[D]")
+    broken = [c for c in cells if known[c] is None and c.casefold() not in MISSING]
+    serial = sum(known[c] is not None and _is_serial(c) for c in cells)
+    some = tuple(dict.fromkeys(broken))[:5]
+    return Dated(days, used if numeric else None, ambiguous, len(broken), some, serial)
+
+
+def dates_of_parts(year: Float, month: Float, day: Float) -> Dated:
+    """Return days from three columns of numbers; NaT where they name none."""
+    days, broken = [], []
+    for parts in np.stack([year, month, day], axis=1).tolist():
+        whole = all(np.isfinite(parts))
+        found = _valid(*(int(part) for part in parts)) if whole else None
+        if whole and found is None:
+            broken.append("-".join(f"{part:g}" for part in parts))
+        days.append(found or "NaT")
+    named = np.array(days, dtype="datetime64[D]")
+    return Dated(named, None, False, len(broken), tuple(dict.fromkeys(broken))[:5], 0)
+
+
+def _is_serial(cell: str) -> bool:
+    if not re.fullmatch(r"\d{5}(\.\d+)?", cell):
+        return False
+    return _EXCEL_RANGE[0] <= float(cell) <= _EXCEL_RANGE[1]
+
+
+def _day(cell: str, order: DateOrder) -> date | None:
+    for pattern, parse in _DATE_FORMS:
+        found = pattern.match(cell)
+        if found:
+            return parse(found, order)
+    if _is_serial(cell):
+        return _EXCEL_ZERO + timedelta(days=int(float(cell)))
+    return None
+
+
+def _numeric(found: re.Match[str], order: DateOrder) -> date | None:
+    first, second, third = found.groups()
+    if order == "ymd":
+        return _valid(_century(first), int(second), int(third)) if len(third) == 2 else None
+    day, month = (first, second) if order == "dmy" else (second, first)
+    return _valid(_century(third), int(month), int(day))
+
+
+def _named(found: re.Match[str], _: DateOrder) -> date | None:
+    day, word, year = found.groups()
+    month = _MONTHS.get(word.casefold()) or _MONTHS.get(word.casefold()[:3])
+    return _valid(_century(year), month, int(day)) if month else None
+
+
+def _named_us(found: re.Match[str], _: DateOrder) -> date | None:
+    word, day, year = found.groups()
+    month = _MONTHS.get(word.casefold()) or _MONTHS.get(word.casefold()[:3])
+    return _valid(int(year), month, int(day)) if month else None
+
+
+def _plain_day(found: re.Match[str], _: DateOrder) -> date | None:
+    return _valid(*(int(part) for part in found.groups()))
+
+
+_DATE_FORMS: tuple[
+    tuple[re.Pattern[str], Callable[[re.Match[str], DateOrder], date | None]], ...
+] = (
+    (_ISO, _plain_day),
+    (_COMPACT, _plain_day),
+    (_NUMERIC, _numeric),
+    (_NAMED, _named),
+    (_NAMED_US, _named_us),
+)
+
+
+def _century(year: str) -> int:
+    if len(year) == 4:
+        return int(year)
+    return 2000 + int(year) if int(year) < 70 else 1900 + int(year)
+
+
+def _valid(year: int, month: int, day: int) -> date | None:
+    try:
+        return date(year, month, day) if 1900 <= year <= 2200 else None
+    except ValueError:
+        return None

@@ -1,0 +1,1 @@
+"""Rasters: pictures of the ground, and values that plants stand on."""

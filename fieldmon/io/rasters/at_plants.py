@@ -1,0 +1,65 @@
+"""What rasters say of a plot's plants: their risk, and which of them are not there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.infestation.raster_risk import risk_chance
+from fieldmon.io.import_report import seen
+from fieldmon.io.rasters.read import read_raster
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.raster_risk import RiskSettings
+    from fieldmon.io.import_report import Imported
+    from fieldmon.io.options import Source
+    from fieldmon.io.rasters.values import How, RasterOptions
+    from fieldmon.plot.plot import Plot
+
+    Floats = NDArray[np.float64]
+
+
+def read_risk(
+    source: Source,
+    options: RasterOptions,
+    plot: Plot,
+    settings: RiskSettings,
+    how: How | None = None,
+) -> Imported[Floats]:
+    """Return the risk of each plant ``(n,)``, NaN where the raster says nothing.
+
+    Raise what `read_raster` raises, and `ObservationError` if values are not what they are said to
+    mean. A plant's value is the mean on its ground unless `how` says otherwise.
+    """
+    read = read_raster(source, options, plot.field)
+    chance = risk_chance(read.value.of_plants(plot.grid, how or "mean"), settings)
+    low, high, mean = np.nanmin(chance), np.nanmax(chance), np.nanmean(chance)
+    said = f"Risk by {settings.meaning}: {low:.3g} to {high:.3g}, {mean:.3g} on average"
+    return read.having(chance, [seen(said + _unseen(chance, "and have no risk by it"))])
+
+
+def read_missing(
+    source: Source,
+    options: RasterOptions,
+    plot: Plot,
+    below: float,
+    how: How | None = None,
+) -> Imported[NDArray[np.bool_]]:
+    """Return which plants are not there ``(n,)``: where the canopy is below a value.
+
+    Plants that the raster does not show count as there. A plant's value is the highest on its
+    ground unless `how` says otherwise. Raise what `read_raster` raises.
+    """
+    read = read_raster(source, options, plot.field)
+    values = read.value.of_plants(plot.grid, how or "highest")
+    missing = values < below
+    said = f"{int(missing.sum())} of {len(missing)} plants are missing (canopy below {below:g})"
+    return read.having(missing, [seen(said + _unseen(values, "and count as there"))])
+
+
+def _unseen(values: Floats, what: str) -> str:
+    unseen = int(np.isnan(values).sum())
+    return f"; {unseen} have no value on the raster {what}." if unseen else "."

@@ -1,0 +1,354 @@
+"""A raster opened in the reading process: where it lies, its bands, and what is read of it."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import rasterio
+from rasterio._err import CPLE_BaseError
+from rasterio.enums import MaskFlags
+from rasterio.errors import RasterioError
+from rasterio.windows import Window
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.formats.signatures import Kind
+from fieldmon.io.import_report import Finding, Remedy, guessed, seen
+from fieldmon.io.options import source_name
+from fieldmon.io.parse.crs import Way, ask_for_crs, code_of, km_between, system, way_from
+from fieldmon.io.rasters.values import Affine, map_xy, pixel_xy, projected
+from fieldmon.io.sandbox import limits
+from fieldmon.io.sandbox.unpack import Workroom, choose_member, members
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import pyproj
+    from numpy.typing import NDArray
+    from rasterio.io import DatasetReader
+
+    from fieldmon.io.options import Source
+    from fieldmon.io.rasters.values import RasterOptions
+
+    Float = NDArray[np.float64]
+    Bounds = tuple[float, float, float, float]
+
+# GDAL's cache counts against the limit on memory
+_CACHE_BYTES = 64_000_000
+# about a plot, this much more of the raster is read: of its size, and metres
+_MARGIN = 0.25
+_MARGIN_M = 30.0
+#: at the equator
+M_PER_DEGREE = 111_320.0
+# what people write for no value and forget to declare
+_SENTINELS = (-9999.0, -99999.0, -32768.0, -999999.0)
+_HUGE = 1e30
+_MOST_TEXT = 20_000
+_UNREADABLE = (RasterioError, CPLE_BaseError, ValueError, OSError, OverflowError)
+
+
+class Part(NamedTuple):
+    """The part of a raster that is read, and the pixels ``(h, w)`` it is read to."""
+
+    window: Window
+    shape: tuple[int, int]
+
+    @property
+    def step(self) -> float:
+        """Return how many pixels of the file become one."""
+        return float(max(self.window.width / self.shape[1], self.window.height / self.shape[0]))
+
+    def to_map(self, of_file: Affine) -> Affine:
+        """Return where the pixels lie that were read."""
+        a, b, _, d, e, _ = of_file
+        x, y = map_xy(of_file, np.array([[self.window.col_off, self.window.row_off]]))[0]
+        wide = self.window.width / self.shape[1]
+        high = self.window.height / self.shape[0]
+        return (a * wide, b * high, float(x), d * wide, e * high, float(y))
+
+
+@dataclass(frozen=True, eq=False)
+class Opened:
+    """A raster that is open, and where it lies."""
+
+    tif: DatasetReader
+    name: str
+    to_map: Affine
+    crs: pyproj.CRS
+    way: Way
+    findings: tuple[Finding, ...]
+
+
+@contextmanager
+def open_raster(folder: str, source: Source, options: RasterOptions) -> Iterator[Opened]:
+    """Open the one raster of a source; whatever GDAL says against it becomes a `FileProblem`."""
+    room = Workroom(Path(folder))
+    found = members(source, room)
+    rasters = tuple(member for member in found if member.kind is Kind.RASTER)
+    if not rasters:
+        raise FileProblem(f"{source_name(source)} must be a GeoTIFF, but it is not. Choose one.")
+    member = choose_member(rasters, options.member, source_name(source))
+    path = room.stage(member)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # affine 3's, and a raster without a place is ours to say
+        try:
+            # this driver alone: no other reads what a stranger calls .tif
+            with (
+                rasterio.Env(GDAL_CACHEMAX=_CACHE_BYTES),
+                rasterio.open(path, driver="GTiff", sharing=False) as tif,
+            ):
+                yield _placed(tif, path, member.name, options)
+        except _UNREADABLE as bad:
+            raise FileProblem(
+                f"{member.name} must be a whole GeoTIFF, but it cannot be read "
+                f"({_short(bad)}). Export or download it again."
+            ) from bad
+
+
+def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -> Opened:
+    _check_shape(tif, name)
+    to_map = _to_map(tif, name)
+    size = np.array([[tif.width / 2, tif.height / 2]])
+    middle = map_xy(to_map, size)[0]
+    crs, findings = _system(tif, path, to_map, options)
+    if crs.is_geographic and 180.0 < middle[0] <= 360.0:  # counted eastward all around the earth
+        to_map = (*to_map[:2], to_map[2] - 360.0, *to_map[3:])
+        middle = map_xy(to_map, size)[0]
+        findings.append(seen("Longitudes beyond 180 degrees were read as west of Greenwich."))
+    if crs.is_geographic and (abs(middle[0]) > 180 or abs(middle[1]) > 90):
+        raise ask_for_crs(
+            middle[None], options, f"{name} says {crs.name}, in degrees, but it lies nowhere so."
+        )
+    way = way_from(crs, (float(middle[0]), float(middle[1])))
+    if not np.isfinite(way.lonlat(middle[None])).all():
+        raise FileProblem(
+            f"{name} must lie where {crs.name} is defined, but it does not. Name the right "
+            "coordinate system."
+        )
+    a, b, _, d, e, _ = to_map
+    if abs(b) > 1e-6 * abs(a) or abs(d) > 1e-6 * abs(e):
+        turn = math.degrees(math.atan2(d, a))
+        findings.append(seen(f"The raster is turned by {turn:.4g} degrees; positions follow it."))
+    elif e > 0:
+        findings.append(seen("The raster's first line lies in the south; positions follow it."))
+    return Opened(tif, name, to_map, crs, way, (*findings, *way.findings()))
+
+
+def _check_shape(tif: DatasetReader, name: str) -> None:
+    if tif.count == 0:
+        raise FileProblem(f"{name} must hold a band of values, but it holds none.")
+    limits.check("bands", tif.count, limits.BANDS, name)
+    if any(np.dtype(kind).kind == "c" for kind in tif.dtypes):
+        raise FileProblem(
+            f"{name} must hold plain numbers, but it holds complex ones (radar?). Make a raster of "
+            "plain numbers from it."
+        )
+    high, wide = tif.block_shapes[0]
+    pixel_bytes = sum(np.dtype(kind).itemsize for kind in tif.dtypes)
+    if high * wide * pixel_bytes > limits.BLOCK_BYTES:
+        raise FileProblem(
+            f"A raster must be cut into tiles or strips of {limits.size(limits.BLOCK_BYTES)} at "
+            f"most, but those of {name} have {limits.size(high * wide * pixel_bytes)}. Save it as "
+            "a Cloud Optimised GeoTIFF."
+        )
+
+
+def _to_map(tif: DatasetReader, name: str) -> Affine:
+    """Return where the pixels lie; refuse a raster that does not say."""
+    if tif.transform.is_identity:
+        if tif.gcps[0] or tif.rpcs is not None:
+            raise FileProblem(
+                f"{name} must say where its pixels lie, but it only holds control points. Rectify "
+                'it first ("warp" in a GIS).'
+            )
+        raise FileProblem(
+            f"{name} must say where on the earth it lies, but it is a picture without a position. "
+            "Georeference it in a GIS, or bring its world file (.tfw) along."
+        )
+    to_map: Affine = tuple(float(number) for number in tif.transform[:6])  # type: ignore[assignment]
+    a, b, _, d, e, _ = to_map
+    sides = math.hypot(a, d) * math.hypot(b, e)
+    if not (
+        np.isfinite(to_map).all() and 0.0 < sides < np.inf and abs(a * e - b * d) > 1e-6 * sides
+    ):
+        raise FileProblem(
+            f"The pixels of {name} must cover some ground, but its georeference says they do not "
+            f"({', '.join(f'{number:.6g}' for number in to_map)}). Georeference it again."
+        )
+    return to_map
+
+
+def _system(
+    tif: DatasetReader, path: Path, to_map: Affine, options: RasterOptions
+) -> tuple[pyproj.CRS, list[Finding]]:
+    if options.crs is not None:
+        chosen = system(options.crs)
+        return chosen, [seen(f"Read in {chosen.name} ({code_of(chosen)}), as chosen.")]
+    beside = path.with_suffix(".prj")
+    for text, where in ((_own(tif), None), (_text(beside), "the .prj file beside it")):
+        try:
+            crs = system(text) if text else None
+        except ChoiceNeeded:
+            crs = None
+        if crs is not None and (crs.is_geographic or crs.is_projected):
+            said = [] if where is None else [seen(f"The coordinate system was taken from {where}.")]
+            return crs, said
+    ends = map_xy(to_map, np.array([[0.0, 0.0], [tif.width, tif.height]]))
+    raise ask_for_crs(ends, options, "The raster does not say its coordinate system.")
+
+
+def _own(tif: DatasetReader) -> str:
+    return tif.crs.to_wkt() if tif.crs else ""
+
+
+def _text(path: Path) -> str:
+    if not path.exists():
+        return ""
+    with path.open("rb") as file:
+        return file.read(_MOST_TEXT).decode("utf-8", "replace")
+
+
+def band_named(opened: Opened, wanted: str) -> int:
+    """Return the number of the band that is named; raise `ChoiceNeeded` where there is none."""
+    tif = opened.tif
+    text = wanted.strip()
+    if text in tif.descriptions:
+        return int(tif.descriptions.index(text)) + 1
+    if text.isdigit() and 1 <= int(text) <= tif.count:
+        return int(text)
+    raise ChoiceNeeded(
+        f"{opened.name} holds the bands 1 to {tif.count}, but {wanted!r} was asked for. "
+        "Choose one of them.",
+        "band",
+        tuple(str(b) for b in range(1, tif.count + 1)),
+    )
+
+
+def part_of(opened: Opened, bounds: Bounds | None, most: int, n_bands: int = 1) -> Part:
+    """Return what is read: within bounds or all, not more pixels than `most`."""
+    window = _window(opened, bounds)
+    step = max(1.0, math.sqrt(window.width * window.height / most))
+    high = max(1, int(window.height / step))
+    wide = max(1, min(int(window.width / step), most // high))
+    shape = (min(high, most // wide), wide)
+    # GDAL decodes the smallest overview that is fine enough, or the raster itself
+    overview = max((o for o in opened.tif.overviews(1) if o <= step), default=1)
+    pixel_bytes = sum(np.dtype(kind).itemsize for kind in opened.tif.dtypes)
+    decoded = window.width * window.height / overview**2 * max(pixel_bytes, n_bands)
+    if decoded > limits.RASTER_BYTES:
+        raise FileProblem(
+            f"{limits.size(limits.RASTER_BYTES)} of a raster may be read at most, but "
+            f"{opened.name} ({opened.tif.width} x {opened.tif.height} pixels) would take "
+            f"{limits.size(decoded)}. Cut it to the plot, or save it as a Cloud Optimised GeoTIFF, "
+            "which holds smaller copies of itself."
+        )
+    return Part(window, shape)
+
+
+def _window(opened: Opened, bounds: Bounds | None) -> Window:
+    whole = Window(0, 0, opened.tif.width, opened.tif.height)
+    if bounds is None:
+        return whole
+    places = pixel_xy(opened.to_map, projected(opened.way, _around(bounds)))
+    places = places[np.isfinite(places).all(axis=1)]
+    if len(places):
+        low = np.clip(np.floor(places.min(axis=0)), 0, (whole.width, whole.height)).astype(int)
+        high = np.clip(np.ceil(places.max(axis=0)), 0, (whole.width, whole.height)).astype(int)
+        if (high > low).all():
+            return Window(*(int(n) for n in (*low, *(high - low))))
+    middle = opened.way.lonlat(
+        map_xy(opened.to_map, np.array([[whole.width / 2, whole.height / 2]]))
+    )[0]
+    plot = ((bounds[0] + bounds[2]) / 2, (bounds[1] + bounds[3]) / 2)
+    away = km_between(plot, (float(middle[0]), float(middle[1])))
+    raise FileProblem(
+        f"{opened.name} must lie on the plot, at least in part, but its middle is {away:.3g} km "
+        f"away, at {middle[0]:.4f}, {middle[1]:.4f}. Choose another raster, or name its right "
+        "coordinate system."
+    )
+
+
+def _around(bounds: Bounds) -> Float:
+    """Return points along a box about the bounds, ``(n, 2)`` degrees."""
+    west, south, east, north = bounds
+    degrees = _MARGIN_M / M_PER_DEGREE
+    by_lat = max((north - south) * _MARGIN, degrees)
+    by_lon = max((east - west) * _MARGIN, degrees / max(math.cos(math.radians(south)), 0.01))
+    steps = np.linspace(0.0, 1.0, 9)
+    lon, lat = np.meshgrid(
+        west - by_lon + steps * (east - west + 2 * by_lon),
+        south - by_lat + steps * (north - south + 2 * by_lat),
+    )
+    return np.stack([lon.ravel(), np.clip(lat.ravel(), -90, 90)], axis=1)
+
+
+def without_value(
+    opened: Opened,
+    bands: tuple[int, ...],
+    part: Part,
+    raw: NDArray[Any],
+    nodata: str | None,
+) -> tuple[NDArray[np.bool_], list[Finding]]:
+    """Return which pixels ``(h, w)`` hold no value, by the file's word or by what was chosen."""
+    if nodata == "none":
+        return np.zeros(part.shape, bool), []
+    # black may be declared as nodata, but a pixel is missing only where all colours are
+    missing = np.ones(part.shape, bool)
+    for band in bands:
+        if MaskFlags.all_valid in opened.tif.mask_flag_enums[band - 1]:
+            missing[:] = False
+            break
+        missing &= opened.tif.read_masks(band, window=part.window, out_shape=part.shape) == 0
+    if nodata is not None:
+        return missing | (raw == float(nodata)).all(axis=0), []
+    declared = [opened.tif.nodatavals[band - 1] for band in bands]
+    found = [] if any(value is not None for value in declared) else _undeclared(raw, missing)
+    return missing, found
+
+
+def _undeclared(raw: NDArray[Any], missing: NDArray[np.bool_]) -> list[Finding]:
+    """Take out what looks like an undeclared nodata value, and say so."""
+    if raw.dtype.kind not in "if":
+        return []
+    huge = np.zeros(raw.shape, bool)
+    if raw.dtype.kind == "f":
+        np.greater(np.abs(raw), _HUGE, out=huge)
+    sentinels = [n for n in _SENTINELS if (raw == n).any()]
+    odd = huge.all(axis=0) | np.logical_or.reduce([(raw == n).all(axis=0) for n in sentinels])
+    odd &= ~missing
+    if not odd.any():
+        return []
+    missing |= odd
+    what = ", ".join([*(f"{n:g}" for n in sentinels), *(["beyond 1e30"] if huge.any() else [])])
+    return [
+        guessed(
+            f"Values of {what} were taken as no value, although the raster declares none "
+            f"({100 * odd.mean():.3g} % of the pixels read).",
+            remedy=Remedy("nodata", "none", "They are values"),
+        )
+    ]
+
+
+def what_was_read(opened: Opened, bands: tuple[int, ...], part: Part) -> Finding:
+    """Return what the raster is, and how much of it was read."""
+    tif = opened.tif
+    window = part.window
+    middle = np.array([window.col_off + window.width / 2, window.row_off + window.height / 2])
+    ends = opened.way.lonlat(map_xy(opened.to_map, middle + np.array([[0.0, 0.0], [1.0, 0.0]])))
+    metres = 1000 * km_between(*((float(lon), float(lat)) for lon, lat in ends))
+    listed = f"band{'s' if len(bands) > 1 else ''} {', '.join(map(str, bands))} of {tif.count}"
+    shrunk = f"; read at every {part.step:.3g}th pixel" if part.step > 1.001 else ""
+    return seen(
+        f"{opened.name}: {listed} ({tif.dtypes[bands[0] - 1]}), {tif.width} x {tif.height} pixels "
+        f"of {metres:.3g} m{shrunk}."
+    )
+
+
+def _short(bad: BaseException) -> str:
+    text = " ".join(str(bad).split()) or type(bad).__name__
+    return text if len(text) < 160 else f"{text[:157]}..."

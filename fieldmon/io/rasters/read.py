@@ -1,0 +1,115 @@
+"""The doors for rasters: pictures of the ground, and values that plants stand on.
+
+A GeoTIFF in any coordinate system, turned or not, alone or in a zip archive. It is opened in a
+process of its own (`guard`), from a copy, and only by GDAL's GeoTIFF reader: what points at other
+files or at the network is no raster here.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from fieldmon.errors import FileProblem
+from fieldmon.io.import_report import doubtful
+from fieldmon.io.options import Source, source_name
+from fieldmon.io.rasters.values import Backdrop, Raster, RasterOptions
+from fieldmon.io.sandbox import process
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.io.import_report import Finding, Imported
+    from fieldmon.plot.field import Field
+
+_LOOKED_AT = 10_000
+_FULL = 0.999
+
+
+def read_raster(
+    source: Source, options: RasterOptions | None = None, near: Field | None = None
+) -> Imported[Raster]:
+    """Return one band of a raster.
+
+    Parameters
+    ----------
+    source
+        Path or upload.
+    options
+        What was chosen about how to read it.
+    near
+        Read only what lies about this plot; the share of the plot that has values is told.
+
+    Raises
+    ------
+    ChoiceNeeded
+        Where the band or the coordinate system must be chosen.
+    FileProblem
+        Where the raster is unusable, or holds nothing of the plot.
+    """
+    read: Imported[Raster] = _read("raster_reading:raster", source, options, near)
+    if near is None:
+        return read
+    return read.having(read.value, _coverage(read.value, near, source_name(source)))
+
+
+def read_backdrop(
+    source: Source, options: RasterOptions | None = None, near: Field | None = None
+) -> Imported[Backdrop]:
+    """Return a picture of the ground for a map: the whole raster, or what lies about a plot."""
+    picture: Imported[Backdrop] = _read("raster_picture:backdrop", source, options, near)
+    return picture
+
+
+def _read(task: str, source: Source, options: RasterOptions | None, near: Field | None) -> Any:  # noqa: ANN401 - each door says
+    options = options or RasterOptions()
+    bounds = None
+    if near is not None:
+        bounds = near.boundary.bounds
+        if options.near is None:
+            options = replace(
+                options, near=((bounds[0] + bounds[2]) / 2, (bounds[1] + bounds[3]) / 2)
+            )
+    if isinstance(source, str | Path):
+        source = Path(source).absolute()
+    with tempfile.TemporaryDirectory(prefix="fieldmon-", ignore_cleanup_errors=True) as folder:
+        return process.call(f"fieldmon.io.{task}", folder, source, options, bounds)
+
+
+def _coverage(raster: Raster, field: Field, name: str) -> list[Finding]:
+    """Return a doubt where the plot has values in part only; refuse where it has none."""
+    covered = float(np.mean(~np.isnan(raster.at(_within(field)))))
+    if covered == 0.0:
+        raise FileProblem(
+            f"{name} must hold values on plot {field.name}, but there it holds none: it ends "
+            "beside it or says nodata. Choose another raster, or name what stands for no value."
+        )
+    if covered >= _FULL:
+        return []
+    return [
+        doubtful(
+            f"The raster covers {100 * covered:.3g} % of plot {field.name}; the rest has no value."
+        )
+    ]
+
+
+def _within(field: Field) -> NDArray[np.float64]:
+    """Return positions spread evenly over a plot, ``(n, 2)`` degrees."""
+    west, south, east, north = field.boundary.bounds
+    share = field.boundary.area / ((east - west) * (north - south))
+    n = int(np.sqrt(_LOOKED_AT / max(share, 1e-3)))
+    steps = (np.arange(n) + 0.5) / n
+    lon, lat = np.meshgrid(west + (east - west) * steps, south + (north - south) * steps)
+    inside = shapely.contains_xy(field.boundary, lon, lat)
+    if not inside.any():  # thinner than the steps
+        inner = shapely.point_on_surface(field.boundary)
+        return np.array([[inner.x, inner.y]])
+    return np.stack([lon[inside], lat[inside]], axis=1)
+
+
+__all__ = ["Backdrop", "Raster", "RasterOptions", "read_backdrop", "read_raster"]

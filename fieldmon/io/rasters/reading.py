@@ -1,0 +1,96 @@
+"""What the reading process answers when the values of a raster are asked for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rasterio.enums import ColorInterp
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.import_report import Finding, Imported, doubtful, seen
+from fieldmon.io.rasters.opening import (
+    band_named,
+    open_raster,
+    part_of,
+    what_was_read,
+    without_value,
+)
+from fieldmon.io.rasters.values import Raster
+from fieldmon.io.sandbox import limits
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.io.options import Source
+    from fieldmon.io.rasters.opening import Opened
+    from fieldmon.io.rasters.values import RasterOptions
+
+    Float = NDArray[np.float64]
+    Bounds = tuple[float, float, float, float]
+
+
+def raster(
+    folder: str, source: Source, options: RasterOptions, bounds: Bounds | None
+) -> Imported[Raster]:
+    """Return one band of a source, or what lies within bounds (west, south, east, north)."""
+    with open_raster(folder, source, options) as opened:
+        band = _band(opened, options.band)
+        kind = np.dtype(opened.tif.dtypes[band - 1])
+        part = part_of(opened, bounds, limits.PIXELS)
+        raw = opened.tif.read(band, window=part.window, out_shape=part.shape)
+        values = raw.astype(np.result_type(kind, np.float32))
+        missing, said = without_value(opened, (band,), part, raw[None], options.nodata)
+        values[missing] = np.nan
+        values[~np.isfinite(values)] = np.nan
+        said += _scaled(opened, band, values)
+        is_classes = opened.tif.colorinterp[band - 1] == ColorInterp.palette
+        findings = [what_was_read(opened, (band,), part), *opened.findings, *said, *_empty(values)]
+        text = opened.crs.to_wkt()
+        value = Raster(values, part.to_map(opened.to_map), text, bool(is_classes))
+        return Imported(value, tuple(findings))
+
+
+def _band(opened: Opened, wanted: str | None) -> int:
+    """Return the number of the band with the values; ask where several could be it."""
+    tif = opened.tif
+    bands = [b for b in range(1, tif.count + 1) if tif.colorinterp[b - 1] != ColorInterp.alpha]
+    if wanted is not None:
+        return band_named(opened, wanted)
+    if len(bands) == 1:
+        return bands[0]
+    if not bands:
+        raise FileProblem(f"{opened.name} must hold a band of values, but it only holds a mask.")
+    names = [
+        f"{b} ({tif.descriptions[b - 1] or tif.colorinterp[b - 1].name}, {tif.dtypes[b - 1]})"
+        for b in bands
+    ]
+    raise ChoiceNeeded(
+        f"{opened.name} holds {len(bands)} bands. Choose the one with the values: "
+        f"{', '.join(names[:20])}.",
+        "band",
+        tuple(str(b) for b in bands),
+    )
+
+
+def _scaled(opened: Opened, band: int, values: NDArray[np.floating]) -> list[Finding]:
+    """Apply the scale and offset that a band declares, in place."""
+    scale, offset = opened.tif.scales[band - 1], opened.tif.offsets[band - 1]
+    if (scale, offset) == (1.0, 0.0):
+        return []
+    if not (np.isfinite([scale, offset]).all() and scale != 0.0):
+        return [doubtful(f"Scale {scale:g} and offset {offset:g} make no sense and were ignored.")]
+    values *= scale
+    values += offset
+    return [seen(f"Values were scaled as the band says: times {scale:g}, plus {offset:g}.")]
+
+
+def _empty(values: NDArray[np.floating]) -> list[Finding]:
+    """Return how much of what was read has no value."""
+    share = float(np.isnan(values).mean())
+    if share == 1.0:
+        raise FileProblem(
+            "A raster must hold values, but all that was read of this one is nodata. Choose "
+            "another band or raster, or name what stands for no value."
+        )
+    return [seen(f"{100 * share:.3g} % of the pixels read have no value.")] if share else []

@@ -1,0 +1,114 @@
+"""The doors in: everything that is read from a file comes through one of these.
+
+A source is a path, an `Upload`, or several of them that belong together. What a file leaves open
+is asked by `ChoiceNeeded`; what is unusable is a `FileProblem`; all else that there is to say
+stands in the findings. The file itself is opened in a process of its own (`guard`).
+"""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.errors import ChoiceNeeded
+from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
+from fieldmon.io.readers.nearby import of_plot
+from fieldmon.io.sandbox import process
+
+if TYPE_CHECKING:
+    from shapely import MultiLineString
+
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.io.formats.layer import LayerInfo
+    from fieldmon.io.import_report import Imported
+    from fieldmon.io.readers.crews import Crew
+    from fieldmon.io.readers.places import Places, Plants
+    from fieldmon.io.readers.reported import FindingsOptions, Reported
+    from fieldmon.plot.field import Field
+
+
+def _read(task: str, source: Source, *arguments: Any) -> Any:  # noqa: ANN401 - each door says
+    # the reading process may have been started in another folder than the one we are in by now
+    if isinstance(source, str | Path):
+        source = Path(source).absolute()
+    # the folder is made and removed here: a reading process that was stopped cannot tidy up
+    with tempfile.TemporaryDirectory(prefix="fieldmon-", ignore_cleanup_errors=True) as folder:
+        return process.call(f"fieldmon.io.sandbox.tasks:{task}", folder, source, *arguments)
+
+
+def list_layers(source: Source) -> tuple[LayerInfo, ...]:
+    """Return the layers of a source: what can be chosen as `member` and `layer`."""
+    layers: tuple[LayerInfo, ...] = _read("layers", source)
+    return layers
+
+
+def read_plots(source: Source, options: PlotOptions | None = None) -> Imported[tuple[Field, ...]]:
+    """Return the plots of a source in degrees WGS84, all of them unless one is chosen."""
+    plots: Imported[tuple[Field, ...]] = _read("plots", source, options or PlotOptions())
+    return plots
+
+
+def read_crews(
+    source: Source, options: PlotOptions | None = None
+) -> tuple[Imported[tuple[Field, ...]], dict[str, Crew]]:
+    """Return the plots of a source as `read_plots`, and by name who works on each."""
+    read: tuple[Imported[tuple[Field, ...]], dict[str, Crew]] = _read(
+        "crews", source, options or PlotOptions()
+    )
+    return read
+
+
+def read_records(
+    source: Source,
+    options: RecordOptions | None = None,
+    near: Field | None = None,
+    places: Places | None = None,
+) -> Imported[Observations]:
+    """Return the pest records of a source.
+
+    Parameters
+    ----------
+    source
+        Path or upload.
+    options
+        What was chosen about how to read it.
+    near
+        Only records on this plot or close by; the others are counted in the findings.
+    places
+        Plots or plants that records may name instead of giving a position.
+    """
+    options = options or RecordOptions()
+    records: Imported[Observations]
+    try:
+        records = _read("records", source, options, places)
+    except ChoiceNeeded as question:
+        if question.option != "crs" or near is None or options.near is not None:
+            raise
+        # the plot tells which coordinate systems are likely: ask again with those
+        west, south, east, north = near.boundary.bounds
+        nearby = replace(options, near=((west + east) / 2, (south + north) / 2))
+        records = _read("records", source, nearby, places)
+    if near is None:
+        return records
+    kept, more = of_plot(records.value, near)
+    return records.having(kept, more)
+
+
+def read_plants(source: Source, options: ReadOptions | None = None) -> Imported[Plants]:
+    """Return measured positions of plants, with their labels if the file has any."""
+    plants: Imported[Plants] = _read("plants", source, options or ReadOptions())
+    return plants
+
+
+def read_lines(source: Source, options: ReadOptions | None = None) -> Imported[MultiLineString]:
+    """Return lines (rows, paths, roads) in degrees WGS84."""
+    lines: Imported[MultiLineString] = _read("lines", source, options or ReadOptions())
+    return lines
+
+
+def read_reported(source: Source, options: FindingsOptions) -> Imported[Reported]:
+    """Return what a file says of plants that were inspected, before they are looked up."""
+    reported: Imported[Reported] = _read("reported", source, options)
+    return reported

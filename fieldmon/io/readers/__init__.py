@@ -1,0 +1,1 @@
+"""From layers to what fieldmon knows: plots, plants, records, inspections."""

@@ -1,0 +1,155 @@
+"""Which records belong to a plot, and how far away the others are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyproj
+import shapely
+
+from fieldmon.errors import ChoiceNeeded, ObservationError
+from fieldmon.io.import_report import Finding, Remedy, doubtful, dropped, seen
+from fieldmon.plot.grid import nearest_plants
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.plot.field import Field
+    from fieldmon.plot.grid import PlantGrid
+
+_GEOD = pyproj.Geod(ellps="WGS84")
+_FAR_M = 100_000.0
+#: a record this close to a plot counts for it
+NEARBY_M = 100.0
+
+
+@dataclass(frozen=True, eq=False)
+class Apart:
+    """Records on a plot or close by, and those elsewhere.
+
+    Parameters
+    ----------
+    inside
+        Records on the plot or within `NEARBY_M` (or twice their accuracy, where that is more).
+    outside
+        All others.
+    outside_m
+        ``(len(outside),)`` distance of those to the plot's boundary.
+    """
+
+    inside: Observations
+    outside: Observations
+    outside_m: NDArray[np.float64]
+
+    def findings(self, plot: str) -> list[Finding]:
+        """Return what there is to say about the records elsewhere."""
+        n = len(self.outside)
+        if n == 0:
+            return []
+        return [
+            dropped(
+                f"{n} of {n + len(self.inside)} record(s) lie outside {plot} and were kept apart: "
+                f"{_far(self.outside_m.min())} to {_far(self.outside_m.max())} away."
+            )
+        ]
+
+
+def apart(observations: Observations, field: Field) -> Apart:
+    """Return records on a plot or close by apart from those elsewhere."""
+    away = distance_m(observations.lonlat, field)
+    reach = np.fmax(NEARBY_M, 2 * observations.accuracy_m)
+    near = away <= reach
+    return Apart(observations.take(near), observations.take(~near), away[~near])
+
+
+def of_plot(observations: Observations, field: Field) -> tuple[Observations, list[Finding]]:
+    """Return the records of one plot; ask or refuse where not one is there."""
+    split = apart(observations, field)
+    if len(split.inside):
+        findings = split.findings(field.name) + _questioned(split.outside, field)
+        return split.inside, findings
+    nearest = _far(split.outside_m.min())
+    swapped_m = distance_m(observations.lonlat[:, ::-1], field)
+    if np.median(swapped_m) < min(10_000.0, 0.01 * float(np.median(split.outside_m))):
+        raise ChoiceNeeded(
+            f"Records must lie on plot {field.name} or near it, but the nearest is {nearest} away. "
+            f"With longitude and latitude exchanged they would be {_far(float(swapped_m.min()))} "
+            "away: exchange them if that is right.",
+            "swap_axes",
+            ("yes",),
+        )
+    raise ObservationError(
+        f"Records must lie on plot {field.name} or near it, but the nearest of "
+        f"{len(observations)} is {nearest} away. Check the choice of plot, the coordinate system "
+        "and the order of longitude and latitude."
+    )
+
+
+def on_plants(observations: Observations, grid: PlantGrid) -> list[Finding]:
+    """Return what to say about records that cannot be told a plant of their own.
+
+    A record belongs to the nearest plant within half a row and its own accuracy.
+    """
+    away = nearest_plants(grid, observations.lonlat, NEARBY_M)[1]
+    own_m = np.nan_to_num(observations.accuracy_m)
+    beside = (away > grid.row_spacing_m / 2 + own_m) & np.isfinite(away)
+    rough = np.isfinite(away) & ~beside & (own_m > grid.plant_spacing_m)
+    findings = []
+    if beside.any():
+        findings.append(
+            doubtful(
+                f"{int(beside.sum())} record(s) lie on no plant: {_far(away[beside].min())} to "
+                f"{_far(away[beside].max())} from the nearest. They count for the plants around "
+                "them, and for none as its own."
+            )
+        )
+    if rough.any():
+        findings.append(
+            seen(
+                f"{int(rough.sum())} record(s) are placed to {_far(float(np.median(own_m[rough])))}"
+                f" while plants stand {grid.plant_spacing_m:g} m apart: they count "
+                "for the nearest plant and for those around it."
+            )
+        )
+    return findings
+
+
+def distance_m(lonlat: NDArray[np.float64], field: Field) -> NDArray[np.float64]:
+    """Return how far each position is from a plot's area ``(n,)``; 0 on it."""
+    west, south, east, north = field.boundary.bounds
+    lon, lat = (west + east) / 2, (south + north) / 2
+    possible = np.clip(lonlat[:, 1], -90, 90)
+    away = np.asarray(
+        _GEOD.inv(np.full(len(lonlat), lon), np.full(len(lonlat), lat), lonlat[:, 0], possible)[2]
+    )
+    close = away < _FAR_M
+    frame = field.frame()
+    area = frame.geometry_m(field.boundary)
+    shapely.prepare(area)
+    away[close] = shapely.distance(area, shapely.points(frame.xy_m(lonlat[close])))
+    return away
+
+
+def _questioned(observations: Observations, field: Field) -> list[Finding]:
+    """Return a doubt where records would fit the plot better with their axes exchanged."""
+    here = distance_m(observations.lonlat, field)
+    there = distance_m(observations.lonlat[:, ::-1], field)
+    odd = (here > 10_000) & (there < 1000)
+    if not odd.any():
+        return []
+    return [
+        doubtful(
+            f"{int(odd.sum())} record(s) would lie on the plot with longitude and latitude "
+            "exchanged. Check their order.",
+            remedy=Remedy("swap_axes", "yes", "Exchange longitude and latitude"),
+        )
+    ]
+
+
+def _far(metres: float) -> str:
+    if metres < 10:
+        return f"{metres:.2g} m"
+    return f"{metres:.0f} m" if metres < 1000 else f"{metres / 1000:.4g} km"

@@ -1,0 +1,237 @@
+"""Plots out of a layer: which features, how they are called, and where they lie."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from shapely import MultiPolygon
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.import_report import Finding, Imported, doubtful, dropped, guessed, seen
+from fieldmon.io.parse.columns import find
+from fieldmon.io.parse.geometry import boundary, closed_lines, filled, sort_out
+from fieldmon.io.parse.georeference import place_geometry
+from fieldmon.io.parse.positions import located
+from fieldmon.io.readers.known_rows import with_known_rows
+from fieldmon.plot.field import Field
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.io.options import PlotOptions
+
+
+def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
+    """Return the plots of a layer, each valid and in degrees WGS84."""
+    if layer.geometry is None:
+        return _plot_of_corners(layer, options)
+    areas, findings = _areas(layer)
+    names, name_findings = plot_names(areas, options.name_column)
+    chosen = _chosen(names, options.feature)
+    placed, place_findings = place_geometry(_shapes(areas)[chosen], layer.crs, options)
+    fields, shape_findings = _fields(placed, [names[i] for i in chosen])
+    fields, row_findings = with_known_rows(fields, areas, names)
+    found = (*layer.findings, *findings, *name_findings, *place_findings, *shape_findings)
+    return Imported(fields, (*found, *row_findings))
+
+
+def named_areas(layer: Layer, options: PlotOptions) -> tuple[Layer, list[str]]:
+    """Return the features of a layer that are plots, and the name of each."""
+    if layer.geometry is None:
+        return layer.take(np.arange(0)), []
+    areas, _ = _areas(layer)
+    return areas, plot_names(areas, options.name_column)[0]
+
+
+def _shapes(layer: Layer) -> NDArray[np.object_]:
+    if layer.geometry is None:
+        raise FileProblem(f"{layer.name} must hold shapes, but it is a plain table.")
+    return layer.geometry
+
+
+def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[Finding]]:
+    """Return a different name for every feature, and where the names come from."""
+    named = column or find("name", layer.columns)
+    findings: list[Finding] = []
+    if named is None:
+        base = [layer.name] * len(layer)
+        if len(layer) > 1:
+            findings.append(
+                guessed("No column was recognised as the plots' names; they are numbered.")
+            )
+    else:
+        base = [text(v) or layer.name for v in layer.column(named)]
+        if len(layer) > 1 or column is None:
+            findings.append(seen(f"Plots are named by column {named!r}."))
+    return _told_apart(base), findings
+
+
+def _told_apart(names: list[str]) -> list[str]:
+    """Return names that differ: those that repeat are numbered."""
+    total, so_far = Counter(names), Counter[str]()
+    apart = []
+    for name in names:
+        so_far[name] += 1
+        apart.append(name if total[name] == 1 else f"{name} ({so_far[name]})")
+    return apart
+
+
+def _areas(layer: Layer) -> tuple[Layer, list[Finding]]:
+    """Return the features that have an area; offer lines and points for what they can be."""
+    findings: list[Finding] = []
+    areas, lines, points = sort_out(_shapes(layer))
+    if not areas.any() and lines.any():
+        layer, findings = _outlines(layer)
+        areas, lines, points = sort_out(_shapes(layer))
+    if not areas.any():
+        _refuse_without_areas(layer, int(lines.sum()), int(points.sum()))
+    missing = len(layer) - int((areas | lines | points).sum())
+    if missing:
+        findings.append(dropped(f"{missing} feature(s) without a geometry were left out."))
+    if lines.any():
+        said = f"{int(lines.sum())} line(s) were left out: import them as rows or paths."
+        findings.append(dropped(said))
+    if points.any():
+        said = f"{int(points.sum())} point(s) were left out: import them as plants or records."
+        findings.append(dropped(said))
+    return layer.take(np.flatnonzero(areas)), findings
+
+
+def _outlines(layer: Layer) -> tuple[Layer, list[Finding]]:
+    """Return the layer with closed lines as the areas inside them."""
+    shapes = _shapes(layer)
+    closed = closed_lines(shapes)
+    if not closed.any():
+        return layer, []
+    as_areas = shapes.copy()
+    as_areas[closed] = [filled(line) for line in shapes[closed]]
+    said = f"{int(closed.sum())} closed line(s) were taken as the outlines of plots."
+    return replace(layer, geometry=as_areas), [guessed(said)]
+
+
+def _refuse_without_areas(layer: Layer, n_lines: int, n_points: int) -> None:
+    if n_lines or n_points:
+        offers = (("lines",) if n_lines else ()) + (("plants",) if n_points else ())
+        what = " and ".join(
+            f"{n} {word}" for n, word in ((n_lines, "line(s)"), (n_points, "point(s)")) if n
+        )
+        raise ChoiceNeeded(
+            f"A plot must be an area, but {layer.name} holds only {what}. Lines can be imported as "
+            "rows or paths, points as plants or records; or choose a file with the boundary.",
+            "kind",
+            offers,
+        )
+    raise FileProblem(
+        f"{layer.name} must hold at least one plot with a boundary, but it holds "
+        f"{len(layer)} feature(s) without any geometry. Choose another file or layer."
+    )
+
+
+def _chosen(names: list[str], feature: str | int | None) -> NDArray[np.int64]:
+    """Return which features are wanted: by name, or by number from 1."""
+    if feature is None:
+        return np.arange(len(names))
+    wanted = str(feature).strip()
+    if wanted in names:
+        return np.array([names.index(wanted)])
+    if wanted.isdigit() and 1 <= int(wanted) <= len(names):
+        return np.array([int(wanted) - 1])
+    alike = [n for n in names if wanted.casefold() in n.casefold()]
+    if len(alike) == 1:
+        return np.array([names.index(alike[0])])
+    offered = alike or names
+    raise ChoiceNeeded(
+        f"There are {len(names)} plots, but {'several' if alike else 'none'} called {wanted!r}. "
+        f"Choose one of: {', '.join(offered[:20])}; or a number from 1 to {len(names)}.",
+        "feature",
+        tuple(offered),
+    )
+
+
+def _fields(
+    geometry: NDArray[np.object_], names: list[str]
+) -> tuple[tuple[Field, ...], list[Finding]]:
+    fields, findings = [], []
+    for area, name in zip(geometry, names, strict=True):
+        kept, found = boundary(area, name)
+        findings += found
+        if kept.is_empty:
+            findings.append(dropped("Nothing of this plot is left to use.", name))
+            continue
+        fields.append(Field(name, kept))
+    if not fields:
+        said = "; ".join(f.sentence for f in findings[:5])
+        raise FileProblem(f"At least one plot must have an area, but none has. {said}")
+    return tuple(fields), [*findings, *_parts(fields), *_duplicates(fields)]
+
+
+def _parts(fields: list[Field]) -> list[Finding]:
+    several = [f.name for f in fields if len(f.boundary.geoms) > 1]
+    holed = [f.name for f in fields if any(len(p.interiors) for p in f.boundary.geoms)]
+    findings = []
+    if several:
+        findings.append(
+            seen(f"{len(several)} plot(s) have several parts, which were kept: {_some(several)}.")
+        )
+    if holed:
+        findings.append(
+            seen(f"{len(holed)} plot(s) have holes, kept as places without plants: {_some(holed)}.")
+        )
+    return findings
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:5]) + (", ..." if len(names) > 5 else "")
+
+
+def _duplicates(fields: list[Field]) -> list[Finding]:
+    first: dict[bytes, str] = {}
+    findings = []
+    bounds = Counter(field.boundary.bounds for field in fields)
+    for field in fields:
+        if bounds[field.boundary.bounds] == 1:
+            continue
+        key = shapely.to_wkb(shapely.normalize(field.boundary))
+        if key in first:
+            findings.append(doubtful(f"It has the same outline as {first[key]}.", field.name))
+        first.setdefault(key, field.name)
+    return findings
+
+
+def _plot_of_corners(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
+    """Return the one plot whose corners a table lists in order."""
+    found = located(layer, options)
+    points, findings = found.lonlat, found.findings
+    if not 3 <= len(points) <= 1000:
+        raise _which_are_corners(layer, len(points))
+    ring = MultiPolygon([shapely.Polygon(points)])
+    if not ring.is_valid and options.where is None:
+        raise _which_are_corners(layer, len(points))
+    kept, more = boundary(ring, layer.name)
+    if kept.is_empty:
+        raise FileProblem(f"The corners in {layer.name} must enclose an area, but they do not.")
+    said = guessed(
+        f"{len(points)} positions were taken as the corners of one plot, in their order."
+    )
+    return Imported((Field(layer.name, kept),), (*layer.findings, *findings, said, *more))
+
+
+def _which_are_corners(layer: Layer, n_points: int) -> ChoiceNeeded:
+    """Return the question which records of a table are corners, with the groups it holds."""
+    groups = []
+    for name, values in layer.columns.items():
+        counts = Counter(text(v) for v in values)
+        if 2 <= len(counts) <= 20:
+            groups += [f"{name}={value}" for value, n in counts.items() if 3 <= n <= 1000]
+    return ChoiceNeeded(
+        f"The corners of a plot must be 3 to 1000 positions in their order around it, but "
+        f"{layer.name} lists {n_points} that do not enclose an area. Say which are the corners"
+        + (f", for instance {', '.join(groups[:6])}." if groups else "."),
+        "where",
+        tuple(groups),
+    )

@@ -1,0 +1,79 @@
+"""Plants out of points, and rows or paths out of lines."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from shapely import MultiLineString
+
+from fieldmon.errors import FileProblem
+from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.import_report import Imported, doubtful, dropped, seen
+from fieldmon.io.parse.columns import find
+from fieldmon.io.parse.geometry import sort_out
+from fieldmon.io.parse.georeference import place_geometry
+from fieldmon.io.parse.positions import located
+from fieldmon.io.readers.places import Plants
+
+if TYPE_CHECKING:
+    from fieldmon.io.options import ReadOptions
+
+
+def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
+    """Return the plants of a layer of points, or of a table with positions."""
+    found = located(layer, options)
+    findings = list(found.findings)
+    taken: set[str] = set()
+    labels = []
+    for role in ("row", "plant"):
+        named = options.column(role) or find(role, found.layer.columns, frozenset(taken))
+        if named is None and role == "plant":
+            named = find("name", found.layer.columns, frozenset(taken))
+        if named is None:
+            labels.append(np.full(len(found.layer), "", dtype=np.str_))
+            continue
+        taken.add(named)
+        findings.append(seen(f"Column {named!r} names the {role}s."))
+        labels.append(np.array([text(v) for v in found.layer.column(named)], dtype=np.str_))
+    _, first, times = np.unique(found.lonlat, axis=0, return_index=True, return_counts=True)
+    if (times > 1).any():
+        again = found.layer.take(first[times > 1])
+        findings.append(
+            doubtful(
+                f"{int((times - 1).sum())} plant(s) stand at the very place of another, "
+                f"first {_called(again)}."
+            )
+        )
+    return Imported(Plants(found.lonlat, *labels), (*layer.findings, *findings))
+
+
+def _called(layer: Layer) -> str:
+    first = next(iter(layer.columns.values()), None)
+    return repr(text(first[0])) if first is not None and len(first) else "one without a name"
+
+
+def lines_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:
+    """Return the lines of a layer, lon/lat."""
+    if layer.geometry is None:
+        raise FileProblem(f"{layer.name} must hold lines, but it is a plain table.")
+    areas, lines, points = sort_out(layer.geometry)
+    if not lines.any():
+        raise FileProblem(
+            f"{layer.name} must hold lines, but it holds {int(areas.sum())} area(s) and "
+            f"{int(points.sum())} point(s). Choose another file or layer."
+        )
+    findings = []
+    others = len(layer) - int(lines.sum())
+    if others:
+        findings.append(dropped(f"{others} feature(s) that are no lines were left out."))
+    placed, more = place_geometry(layer.geometry[lines], layer.crs, options)
+    parts = shapely.get_parts(shapely.get_parts(placed))
+    is_line = np.isin(shapely.get_type_id(parts), (1, 2))
+    has_length = is_line & (shapely.length(parts) > 0)
+    if has_length.sum() < is_line.sum():
+        n_points = int(is_line.sum() - has_length.sum())
+        findings.append(dropped(f"{n_points} line(s) that do not lead anywhere were left out."))
+    whole = MultiLineString(list(parts[has_length]))
+    return Imported(whole, (*layer.findings, *findings, *more))

@@ -1,0 +1,305 @@
+"""Pest records out of a layer or table: where, when, how many, whether at all."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.errors import ObservationError
+from fieldmon.infestation.observations import PRESENT, UNKNOWN, Observations
+from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.import_report import Finding, Imported, Remedy, doubtful, dropped, guessed, seen
+from fieldmon.io.parse.columns import find, recognised
+from fieldmon.io.parse.positions import located
+from fieldmon.io.parse.values import (
+    could_be_thousands,
+    counted,
+    dates,
+    dates_of_parts,
+    decimal_mark,
+    is_missing,
+    numbers,
+    presence,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from fieldmon.io.options import RecordOptions
+    from fieldmon.io.parse.values import Dated
+    from fieldmon.io.readers.places import Places
+
+_LOOKED_AT = 200
+
+
+def records_of(
+    layer: Layer, options: RecordOptions, places: Places | None = None
+) -> Imported[Observations]:
+    """Return the records of a layer, each with a position."""
+    if len(layer) == 0:
+        raise ObservationError(f"{layer.name} must hold records, but it holds none.")
+    layer, repeated = _once_each(layer)
+    found = located(layer, options, places)
+    table = _Table(found.layer, options)
+    day, day_findings = _days(table)
+    counts = _counts(table)
+    stated_m = table.numbers("accuracy")
+    observations = Observations.of(
+        found.lonlat,
+        counts.present,
+        day,
+        count=counts.number,
+        accuracy_m=np.fmax(np.where(stated_m > 0, stated_m, np.nan), found.accuracy_m),
+        species=table.texts("species"),
+        stage=table.texts("stage"),
+        leaves_sampled=table.numbers("leaves"),
+    )
+    findings = (*layer.findings, *repeated, *found.findings, *day_findings, *counts.findings)
+    return Imported(observations, (*findings, *_species(table), *_same_visit(observations)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Table:
+    """Columns by what they hold."""
+
+    layer: Layer
+    options: RecordOptions
+
+    def __len__(self) -> int:
+        return len(self.layer)
+
+    def named(self, role: str, taken: frozenset[str] = frozenset()) -> str | None:
+        return self.options.column(role) or find(role, self.layer.columns, taken)
+
+    def cells(self, name: str) -> list[str]:
+        return [text(v) for v in self.layer.column(name)]
+
+    def numbers(self, role: str) -> NDArray[np.float64]:
+        name = self.named(role)
+        if name is None:
+            return np.full(len(self), np.nan)
+        return numbers(self.layer.column(name), self.options.decimal)
+
+    def texts(self, role: str) -> NDArray[np.str_]:
+        name = self.named(role)
+        if name is None:
+            return np.full(len(self), "", dtype=np.str_)
+        cells = self.cells(name)
+        known = {cell: "" if is_missing(cell) else cell for cell in set(cells)}
+        return np.array([known[cell] for cell in cells], dtype=np.str_)
+
+
+class _Counts(NamedTuple):
+    number: NDArray[np.float64]
+    present: NDArray[np.int8]
+    findings: list[Finding]
+
+
+def _once_each(layer: Layer) -> tuple[Layer, list[Finding]]:
+    """Return the layer without records that repeat another in every column."""
+    columns = [list(values) for values in layer.columns.values()]
+    if layer.geometry is not None:
+        columns.append([None if g is None else g.wkb for g in layer.geometry])
+    first: dict[tuple[object, ...], int] = {}
+    for i, row in enumerate(zip(*columns, strict=True)):
+        first.setdefault(row, i)
+    kept = np.fromiter(first.values(), dtype=np.int64)
+    n_again = len(layer) - len(kept)
+    if n_again == 0 or len(columns) < 3:
+        return layer, []
+    said = f"{n_again} record(s) repeat another in every column and were left out."
+    return layer.take(kept), [dropped(said)]
+
+
+def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[Finding]]:
+    parts = tuple(name for role in ("year", "month", "day") if (name := table.named(role)))
+    by_hand = table.options.column("date")
+    if len(set(parts)) == 3 and by_hand is None:
+        read = dates_of_parts(*(numbers(table.layer.column(part)) for part in parts))
+        where = ", ".join(parts)
+    else:
+        name = table.named("date", frozenset(parts) if len(parts) > 1 else frozenset())
+        if name is None:
+            unknown = np.full(len(table), "NaT", dtype="datetime64[D]")
+            said = "No column was recognised as the date of the records."
+            return unknown, [doubtful(said, remedy=_offer(table, "date", _are_dates))]
+        read = dates(table.layer.column(name), table.options.date_order)
+        where = name
+    return read.day, [seen(f"Dates are in column(s) {where}."), *_about_dates(read, where)]
+
+
+def _about_dates(read: Dated, where: str) -> list[Finding]:
+    findings = []
+    if read.is_ambiguous:
+        findings.append(
+            guessed(
+                "Every date could be day first or month first; they were read day first.",
+                where,
+                Remedy("date_order", "mdy", "Read month first"),
+            )
+        )
+    if read.n_serial:
+        findings.append(
+            guessed(f"{read.n_serial} number(s) were read as days counted by Excel.", where)
+        )
+    if read.broken:
+        shown = ", ".join(repr(cell) for cell in read.broken[:3])
+        findings.append(
+            doubtful(
+                f"{read.n_broken} record(s) have a date that is none ({shown}); it is left open.",
+                where,
+            )
+        )
+    today = np.datetime64(datetime.now(UTC).date(), "D") + 1  # it may be tomorrow elsewhere
+    n_future = int((read.day > today).sum())
+    if n_future:
+        latest = np.nanmax(read.day)
+        findings.append(
+            doubtful(f"{n_future} record(s) lie in the future, the last on {latest}.", where)
+        )
+    return findings
+
+
+def _counts(table: _Table) -> _Counts:
+    """Return how many, whether, and what was found."""
+    count_name = table.named("count")
+    present_name = table.named("present", frozenset({count_name} if count_name else ()))
+    counts = _Counts(np.full(len(table), np.nan), np.full(len(table), UNKNOWN, np.int8), [])
+    if count_name is not None:
+        counts = _numbers_of(table, count_name)
+    if present_name is not None:
+        counts = _with_presence(table, present_name, counts)
+    if count_name is None and present_name is None:
+        counts.present[:] = PRESENT
+        counts.findings.append(
+            guessed(
+                "No column says how many or whether: every record was taken as a find.",
+                remedy=_offer(table, "count", _are_numbers),
+            )
+        )
+    return counts
+
+
+def _offer(table: _Table, role: str, fits: Callable[[list[str]], bool]) -> Remedy | None:
+    """Return the columns of unknown name that hold what could play a role, if there are any."""
+    unknown = [name for name in table.layer.columns if not recognised([name])]
+    some = {name: [c for c in table.cells(name)[:_LOOKED_AT] if c] for name in unknown}
+    choices = tuple(f"{role}={name}" for name, cells in some.items() if cells and fits(cells))
+    if not choices:
+        return None
+    one = f"Take the {role} from {choices[0].partition('=')[2]}"
+    label = one if len(choices) == 1 else f"Name the column of the {role}"
+    return Remedy("columns", choices[0], label, choices[1:])
+
+
+def _are_dates(cells: list[str]) -> bool:
+    column = np.array(cells, dtype=object)
+    return not np.isnat(dates(column).day).all()
+
+
+def _are_numbers(cells: list[str]) -> bool:
+    read = [counted(cell) for cell in cells if not is_missing(cell)]
+    return bool(read) and all(np.isfinite(one.number) for one in read)
+
+
+def _numbers_of(table: _Table, name: str) -> _Counts:
+    cells = table.cells(name)
+    mark, findings = _mark(table, name, cells)
+    known = {cell: counted(cell, mark) for cell in set(cells)}
+    count = np.array([known[cell].number for cell in cells])
+    present = np.array([known[cell].present for cell in cells], dtype=np.int8)
+    findings.append(seen(f"Counts are in column {name!r}."))
+    rough = [cell for cell in cells if known[cell].is_rough]
+    if rough:
+        shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(rough))[:3])
+        findings.append(
+            doubtful(f"{len(rough)} count(s) are no plain number ({shown}); read roughly.", name)
+        )
+    n_missing = int(np.count_nonzero(present == UNKNOWN)) - sum(
+        known[cell].present == UNKNOWN for cell in rough
+    )
+    if n_missing:
+        findings.append(seen(f"{n_missing} record(s) have no count: not known, not zero.", name))
+    return _Counts(count, present, findings)
+
+
+def _mark(table: _Table, name: str, cells: list[str]) -> tuple[str, list[Finding]]:
+    """Return the decimal mark of the counts: 1,234 alone is told by the rest of the table."""
+    if table.options.decimal is not None:
+        return table.options.decimal, []
+    own = decimal_mark(cell for cell in cells if not could_be_thousands(cell))
+    others = (values for column, values in table.layer.columns.items() if column != name)
+    mark = own or decimal_mark(text(v) for values in others for v in values[:_LOOKED_AT])
+    unsure = next((c for c in cells if "," in c and could_be_thousands(c)), None)
+    if mark is not None or unsure is None:
+        return mark or ".", []
+    said = f"Counts such as {unsure} were read as thousands."
+    return ".", [guessed(said, name, Remedy("decimal", ",", "Read the comma as decimal"))]
+
+
+def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
+    cells = table.cells(name)
+    known = {cell: presence(cell) for cell in set(cells)}
+    stated = np.array([known[cell] for cell in cells], dtype=np.int8)
+    at_odds = (stated != UNKNOWN) & (counts.present != UNKNOWN) & (stated != counts.present)
+    findings = [*counts.findings, seen(f"Presence is in column {name!r}.")]
+    if at_odds.any():
+        findings.append(
+            doubtful(f"{int(at_odds.sum())} record(s) say another thing than their count.", name)
+        )
+    unread = {cell for cell in known if known[cell] == UNKNOWN and not is_missing(cell)}
+    if unread:
+        shown = ", ".join(repr(cell) for cell in sorted(unread)[:3])
+        findings.append(doubtful(f"These words say neither yes nor no: {shown}.", name))
+    present = np.where(stated == UNKNOWN, counts.present, stated).astype(np.int8)
+    return _Counts(counts.number, present, findings)
+
+
+def _species(table: _Table) -> list[Finding]:
+    """Return what to say where a file mixes species."""
+    name = table.named("species")
+    if name is None:
+        return []
+    kinds = sorted(cell for cell in set(table.cells(name)) if not is_missing(cell))
+    if len(kinds) < 2:
+        return []
+    shown = ", ".join(kinds[:5]) + (", ..." if len(kinds) > 5 else "")
+    only = tuple(f"{name}={kind}" for kind in kinds)
+    remedy = Remedy("where", only[0], f"Only {kinds[0]}", only[1:])
+    return [doubtful(f"{len(kinds)} species are mixed: {shown}.", name, remedy)]
+
+
+def _same_visit(observations: Observations) -> list[Finding]:
+    """Return a doubt about records of one place and day that disagree."""
+    if len(observations) < 2:
+        return []
+    place = np.round(observations.lonlat, 8)
+    day = observations.day.astype(np.int64).astype(np.float64)
+    kinds = [
+        np.unique(v, return_inverse=True)[1] for v in (observations.species, observations.stage)
+    ]
+    visit = [*place.T, day, *kinds]
+    count = np.nan_to_num(observations.count, nan=-1)
+    n_visits, n_stated = _n_distinct(visit), _n_distinct([*visit, count, observations.present])
+    if n_stated == n_visits:
+        return []
+    return [
+        doubtful(
+            f"{n_stated - n_visits} record(s) give another count for a place and day that "
+            "another record already has."
+        )
+    ]
+
+
+def _n_distinct(columns: list[NDArray[np.generic]]) -> int:
+    """Return how many different rows columns ``(n,)`` make."""
+    order = np.lexsort(columns)
+    new = np.zeros(len(order) - 1, dtype=bool)
+    for column in columns:
+        new |= np.diff(column[order]) != 0
+    return int(new.sum()) + 1

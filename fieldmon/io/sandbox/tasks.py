@@ -1,0 +1,66 @@
+"""What the reading process does: one function for each door of `reading`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fieldmon.io.formats.open_layer import layers_of, open_layer
+from fieldmon.io.readers.crews import crews_of
+from fieldmon.io.readers.plots import named_areas, plots_of
+from fieldmon.io.readers.points_and_lines import lines_of, plants_of
+from fieldmon.io.readers.records import records_of
+from fieldmon.io.readers.reported import Reported, reported_of
+from fieldmon.io.sandbox.unpack import Workroom
+
+if TYPE_CHECKING:
+    from shapely import MultiLineString
+
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.io.formats.layer import LayerInfo
+    from fieldmon.io.import_report import Imported
+    from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
+    from fieldmon.io.readers.crews import Crew
+    from fieldmon.io.readers.places import Places, Plants
+    from fieldmon.io.readers.reported import FindingsOptions
+    from fieldmon.plot.field import Field
+
+
+def layers(folder: str, source: Source) -> tuple[LayerInfo, ...]:
+    """Return the layers of a source."""
+    return layers_of(source, Workroom(Path(folder)))
+
+
+def plots(folder: str, source: Source, options: PlotOptions) -> Imported[tuple[Field, ...]]:
+    """Return the plots of a source."""
+    return plots_of(open_layer(source, options, Workroom(Path(folder))), options)
+
+
+def crews(
+    folder: str, source: Source, options: PlotOptions
+) -> tuple[Imported[tuple[Field, ...]], dict[str, Crew]]:
+    """Return the plots of a source, and who works on each."""
+    layer = open_layer(source, options, Workroom(Path(folder)))
+    return plots_of(layer, options), crews_of(*named_areas(layer, options))
+
+
+def records(
+    folder: str, source: Source, options: RecordOptions, places: Places | None
+) -> Imported[Observations]:
+    """Return the records of a source."""
+    return records_of(open_layer(source, options, Workroom(Path(folder))), options, places)
+
+
+def plants(folder: str, source: Source, options: ReadOptions) -> Imported[Plants]:
+    """Return the plants of a source."""
+    return plants_of(open_layer(source, options, Workroom(Path(folder))), options)
+
+
+def lines(folder: str, source: Source, options: ReadOptions) -> Imported[MultiLineString]:
+    """Return the lines of a source."""
+    return lines_of(open_layer(source, options, Workroom(Path(folder))), options)
+
+
+def reported(folder: str, source: Source, options: FindingsOptions) -> Imported[Reported]:
+    """Return what a file says of plants that were inspected."""
+    return reported_of(source, options, Workroom(Path(folder)))

@@ -1,0 +1,345 @@
+"""From a path, an upload, a folder or an archive to one data set on its own in a work folder.
+
+Nothing is opened where it lies, and no name from outside ever becomes part of a path: what is to be
+read is copied under a name made here, counted byte by byte.
+"""
+
+from __future__ import annotations
+
+import io
+import lzma
+import re
+import stat
+import zipfile
+import zlib
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+from typing import IO, TYPE_CHECKING
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.formats.signatures import HEAD_BYTES, READABLE, Kind, kind_of
+from fieldmon.io.options import Source, Upload, source_name
+from fieldmon.io.sandbox import limits
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+_SHAPEFILE_PARTS = (".shp", ".dbf", ".shx", ".prj", ".cpg")
+_RASTER_PARTS = (".tfw", ".tifw", ".wld", ".prj")
+_GEODATABASE_FILE = re.compile(r"[A-Za-z0-9_]{1,40}(\.[A-Za-z0-9_]{1,20}){0,3}")
+_DECOYS = frozenset({"thumbs.db", "desktop.ini", "__macosx"})
+_OFFICE_PART = "[content_types].xml"
+_DAMAGE = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, ValueError)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One file that could be read: its name with folders, its size, and how to open it."""
+
+    name: str
+    n_bytes: int
+    open: Callable[[], IO[bytes]]
+
+    @property
+    def path(self) -> PurePosixPath:
+        """Return the name as a path to look at, never to open."""
+        return PurePosixPath(self.name)
+
+    def head(self) -> bytes:
+        """Return the first bytes."""
+        with _opened(self) as file:
+            return file.read(HEAD_BYTES)
+
+
+@dataclass(frozen=True)
+class Member:
+    """One data set: its main file first, then the files that belong to it."""
+
+    name: str
+    kind: Kind
+    entries: tuple[Entry, ...]
+
+    @property
+    def stem(self) -> str:
+        """Return the name without folders and ending, as a layer would be called."""
+        return PurePosixPath(self.name).stem
+
+
+@dataclass
+class Workroom:
+    """A folder of one's own, and how much may still be unpacked into it."""
+
+    folder: Path
+    bytes_left: int = limits.UNPACKED_BYTES
+    n_staged: int = field(default=0, init=False)
+
+    def stage(self, member: Member) -> Path:
+        """Copy a data set under names of our own and return its main path."""
+        self.n_staged += 1
+        room = self.folder / f"{self.n_staged:03d}"
+        room.mkdir()
+        if member.kind is Kind.GEODATABASE:
+            inside = room / "data.gdb"
+            inside.mkdir()
+            for entry in member.entries:
+                if _GEODATABASE_FILE.fullmatch(entry.path.name):
+                    self._copy(entry, inside / entry.path.name)
+            return inside
+        main = room / f"data{member.kind.value}"
+        self._copy(member.entries[0], main)
+        for entry in member.entries[1:]:
+            self._copy(entry, room / f"data{entry.path.suffix.lower()}")
+        return main
+
+    def unpack(self, entry: Entry) -> IO[bytes]:
+        """Return an entry of an archive as a file that can be sought in."""
+        self.n_staged += 1
+        path = self.folder / f"{self.n_staged:03d}.zip"
+        self._copy(entry, path)
+        return path.open("rb")
+
+    def _copy(self, entry: Entry, to: Path) -> None:
+        with _opened(entry) as source, to.open("wb") as target:
+            while piece := source.read(1 << 20):
+                self.bytes_left -= len(piece)
+                if self.bytes_left < 0:
+                    raise FileProblem(
+                        f"A file may unpack to {limits.size(limits.UNPACKED_BYTES)} at most, "
+                        f"but {entry.name} brings it to more. Pack less into it."
+                    )
+                target.write(piece)
+
+
+@contextmanager
+def _opened(entry: Entry) -> Iterator[IO[bytes]]:
+    """Open an entry; whatever reading it may raise becomes a `FileProblem`."""
+    try:
+        with entry.open() as file:
+            yield file
+    except _DAMAGE as bad:
+        raise FileProblem(f"{entry.name} is damaged ({bad}). Pack or download it again.") from bad
+    except OSError as bad:
+        raise FileProblem(f"{entry.name} cannot be read: {bad.strerror or bad}.") from bad
+
+
+def members(source: Source, workroom: Workroom) -> tuple[Member, ...]:
+    """Return the data sets that a source holds; raise `FileProblem` where there is none."""
+    entries = list(_expand(_entries(source), workroom, depth=0))
+    found, problems = _group(entries)
+    if found:
+        return tuple(found)
+    if len(problems) == 1:
+        raise problems[0]
+    raise FileProblem(
+        f"{source_name(source)} must hold {READABLE}, but nothing of the kind is in it. "
+        "Choose another file."
+    )
+
+
+def choose_member(found: tuple[Member, ...], wanted: str | None, name: str) -> Member:
+    """Return the one member, or the named one; raise `ChoiceNeeded` where several could be."""
+    if wanted is not None:
+        fitting = [m for m in found if m.name == wanted] or [
+            m for m in found if m.name.lower().endswith(wanted.lower())
+        ]
+        if len(fitting) == 1:
+            return fitting[0]
+    elif len(found) == 1:
+        return found[0]
+    names = tuple(m.name for m in found)
+    missing = "" if wanted is None else f", but none alone is called {wanted!r}"
+    raise ChoiceNeeded(
+        f"{name} holds {len(found)} files that can be read{missing}. Choose one of: "
+        f"{', '.join(names[:20])}.",
+        "member",
+        names,
+    )
+
+
+def _entries(source: Source) -> list[Entry]:
+    if isinstance(source, Upload):
+        source = (source,)
+    if isinstance(source, tuple):
+        return [_of_upload(upload) for upload in source]
+    path = Path(source)
+    if not path.exists():
+        raise FileProblem(f"{path} must be a file or a folder, but there is none. Check the name.")
+    if path.is_dir():
+        return _of_folder(path)
+    return [_of_path(p, p.name) for p in (path, *_belongings(path))]
+
+
+def _belongings(path: Path) -> list[Path]:
+    """Return the other files of a shapefile or raster that lie beside its main file."""
+    parts = {".shp": _SHAPEFILE_PARTS, ".tif": _RASTER_PARTS, ".tiff": _RASTER_PARTS}
+    wanted = parts.get(path.suffix.lower())
+    if wanted is None:
+        return []
+    return [
+        other
+        for other in sorted(path.parent.iterdir())
+        if other.stem == path.stem and other != path and other.suffix.lower() in wanted
+    ]
+
+
+def _of_upload(upload: Upload) -> Entry:
+    name = PurePosixPath(upload.name.replace("\\", "/")).name or "upload"
+    _check_size(name, len(upload.data))
+    return Entry(name, len(upload.data), lambda: io.BytesIO(upload.data))
+
+
+def _of_path(path: Path, name: str) -> Entry:
+    n_bytes = path.stat().st_size
+    _check_size(name, n_bytes)
+    return Entry(name, n_bytes, lambda: path.open("rb"))
+
+
+def _check_size(name: str, n_bytes: int) -> None:
+    if n_bytes > limits.FILE_BYTES:
+        raise FileProblem(
+            f"A file may have {limits.size(limits.FILE_BYTES)} at most, but {name} has "
+            f"{limits.size(n_bytes)}. Cut it to the plots that matter."
+        )
+
+
+def _of_folder(folder: Path) -> list[Entry]:
+    base = folder.parent if folder.suffix.lower() == ".gdb" else folder
+    entries = []
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and not path.is_symlink():
+            entries.append(_of_path(path, path.relative_to(base).as_posix()))
+        if len(entries) > limits.ARCHIVE_ENTRIES:
+            raise FileProblem(
+                f"A folder may hold {limits.ARCHIVE_ENTRIES} files at most, but {folder} holds "
+                "more. Choose one file in it."
+            )
+    return entries
+
+
+def _is_decoy(entry: Entry) -> bool:
+    parts = [part.lower() for part in entry.path.parts]
+    return any(part in _DECOYS or part.startswith(".") for part in parts)
+
+
+def _expand(entries: Iterable[Entry], workroom: Workroom, depth: int) -> Iterator[Entry]:
+    """Yield the entries, those of archives in their place."""
+    for entry in entries:
+        if _is_decoy(entry):
+            continue
+        if not _is_archive(entry):
+            yield entry
+            continue
+        if depth >= limits.ARCHIVE_DEPTH:
+            raise FileProblem(
+                f"Archives may lie {limits.ARCHIVE_DEPTH} deep inside each other at most, but "
+                f"{entry.name} is one more. Unpack the outer ones."
+            )
+        inner = _zip_entries(entry, workroom)
+        if any(one.name.lower().endswith(_OFFICE_PART) for one in inner):
+            yield entry  # a workbook is an archive as well
+        elif depth == 0:
+            yield from _expand(inner, workroom, depth + 1)
+        else:
+            prefixed = (Entry(f"{entry.name}/{one.name}", one.n_bytes, one.open) for one in inner)
+            yield from _expand(prefixed, workroom, depth + 1)
+
+
+def _is_archive(entry: Entry) -> bool:
+    return entry.head()[:4] in {b"PK\x03\x04", b"PK\x05\x06"}
+
+
+def _zip_entries(archive: Entry, workroom: Workroom) -> list[Entry]:
+    try:
+        packed = zipfile.ZipFile(workroom.unpack(archive))
+        infos = packed.infolist()
+    except (*_DAMAGE, OSError) as bad:
+        raise FileProblem(
+            f"{archive.name} must be a whole zip archive, but it is damaged ({bad}). "
+            "Pack or download it again."
+        ) from bad
+    _check_archive(archive, infos)
+    return [
+        Entry(info.filename.replace("\\", "/").lstrip("/"), info.file_size, _opener(packed, info))
+        for info in infos
+        if not info.is_dir()
+    ]
+
+
+def _opener(packed: zipfile.ZipFile, info: zipfile.ZipInfo) -> Callable[[], IO[bytes]]:
+    return lambda: packed.open(info)
+
+
+def _check_archive(archive: Entry, infos: list[zipfile.ZipInfo]) -> None:
+    """Refuse what no honest archive does, before anything is unpacked."""
+    name = archive.name
+    if len(infos) > limits.ARCHIVE_ENTRIES:
+        raise FileProblem(
+            f"An archive may hold {limits.ARCHIVE_ENTRIES} files at most, but {name} holds "
+            f"{len(infos)}. Pack only the plots."
+        )
+    total = sum(info.file_size for info in infos)
+    if total > limits.UNPACKED_BYTES:
+        raise FileProblem(
+            f"An archive may unpack to {limits.size(limits.UNPACKED_BYTES)} at most, but {name} "
+            f"says {limits.size(total)}. Pack less into it."
+        )
+    if total > limits.RATIO_FROM_BYTES and total > limits.COMPRESSION_RATIO * archive.n_bytes:
+        raise FileProblem(
+            f"An archive of more than {limits.size(limits.RATIO_FROM_BYTES)} may unpack to "
+            f"{limits.COMPRESSION_RATIO} times its size at most, but {name} unpacks to "
+            f"{total / archive.n_bytes:.0f} times. Pack it again, or choose the file itself."
+        )
+    for info in infos:
+        if stat.S_ISLNK(info.external_attr >> 16):
+            raise FileProblem(
+                f"An archive must hold files only, but {info.filename} in {name} is a link to "
+                "another file. Pack the file itself."
+            )
+        if ".." in PurePosixPath(info.filename.replace("\\", "/")).parts:
+            raise FileProblem(
+                f"Files in an archive must lie inside it, but {info.filename} in {name} points "
+                "outside. Do not trust this file."
+            )
+        if info.flag_bits & 0x1:
+            raise FileProblem(f"{name} is locked with a password. Pack it again without one.")
+
+
+def _group(entries: list[Entry]) -> tuple[list[Member], list[FileProblem]]:
+    """Put together what belongs together; keep the reasons why the rest cannot be read."""
+    found = _geodatabases(entries)
+    taken = {entry.name for member in found for entry in member.entries}
+    rest = [entry for entry in entries if entry.name not in taken]
+    by_place: dict[tuple[str, str], dict[str, Entry]] = {}
+    for entry in rest:
+        place = (str(entry.path.parent), entry.path.stem.lower())
+        by_place.setdefault(place, {})[entry.path.suffix.lower()] = entry
+    problems = []
+    for entry in rest:
+        beside = by_place[str(entry.path.parent), entry.path.stem.lower()]
+        is_part = entry.path.suffix.lower() in {*_SHAPEFILE_PARTS[1:], *_RASTER_PARTS}
+        if is_part and beside.keys() & {".shp", ".tif", ".tiff"}:
+            continue
+        try:
+            kind = kind_of(entry.head(), entry.name)
+        except FileProblem as problem:
+            problems.append(problem)
+            continue
+        if kind is Kind.ARCHIVE:
+            kind = Kind.WORKBOOK
+        parts = {Kind.SHAPEFILE: _SHAPEFILE_PARTS[1:], Kind.RASTER: _RASTER_PARTS}.get(kind, ())
+        belongings = tuple(beside[part] for part in parts if part in beside)
+        found.append(Member(entry.name, kind, (entry, *belongings)))
+    return found, problems
+
+
+def _geodatabases(entries: list[Entry]) -> list[Member]:
+    folders: dict[str, list[Entry]] = {}
+    for entry in entries:
+        if entry.path.parent.suffix.lower() == ".gdb":
+            folders.setdefault(str(entry.path.parent), []).append(entry)
+    return [
+        Member(name, Kind.GEODATABASE, tuple(files))
+        for name, files in folders.items()
+        if any(f.path.suffix.lower() == ".gdbtable" for f in files)
+    ]

@@ -1,0 +1,48 @@
+"""The stops as CSV, to be filled in by hand in any spreadsheet."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import TYPE_CHECKING
+
+from fieldmon.io.writers.day_file import DECIMALS, plain_text
+
+if TYPE_CHECKING:
+    from fieldmon.io.writers.day_file import HandoffPlan, Stop
+
+#: columns that are left empty for whoever inspects
+TO_FILL_IN = ("found", "count", "who", "notes")
+_BEFORE = ("stop", "row", "number")
+_AFTER = ("plant", "lon", "lat", "arrive", "arrive_s", "inspect_s", "chance", "plot")
+_FORMULA = ("=", "+", "-", "@")
+
+
+def route_csv(plan: HandoffPlan) -> bytes:
+    """Return the stops as CSV (RFC 4180): commas, decimal points, CRLF, one line of names.
+
+    It begins with a byte order mark: without one, Excel takes UTF-8 for the machine's old code
+    page and mangles Hebrew and umlauts. The columns to fill in stand right after the row and the
+    number in it, since that is what fits on a phone's screen. A text that a spreadsheet would run
+    as a formula gets an apostrophe before it.
+    """
+    text = io.StringIO(newline="")
+    table = csv.writer(text, lineterminator="\r\n")
+    face = ("face",) if plan.has_faces else ()
+    table.writerow((*_BEFORE, *face, *TO_FILL_IN, *_AFTER))
+    table.writerows(_cells(stop, plan) for stop in plan.stops)
+    return text.getvalue().encode("utf-8-sig")
+
+
+def _cells(stop: Stop, plan: HandoffPlan) -> tuple[object, ...]:
+    plot = plain_text(plan.notes.plot)
+    return (
+        *(stop.order, stop.row, stop.number),
+        *((stop.face,) if plan.has_faces else ()),
+        *("" for _ in TO_FILL_IN),
+        stop.plant,
+        f"{stop.lon:.{DECIMALS}f}",
+        f"{stop.lat:.{DECIMALS}f}",
+        *(stop.arrive, stop.arrive_s, stop.inspect_s, f"{stop.chance:.6f}"),
+        f"'{plot}" if plot.startswith(_FORMULA) else plot,
+    )

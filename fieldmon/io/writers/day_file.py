@@ -1,0 +1,137 @@
+"""What is handed off: a route with its stops, as every format tells of them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from datetime import timedelta
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.plot.grid import row_label
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.io.writers.geojson import RouteNotes
+    from fieldmon.planning.route import Route
+    from fieldmon.plot.grid import PlantGrid
+
+#: decimals of a degree in every file: about a millimetre
+DECIMALS = 8
+
+# what XML 1.0 cannot hold, not even escaped, and no other format wants
+_NO_TEXT = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+class Stop(NamedTuple):
+    """One stop, in numbers and words that stand in files.
+
+    ``order``, ``row``, ``number`` and ``face`` count from 1; ``plant`` is the plant's number in
+    the grid, from 0. ``vertex`` tells where on the driven line the robot stands.
+    """
+
+    order: int
+    plant: int
+    row: int
+    number: int
+    face: int
+    lon: float
+    lat: float
+    arrive: str
+    arrive_s: float
+    inspect_s: float
+    chance: float
+    vertex: int
+
+    @property
+    def label(self) -> str:
+        """Return a short name that a handheld shows, and that reads back: ``012 R3/17``."""
+        face = "ab"[self.face - 1] if self.face else ""
+        return f"{self.order:03d} R{self.row}/{self.number}{face}"
+
+
+@dataclass(frozen=True, eq=False)
+class HandoffPlan:
+    """A planned day, ready to be handed to whoever inspects.
+
+    Parameters
+    ----------
+    route
+        Stops in order with their times, the driven line, and the plants it belongs to. How long
+        the robot pauses at a plant is its ``leave_s - arrive_s``.
+    notes
+        Name of the plot, who chose the plants, local date and time of the start.
+    """
+
+    route: Route
+    notes: RouteNotes
+
+    @property
+    def grid(self) -> PlantGrid:
+        """Return the plants."""
+        return self.route.aisles.grid
+
+    @property
+    def title(self) -> str:
+        """Return what to call the day: the plot, and the date where it is known."""
+        start = self.notes.start
+        return plain_text(self.notes.plot if start is None else f"{self.notes.plot} {start:%F}")
+
+    @property
+    def has_faces(self) -> bool:
+        """Return whether both faces of a plant are inspected, each for itself."""
+        return bool((self.grid.twin >= 0).any())
+
+    @cached_property
+    def stops(self) -> tuple[Stop, ...]:
+        """Stops in order; ``face`` is 0 where plants have but one."""
+        route = self.route
+        label = row_label(self.grid, route.plant)
+        lonlat = route.stops_lonlat().round(DECIMALS)
+        columns = zip(
+            range(1, len(route) + 1),
+            route.plant.tolist(),
+            label.line.tolist(),
+            label.number.tolist(),
+            faces(self.grid, route.plant).tolist(),
+            lonlat[:, 0].tolist(),
+            lonlat[:, 1].tolist(),
+            [self.clock(s) for s in route.arrive_s.tolist()],
+            np.round(route.arrive_s, 3).tolist(),
+            np.round(route.leave_s - route.arrive_s, 3).tolist(),
+            np.round(route.chance, 6).tolist(),
+            route.line_stop.tolist(),
+            strict=True,
+        )
+        return tuple(Stop(*values) for values in columns)
+
+    @cached_property
+    def line_lonlat(self) -> NDArray[np.float64]:
+        """Driven line in degrees, ``(m, 2)``."""
+        return self.route.line_lonlat().round(DECIMALS)
+
+    def clock(self, seconds: float) -> str:
+        """Return date and local time so many seconds after the start; empty if it is not known."""
+        start = self.notes.start
+        return "" if start is None else (start + timedelta(seconds=round(seconds))).isoformat()
+
+
+def faces(grid: PlantGrid, plants: NDArray[np.integer]) -> NDArray[np.int64]:
+    """Return 1 or 2 for the face of each plant ``(k,)``, 0 where it has but one."""
+    twin = grid.twin[plants]
+    return np.where(twin < 0, 0, np.where(plants < twin, 1, 2)).astype(np.int64)
+
+
+def plain_text(text: str) -> str:
+    """Return text without the control characters that XML and tables cannot hold."""
+    return _NO_TEXT.sub(" ", text)
+
+
+def pieces(n: int, most: int) -> list[slice]:
+    """Cut ``n`` points of a line into runs of at most `most`, each begun by the last one's end."""
+    if n < 2:
+        return [slice(0, n)] if n else []
+    return [slice(first, min(first + most, n)) for first in range(0, n - 1, most - 1)]

@@ -1,0 +1,139 @@
+"""A day's route as GeoJSON (RFC 7946): the driven line, and the stops in order."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fieldmon.io.atomic_write import write_whole
+from fieldmon.plot.grid import row_label
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from fieldmon.planning.route import Route
+
+# RFC 7946 positions are degrees; 8 decimals are about a millimetre
+_DECIMALS = 8
+
+
+@dataclass(frozen=True)
+class RouteNotes:
+    """What a route file says beside the route.
+
+    Parameters
+    ----------
+    plot
+        The plot's name.
+    sampler
+        Who chose the plants.
+    start
+        Local date and time of the start, or None: only seconds are given then.
+    """
+
+    plot: str
+    sampler: str
+    start: datetime | None = None
+
+
+def summary(route: Route, notes: RouteNotes) -> dict[str, Any]:
+    """Return the figures of a route: stops, seconds, metres, expected finds."""
+    return {
+        "plot": notes.plot,
+        "sampler": notes.sampler,
+        "stops": len(route),
+        "seconds": round(route.end_s, 3),
+        "drive_m": round(route.drive_m, 3),
+        "inspect_s": round(float((route.leave_s - route.arrive_s).sum()), 3),
+        "infested_expected": round(route.expected_finds, 3),
+        **({} if notes.start is None else {"start": _clock(notes.start, 0.0)}),
+        **({} if notes.start is None else {"end": _clock(notes.start, route.end_s)}),
+    }
+
+
+def route_geojson(route: Route, notes: RouteNotes) -> str:
+    """Return a route as GeoJSON text: first the driven line, then a point for every stop.
+
+    A stop lies at its plant; its ``line_vertex`` tells where on the line the robot stands for it.
+    ``found``, ``count``, ``who`` and ``notes`` are empty, to be filled in by whoever inspects.
+    """
+    line_lonlat = np.round(route.line_lonlat(), _DECIMALS)
+    features = [_line_feature(route, notes, line_lonlat), *_stop_features(route, notes)]
+    collection = {"type": "FeatureCollection", "features": features}
+    everything = np.concatenate([line_lonlat, np.round(route.stops_lonlat(), _DECIMALS)])
+    if len(everything):
+        collection["bbox"] = [*everything.min(axis=0).tolist(), *everything.max(axis=0).tolist()]
+    return json.dumps(collection, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def write_route(path: str | Path, route: Route, notes: RouteNotes) -> None:
+    """Write a route's GeoJSON file, whole or not at all; raise `FileProblem` if it cannot be."""
+    write_whole(path, route_geojson(route, notes).encode())
+
+
+def _line_feature(
+    route: Route, notes: RouteNotes, line_lonlat: NDArray[np.float64]
+) -> dict[str, Any]:
+    # a line needs two positions; a day without stops has no line
+    line = line_lonlat.tolist() if len(line_lonlat) > 1 else None
+    return {
+        "type": "Feature",
+        "id": "route",
+        "geometry": line and {"type": "LineString", "coordinates": line},
+        "properties": {
+            "kind": "route",
+            **summary(route, notes),
+            "vertex_s": np.round(route.line_s, 3).tolist(),
+        },
+    }
+
+
+def _stop_features(route: Route, notes: RouteNotes) -> list[dict[str, Any]]:
+    label = row_label(route.aisles.grid, route.plant)
+    columns = zip(
+        route.stops_lonlat().round(_DECIMALS).tolist(),
+        route.plant.tolist(),
+        label.line.tolist(),
+        label.number.tolist(),
+        route.arrive_s.tolist(),
+        route.leave_s.tolist(),
+        route.chance.tolist(),
+        route.line_stop.tolist(),
+        strict=True,
+    )
+    return [
+        {
+            "type": "Feature",
+            "id": f"stop-{order}",
+            "geometry": {"type": "Point", "coordinates": place},
+            "properties": {
+                "kind": "stop",
+                "order": order,
+                "plant": plant,
+                "row": row,
+                "number": number,
+                "arrive_s": round(arrive_s, 3),
+                **({} if notes.start is None else {"arrive": _clock(notes.start, arrive_s)}),
+                "inspect_s": round(leave_s - arrive_s, 3),
+                "chance": round(chance, 6),
+                "line_vertex": vertex,
+                "found": None,
+                "count": None,
+                "who": None,
+                "notes": None,
+            },
+        }
+        for order, (place, plant, row, number, arrive_s, leave_s, chance, vertex) in enumerate(
+            columns, 1
+        )
+    ]
+
+
+def _clock(start: datetime, seconds: float) -> str:
+    return (start + timedelta(seconds=round(seconds))).isoformat()

@@ -1,0 +1,128 @@
+"""A day as GeoPackage and as zipped shapefile: a layer of stops and one of the driven line."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import geopandas as gpd
+import pandas as pd
+import pyogrio
+from shapely import LineString, Point
+
+from fieldmon.errors import FileProblem
+from fieldmon.io.writers.day_file import plain_text
+from fieldmon.io.writers.geojson import summary
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fieldmon.io.writers.day_file import HandoffPlan
+
+_WGS84 = "EPSG:4326"
+_MOST_BYTES = 254  # of text in a cell of a shapefile's table
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can name: equal days make equal files
+
+
+def route_gpkg(plan: HandoffPlan) -> bytes:
+    """Return a day as GeoPackage with the layers ``stops`` and ``route``, in WGS 84.
+
+    ``found``, ``count``, ``who``, ``notes`` and ``time`` of the stops are empty, to be filled in
+    with QField or QGIS.
+    """
+
+    def write(folder: Path) -> Path:
+        path = folder / "route.gpkg"
+        stops = _stops(plan)
+        stops["time"] = pd.Series([pd.NaT] * len(stops), dtype="datetime64[ms]")
+        _write(stops, path, "GPKG", layer="stops", geometry_type="Point")
+        _write(_line(plan), path, "GPKG", layer="route", geometry_type="LineString")
+        return path
+
+    return _made(lambda folder: write(folder).read_bytes())
+
+
+def route_shapefile(plan: HandoffPlan) -> bytes:
+    """Return a day as a zip with the shapefiles ``stops`` and ``route``, in WGS 84.
+
+    By the format's limits: names of columns are ASCII of ten characters at most, text is UTF-8 (as
+    the ``.cpg`` says) of 254 bytes at most, and times are text, since its tables know but days.
+    """
+
+    def write(folder: Path) -> bytes:
+        for name, frame, kind in (
+            ("stops", _stops(plan), "Point"),
+            ("route", _line(plan), "LineString"),
+        ):
+            path = folder / f"{name}.shp"
+            _write(frame, path, "ESRI Shapefile", encoding="UTF-8", geometry_type=kind)
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, "w") as archive:
+            for part in sorted(folder.iterdir()):
+                info = zipfile.ZipInfo(part.name, _EPOCH)
+                archive.writestr(info, part.read_bytes(), zipfile.ZIP_DEFLATED)
+        return packed.getvalue()
+
+    return _made(write)
+
+
+def _made(write: Callable[[Path], bytes]) -> bytes:
+    """Return what is written in a folder of its own, which is then gone."""
+    try:
+        with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+            return write(Path(folder))
+    except (OSError, pyogrio.errors.DataSourceError) as error:
+        raise FileProblem(
+            f"The route could not be made in the folder for temporary files ({error}). "
+            "Make room there."
+        ) from error
+
+
+def _write(frame: gpd.GeoDataFrame, path: Path, driver: str, **more: Any) -> None:  # noqa: ANN401
+    pyogrio.write_dataframe(frame, path, driver=driver, append=path.exists(), **more)
+
+
+def _stops(plan: HandoffPlan) -> gpd.GeoDataFrame:
+    stops = plan.stops
+    columns: dict[str, pd.Series[Any]] = {
+        name: pd.Series([getattr(stop, field) for stop in stops], dtype=kind)
+        for name, field, kind in (
+            ("stop", "order", "int32"),
+            ("plant", "plant", "int32"),
+            ("row", "row", "int32"),
+            ("number", "number", "int32"),
+            *((("face", "face", "int32"),) if plan.has_faces else ()),
+            ("arrive", "arrive", "object"),
+            ("arrive_s", "arrive_s", "float64"),
+            ("inspect_s", "inspect_s", "float64"),
+            ("chance", "chance", "float64"),
+        )
+    }
+    for name, kind in (("found", object), ("count", "Int32"), ("who", object), ("notes", object)):
+        columns[name] = pd.Series([None] * len(stops), dtype=kind)
+    points = [Point(stop.lon, stop.lat) for stop in stops]
+    return gpd.GeoDataFrame(columns, geometry=points, crs=_WGS84)
+
+
+def _line(plan: HandoffPlan) -> gpd.GeoDataFrame:
+    there = len(plan.line_lonlat) > 1
+    figures = summary(plan.route, plan.notes)
+    row = {
+        "plot": _cut(plan.notes.plot),
+        "sampler": _cut(plan.notes.sampler),
+        "start": plan.clock(0.0),
+        "stops": figures["stops"],
+        "seconds": figures["seconds"],
+        "drive_m": figures["drive_m"],
+    }
+    lines = [LineString(plan.line_lonlat)] if there else []
+    columns = {name: pd.Series([value] * len(lines)) for name, value in row.items()}
+    return gpd.GeoDataFrame(columns, geometry=lines, crs=_WGS84)
+
+
+def _cut(text: str) -> str:
+    """Return text of no more bytes than a shapefile's cell holds, no letter cut in two."""
+    return plain_text(text).encode()[:_MOST_BYTES].decode("utf-8", "ignore")

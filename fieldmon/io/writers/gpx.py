@@ -1,0 +1,106 @@
+"""A day as GPX 1.1: a waypoint for every stop, the route to follow, the track to see."""
+
+from __future__ import annotations
+
+from datetime import UTC
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree as ET
+
+import numpy as np
+
+from fieldmon.io.writers.day_file import DECIMALS, pieces, plain_text
+from fieldmon.io.writers.geojson import summary
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.io.writers.day_file import HandoffPlan, Stop
+
+#: many handhelds read a route or a track up to here, and drop the rest without a word
+MOST_POINTS = 250
+_NAMESPACE = "http://www.topografix.com/GPX/1/1"
+_SCHEMA = f"{_NAMESPACE} http://www.topografix.com/GPX/1/1/gpx.xsd"
+_INSTANCE = "http://www.w3.org/2001/XMLSchema-instance"
+
+
+def route_gpx(plan: HandoffPlan) -> bytes:
+    """Return a day as GPX 1.1, its elements in the order that the schema demands.
+
+    Waypoints lie at the plants. Route and track run along the driven line, so that a handheld that
+    goes straight from point to point crosses no row; both are cut after `MOST_POINTS` points, and
+    each piece begins where the one before it ends. Times in GPX are UTC: one is written only where
+    the start has a time zone; the local arrival stands in each waypoint's description.
+    """
+    ET.register_namespace("", _NAMESPACE)
+    root = ET.Element(
+        "gpx",
+        {
+            "xmlns": _NAMESPACE,
+            "xmlns:xsi": _INSTANCE,
+            "xsi:schemaLocation": _SCHEMA,
+            "version": "1.1",
+            "creator": "fieldmon",
+        },
+    )
+    _metadata(ET.SubElement(root, "metadata"), plan)
+    for stop in plan.stops:
+        _waypoint(ET.SubElement(root, "wpt", _place(stop.lon, stop.lat)), stop)
+    names = {stop.vertex: stop.label for stop in plan.stops}
+    runs = pieces(len(plan.line_lonlat), MOST_POINTS)
+    for part, run in enumerate(runs, 1):
+        route = _part(root, "rte", plan, part, len(runs))
+        for vertex in range(run.start, run.stop):
+            point = ET.SubElement(route, "rtept", _place(*plan.line_lonlat[vertex]))
+            if vertex in names:
+                _text(point, "name", names[vertex])
+    for part, run in enumerate(runs, 1):
+        segment = ET.SubElement(_part(root, "trk", plan, part, len(runs)), "trkseg")
+        for lon, lat in plan.line_lonlat[run]:
+            ET.SubElement(segment, "trkpt", _place(lon, lat))
+    written: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return written
+
+
+def _metadata(metadata: ET.Element, plan: HandoffPlan) -> None:
+    figures = summary(plan.route, plan.notes)
+    _text(metadata, "name", plan.title)
+    told = f"{figures['stops']} stops, {figures['drive_m']:.0f} m, {figures['seconds']:.0f} s"
+    _text(metadata, "desc", told)
+    start = plan.notes.start
+    if start is not None and start.tzinfo is not None:
+        _text(metadata, "time", f"{start.astimezone(UTC):%Y-%m-%dT%H:%M:%SZ}")
+    if len(plan.line_lonlat):
+        _bounds(metadata, plan)
+
+
+def _bounds(metadata: ET.Element, plan: HandoffPlan) -> None:
+    stops = np.array([(stop.lon, stop.lat) for stop in plan.stops])
+    everything: NDArray[np.float64] = np.concatenate([plan.line_lonlat, stops.reshape(-1, 2)])
+    low, high = _place(*everything.min(axis=0)), _place(*everything.max(axis=0))
+    corners = {f"min{k}": v for k, v in low.items()} | {f"max{k}": v for k, v in high.items()}
+    ET.SubElement(metadata, "bounds", corners)
+
+
+def _waypoint(waypoint: ET.Element, stop: Stop) -> None:
+    arrive = f"arrive {stop.arrive}; " if stop.arrive else f"after {stop.arrive_s:.0f} s; "
+    _text(waypoint, "name", stop.label)
+    _text(waypoint, "cmt", f"plant {stop.plant}")
+    _text(waypoint, "desc", f"{arrive}look {stop.inspect_s:g} s; chance {stop.chance:.1%}")
+    _text(waypoint, "sym", "Flag, Blue")
+    _text(waypoint, "type", "stop")
+
+
+def _part(root: ET.Element, kind: str, plan: HandoffPlan, part: int, parts: int) -> ET.Element:
+    element = ET.SubElement(root, kind)
+    _text(element, "name", plan.title if parts == 1 else f"{plan.title} {part}/{parts}")
+    _text(element, "number", str(part))
+    return element
+
+
+def _place(lon: float, lat: float) -> dict[str, str]:
+    # the schema has longitudes up to, but not including, 180
+    return {"lat": f"{lat:.{DECIMALS}f}", "lon": f"{-180.0 if lon >= 180 else lon:.{DECIMALS}f}"}
+
+
+def _text(parent: ET.Element, tag: str, text: str) -> None:
+    ET.SubElement(parent, tag).text = plain_text(text)

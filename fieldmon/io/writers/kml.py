@@ -1,0 +1,91 @@
+"""A day as KML 2.2: the stops and the driven line, for Google Earth and map apps on phones."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree as ET
+
+from fieldmon.io.writers.day_file import DECIMALS, plain_text
+from fieldmon.io.writers.geojson import summary
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.io.writers.day_file import HandoffPlan, Stop
+
+_NAMESPACE = "http://www.opengis.net/kml/2.2"
+_LINE_COLOUR = "ff0080ff"  # opacity, blue, green, red: orange
+_ICON = "http://maps.google.com/mapfiles/kml/shapes/placemark_circle.png"
+
+
+def route_kml(plan: HandoffPlan) -> bytes:
+    """Return a day as KML, the elements of each feature in the order of OGC 07-147r2.
+
+    Arrivals are local times without a zone, as KML allows. The empty ``found``, ``count`` and
+    ``notes`` of each stop can be filled in where an app edits extended data.
+    """
+    ET.register_namespace("", _NAMESPACE)
+    root = ET.Element("kml", {"xmlns": _NAMESPACE})
+    document = ET.SubElement(root, "Document")
+    figures = summary(plan.route, plan.notes)
+    _text(document, "name", plan.title)
+    _text(document, "description", f"{figures['stops']} stops, {figures['drive_m']:.0f} m")
+    _styles(document)
+    if len(plan.line_lonlat) > 1:
+        line = ET.SubElement(document, "Placemark", {"id": "route"})
+        _text(line, "name", plan.title)
+        _text(line, "styleUrl", "#driven")
+        shape = ET.SubElement(line, "LineString")
+        _text(shape, "tessellate", "1")
+        _text(shape, "coordinates", _coordinates(plan.line_lonlat))
+    folder = ET.SubElement(document, "Folder")
+    _text(folder, "name", "stops")
+    for stop in plan.stops:
+        _stop(ET.SubElement(folder, "Placemark", {"id": f"stop-{stop.order}"}), stop, plan)
+    written: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return written
+
+
+def _styles(document: ET.Element) -> None:
+    driven = ET.SubElement(ET.SubElement(document, "Style", {"id": "driven"}), "LineStyle")
+    _text(driven, "color", _LINE_COLOUR)
+    _text(driven, "width", "3")
+    icon = ET.SubElement(ET.SubElement(document, "Style", {"id": "stop"}), "IconStyle")
+    _text(icon, "scale", "0.6")
+    _text(ET.SubElement(icon, "Icon"), "href", _ICON)
+
+
+def _stop(placemark: ET.Element, stop: Stop, plan: HandoffPlan) -> None:
+    _text(placemark, "name", stop.label)
+    _text(placemark, "description", f"look {stop.inspect_s:g} s; chance {stop.chance:.1%}")
+    if stop.arrive:
+        _text(ET.SubElement(placemark, "TimeStamp"), "when", stop.arrive)
+    _text(placemark, "styleUrl", "#stop")
+    extended = ET.SubElement(placemark, "ExtendedData")
+    values = {
+        "stop": stop.order,
+        "plant": stop.plant,
+        "row": stop.row,
+        "number": stop.number,
+        **({"face": stop.face} if plan.has_faces else {}),
+        "arrive_s": stop.arrive_s,
+        "inspect_s": stop.inspect_s,
+        "chance": stop.chance,
+        "found": "",
+        "count": "",
+        "who": "",
+        "notes": "",
+    }
+    for name, value in values.items():
+        _text(ET.SubElement(extended, "Data", {"name": name}), "value", str(value))
+    point = ET.SubElement(placemark, "Point")
+    _text(point, "coordinates", f"{stop.lon:.{DECIMALS}f},{stop.lat:.{DECIMALS}f}")
+
+
+def _coordinates(lonlat: NDArray[np.float64]) -> str:
+    return " ".join(f"{lon:.{DECIMALS}f},{lat:.{DECIMALS}f}" for lon, lat in lonlat.tolist())
+
+
+def _text(parent: ET.Element, tag: str, text: str) -> None:
+    ET.SubElement(parent, tag).text = plain_text(text)

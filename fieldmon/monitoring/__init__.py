@@ -1,0 +1,32 @@
+"""A monitoring season on disk: one GeoPackage that grows with each day's findings."""
+
+from __future__ import annotations
+
+from fieldmon.monitoring.batches import Batch
+from fieldmon.monitoring.inspection_table import (
+    NAMES,
+    RESULTS,
+    Results,
+    counting_copy,
+    results_from,
+)
+from fieldmon.monitoring.season_file import Project, Recorded, Status
+from fieldmon.monitoring.settings import Setup
+from fieldmon.monitoring.tables import Remark
+from fieldmon.monitoring.transactions import Store, is_season
+
+__all__ = [
+    "NAMES",
+    "RESULTS",
+    "Batch",
+    "Project",
+    "Recorded",
+    "Remark",
+    "Results",
+    "Setup",
+    "Status",
+    "Store",
+    "counting_copy",
+    "is_season",
+    "results_from",
+]

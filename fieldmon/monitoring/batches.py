@@ -1,0 +1,115 @@
+"""Everything recorded, batch by batch, and how it is taken back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fieldmon.errors import SettingError
+from fieldmon.monitoring import schema
+from fieldmon.monitoring.geopackage import touch
+from fieldmon.monitoring.tables import utc_now
+
+if TYPE_CHECKING:
+    import sqlite3
+
+_TABLE_OF = {"findings": "inspections", "treatment": "treatments"}
+
+
+@dataclass(frozen=True)
+class Batch:
+    """One recording: a file of findings, a tap in scout mode, a treatment.
+
+    Parameters
+    ----------
+    number
+        For undoing.
+    at
+        When it was recorded, UTC.
+    kind
+        ``"findings"`` or ``"treatment"``.
+    source, who
+        File or screen it came from, and the person.
+    rows
+        Results it added.
+    undone
+        Whether it was undone; it is kept nevertheless.
+    """
+
+    number: int
+    at: str
+    kind: str
+    source: str
+    who: str
+    rows: int
+    undone: bool
+
+
+def begin(db: sqlite3.Connection, kind: str, source: str, who: str) -> int:
+    """Open a batch and return its number."""
+    cursor = db.execute(
+        "INSERT INTO batches (at, kind, source, who, rows) VALUES (?, ?, ?, ?, 0)",
+        (utc_now(), kind, source, who),
+    )
+    return int(cursor.lastrowid or 0)
+
+
+def end(db: sqlite3.Connection, batch: int, rows: int) -> None:
+    """Note how much a batch added; one that added nothing was none."""
+    if rows:
+        db.execute("UPDATE batches SET rows = ? WHERE fid = ?", (rows, batch))
+    else:
+        db.execute("DELETE FROM batches WHERE fid = ?", (batch,))
+    touch(db, schema.BATCHES.name)
+
+
+def all_of(db: sqlite3.Connection) -> tuple[Batch, ...]:
+    """Return every batch, the last one first."""
+    rows = db.execute(
+        "SELECT fid, at, kind, source, who, rows, undone FROM batches ORDER BY fid DESC"
+    )
+    return tuple(
+        Batch(number, at, kind, source or "", who or "", added, bool(undone))
+        for number, at, kind, source, who, added, undone in rows
+    )
+
+
+def undo(db: sqlite3.Connection, number: int | None) -> str:
+    """Mark a batch (None: the last one that counts) as undone; return what was done."""
+    waiting = [batch for batch in all_of(db) if not batch.undone]
+    if number is not None:
+        waiting = [batch for batch in waiting if batch.number == number]
+    if not waiting:
+        what = "to undo" if number is None else f"called batch {number} that still counts"
+        raise SettingError(
+            f"There must be something {what}, but there is nothing. "
+            "See what was recorded with: fieldmon status --batches"
+        )
+    batch = waiting[0]
+    table = _TABLE_OF[batch.kind]
+    db.execute(f"UPDATE {table} SET undone = 1 WHERE batch = ?", (batch.number,))  # noqa: S608 - ours
+    db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (batch.number,))
+    touch(db, table)
+    source = f" from {batch.source}" if batch.source else ""
+    return f"Batch {batch.number} was undone: {batch.rows} {batch.kind}{source}."
+
+
+def undo_one(db: sqlite3.Connection, inspection: int) -> str:
+    """Mark one inspection as undone; return what was done."""
+    row = db.execute(
+        "SELECT line, number, date, result, batch FROM inspections WHERE fid = ? AND undone = 0",
+        (inspection,),
+    ).fetchone()
+    if row is None:
+        raise SettingError(
+            f"There must be an inspection {inspection} that still counts, but there is none. "
+            "The layer inspections of the season's file shows their numbers (fid)."
+        )
+    db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
+    left = db.execute(
+        "SELECT count(*) FROM inspections WHERE batch = ? AND undone = 0", (row[4],)
+    ).fetchone()[0]
+    if not left:
+        db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (row[4],))
+    touch(db, schema.INSPECTIONS.name)
+    return f"Undone: row {row[0]}, plant {row[1]} on {row[2]} ({row[3]})."

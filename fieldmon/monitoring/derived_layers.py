@@ -1,0 +1,133 @@
+"""Layers that follow from the causes: rebuilt with every change, held to their digests."""
+
+from __future__ import annotations
+
+import hashlib
+from itertools import zip_longest
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from shapely import MultiPolygon
+
+from fieldmon.infestation.hotspots import hot_spots
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.plot_estimate import outlook
+from fieldmon.monitoring import schema
+from fieldmon.monitoring.geopackage import blob, insert, touch
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.infestation.plot_estimate import Outlook
+    from fieldmon.monitoring.history import History
+    from fieldmon.monitoring.settings import Setup
+    from fieldmon.plot.plot import Plot
+
+STATES = {-1: "never inspected", 0: "looked clean", 1: "found infested"}
+_DIGITS = 9  # of a chance; a digest must not hang on the last bit of another processor
+
+
+def digest(chance: NDArray[np.float64]) -> str:
+    """Return a short name for a chance map ``(n,)``: the same for the same map only."""
+    plain = np.round(chance, _DIGITS).astype("<f8").tobytes()
+    return hashlib.sha256(plain).hexdigest()[:24]
+
+
+def outlook_of(history: History, morning: Belief, day: int) -> Outlook:
+    """Return how many plants are infested and not found yet, after a day's work."""
+    evening = history.evening(morning, day)
+    if not history.beliefs.treated:  # what was found is known: it is not out there any more
+        evening = evening.treated(np.where(history.states(day) == PRESENT, 0.0, 1.0))
+    return outlook(history.grid, evening.chance, evening.both)
+
+
+def refresh(
+    db: sqlite3.Connection,
+    plot: Plot,
+    setup: Setup,
+    history: History,
+    morning: Callable[[int], Belief],
+    since: int = 0,
+) -> None:
+    """Write the layers anew, as of the last day on which anything happened.
+
+    What is known of days before `since` did not change.
+    """
+    worked = [int(day) for day in np.unique(history.inspections.day)]
+    planned = [day for (day,) in db.execute("SELECT DISTINCT day FROM routes")]
+    treated = [treatment.day for treatment in history.treatments]
+    days = sorted({0, *worked, *planned, *treated})
+    db.execute("DELETE FROM days WHERE day >= ?", (since,))
+    rows = [_day_row(setup, history, morning(day), day) for day in days if day >= since]
+    insert(db, schema.DAYS, rows)
+    spots = _write_spots(db, plot, history, days[-1])
+    _write_states(db, setup, history, spots, (days[-1], morning(days[-1])))
+
+
+def _day_row(setup: Setup, history: History, morning: Belief, day: int) -> tuple[object, ...]:
+    today = history.inspections.on(day).looked
+    ahead = outlook_of(history, morning, day)
+    found = int(np.count_nonzero(today.result == FOUND))
+    return (
+        *(day, str(setup.date(day)), len(today), found),
+        *(ahead.expected, ahead.low, ahead.high, ahead.chance_clean, digest(morning.chance)),
+    )
+
+
+def _write_spots(db: sqlite3.Connection, plot: Plot, history: History, day: int) -> HotSpots:
+    grid = plot.grid
+    spots = hot_spots(grid, history.states(day))
+    db.execute("DELETE FROM hot_spots")
+    rows = []
+    for h in range(len(spots)):
+        area = spot_area(plot, spots, h)
+        counts = (int(each[h]) for each in (spots.found, spots.inspected, spots.plants))
+        chances = (float(each[h]) for each in (spots.expected, spots.p, spots.q))
+        rows.append((blob(area), h + 1, *counts, *chances))
+    insert(db, schema.HOT_SPOTS, rows)
+    touch(db, schema.HOT_SPOTS.name, plot.field.boundary.bounds)
+    return spots
+
+
+def spot_area(plot: Plot, spots: HotSpots, h: int) -> MultiPolygon:
+    """Return the ground of a hot spot, lon/lat: its plants and half a row around them."""
+    grid = plot.grid
+    plants = shapely.MultiPoint(grid.xy_m[spots.of_plant == h])
+    row_m = grid.row_spacing_m
+    around = plants.buffer(1.5 * row_m, quad_segs=4).buffer(-row_m, quad_segs=4)
+    parts = shapely.get_parts(grid.frame.geometry_lonlat(around))
+    return MultiPolygon(list(parts))
+
+
+def _write_states(
+    db: sqlite3.Connection,
+    setup: Setup,
+    history: History,
+    spots: HotSpots,
+    latest: tuple[int, Belief],
+) -> None:
+    day, morning = latest
+    name = {int(d): str(setup.date(int(d))) for d in np.unique(history.inspections.day)}
+    rows = zip(
+        range(1, len(history.grid) + 1),
+        np.round(history.evening(morning, day).chance, 6).tolist(),
+        [STATES[state] for state in history.states(day).tolist()],
+        [name.get(last) for last in history.last_inspected(day).tolist()],
+        [None if h < 0 else h + 1 for h in spots.of_plant.tolist()],
+        strict=True,
+    )
+    # a tap changes what is known of a few plants: only these are written
+    columns = "fid, chance, state, last_inspected, hot_spot"
+    before = db.execute(f"SELECT {columns} FROM plant_state ORDER BY fid").fetchall()  # noqa: S608 - ours
+    changed = [row for row, old in zip_longest(rows, before) if row != old]
+    marks = ", ".join("?" * 5)
+    db.executemany(f"REPLACE INTO plant_state ({columns}) VALUES ({marks})", changed)  # noqa: S608
+    for table in (schema.PLANT_STATE, schema.CHANCE, schema.DAYS):
+        touch(db, table.name)

@@ -1,0 +1,95 @@
+"""Routes in a season's file: the line for a driver, the stops for whoever inspects."""
+
+from __future__ import annotations
+
+import hashlib
+from datetime import datetime, timedelta
+from typing import TYPE_CHECKING
+
+import numpy as np
+from shapely import LineString
+
+from fieldmon.monitoring import schema
+from fieldmon.monitoring.geopackage import blob, insert, point_blobs, touch
+
+if TYPE_CHECKING:
+    import sqlite3
+
+    from numpy.typing import NDArray
+
+    from fieldmon.monitoring.settings import Setup
+    from fieldmon.planning.plan import Today
+    from fieldmon.plot.grid import RowLabel
+
+
+def begins(setup: Setup, today: Today) -> datetime:
+    """Return the local time at which a route begins: the start of work, or half-way."""
+    gone_s = setup.robot.day_s - today.scene.seconds_left
+    start = datetime.combine(setup.date(today.scene.day), setup.starts)
+    return start + timedelta(seconds=round(gone_s))
+
+
+def keep(db: sqlite3.Connection, setup: Setup, label: RowLabel, today: Today) -> bool:
+    """Keep a day's route, unless it is the one kept last; tell whether it was."""
+    day, route = today.scene.day, today.route
+    digest = _digest(today)
+    last = db.execute(
+        "SELECT revision, digest FROM routes WHERE day = ? ORDER BY revision DESC LIMIT 1", (day,)
+    ).fetchone()
+    if last is not None and last[1] == digest:
+        return False
+    begin, line = begins(setup, today), route.line_lonlat()
+    row = {
+        "geom": blob(LineString(line)) if len(line) > 1 else None,
+        "day": day,
+        "date": str(setup.date(day)),
+        "revision": 1 if last is None else last[0] + 1,
+        "sampler": setup.sampler,
+        "starts": begin.isoformat(),
+        "seconds": route.end_s,
+        "drive_m": route.drive_m,
+        "stops": len(route),
+        "expected": route.expected_finds,
+        "at_plant": today.scene.at,
+        "seconds_left": today.scene.seconds_left,
+        "digest": digest,
+    }
+    cursor = db.execute(
+        f"INSERT INTO routes ({', '.join(row)}) VALUES ({', '.join('?' * len(row))})",  # noqa: S608 - ours
+        tuple(row.values()),
+    )
+    stops = zip(
+        point_blobs(route.stops_lonlat()),
+        [cursor.lastrowid] * len(route),
+        range(1, len(route) + 1),
+        route.plant.tolist(),
+        label.line[route.plant].tolist(),
+        label.number[route.plant].tolist(),
+        route.arrive_s.tolist(),
+        [(begin + timedelta(seconds=round(s))).isoformat() for s in route.arrive_s.tolist()],
+        route.chance.tolist(),
+        strict=True,
+    )
+    insert(db, schema.STOPS, list(stops))
+    if len(line):
+        bounds = (*line.min(axis=0).tolist(), *line.max(axis=0).tolist())
+        for table in (schema.ROUTES, schema.STOPS):
+            touch(db, table.name, bounds)
+    return True
+
+
+def plants(db: sqlite3.Connection, day: int) -> NDArray[np.int32]:
+    """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none."""
+    rows = db.execute(
+        "SELECT plant FROM stops WHERE route = "
+        "(SELECT fid FROM routes WHERE day = ? ORDER BY revision DESC LIMIT 1) ORDER BY stop",
+        (day,),
+    )
+    return np.array([plant for (plant,) in rows], np.int32)
+
+
+def _digest(today: Today) -> str:
+    said = hashlib.sha256(today.route.plant.astype("<i4").tobytes())
+    said.update(np.round(today.route.arrive_s, 3).astype("<f8").tobytes())
+    said.update(repr((today.scene.at, round(today.scene.seconds_left, 3))).encode())
+    return said.hexdigest()[:24]

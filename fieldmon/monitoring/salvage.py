@@ -1,0 +1,124 @@
+"""Save what can be saved from a damaged season into a new file."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sqlite3
+import tempfile
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fieldmon.errors import FieldmonError, FileProblem
+from fieldmon.monitoring import schema
+from fieldmon.monitoring.geopackage import insert
+from fieldmon.monitoring.season_file import Project
+from fieldmon.monitoring.transactions import Store
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring.geopackage import Table
+
+_MOST_ROWS = 50_000_000
+_MOST_BYTES = 2**34
+
+
+@dataclass(frozen=True)
+class Salvaged:
+    """What came over.
+
+    Parameters
+    ----------
+    rows
+        Rows saved of each table.
+    lost
+        Tables of which at least one row could not be read.
+    whole
+        Whether the new file works as a season again.
+    """
+
+    rows: dict[str, int]
+    lost: tuple[str, ...]
+    whole: bool
+
+
+def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
+    """Copy every row that can still be read from a damaged season into a new file.
+
+    Raise `FileProblem` if nothing can be read, or if the new file exists already.
+    """
+    source = Path(damaged)
+    if not source.is_file():
+        raise FileProblem(f"{damaged} must be a file, but there is none. Check the name.")
+    tables = [table for table in schema.CAUSES if table is not schema.META]
+    saved: dict[str, list[tuple[object, ...]]] = {}
+    lost = []
+    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+        copy = _padded_copy(source, Path(folder))
+        with closing(sqlite3.connect(copy)) as db:
+            for table in tables:
+                saved[table.name], complete = _rows(db, table)
+                if not complete:
+                    lost.append(table.name)
+    if not any(saved.values()):
+        raise FileProblem(
+            f"Something must be readable in {damaged}, but nothing is. Was it a season of "
+            "fieldmon? Take the last copy you have of it."
+        )
+    with Store.new(to) as new:
+        new.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES ('revision', '0')")
+        for table in tables:
+            names = ("fid", *table.names)
+            marks = ", ".join("?" * len(names))
+            new.executemany(
+                f"INSERT OR IGNORE INTO {table.name} ({', '.join(names)}) VALUES ({marks})",  # noqa: S608 - ours
+                saved[table.name],
+            )
+        # a file whose derived layers are not there yet still says on which day it stands
+        insert(new, schema.DAYS, [(0, None, 0, 0, None, None, None, None, "")])
+    whole = True
+    try:
+        Project(to).rebuild()
+    except FieldmonError:
+        whole = False
+    return Salvaged({name: len(rows) for name, rows in saved.items()}, tuple(lost), whole)
+
+
+def _padded_copy(source: Path, folder: Path) -> Path:
+    """Return a copy as long as the file once was: SQLite reads nothing of one cut short.
+
+    Its header holds the page size at byte 16 and the number of pages at byte 28.
+    """
+    copy = folder / "copy.gpkg"
+    shutil.copyfile(source, copy)
+    with source.open("rb") as file:
+        head = file.read(32)
+    pages, size = int.from_bytes(head[28:32]), int.from_bytes(head[16:18])
+    whole = min(pages * (size if size > 1 else 65536), _MOST_BYTES)
+    if copy.stat().st_size < whole:
+        os.truncate(copy, whole)
+    return copy
+
+
+def _rows(db: sqlite3.Connection, table: Table) -> tuple[list[tuple[object, ...]], bool]:
+    """Return the rows that can be read, and whether those are all.
+
+    Read forwards up to the damage, then backwards down to it.
+    """
+    got: dict[int, tuple[object, ...]] = {}
+    complete = False
+    wanted = f"SELECT fid, {', '.join(table.names)} FROM {table.name} ORDER BY fid"  # noqa: S608 - ours
+    for order in ("ASC", "DESC"):
+        try:
+            for row in db.execute(f"{wanted} {order} LIMIT {_MOST_ROWS}"):
+                if row[0] in got:
+                    break
+                got[row[0]] = row
+            else:
+                complete = True
+        except sqlite3.Error:
+            continue
+        if complete:
+            break
+    return [got[fid] for fid in sorted(got)], complete

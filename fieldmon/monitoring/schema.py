@@ -1,0 +1,236 @@
+"""The tables of a season's file, and how an old file becomes a new one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fieldmon.monitoring.geopackage import Table, announce, create, found
+from fieldmon.monitoring.qgis_styles import add_styles
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Callable
+
+VERSION = 2
+
+META = Table("fieldmon", ("key TEXT NOT NULL UNIQUE", "value TEXT"), None, "What this file is.")
+SETTINGS = Table(
+    "settings",
+    ("name TEXT NOT NULL", "value TEXT NOT NULL", "changed TEXT NOT NULL"),
+    None,
+    "Settings of the season as JSON; the last of a name counts.",
+)
+IMPORTS = Table(
+    "import_findings",
+    ("source TEXT", "severity TEXT", "feature TEXT", "sentence TEXT", "remedy TEXT", "at TEXT"),
+    None,
+    "What was seen, repaired, guessed or dropped when files were read.",
+)
+ARRAYS = Table(
+    "arrays",
+    ("name TEXT NOT NULL UNIQUE", "dtype TEXT", "shape TEXT", "data BLOB"),
+    None,
+    "The plant grid as it was laid, compressed: plant numbers never move.",
+)
+BATCHES = Table(
+    "batches",
+    (
+        "at TEXT NOT NULL",
+        "kind TEXT NOT NULL",
+        "source TEXT",
+        "who TEXT",
+        "rows INTEGER NOT NULL",
+        "undone INTEGER NOT NULL DEFAULT 0",
+    ),
+    None,
+    "Everything recorded, in order; what was undone is marked, never deleted.",
+)
+DAYS = Table(
+    "days",
+    (
+        "day INTEGER NOT NULL UNIQUE",
+        "date DATE",
+        "inspected INTEGER",
+        "found INTEGER",
+        "expected_left REAL",
+        "low INTEGER",
+        "high INTEGER",
+        "chance_clean REAL",
+        "digest TEXT",
+    ),
+    None,
+    "Each day's figures after its work, and the digest of its morning's chance map.",
+)
+PLANT_STATE = Table(
+    "plant_state",
+    ("chance REAL", "state TEXT", "last_inspected DATE", "hot_spot INTEGER"),
+    None,
+    "The latest state of each plant (fid as in plants); see the layer chance.",
+)
+PLOTS = Table(
+    "plots",
+    ("name TEXT", "area_ha REAL", "plants INTEGER"),
+    "MULTIPOLYGON",
+    "Boundary of the plot.",
+)
+PLACES = Table("places", ("kind TEXT NOT NULL",), "GEOMETRY", "Gate, paths and no-go areas.")
+ROWS = Table("rows", ("line INTEGER", "plants INTEGER"), "LINESTRING", "Rows of plants.")
+PLANTS = Table(
+    "plants",
+    ("plant INTEGER NOT NULL", "line INTEGER", "number INTEGER"),
+    "POINT",
+    "Plants: number in this file, row and place in the row as people count.",
+)
+OBSERVATIONS = Table(
+    "observations",
+    (
+        "present INTEGER",
+        "date DATE",
+        "count REAL",
+        "accuracy_m REAL",
+        "species TEXT",
+        "stage TEXT",
+        "leaves REAL",
+    ),
+    "POINT",
+    "Pest records from before the season: 1 present, 0 looked and saw nothing, -1 undecided.",
+)
+INSPECTIONS = Table(
+    "inspections",
+    (
+        "plant INTEGER",
+        "line INTEGER",
+        "number INTEGER",
+        "day INTEGER",
+        "date DATE",
+        "time TEXT",
+        "result TEXT",
+        "count REAL",
+        "who TEXT",
+        "notes TEXT",
+        "batch INTEGER",
+        "digest TEXT",
+        "undone INTEGER DEFAULT 0",
+    ),
+    "POINT",
+    "What was found at which plant: clean, found or skipped.",
+)
+TREATMENTS = Table(
+    "treatments",
+    (
+        "day INTEGER",
+        "date DATE",
+        "efficacy REAL",
+        "product TEXT",
+        "plants INTEGER",
+        "batch INTEGER",
+        "digest TEXT",
+        "undone INTEGER NOT NULL DEFAULT 0",
+    ),
+    "MULTIPOLYGON",
+    "Areas treated, and how well it works.",
+)
+ROUTES = Table(
+    "routes",
+    (
+        "day INTEGER NOT NULL",
+        "date DATE",
+        "revision INTEGER NOT NULL",
+        "sampler TEXT",
+        "starts TEXT",
+        "seconds REAL",
+        "drive_m REAL",
+        "stops INTEGER",
+        "expected REAL",
+        "at_plant INTEGER",
+        "seconds_left REAL",
+        "digest TEXT",
+    ),
+    "LINESTRING",
+    "The line to drive on each day; the highest revision of a day counts.",
+)
+STOPS = Table(
+    "stops",
+    (
+        "route INTEGER NOT NULL",
+        "stop INTEGER NOT NULL",
+        "plant INTEGER NOT NULL",
+        "line INTEGER",
+        "number INTEGER",
+        "arrive_s REAL",
+        "arrive TEXT",
+        "chance REAL",
+    ),
+    "POINT",
+    "The plants of each route in order.",
+)
+HOT_SPOTS = Table(
+    "hot_spots",
+    (
+        "spot INTEGER",
+        "found INTEGER",
+        "inspected INTEGER",
+        "plants INTEGER",
+        "expected REAL",
+        "p REAL",
+        "q REAL",
+    ),
+    "MULTIPOLYGON",
+    "Where finds cluster more than chance allows, as of now.",
+)
+CHANCE = Table(
+    "chance",
+    (),
+    "POINT",
+    "Plants with their chance of infestation, state, and day of the last inspection.",
+)
+
+TABLES = (
+    *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
+    *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
+    *(ROUTES, STOPS, HOT_SPOTS),
+)
+#: layers from which everything else follows: what must be saved from a damaged file
+CAUSES = (
+    *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, PLOTS, PLACES, ROWS, PLANTS),
+    *(OBSERVATIONS, INSPECTIONS, TREATMENTS, ROUTES, STOPS),
+)
+
+_CHANCE_VIEW = """
+CREATE VIEW chance AS
+  SELECT p.fid AS fid, p.geom AS geom, p.plant AS plant, p.line AS line, p.number AS number,
+         s.chance AS chance, s.state AS state, s.last_inspected AS last_inspected,
+         s.hot_spot AS hot_spot
+  FROM plants p JOIN plant_state s ON s.fid = p.fid
+"""
+# the same finding twice is one, unless the first was undone
+_INDEXES = (
+    "CREATE UNIQUE INDEX inspections_once ON inspections (digest) WHERE undone = 0",
+    "CREATE UNIQUE INDEX treatments_once ON treatments (digest) WHERE undone = 0",
+    "CREATE UNIQUE INDEX routes_revision ON routes (day, revision)",
+    "CREATE INDEX stops_route ON stops (route, stop)",
+)
+
+
+def lay_out(db: sqlite3.Connection) -> None:
+    """Make an empty database the file of a season, without content."""
+    found(db)
+    for table in TABLES:
+        create(db, table)
+    db.execute(_CHANCE_VIEW)
+    announce(db, CHANCE)
+    for index in _INDEXES:
+        db.execute(index)
+    add_styles(db)
+
+
+def _treatments_come(db: sqlite3.Connection) -> None:
+    """Version 1 knew neither treatments nor routes planned half-way."""
+    create(db, TREATMENTS)
+    db.execute(_INDEXES[1])
+    db.execute("ALTER TABLE routes ADD COLUMN at_plant INTEGER")
+    db.execute("ALTER TABLE routes ADD COLUMN seconds_left REAL")
+
+
+#: what makes a file of version k one of version k + 1
+MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {1: _treatments_come}

@@ -1,0 +1,129 @@
+"""Everything that is chosen for a season, as values and as JSON."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, field
+from datetime import date, time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fieldmon.errors import FieldmonError, FileProblem, SettingError
+from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.spread import Spread
+from fieldmon.monitoring.history import Beliefs
+from fieldmon.planning.workday import looks_of
+from fieldmon.plot.robot import Robot, Viewpoints
+from fieldmon.samplers import sampler
+
+if TYPE_CHECKING:
+    from fieldmon.samplers import Sampler
+
+# a season of a perennial crop fits into it twice; a slip in a date does not
+_MOST_DAYS = 800
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What is chosen for a season.
+
+    Parameters
+    ----------
+    begins
+        The first day; its morning's chances come from the records alone.
+    starts
+        Local time at which a day's work starts.
+    robot
+        Who inspects.
+    sampler, sampler_settings
+        Who decides which plants come next: a name of `fieldmon.samplers.SAMPLERS`.
+    prior
+        How records, edges and paths become a chance of infestation.
+    beliefs
+        What is made of findings and nights.
+    seed
+        For samplers that draw.
+    """
+
+    begins: date
+    starts: time = time(6)
+    robot: Robot = field(default_factory=Robot)
+    sampler: str = "adaptive"
+    sampler_settings: dict[str, float] = field(default_factory=dict)
+    prior: PriorSettings = field(default_factory=PriorSettings)
+    beliefs: Beliefs = field(default_factory=Beliefs)
+    seed: int = 1
+
+    def __post_init__(self) -> None:
+        if len(looks_of(self.robot, self.decides()).detects) > 1:
+            raise SettingError(
+                "The sampler of a season must look equally long at every plant, for that is what "
+                f"its findings are read by, but {self.sampler!r} chooses. Take another sampler."
+            )
+
+    def decides(self) -> Sampler:
+        """Return the sampler; raise `SettingError` if there is none of that name."""
+        return sampler(self.sampler, **self.sampler_settings)
+
+    def day(self, on: date) -> int:
+        """Return the number of a date, from 0; raise `SettingError` outside the season."""
+        number = (on - self.begins).days
+        if number < 0:
+            raise SettingError(
+                f"The day must be of this season, which began on {self.begins}, but it is {on}. "
+                "Check the date."
+            )
+        if number > _MOST_DAYS:
+            raise SettingError(
+                f"A season lasts {_MOST_DAYS} days at most, but {on} is {number} days after it "
+                f"began on {self.begins}. Check the date, or begin a new season."
+            )
+        return number
+
+    def date(self, day: int) -> date:
+        """Return the date of a day."""
+        return (np.datetime64(self.begins, "D") + day).astype(date)  # type: ignore[no-any-return]
+
+
+def seconds(at: time) -> float:
+    """Return the seconds since midnight."""
+    return at.hour * 3600.0 + at.minute * 60.0 + at.second
+
+
+def as_json(setup: Setup) -> dict[str, str]:
+    """Return each part of a setup as JSON, by name."""
+    parts = {name: getattr(setup, name) for name in ("robot", "prior", "beliefs")}
+    plain: dict[str, Any] = {name: asdict(part) for name, part in parts.items()}
+    plain["season"] = {
+        "begins": setup.begins.isoformat(),
+        "starts": setup.starts.isoformat(),
+        "seed": setup.seed,
+    }
+    plain["sampler"] = {"name": setup.sampler, "settings": dict(setup.sampler_settings)}
+    return {name: json.dumps(part, sort_keys=True) for name, part in plain.items()}
+
+
+def from_json(parts: dict[str, str]) -> Setup:
+    """Return the setup that `as_json` wrote; raise `FileProblem` where it cannot be read."""
+    try:
+        plain = {name: json.loads(text) for name, text in parts.items()}
+        robot, season, chooses = plain["robot"], plain["season"], plain["sampler"]
+        steps = tuple((float(s), float(p)) for s, p in robot["viewpoints"]["steps"])
+        viewpoints = Viewpoints(steps, robot["viewpoints"]["longer"])
+        beliefs = plain["beliefs"]
+        return Setup(
+            begins=date.fromisoformat(season["begins"]),
+            starts=time.fromisoformat(season["starts"]),
+            robot=Robot(**{**robot, "viewpoints": viewpoints}),
+            sampler=chooses["name"],
+            sampler_settings=chooses["settings"],
+            prior=PriorSettings(**plain["prior"]),
+            beliefs=Beliefs(**{**beliefs, "spread": Spread(**beliefs["spread"])}),
+            seed=season["seed"],
+        )
+    except (KeyError, TypeError, ValueError, FieldmonError) as error:
+        raise FileProblem(
+            f"The season's settings must be as fieldmon wrote them, but they are not ({error}). "
+            "Was the file changed by hand? Save what can be saved with: fieldmon salvage"
+        ) from error

@@ -1,0 +1,63 @@
+"""What was chosen for a season, choice after choice, and how the last change is taken back.
+
+Nothing is deleted: a change is rows that are added, and so is its taking back. Whoever goes back
+to what counted before, by undoing or by hand, has taken the last change back.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fieldmon.errors import SettingError
+from fieldmon.monitoring import schema
+from fieldmon.monitoring.geopackage import insert
+from fieldmon.monitoring.settings import from_json
+from fieldmon.monitoring.tables import utc_now
+
+if TYPE_CHECKING:
+    import sqlite3
+
+    from fieldmon.monitoring.settings import Setup
+
+#: each part of a setup as JSON, by name
+Parts = dict[str, str]
+
+
+def now(db: sqlite3.Connection) -> Parts:
+    """Return what counts now."""
+    return dict(db.execute("SELECT name, value FROM settings ORDER BY fid").fetchall())
+
+
+def write(db: sqlite3.Connection, parts: Parts) -> None:
+    """Keep what differs from what counts now."""
+    before, at = now(db), utc_now()
+    changed = [(name, text, at) for name, text in parts.items() if before.get(name) != text]
+    insert(db, schema.SETTINGS, changed)
+
+
+def before_now(db: sqlite3.Connection) -> Parts | None:
+    """Return what counted before the last change that was not taken back; None: nothing."""
+    counted: list[Parts] = []
+    parts: Parts = {}
+    rows = db.execute("SELECT name, value, changed FROM settings ORDER BY fid").fetchall()
+    for number, (name, value, at) in enumerate(rows):
+        parts = {**parts, name: value}
+        if number + 1 < len(rows) and rows[number + 1][2] == at:
+            continue  # of the same change
+        if parts in counted[-2:-1]:
+            counted.pop()
+        elif parts not in counted[-1:]:
+            counted.append(parts)
+    return counted[-2] if len(counted) > 1 else None
+
+
+def undo(db: sqlite3.Connection) -> Setup:
+    """Take the last change back; return what counts again, or raise `SettingError`."""
+    parts = before_now(db)
+    if parts is None:
+        raise SettingError(
+            "There must be a change of settings to take back, but there is none: they are those "
+            "that the season began with."
+        )
+    write(db, parts)
+    return from_json(parts)

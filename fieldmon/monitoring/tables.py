@@ -1,0 +1,243 @@
+"""What a season's file holds, as values: into the tables and out of them again, bit for bit."""
+
+from __future__ import annotations
+
+import json
+import zlib
+from dataclasses import dataclass, fields
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+from shapely import LineString, MultiLineString, MultiPolygon, Point
+
+from fieldmon.errors import FileProblem
+from fieldmon.infestation.observations import Observations
+from fieldmon.monitoring import schema
+from fieldmon.monitoring.geopackage import blob, geometry, insert, point_blobs, touch
+from fieldmon.plot.field import Field
+from fieldmon.plot.grid import PlantGrid, row_label
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.projection import Frame
+from fieldmon.plot.travel import Aisles
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+_FRAME = "frame"
+_SPACINGS = ("row_spacing_m", "plant_spacing_m")
+_STATED = ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
+
+
+@dataclass(frozen=True)
+class Remark:
+    """One thing that an import had to say, as the file keeps it."""
+
+    source: str
+    severity: str
+    feature: str | None
+    sentence: str
+    remedy: str | None = None
+
+
+def utc_now() -> str:
+    """Return the time of writing, as GeoPackages note it."""
+    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
+
+
+def write_array(db: sqlite3.Connection, name: str, values: NDArray[Any]) -> None:
+    """Keep an array, compressed."""
+    data = zlib.compress(np.ascontiguousarray(values).tobytes(), 1)
+    row = (name, values.dtype.str, json.dumps(values.shape), data)
+    insert(db, schema.ARRAYS, [row])
+
+
+def read_arrays(db: sqlite3.Connection, like: str = "%") -> dict[str, NDArray[Any]]:
+    """Return the arrays kept whose names are like an SQL pattern, by name."""
+    arrays = {}
+    wanted = "SELECT name, dtype, shape, data FROM arrays WHERE name LIKE ?"
+    for name, dtype, shape, data in db.execute(wanted, (like,)):
+        flat = np.frombuffer(zlib.decompress(data), dtype=np.dtype(dtype))
+        arrays[name] = flat.reshape(json.loads(shape))
+    return arrays
+
+
+def write_plot(db: sqlite3.Connection, plot: Plot) -> None:
+    """Keep a plot: its layers for people, its arrays so that it comes back exactly as it is."""
+    _write_field(db, plot)
+    _write_grid(db, plot.grid)
+    _write_plant_layers(db, plot.grid)
+
+
+def _write_field(db: sqlite3.Connection, plot: Plot) -> None:
+    field, grid = plot.field, plot.grid
+    area_ha = grid.frame.geometry_m(field.boundary).area / 1e4
+    insert(db, schema.PLOTS, [(blob(field.boundary), field.name, round(area_ha, 4), len(grid))])
+    places: list[tuple[bytes, str]] = [
+        (blob(geom), kind)
+        for kind, geom in (
+            ("no-go", field.no_go),
+            ("path", field.paths),
+            ("row line", field.row_lines),
+        )
+        if not geom.is_empty
+    ]
+    if field.gate is not None:
+        places.append((blob(Point(field.gate)), "gate"))
+    insert(db, schema.PLACES, places)
+    if field.plants is not None:
+        write_array(db, "measured_lonlat", field.plants)
+    stated = [np.nan if (v := getattr(field, name)) is None else v for name in _STATED]
+    write_array(db, "stated", np.array(stated, np.float64))
+    for table in (schema.PLOTS, schema.PLACES):
+        touch(db, table.name, field.boundary.bounds)
+
+
+def _write_grid(db: sqlite3.Connection, grid: PlantGrid) -> None:
+    for each in fields(grid):
+        value = getattr(grid, each.name)
+        if isinstance(value, np.ndarray):
+            write_array(db, f"grid.{each.name}", value)
+    frame = grid.frame
+    write_array(db, f"grid.{_FRAME}", np.array([frame.lon, frame.lat, frame.bearing_deg]))
+    write_array(db, "grid.spacings", np.array([getattr(grid, name) for name in _SPACINGS]))
+    area = np.frombuffer(shapely.to_wkb(grid.drivable_m), np.uint8)
+    write_array(db, "grid.drivable_wkb", area)
+
+
+def _write_plant_layers(db: sqlite3.Connection, grid: PlantGrid) -> None:
+    lonlat, label = grid.lonlat(), row_label(grid)
+    ends = zip(grid.row_start[:-1], grid.row_start[1:] - 1, grid.row_line, strict=True)
+    rows = [
+        (blob(LineString(lonlat[[first, last]])), int(line) + 1, int(last - first) + 1)
+        for first, last, line in ends
+    ]
+    insert(db, schema.ROWS, rows)
+    plants = zip(
+        point_blobs(lonlat),
+        range(len(grid)),
+        label.line.tolist(),
+        label.number.tolist(),
+        strict=True,
+    )
+    insert(db, schema.PLANTS, list(plants))
+    bounds = (*lonlat.min(axis=0).tolist(), *lonlat.max(axis=0).tolist())
+    for table in (schema.ROWS, schema.PLANTS, schema.CHANCE):
+        touch(db, table.name, bounds)
+
+
+def read_plot(db: sqlite3.Connection) -> Plot:
+    """Return the plot, exactly as it was written; its ways are found again."""
+    arrays = read_arrays(db)
+    try:
+        grid, field = _grid(arrays), _field(db, arrays)
+    except (KeyError, TypeError, ValueError) as error:
+        raise FileProblem(
+            f"The season's plants must be in its file, but they cannot be read ({error}). "
+            "Save what can be saved with: fieldmon salvage"
+        ) from error
+    gate = None if field.gate is None else grid.frame.xy_m(field.gate)[0]
+    gate_xy_m = None if gate is None else (float(gate[0]), float(gate[1]))
+    return Plot(field, Aisles.of(grid, gate_xy_m, grid.frame.geometry_m(field.no_go)))
+
+
+def _grid(arrays: dict[str, NDArray[Any]]) -> PlantGrid:
+    values: dict[str, Any] = {
+        name.removeprefix("grid."): array
+        for name, array in arrays.items()
+        if name.startswith("grid.")
+    }
+    lon, lat, bearing_deg = values.pop(_FRAME).tolist()
+    spacings = dict(zip(_SPACINGS, values.pop("spacings").tolist(), strict=True))
+    area: Any = shapely.from_wkb(values.pop("drivable_wkb").tobytes())
+    return PlantGrid(
+        frame=Frame(lon, lat, bearing_deg),
+        drivable_m=area,
+        **spacings,
+        **values,
+    )
+
+
+def _field(db: sqlite3.Connection, arrays: dict[str, NDArray[Any]]) -> Field:
+    boundary, name = db.execute("SELECT geom, name FROM plots").fetchone()
+    places = {kind: geometry(geom) for kind, geom in db.execute("SELECT kind, geom FROM places")}
+    gate = places.get("gate")
+    stated = dict(zip(_STATED, arrays["stated"].tolist(), strict=True))
+    measured = arrays.get("measured_lonlat")
+    return Field(
+        name,
+        geometry(boundary),
+        no_go=places.get("no-go", MultiPolygon()),
+        gate=None if gate is None else (gate.x, gate.y),
+        paths=places.get("path", MultiLineString()),
+        plants=None if measured is None else measured.copy(),
+        row_lines=places.get("row line", MultiLineString()),
+        **{name: None if np.isnan(value) else value for name, value in stated.items()},
+    )
+
+
+def write_observations(db: sqlite3.Connection, records: Observations) -> None:
+    """Keep pest records from before the season."""
+    rows = zip(
+        point_blobs(records.lonlat),
+        records.present.tolist(),
+        _dates(records.day),
+        *(_known(column) for column in (records.count, records.accuracy_m)),
+        records.species.tolist(),
+        records.stage.tolist(),
+        _known(records.leaves_sampled),
+        strict=True,
+    )
+    insert(db, schema.OBSERVATIONS, list(rows))
+    if len(records):
+        low, high = records.lonlat.min(axis=0).tolist(), records.lonlat.max(axis=0).tolist()
+        touch(db, schema.OBSERVATIONS.name, (*low, *high))
+
+
+def read_observations(db: sqlite3.Connection) -> Observations:
+    """Return the pest records from before the season."""
+    names = ", ".join(schema.OBSERVATIONS.names)
+    rows = db.execute(f"SELECT {names} FROM observations ORDER BY fid").fetchall()  # noqa: S608 - names of ours
+    if not rows:
+        return Observations.none()
+    geom, present, day, count, accuracy, species, stage, leaves = zip(*rows, strict=True)
+    return Observations.of(
+        np.array([[(p := geometry(g)).x, p.y] for g in geom]),
+        np.array(present, np.int8),
+        np.array([np.datetime64(d or "NaT", "D") for d in day]),
+        count=_floats(count),
+        accuracy_m=_floats(accuracy),
+        species=np.array(species, np.str_),
+        stage=np.array(stage, np.str_),
+        leaves_sampled=_floats(leaves),
+    )
+
+
+def write_remarks(db: sqlite3.Connection, remarks: Iterable[Remark]) -> None:
+    """Keep what imports had to say."""
+    now = utc_now()
+    rows = [(r.source, r.severity, r.feature, r.sentence, r.remedy, now) for r in remarks]
+    insert(db, schema.IMPORTS, rows)
+
+
+def read_remarks(db: sqlite3.Connection) -> tuple[Remark, ...]:
+    """Return what imports had to say."""
+    wanted = "source, severity, feature, sentence, remedy"
+    rows = db.execute(f"SELECT {wanted} FROM import_findings ORDER BY fid")  # noqa: S608 - as above
+    return tuple(Remark(*row) for row in rows)
+
+
+def _dates(days: NDArray[np.datetime64]) -> list[str | None]:
+    return [None if np.isnat(day) else str(day) for day in days]
+
+
+def _known(values: NDArray[np.float64]) -> list[float | None]:
+    return [None if np.isnan(value) else value for value in values.tolist()]
+
+
+def _floats(values: Iterable[float | None]) -> NDArray[np.float64]:
+    return np.array([np.nan if value is None else value for value in values], np.float64)

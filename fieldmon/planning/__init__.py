@@ -1,0 +1,1 @@
+"""One day: which plants, in which order, along which line, and why."""

@@ -1,0 +1,113 @@
+"""The same day on many plots: what to plan on each, and how one of them is planned."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from fieldmon.errors import SettingError
+from fieldmon.planning.plan import Plans, first_day
+from fieldmon.plot.plot import Plot, planting_of
+from fieldmon.plot.robot import Robot, scout
+from fieldmon.samplers import sampler
+
+if TYPE_CHECKING:
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.planning.plan import Today
+    from fieldmon.plot.field import Field
+
+
+@dataclass(frozen=True)
+class Orders:
+    """What was ordered for all plots by hand.
+
+    Parameters
+    ----------
+    day
+        The day of the work.
+    sampler
+        Name of the sampler.
+    every
+        Its setting of that name, where it has one; None: its own.
+    on_foot
+        A scout on every plot instead of the robot.
+    robot
+        Settings of `Robot`; what is not here, the plot's own columns say.
+    planting
+        Settings of `Planting`, likewise.
+    """
+
+    day: np.datetime64
+    sampler: str = "adaptive"
+    every: int | None = None
+    on_foot: bool = False
+    robot: dict[str, float] = field(default_factory=dict)
+    planting: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """One plot to be planned.
+
+    Parameters
+    ----------
+    plot
+        The field.
+    who
+        ``"robot"``, ``"scout"`` or None, as its file says.
+    stated
+        Settings of `Robot` as its file says.
+    orders
+        What holds for all plots.
+    """
+
+    plot: Field
+    who: str | None
+    stated: dict[str, float]
+    orders: Orders
+
+    def digest(self, observations: Observations) -> str:
+        """Return what tells this task from any other, however alike."""
+        parts = (*vars(self.plot).values(), self.who, self.stated, *vars(self.orders).values())
+        everything = hashlib.sha256()
+        for part in (*parts, *vars(observations).values()):
+            everything.update(_bytes(part) + b"\0")
+        return everything.hexdigest()[:16]
+
+
+def plan_task(task: Task, observations: Observations) -> Today:
+    """Plan the day on one plot; raise a `FieldmonError` where it cannot be done."""
+    orders = task.orders
+    robot = _robot(task)
+    settings = {} if orders.every is None else {"every": orders.every}
+    plot = Plot.of(task.plot, planting_of(task.plot, **orders.planting))
+    today = first_day(
+        plot, observations, orders.day, Plans(robot, sampler(orders.sampler, **settings))
+    )
+    if not len(today.route):
+        raise SettingError(
+            f"The working day must be long enough to reach a plant and come back, but "
+            f"{robot.hours:g} h are not. Give more hours."
+        )
+    return today
+
+
+def _bytes(value: object) -> bytes:
+    if isinstance(value, shapely.Geometry):
+        return shapely.to_wkb(value)
+    if isinstance(value, np.ndarray):
+        return value.tobytes()
+    return repr(sorted(value.items()) if isinstance(value, dict) else value).encode()
+
+
+def _robot(task: Task) -> Robot:
+    who = (task.who or "robot").casefold()
+    if who not in {"robot", "scout"}:
+        raise SettingError(f"A plot must be worked by 'robot' or 'scout', but it is {task.who!r}.")
+    base = scout() if task.orders.on_foot or who == "scout" else Robot()
+    settings: dict[str, Any] = task.stated | task.orders.robot
+    return replace(base, **settings)

@@ -1,0 +1,110 @@
+"""Why a day goes where it goes, in sentences for the person who drives it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from fieldmon.plot.grid import row_label
+from fieldmon.samplers import NEVER
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from fieldmon.planning.workday import Workday
+    from fieldmon.samplers import Scene
+
+# an infestation is followed so far from a find: three plants or rows, whichever is more
+_AROUND = 3.0
+# rows that lie this near are one block, and more blocks than this are told together
+_GAP, _BLOCKS = 2, 6
+# more finds than this, and one, are told together
+_FINDS = 5
+
+
+def explain(
+    scene: Scene,
+    work: Workday,
+    finds: NDArray[np.int32] | None = None,
+    found_on: Sequence[str] = (),
+) -> list[str]:
+    """Return what a day's stops are for: those around finds first, then the blocks of rows.
+
+    Parameters
+    ----------
+    finds
+        ``(f,)`` plants found infested lately.
+    found_on
+        ``(f,)`` when each was found, as it is to be said: "Tuesday", "day 3".
+    """
+    if not len(work):
+        return ["No plant can be reached in the hours left."]
+    finds = np.empty(0, np.int32) if finds is None else finds
+    near = _nearest_find(scene, work.plant, finds)
+    return _told_finds(scene, near, finds, found_on) + _blocks(scene, work.plant[near < 0])
+
+
+def _told_finds(
+    scene: Scene, near: NDArray[np.intp], finds: NDArray[np.int32], found_on: Sequence[str]
+) -> list[str]:
+    """Return a sentence for each find with plants to look at around it, the most plants first."""
+    which, count = np.unique(near[near >= 0], return_counts=True)
+    order = np.argsort(-count, kind="stable")
+    few = order if len(order) <= _FINDS + 1 else order[:_FINDS]
+    said = []
+    for find, around in zip(which[few].tolist(), count[few].tolist(), strict=True):
+        line, number = (int(part[0]) for part in row_label(scene.grid, finds[[find]]))
+        when = f"{found_on[find]}'s find" if len(found_on) else "the find"
+        said.append(f"{_plants(around)} around {when} in row {line}, plant {number}.")
+    if len(few) == len(order):
+        return said
+    rest = order[_FINDS:]
+    return [*said, f"{_plants(int(count[rest].sum()))} around {len(rest)} other finds."]
+
+
+def _nearest_find(
+    scene: Scene, plants: NDArray[np.int32], finds: NDArray[np.int32]
+) -> NDArray[np.intp]:
+    """Return which find each plant ``(k,)`` is near, -1 if none."""
+    if not len(finds):
+        return np.full(len(plants), -1)
+    reach_m = _AROUND * max(scene.grid.row_spacing_m, scene.grid.plant_spacing_m)
+    tree = cKDTree(scene.grid.xy_m[finds])
+    _, find = tree.query(scene.grid.xy_m[plants], distance_upper_bound=reach_m)
+    near: NDArray[np.intp] = np.where(find == len(finds), -1, find)
+    return near
+
+
+def _blocks(scene: Scene, plants: NDArray[np.int32]) -> list[str]:
+    """Return a sentence for each block of rows, in the order of the first stop in it."""
+    if not len(plants):
+        return []
+    line = row_label(scene.grid, plants).line
+    rows = np.unique(line)
+    block_of_row = np.cumsum(np.diff(rows, prepend=rows[0]) > _GAP)
+    block = block_of_row[np.searchsorted(rows, line)]
+    order = list(dict.fromkeys(block.tolist()))
+    if len(order) > _BLOCKS:
+        order, block = [0], np.zeros_like(block)
+    return [_block(scene, plants[block == each], line[block == each]) for each in order]
+
+
+def _block(scene: Scene, plants: NDArray[np.int32], line: NDArray[np.int64]) -> str:
+    low, high = int(line.min()), int(line.max())
+    where = f"in row {low}" if low == high else f"in rows {low} to {high}"
+    last = scene.last_inspected[plants]
+    never = int(np.count_nonzero(last == NEVER))
+    if never == len(plants):
+        return f"{_plants(len(plants))} {where}: never inspected yet."
+    days = round(float(np.median(scene.day - last[last != NEVER])))
+    unseen = f"not inspected for {days} day{'' if days == 1 else 's'}"
+    others = f", {never} of them never" if never else ""
+    return f"{_plants(len(plants))} {where}: {unseen}{others}."
+
+
+def _plants(count: int) -> str:
+    return "1 plant" if count == 1 else f"{count} plants"

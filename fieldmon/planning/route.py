@@ -1,0 +1,139 @@
+"""The day's route: stops in order with their times, and the line that is driven."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.plot.travel import GATE
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.planning.workday import Workday
+    from fieldmon.plot.travel import Aisles
+    from fieldmon.samplers.base import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """A day's route, as it is driven.
+
+    Parameters
+    ----------
+    aisles
+        The plot it runs through.
+    plant
+        ``(k,)`` int32 plants in order.
+    arrive_s, leave_s
+        ``(k,)`` seconds since the start of the route.
+    chance, detects
+        ``(k,)`` believed chance of infestation at each stop, and chance to find what is there.
+    line_m
+        ``(m, 2)`` the driven line, metres of the plot's frame. It crosses no row of plants.
+    line_stop
+        ``(k,)`` the vertex of the line at which each stop is made.
+    line_s
+        ``(m,)`` seconds since the start at each vertex on arrival.
+    end_s
+        Seconds at the end of the line.
+    """
+
+    aisles: Aisles
+    plant: NDArray[np.int32]
+    arrive_s: NDArray[np.float64]
+    leave_s: NDArray[np.float64]
+    chance: NDArray[np.float64]
+    detects: NDArray[np.float64]
+    line_m: NDArray[np.float64]
+    line_stop: NDArray[np.int64]
+    line_s: NDArray[np.float64]
+    end_s: float
+
+    def __len__(self) -> int:
+        """Return the number of stops."""
+        return len(self.plant)
+
+    @cached_property
+    def drive_m(self) -> float:
+        """Length of the driven line."""
+        return float(np.hypot(*np.diff(self.line_m, axis=0).T).sum())
+
+    @property
+    def expected_finds(self) -> float:
+        """Infested plants on the route, as believed; not all of them would be seen."""
+        return float(self.chance.sum())
+
+    @property
+    def expected_found(self) -> float:
+        """Infested plants that would be found on the route, as believed."""
+        return float((self.chance * self.detects).sum())
+
+    def line_lonlat(self) -> NDArray[np.float64]:
+        """Return the driven line in degrees, ``(m, 2)``."""
+        return self.aisles.grid.frame.lonlat(self.line_m)
+
+    def stops_lonlat(self) -> NDArray[np.float64]:
+        """Return the plants' own positions in degrees, ``(k, 2)``."""
+        return self.aisles.grid.lonlat(self.plant)
+
+
+def route_of(scene: Scene, work: Workday) -> Route:
+    """Return the route of a working day that began as `scene` says.
+
+    Its seconds are those the workday charged; its line is the one whose length they were charged
+    for, leg by leg: from where the robot stands to each stop, and back to the gate if it returns.
+    """
+    leave_s = work.arrive_s + work.stop_s
+    line_m, leg_end = _line(scene, work)
+    arrivals = np.append(work.arrive_s, work.end_s)[: len(leg_end)]
+    return Route(
+        aisles=scene.aisles,
+        plant=work.plant,
+        arrive_s=work.arrive_s,
+        leave_s=leave_s,
+        chance=scene.chance[work.plant],
+        detects=work.detects,
+        line_m=line_m,
+        line_stop=leg_end[: len(work)],
+        line_s=_seconds(line_m, leg_end, np.append(0.0, leave_s)[: len(leg_end)], arrivals),
+        end_s=work.end_s,
+    )
+
+
+def _line(scene: Scene, work: Workday) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return the driven line ``(m, 2)`` and the vertex at which each of its l legs ends."""
+    if not len(work):
+        return np.empty((0, 2)), np.empty(0, np.int64)
+    back = [GATE] if scene.robot.returns else []
+    places = np.concatenate([[scene.at], work.plant, back]).astype(np.int64)
+    stop_m, corridor = scene.aisles.stop_m, scene.grid.corridor[scene.grid.row]
+    known = (places[:-1] >= 0) & (places[1:] >= 0)
+    straight = known & (corridor[places[:-1]] == corridor[places[1:]])
+    # within an aisle a leg ends at its stop, straight ahead; only other legs have corners
+    legs = list(stop_m[places[1:]][:, None])
+    for leg in np.flatnonzero(~straight):
+        legs[leg] = scene.aisles.path(int(places[leg]), int(places[leg + 1]))[1:]
+    start = scene.aisles.gate_m if scene.at < 0 else stop_m[scene.at]
+    return np.concatenate([start[None], *legs]), np.cumsum([len(leg) for leg in legs])
+
+
+def _seconds(
+    line_m: NDArray[np.float64],
+    leg_end: NDArray[np.int64],
+    depart_s: NDArray[np.float64],
+    arrive_s: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return the seconds on arrival at each vertex, at even speed within each leg."""
+    if not len(leg_end):
+        return np.empty(0)
+    way = np.append(0.0, np.cumsum(np.hypot(*np.diff(line_m, axis=0).T)))
+    leg_start = np.append(0, leg_end[:-1])
+    leg = np.repeat(np.arange(len(leg_end)), leg_end - leg_start)
+    length = (way[leg_end] - way[leg_start])[leg]
+    gone = way[1:] - way[leg_start][leg]
+    share = np.divide(gone, length, out=np.ones_like(gone), where=length > 0)
+    return np.append(depart_s[0], depart_s[leg] + share * (arrive_s - depart_s)[leg])

@@ -1,0 +1,1 @@
+"""What stands where: field, plants in rows, headlands, and the way from plant to plant."""

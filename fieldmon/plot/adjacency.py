@@ -1,0 +1,99 @@
+"""Who stands next to whom, as lists of neighbours (CSR: start offsets and plants)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from fieldmon.compute.jit import loop
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Float: TypeAlias = NDArray[np.float64]
+    Index: TypeAlias = NDArray[np.intp]
+    Lists: TypeAlias = tuple[NDArray[np.int32], NDArray[np.int32]]
+
+# what is further away than this many spacings is no longer the next one
+_NEXT = 1.5
+_NOBODY = -1
+
+
+def lists(n: int, one: Index, other: Index) -> Lists:
+    """Return CSR ``(start, plant)`` of n plants from pairs, each pair counted both ways."""
+    source, target = np.concatenate([one, other]), np.concatenate([other, one])
+    n_neighbours = np.bincount(source, minlength=n)
+    start = np.zeros(n + 1, np.int32)
+    np.cumsum(n_neighbours, out=start[1:])
+    ordered = np.sort(source * n + target) - np.repeat(np.arange(n) * n, n_neighbours)
+    return start, ordered.astype(np.int32)
+
+
+def along(x_m: Float, row: NDArray[np.integer], plant_spacing_m: float) -> Lists:
+    """Return each plant's neighbours before and after it in its own row.
+
+    A gap of more than one and a half spacings parts neighbours: a plant is missing there.
+    """
+    near = (row[1:] == row[:-1]) & (np.diff(x_m) <= _NEXT * plant_spacing_m)
+    pair = np.flatnonzero(near)
+    return lists(len(x_m), pair, pair + 1)
+
+
+def across(
+    xy_m: Float, line: NDArray[np.integer], row_spacing_m: float, plant_spacing_m: float
+) -> Lists:
+    """Return each plant's neighbours on the lines on either side.
+
+    They are the nearest plant on that line, at most half a plant spacing further along, and the
+    plants whose nearest one this is. Lines more than one and a half row spacings apart have no
+    neighbours.
+
+    Parameters
+    ----------
+    xy_m
+        ``(n, 2)`` line by line, x ascending within each.
+    line
+        ``(n,)`` line of each plant, ascending without gaps.
+    """
+    above = _nearest(xy_m, line, 1, row_spacing_m, plant_spacing_m)
+    below = _nearest(xy_m, line, -1, row_spacing_m, plant_spacing_m)
+    lower = np.flatnonzero(above != _NOBODY)
+    upper = np.flatnonzero((below != _NOBODY) & (above[below] != np.arange(len(below))))
+    return lists(
+        len(xy_m),
+        np.concatenate([lower, below[upper]]),
+        np.concatenate([above[lower], upper]),
+    )
+
+
+def _nearest(
+    xy_m: Float, line: NDArray[np.integer], step: int, row_spacing_m: float, plant_spacing_m: float
+) -> Index:
+    x, y = xy_m.T
+    # one ascending axis for all lines, so that one binary search serves them all
+    stretch = float(np.ptp(x)) + 4 * plant_spacing_m
+    place = x + line * stretch
+    wanted = place + step * stretch
+    after = np.searchsorted(place, wanted).clip(0, len(x) - 1)
+    before = (after - 1).clip(0)
+    nearer_before = wanted - place[before] <= place[after] - wanted
+    found: Index = np.where(nearer_before, before, after)
+    out_of_reach = (
+        (np.abs(x[found] - x) > (0.5 + 1e-6) * plant_spacing_m)
+        | (np.abs(y[found] - y) > _NEXT * row_spacing_m)
+        | (line[found] != line + step)
+    )
+    found[out_of_reach] = _NOBODY
+    return found
+
+
+@loop
+def link(start: NDArray[np.int32], plant: NDArray[np.int32], back: NDArray[np.int32]) -> None:
+    """Note in `back` where each neighbour's own list has the plant; its own place if nowhere."""
+    for i in range(start.size - 1):
+        for e in range(start[i], start[i + 1]):
+            back[e] = e
+            for other in range(start[plant[e]], start[plant[e] + 1]):
+                if plant[other] == i:
+                    back[e] = other

@@ -1,0 +1,81 @@
+"""What people know about a plot, as plain values in degrees (lon, lat, WGS84)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from shapely import MultiLineString, MultiPolygon
+
+from fieldmon.errors import PlotError
+from fieldmon.plot.projection import Frame
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """A plot: where it is, where its rows are if that is known, and how one gets in.
+
+    Parameters
+    ----------
+    name
+        As the grower calls it, any script.
+    boundary
+        Parts and holes of the plot, lon/lat. Holes are not driven through.
+    no_go
+        Areas inside the boundary that carry no plants and are not driven through, lon/lat.
+    gate
+        ``(lon, lat)`` where a working day starts and ends, or None: the nearest row end then.
+    paths
+        Paths and roads along which insects enter, lon/lat.
+    plants
+        ``(n, 2)`` lon/lat of plants whose positions were measured, or None.
+    row_lines
+        Rows drawn or measured as lines, lon/lat; empty if unknown.
+    row_bearing_deg, row_spacing_m, plant_spacing_m
+        As stated for this plot, or None: direction of the rows clockwise from true north, and the
+        distances from row to row and from plant to plant.
+    """
+
+    name: str
+    boundary: MultiPolygon
+    no_go: MultiPolygon = field(default_factory=MultiPolygon)
+    gate: tuple[float, float] | None = None
+    paths: MultiLineString = field(default_factory=MultiLineString)
+    plants: NDArray[np.float64] | None = None
+    row_lines: MultiLineString = field(default_factory=MultiLineString)
+    row_bearing_deg: float | None = None
+    row_spacing_m: float | None = None
+    plant_spacing_m: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.boundary.is_empty or not self.boundary.is_valid:
+            raise PlotError(
+                f"The boundary of plot {self.name!r} must be a valid, non-empty area, but it is "
+                f"{'empty' if self.boundary.is_empty else shapely.is_valid_reason(self.boundary)}. "
+                "Draw it again or let the import repair it."
+            )
+        if self.plants is not None:
+            self.plants.setflags(write=False)
+
+    def frame(self, bearing_deg: float = 90.0) -> Frame:
+        """Return the plane in metres centred on this plot, x along ``bearing_deg``."""
+        west, south, east, north = self.boundary.bounds
+        return Frame((west + east) / 2, (south + north) / 2, bearing_deg)
+
+    def drivable(self) -> MultiPolygon:
+        """Return the boundary without the no-go areas, lon/lat."""
+        if self.no_go.is_empty:
+            return self.boundary
+        left = shapely.difference(self.boundary, self.no_go)
+        areas = [part for part in shapely.get_parts(left) if part.geom_type == "Polygon"]
+        if not areas:
+            raise PlotError(
+                f"Some of plot {self.name!r} must lie outside its no-go areas, but nothing does. "
+                "Remove or shrink a no-go area."
+            )
+        return MultiPolygon(areas)

@@ -1,0 +1,227 @@
+"""Plants in rows: where each stands, who is next to it, and from which aisle it is inspected."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.errors import PlotError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from scipy.spatial import cKDTree
+    from shapely import MultiPolygon
+
+    from fieldmon.plot.projection import Frame
+
+
+class RowLabel(NamedTuple):
+    """Where plants stand, as people count: from 1, ``(k,)`` each."""
+
+    line: NDArray[np.int64]
+    number: NDArray[np.int64]
+
+
+class Csr(NamedTuple):
+    """Lists of plants, one per plant: those of plant i are ``plant[start[i]:start[i + 1]]``."""
+
+    start: NDArray[np.int32]
+    plant: NDArray[np.int32]
+
+
+class Linked(NamedTuple):
+    """The same, and for each entry the place ``(e,)`` where the other plant's list names this."""
+
+    start: NDArray[np.int32]
+    plant: NDArray[np.int32]
+    back: NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False)
+class PlantGrid:
+    """Plants of one plot, row-major and ragged: row by row, along the row.
+
+    A *row* here is an unbroken piece: where a hole or a no-go area cuts a row on the ground, two
+    rows share one *line*. Each row is inspected from one lane, in the aisle beside it; the lane
+    reaches beyond the row's last plants on both ends, out into the headland, where rows can be
+    changed. Everything but `frame` is in metres of that frame (x along the rows, y across).
+
+    Parameters
+    ----------
+    frame
+        Bridge to lon/lat.
+    xy_m
+        ``(n, 2)`` plant positions; x increases along each row.
+    row_start
+        ``(r + 1,)`` offsets: plants of row k are ``row_start[k]:row_start[k + 1]``.
+    row_line
+        ``(r,)`` number of the line on the ground, ascending with y, 0 first.
+    lane_y_m
+        ``(r,)`` y of the lane from which the row is inspected.
+    lane_x_m
+        ``(r, 2)`` x of the lane's two ends in the headland, low and high.
+    corridor
+        ``(r,)`` rows with the same number are inspected from the same stretch of aisle.
+    side
+        ``(r,)`` int8: which side of its lane the row is on (-1: lower y, +1: higher y).
+    drivable_m
+        Where a robot may drive between and around the rows; parts and holes as they are.
+    row_spacing_m, plant_spacing_m
+        Typical distances between rows and between plants in a row.
+    along_start, along_plant
+        CSR lists ``(n + 1,)``, ``(e,)``: neighbours of each plant in its own row.
+    across_start, across_plant
+        CSR lists: neighbours of each plant in the rows on either side.
+    twin
+        ``(n,)`` the other face of the same vine where both faces are inspected, else -1.
+    """
+
+    frame: Frame
+    xy_m: NDArray[np.float64]
+    row_start: NDArray[np.int64]
+    row_line: NDArray[np.int32]
+    lane_y_m: NDArray[np.float64]
+    lane_x_m: NDArray[np.float64]
+    corridor: NDArray[np.int32]
+    side: NDArray[np.int8]
+    drivable_m: MultiPolygon
+    row_spacing_m: float
+    plant_spacing_m: float
+    along_start: NDArray[np.int32]
+    along_plant: NDArray[np.int32]
+    across_start: NDArray[np.int32]
+    across_plant: NDArray[np.int32]
+    twin: NDArray[np.int32]
+
+    def __post_init__(self) -> None:
+        for value in vars(self).values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+    def __repr__(self) -> str:
+        return f"PlantGrid({len(self)} plants in {self.n_rows} rows)"
+
+    def __len__(self) -> int:
+        """Return the number of plants (of faces, where both faces are inspected)."""
+        return len(self.xy_m)
+
+    @property
+    def n_rows(self) -> int:
+        """Return the number of rows (unbroken pieces)."""
+        return len(self.row_start) - 1
+
+    @cached_property
+    def row(self) -> NDArray[np.int32]:
+        """Row of each plant, ``(n,)``."""
+        rows = np.repeat(np.arange(self.n_rows, dtype=np.int32), np.diff(self.row_start))
+        rows.setflags(write=False)
+        return rows
+
+    @cached_property
+    def adjacent(self) -> Csr:
+        """Neighbours of each plant, those in its own row first, then those across."""
+        n_along, n_across = np.diff(self.along_start), np.diff(self.across_start)
+        start = self.along_start + self.across_start
+        plant = np.empty(len(self.along_plant) + len(self.across_plant), np.int32)
+        ahead = np.repeat(self.across_start[:-1], n_along)
+        plant[np.arange(len(self.along_plant)) + ahead] = self.along_plant
+        behind = np.repeat(self.along_start[1:], n_across)
+        plant[np.arange(len(self.across_plant)) + behind] = self.across_plant
+        for values in (start, plant):
+            values.setflags(write=False)
+        return Csr(start, plant)
+
+    @cached_property
+    def linked(self) -> Linked:
+        """Neighbours as in `adjacent`, each linked with its own entry for the plant."""
+        from fieldmon.plot.adjacency import link  # noqa: PLC0415 - a quarter second to import
+
+        back = np.empty(len(self.adjacent.plant), np.int32)
+        link(*self.adjacent, back)
+        back.setflags(write=False)
+        return Linked(*self.adjacent, back)
+
+    @cached_property
+    def vine(self) -> NDArray[np.intp]:
+        """One number for both faces of a vine, ``(n,)``: that of the lower-numbered face."""
+        itself = np.arange(len(self))
+        vines = np.where(self.twin >= 0, np.minimum(self.twin, itself), itself)
+        vines.setflags(write=False)
+        return vines
+
+    @cached_property
+    def snake(self) -> NDArray[np.int32]:
+        """All plants, up one line and down the next, ``(n,)``; each face is a line of its own."""
+        new_pass = (np.diff(self.row_line) != 0) | (np.diff(self.side) != 0)
+        turn = np.concatenate([[0], np.cumsum(new_pass)])[self.row]
+        place = np.arange(len(self))
+        plants = np.lexsort((np.where(turn % 2 == 0, place, -place), turn)).astype(np.int32)
+        plants.setflags(write=False)
+        return plants
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        """The plants by position. Rows are even: halving boxes is as quick to ask, and to make."""
+        from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
+
+        return cKDTree(self.xy_m, compact_nodes=False, balanced_tree=False)
+
+    @property
+    def along_m(self) -> NDArray[np.float64]:
+        """Position of each plant along its row, ``(n,)``."""
+        return self.xy_m[:, 0]
+
+    def lonlat(self, plants: NDArray[np.integer] | None = None) -> NDArray[np.float64]:
+        """Return degrees ``(k, 2)`` of the given plants, or of all."""
+        return self.frame.lonlat(self.xy_m if plants is None else self.xy_m[plants])
+
+
+def row_label(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> RowLabel:
+    """Return line and number within the line, both from 1, of the given plants, or of all.
+
+    Numbers run on along a line that is cut into pieces. Both faces of a plant share a label.
+    """
+    chosen = np.arange(len(grid)) if plants is None else np.asarray(plants)
+    group_start = _line_faces(grid)[1][grid.row[chosen]]
+    return RowLabel(grid.row_line[grid.row[chosen]].astype(np.int64) + 1, chosen - group_start + 1)
+
+
+def plant_at(grid: PlantGrid, line: int, number: int) -> int:
+    """Return the plant with that label (its first face); raise `PlotError` if there is none."""
+    first_of_line, _ = _line_faces(grid)
+    n_lines = len(first_of_line)
+    if not 1 <= line <= n_lines:
+        raise PlotError(f"A row must be one of 1 to {n_lines} on this plot, but it is {line}.")
+    plant = int(first_of_line[line - 1]) + number - 1
+    last = int(row_label(grid).number[grid.row_line[grid.row] == line - 1].max())
+    if not 1 <= number <= last:
+        raise PlotError(
+            f"A plant in row {line} must be one of 1 to {last} on this plot, but it is {number}."
+        )
+    return plant
+
+
+def nearest_plants(
+    grid: PlantGrid, lonlat: NDArray[np.float64], max_m: float
+) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+    """Return the nearest plant of each position ``(m, 2)`` and its distance in metres, ``(m,)``.
+
+    Positions further than `max_m` from every plant get plant -1 and an infinite distance. Where
+    both faces of a plant are inspected, the one with the lower index is returned.
+    """
+    within_m = np.nextafter(max_m, np.inf)
+    distance_m, plant = grid.tree.query(grid.frame.xy_m(lonlat), distance_upper_bound=within_m)
+    plant = np.where(plant == len(grid), -1, plant)
+    first_face = (plant >= 0) & (grid.twin[plant] >= 0) & (grid.twin[plant] < plant)
+    return np.where(first_face, grid.twin[plant], plant), distance_m
+
+
+def _line_faces(grid: PlantGrid) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the first plant of each line, and for each row that of its line and face."""
+    first = grid.row_start[:-1]
+    new_line = np.diff(grid.row_line, prepend=-1) != 0
+    new_face = new_line | (np.diff(grid.side, prepend=0) != 0)
+    return first[new_line], first[new_face][np.cumsum(new_face) - 1]

@@ -1,0 +1,500 @@
+"""Plants laid into a crooked boundary, or taken from positions measured on the plot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import shapely
+from shapely import MultiPolygon, Polygon
+
+from fieldmon.errors import PlotError, SettingError
+from fieldmon.plot import adjacency
+from fieldmon.plot.grid import PlantGrid
+from fieldmon.plot.projection import Frame
+from fieldmon.plot.row_detection import (
+    distinct,
+    frame_around,
+    rows_from_boundary,
+    rows_from_lines,
+    rows_from_plants,
+    split_lines,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.field import Field
+
+    Float = NDArray[np.float64]
+
+_PARAN = (35.15, 30.36)
+# rounding of coordinates must not cost a row or a plant where the plot fits exactly
+_SLACK_M = 1e-6
+_MOST_PLANTS = 20_000_000
+_PHASES = 8
+_LOWER, _UPPER = 1, -1
+
+
+@dataclass(frozen=True)
+class Planting:
+    """How a plot is planted.
+
+    Parameters
+    ----------
+    row_bearing_deg
+        Direction of the rows, degrees clockwise from true north; None: found.
+    row_spacing_m, plant_spacing_m
+        From row to row, and from plant to plant in a row (thesis: 4 m and 3 m).
+    headland_m
+        Free of plants at both ends of each row, where rows are changed. The default leaves 4 m:
+        enough for a small robot or a person; tractors take 6 m or more.
+    faces
+        1: a row is inspected from the aisle above it (higher y). 2: both faces of each row are
+        inspected, each from its own aisle.
+    outer_faces
+        With two faces: whether faces that look at no other row are inspected too (the thesis
+        leaves them out).
+    """
+
+    row_bearing_deg: float | None = None
+    row_spacing_m: float = 4.0
+    plant_spacing_m: float = 3.0
+    headland_m: float = 4.0
+    faces: int = 1
+    outer_faces: bool = True
+
+    def __post_init__(self) -> None:
+        for name in ("row_spacing_m", "plant_spacing_m", "headland_m"):
+            if not 0.05 <= getattr(self, name) <= 1000.0:
+                raise SettingError(
+                    f"A planting's {name} must be 0.05 to 1000 metres, "
+                    f"but it is {getattr(self, name)}."
+                )
+        if self.row_bearing_deg is not None and not np.isfinite(self.row_bearing_deg):
+            raise SettingError(
+                f"A row bearing must be a number of degrees, but it is {self.row_bearing_deg}."
+            )
+        if self.faces not in (1, 2):
+            raise SettingError(
+                f"A row has 1 or 2 faces to inspect, but the planting says {self.faces}."
+            )
+
+
+class Pieces(NamedTuple):
+    """Unbroken pieces of rows, by line, then along it: r pieces of n plants together."""
+
+    xy_m: Float
+    row_start: NDArray[np.int64]
+    row_line: NDArray[np.int32]
+    aisle_y_m: Float  # (r, 2): middle of the aisle below and of the aisle above
+    lane_x_m: Float  # (r, 2)
+
+
+class Intervals(NamedTuple):
+    """Stretches of x, k in all, each on one of several horizontal strips."""
+
+    strip: NDArray[np.intp]
+    low_x: Float
+    high_x: Float
+
+
+def lay(field: Field, planting: Planting) -> PlantGrid:
+    """Return plants in straight rows wherever a whole row and its headlands fit into the plot.
+
+    A row takes a strip as wide as the row spacing. Where the whole strip is inside the boundary
+    and outside holes and no-go areas, plants stand at least a headland from its two ends, and
+    lanes end in the middle of the headlands; so the row, its aisle and its row ends are all on
+    the plot. Rows are placed across the plot, and plants along the rows, such that most fit.
+    Raise `PlotError` if there is no room for a plant.
+    """
+    bearing_deg = planting.row_bearing_deg
+    if bearing_deg is None:
+        found = rows_from_lines if not field.row_lines.is_empty else rows_from_boundary
+        bearing_deg = found(field).bearing_deg
+    frame = field.frame(bearing_deg)
+    area = frame.geometry_m(field.drivable())
+    _check_size(field.name, area, planting)
+    y, free = _best_strips(area, planting)
+    if not len(free.strip):
+        raise _no_room(field.name, area, planting)
+    return assemble(frame, _fill(y, free, planting), area, planting)
+
+
+def found_planting(lonlat: Float, planting: Planting | None = None) -> Planting:
+    """Return a planting with the bearing and the spacings in which measured plants stand.
+
+    Spacings that the plants do not show (of a single row, say) stay as in the given planting;
+    its row bearing, if any, says about where to look.
+    """
+    planting = planting or Planting()
+    found = rows_from_plants(lonlat, planting.row_bearing_deg)
+    return replace(
+        planting,
+        row_bearing_deg=found.bearing_deg,
+        row_spacing_m=found.row_spacing_m or planting.row_spacing_m,
+        plant_spacing_m=found.plant_spacing_m or planting.plant_spacing_m,
+    )
+
+
+def grid_from_plants(
+    lonlat: Float, planting: Planting | None = None, field: Field | None = None
+) -> PlantGrid:
+    """Return plants as they were measured, sorted into rows.
+
+    A gap in a row is missing plants; only holes and no-go areas of the field cut a row. Aisles
+    run midway between the plants of neighbouring rows, lanes end half a headland beyond the last
+    plants. A robot may drive where the field's boundary says if that holds all lanes; otherwise,
+    or without a field, also wherever the rows with their aisles and headlands reach.
+
+    Parameters
+    ----------
+    lonlat
+        ``(n, 2)`` degrees, in any order. `nearest_plants` leads back from them to the grid.
+    planting
+        Bearing and spacings as found or given (see `found_planting`); None: found.
+    field
+        Boundary, holes and no-go areas to keep, or None.
+
+    Raises
+    ------
+    PlotError
+        If plants share a position, or none stands on the field.
+    """
+    lonlat = np.asarray(lonlat, dtype=np.float64).reshape(-1, 2)
+    _check_apart(lonlat)
+    if planting is None or planting.row_bearing_deg is None:
+        planting = found_planting(lonlat, planting)
+    frame = (field.frame() if field else frame_around(lonlat)).turned(
+        planting.row_bearing_deg or 0.0
+    )
+    xy_m = frame.xy_m(lonlat)
+    line = split_lines(xy_m[:, 1], planting.row_spacing_m)
+    order = np.lexsort((xy_m[:, 0], line))
+    xy_m, line = xy_m[order], line[order]
+    obstacles = _obstacles(field, frame)
+    pieces = _pieces(xy_m, line, _aisles(xy_m[:, 1], line, planting), obstacles, planting)
+    reach = shapely.difference(_reach(pieces, planting), obstacles)
+    if field is None:
+        return assemble(frame, pieces, _polygons(reach), planting)
+    area = frame.geometry_m(field.drivable())
+    if not shapely.contains_xy(area, xy_m).any():
+        raise PlotError(
+            f"Measured plants must stand on plot {field.name!r}, but none of {len(lonlat)} does. "
+            "Choose the plants' own plot, or check the coordinate systems."
+        )
+    lanes = _boxes(pieces.lane_x_m, pieces.aisle_y_m)
+    if not shapely.covers(shapely.buffer(area, 100 * _SLACK_M), lanes).all():
+        area = _polygons(shapely.union(area, reach))
+    return assemble(frame, pieces, area, planting)
+
+
+def rectangle(
+    n_rows: int,
+    n_plants: int,
+    planting: Planting | None = None,
+    centre: tuple[float, float] = _PARAN,
+) -> PlantGrid:
+    """Return exactly ``n_rows`` rows of ``n_plants`` plants about a (lon, lat), as in the thesis.
+
+    Rows point east unless the planting says otherwise.
+    """
+    if n_rows < 1 or n_plants < 1:
+        raise SettingError(
+            f"A rectangle of plants must have at least 1 row of 1 plant, "
+            f"but {n_rows} rows of {n_plants} plants were asked for."
+        )
+    planting = planting or Planting()
+    bearing_deg = 90.0 if planting.row_bearing_deg is None else planting.row_bearing_deg
+    y: Float = (np.arange(n_rows, dtype=float) - (n_rows - 1) / 2) * planting.row_spacing_m
+    half = (n_plants - 1) / 2 * planting.plant_spacing_m + planting.headland_m
+    free = Intervals(np.arange(n_rows), np.full(n_rows, -half), np.full(n_rows, half))
+    half_y = n_rows / 2 * planting.row_spacing_m
+    area = MultiPolygon([shapely.box(-half, -half_y, half, half_y)])
+    return assemble(Frame(*centre, bearing_deg), _fill(y, free, planting), area, planting)
+
+
+def free_intervals(area: shapely.Geometry, low_y: Float, high_y: Float) -> Intervals:
+    """Return where whole horizontal strips are inside an area: ascending by strip, then x.
+
+    Strip k is ``low_y[k] < y < high_y[k]``; both ascend with k. An x is free if every point of
+    the strip there is in the area: the x where an edge runs through the strip are taken out, and
+    what is left between them is inside or outside as a whole.
+    """
+    x1, y1, x2, y2 = _edges(area)
+    first = np.searchsorted(high_y, y1, side="right")
+    n_met = np.maximum(np.searchsorted(low_y, y2, side="left") - first, 0)
+    edge = np.repeat(np.arange(len(x1)), n_met)
+    strip = np.arange(len(edge)) + np.repeat(first - np.cumsum(n_met) + n_met, n_met)
+    x1, y1, x2, y2 = x1[edge], y1[edge], x2[edge], y2[edge]
+    low, high = low_y[strip], high_y[strip]
+    # parts of the edge's height, so that the flattest edge cannot overflow
+    height = np.where(y2 > y1, y2 - y1, 1.0)
+    enters = x1 + (np.maximum(low, y1) - y1) / height * (x2 - x1)
+    leaves = np.where(y2 <= high, x2, x1 + (np.minimum(high, y2) - y1) / height * (x2 - x1))
+    middle = (low + high) / 2
+    crosses = (y1 <= middle) & (middle < y2)
+    # sweep each strip from low to high x: an edge opens where it begins and closes where it
+    # ends; between edges, an odd number of crossings so far means inside
+    x = np.concatenate([np.minimum(enters, leaves), np.maximum(enters, leaves)])
+    opens = np.repeat([1, -1], len(edge))
+    order = np.lexsort((-opens, x, np.tile(strip, 2)))
+    inside = np.cumsum(np.concatenate([np.zeros(len(edge), int), crosses])[order]) % 2 == 1
+    before = np.flatnonzero((np.cumsum(opens[order]) == 0) & inside)
+    x = x[order]
+    return Intervals(np.tile(strip, 2)[order][before], x[before], x[before + 1])
+
+
+def assemble(frame: Frame, pieces: Pieces, area: MultiPolygon, planting: Planting) -> PlantGrid:
+    """Return the grid of the given pieces of rows, with one face or two."""
+    if planting.faces == 2:
+        return _two_faced(frame, pieces, area, planting)
+    r = len(pieces.row_line)
+    row = np.repeat(np.arange(r), np.diff(pieces.row_start))
+    spacings = (planting.row_spacing_m, planting.plant_spacing_m)
+    return PlantGrid(
+        frame,
+        pieces.xy_m,
+        pieces.row_start,
+        pieces.row_line,
+        pieces.aisle_y_m[:, 1].copy(),
+        pieces.lane_x_m,
+        np.arange(r, dtype=np.int32),
+        np.full(r, _UPPER, np.int8),
+        area,
+        *spacings,
+        *adjacency.along(pieces.xy_m[:, 0], row, planting.plant_spacing_m),
+        *adjacency.across(pieces.xy_m, pieces.row_line[row], *spacings),
+        np.full(len(pieces.xy_m), -1, np.int32),
+    )
+
+
+def _two_faced(frame: Frame, pieces: Pieces, area: MultiPolygon, planting: Planting) -> PlantGrid:
+    """Return each piece as two rows: its lower face, then its upper face.
+
+    Insects stay on a face or go to the other face of the same vine; so ``across`` holds the
+    twin, and nobody across the aisle.
+    """
+    r = len(pieces.row_line)
+    piece, upper = np.tile(np.arange(r), 2), np.repeat([0, 1], r)
+    order = np.lexsort((piece, upper, pieces.row_line[piece]))
+    piece, upper = piece[order], upper[order]
+    lane_y, lane_x = pieces.aisle_y_m[piece, upper], pieces.lane_x_m[piece]
+    corridor = _corridors(lane_y, lane_x)
+    if not planting.outer_faces:
+        sides = [np.bincount(corridor, upper == side) > 0 for side in (0, 1)]
+        inner = (sides[0] & sides[1])[corridor]
+        if not inner.any():
+            raise PlotError(
+                "Two rows or more must face each other if outer faces are not inspected, "
+                "but no two do. Inspect outer faces too, or one face only."
+            )
+        piece, upper, lane_y, lane_x = piece[inner], upper[inner], lane_y[inner], lane_x[inner]
+        corridor = np.unique(corridor[inner], return_inverse=True)[1]
+    n_plants = np.diff(pieces.row_start)[piece]
+    start = np.concatenate([[0], np.cumsum(n_plants)])
+    row = np.repeat(np.arange(len(piece)), n_plants)
+    place = np.arange(start[-1]) - start[row]
+    xy_m = pieces.xy_m[pieces.row_start[piece][row] + place]
+    twin_row = np.full((r, 2), -1)
+    twin_row[piece, 1 - upper] = np.arange(len(piece))
+    other = twin_row[piece, upper][row]
+    twin = np.where(other >= 0, start[other] + place, -1)
+    lower = np.flatnonzero(twin > np.arange(len(twin)))
+    return PlantGrid(
+        frame,
+        xy_m,
+        start.astype(np.int64),
+        pieces.row_line[piece],
+        lane_y,
+        lane_x,
+        corridor.astype(np.int32),
+        np.where(upper == 1, _UPPER, _LOWER).astype(np.int8),
+        area,
+        planting.row_spacing_m,
+        planting.plant_spacing_m,
+        *adjacency.along(xy_m[:, 0], row, planting.plant_spacing_m),
+        *adjacency.lists(len(twin), lower, twin[lower]),
+        twin.astype(np.int32),
+    )
+
+
+def _corridors(lane_y: Float, lane_x: Float) -> NDArray[np.intp]:
+    """Return a number for each row: the same where lanes of one aisle touch or overlap."""
+    order = np.lexsort((lane_x[:, 0], np.round(lane_y, 3)))
+    y, low, high = lane_y[order], lane_x[order, 0], lane_x[order, 1]
+    new_aisle = np.diff(y, prepend=-np.inf) > 1e-3
+    shift = np.cumsum(new_aisle) * (high.max() - low.min() + 1.0)
+    reached = np.maximum.accumulate(high + shift)
+    apart = np.append(True, (low + shift)[1:] > reached[:-1] + _SLACK_M)
+    corridor = np.empty(len(order), np.intp)
+    corridor[order] = np.cumsum(apart) - 1
+    return corridor
+
+
+def _check_size(name: str, area: MultiPolygon, planting: Planting) -> None:
+    about = area.area / (planting.row_spacing_m * planting.plant_spacing_m)
+    if about > _MOST_PLANTS:
+        raise PlotError(
+            f"A plot may have {_MOST_PLANTS} plants, but {name!r} ({area.area / 1e4:.0f} ha) would "
+            f"have about {about:.0f} with rows {planting.row_spacing_m} m and plants "
+            f"{planting.plant_spacing_m} m apart. Check the spacings and the boundary's units."
+        )
+
+
+def _no_room(name: str, area: MultiPolygon, planting: Planting) -> PlotError:
+    low_x, low_y, high_x, high_y = area.bounds
+    return PlotError(
+        f"A plot must have room for one plant: a strip {planting.row_spacing_m:g} m wide (the row "
+        f"spacing) and {2 * planting.headland_m:g} m long (two headlands) along the rows. Plot "
+        f"{name!r} ({area.area:.0f} m2; {high_x - low_x:.1f} m along the rows, "
+        f"{high_y - low_y:.1f} m across) has none. Choose a smaller headland or row spacing, "
+        "another row bearing, or check the boundary."
+    )
+
+
+def _best_strips(area: MultiPolygon, planting: Planting) -> tuple[Float, Intervals]:
+    """Return the rows' y and their free intervals for the placement that holds most plants."""
+    _, low, _, high = area.bounds
+    step = planting.row_spacing_m
+    left_over = (high - low + _SLACK_M) % step - _SLACK_M
+    best = (np.empty(0), Intervals(np.empty(0, np.intp), np.empty(0), np.empty(0)))
+    most = 0
+    # first the strips centred in the plot, which is best for a rectangle
+    for phase in range(_PHASES):
+        first = low + left_over / 2 + step / 2 - phase * step / _PHASES
+        y = np.arange(first, high, step)
+        free = free_intervals(area, y - step / 2 + _SLACK_M, y + step / 2 - _SLACK_M)
+        room = free.high_x - free.low_x - 2 * planting.headland_m + _SLACK_M
+        fits = room >= 0
+        n = int((room[fits] // planting.plant_spacing_m + 1).sum())
+        if n > most:
+            best = (y, Intervals(free.strip[fits], free.low_x[fits], free.high_x[fits]))
+            most = n
+    return best
+
+
+def _fill(y: Float, free: Intervals, planting: Planting) -> Pieces:
+    """Return pieces of rows with plants on one lattice along x, as many as fit the longest."""
+    step, half = planting.plant_spacing_m, planting.headland_m / 2
+    low, high = free.low_x + 2 * half, free.high_x - 2 * half
+    longest = np.argmax(high - low)
+    origin = low[longest] + ((high - low)[longest] + _SLACK_M) % step / 2
+    first = np.ceil((low - origin - _SLACK_M) / step).astype(np.int64)
+    n_plants = np.floor((high - origin + _SLACK_M) / step).astype(np.int64) - first + 1
+    planted = n_plants > 0
+    first, n_plants, strip = first[planted], n_plants[planted], free.strip[planted]
+    row_start = np.concatenate([[0], np.cumsum(n_plants)])
+    place = np.arange(row_start[-1]) + np.repeat(first - row_start[:-1], n_plants)
+    row_y = y[strip]
+    aisle = planting.row_spacing_m / 2
+    return Pieces(
+        np.stack([origin + place * step, np.repeat(row_y, n_plants)], axis=1),
+        row_start,
+        np.unique(strip, return_inverse=True)[1].astype(np.int32),
+        np.stack([row_y - aisle, row_y + aisle], axis=1),
+        np.stack([free.low_x[planted] + half, free.high_x[planted] - half], axis=1),
+    )
+
+
+def _edges(area: shapely.Geometry) -> tuple[Float, Float, Float, Float]:
+    """Return all edges as ``x1, y1, x2, y2`` with y1 <= y2."""
+    rings = shapely.get_rings(shapely.get_parts(area))
+    corners, ring = shapely.get_coordinates(rings, return_index=True)
+    same = ring[1:] == ring[:-1]
+    start, end = corners[:-1][same], corners[1:][same]
+    falls = (start[:, 1] > end[:, 1])[:, None]
+    low, high = np.where(falls, end, start), np.where(falls, start, end)
+    return low[:, 0], low[:, 1], high[:, 0], high[:, 1]
+
+
+def _check_apart(lonlat: Float) -> None:
+    alone = distinct(lonlat)
+    if len(alone) < len(lonlat):
+        first = int(np.setdiff1d(np.arange(len(lonlat)), alone)[0])
+        raise PlotError(
+            f"No two plants may stand in one place, but {len(lonlat) - len(alone)} of "
+            f"{len(lonlat)} are within 5 cm of an earlier one, the first of them plant "
+            f"{first + 1} at ({lonlat[first, 0]:.7f}, {lonlat[first, 1]:.7f}). Leave doubles out."
+        )
+
+
+def _obstacles(field: Field | None, frame: Frame) -> shapely.Geometry:
+    """Return holes and no-go areas in metres of the frame."""
+    if field is None:
+        return MultiPolygon()
+    holes = [Polygon(ring) for part in field.boundary.geoms for ring in part.interiors]
+    return frame.geometry_m(shapely.union_all([*holes, field.no_go]))
+
+
+def _aisles(y_m: Float, line: NDArray[np.intp], planting: Planting) -> Float:
+    """Return y of the aisles below and above each line, ``(lines, 2)``.
+
+    Midway between the plants on both sides, or half a row spacing off where no row follows.
+    """
+    first = np.searchsorted(line, np.arange(line[-1] + 1))
+    lowest, highest = np.minimum.reduceat(y_m, first), np.maximum.reduceat(y_m, first)
+    room = np.concatenate([[np.inf], lowest[1:] - highest[:-1], [np.inf]])
+    half = np.minimum(room, planting.row_spacing_m) / 2
+    return np.stack([lowest - half[:-1], highest + half[1:]], axis=1)
+
+
+def _pieces(
+    xy_m: Float,
+    line: NDArray[np.intp],
+    aisle_y_m: Float,
+    obstacles: shapely.Geometry,
+    planting: Planting,
+) -> Pieces:
+    """Return the lines of plants, cut where an obstacle stands in a row or its aisles."""
+    x, half = xy_m[:, 0], planting.headland_m / 2
+    # beyond plants and obstacles (an empty one's bounds are NaN) every strip is free
+    bounds = shapely.bounds(obstacles)
+    low_x = float(np.fmin(x.min(), bounds[0])) - planting.headland_m - 1.0
+    high_x = float(np.fmax(x.max(), bounds[2])) + planting.headland_m + 1.0
+    around = shapely.box(low_x, aisle_y_m[0, 0] - 1, high_x, aisle_y_m[-1, 1] + 1)
+    # one face needs the way from its plants to the aisle above, two need both aisles
+    lowest_y = aisle_y_m[:, 0] if planting.faces == 2 else aisle_y_m.mean(axis=1)
+    free = free_intervals(shapely.difference(around, obstacles), lowest_y, aisle_y_m[:, 1])
+    # a plant beside an obstacle belongs to the nearer end of it
+    stretch = high_x - low_x + 1.0
+    parting = (free.high_x[:-1] + free.low_x[1:]) / 2
+    same = free.strip[:-1] == free.strip[1:]
+    place = np.where(same, parting, low_x) + free.strip[1:] * stretch
+    piece = np.searchsorted(place, x + line * stretch, side="right")
+    planted, row_start = np.unique(piece, return_index=True)
+    row_start = np.append(row_start, len(x))
+    first, last = x[row_start[:-1]], x[row_start[1:] - 1]
+    # lanes end before the obstacle, but always clear of the last plant
+    clear = [
+        np.clip(room / 2, planting.plant_spacing_m / 4, half)
+        for room in (first - free.low_x[planted], free.high_x[planted] - last)
+    ]
+    row_line = line[row_start[:-1]]
+    return Pieces(
+        xy_m,
+        row_start.astype(np.int64),
+        row_line.astype(np.int32),
+        aisle_y_m[row_line],
+        np.stack([first - clear[0], last + clear[1]], axis=1),
+    )
+
+
+def _reach(pieces: Pieces, planting: Planting) -> shapely.Geometry:
+    """Return what rows, their aisles and headlands cover, bridged from each line to the next."""
+    beyond = planting.headland_m / 2 * np.array([-1.0, 1.0])
+    boxes = _boxes(pieces.lane_x_m + beyond, pieces.aisle_y_m)
+    first = np.flatnonzero(np.diff(pieces.row_line, prepend=-1))
+    lines = [shapely.union_all(boxes[a:b]) for a, b in pairwise([*first.tolist(), len(boxes)])]
+    bridged = [shapely.convex_hull(shapely.union(a, b)) for a, b in pairwise(lines)]
+    return shapely.union_all([*lines, *bridged])
+
+
+def _boxes(x_m: Float, y_m: Float) -> NDArray[np.object_]:
+    return shapely.box(x_m[:, 0], y_m[:, 0], x_m[:, 1], y_m[:, 1])
+
+
+def _polygons(area: shapely.Geometry) -> MultiPolygon:
+    return MultiPolygon([part for part in shapely.get_parts(area) if part.geom_type == "Polygon"])

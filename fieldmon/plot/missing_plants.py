@@ -1,0 +1,74 @@
+"""Plants that are not there: a grid without them, its rows and aisles as they were."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.errors import PlotError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.grid import PlantGrid
+
+    Lists = tuple[NDArray[np.int32], NDArray[np.int32]]
+
+
+def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
+    """Return a grid without the plants marked ``(n,)``, in the same order.
+
+    A gap does not cut a row, and lanes and headlands stay where they are: nobody drives through a
+    row because plants died in it. Plants beside a gap lose that neighbour. A row of which no plant
+    is left goes, and lines are counted anew where a whole line goes. Where both faces of a plant
+    are inspected, both go. Raise `PlotError` if none is left.
+    """
+    if len(missing) != len(grid):
+        raise PlotError(
+            f"Missing plants must be marked for each of {len(grid)} plants, but {len(missing)} "
+            "marks were given."
+        )
+    gone = missing | (missing[grid.twin] & (grid.twin >= 0))
+    if gone.all():
+        raise PlotError(
+            "One plant at least must be there, but all were marked as missing. Check the canopy "
+            "raster and the value below which a plant is missing."
+        )
+    kept = ~gone
+    new = np.where(kept, np.cumsum(kept) - 1, -1).astype(np.int32)
+    n_plants = np.add.reduceat(kept.astype(np.int64), grid.row_start[:-1])
+    rows = np.flatnonzero(n_plants)
+    twin = grid.twin[kept]
+    along = _among(grid.along_start, grid.along_plant, new)
+    across = _among(grid.across_start, grid.across_plant, new)
+    return replace(
+        grid,
+        xy_m=grid.xy_m[kept],
+        row_start=np.concatenate([[0], np.cumsum(n_plants[rows])]).astype(np.int64),
+        row_line=_counted(grid.row_line[rows]),
+        lane_y_m=grid.lane_y_m[rows],
+        lane_x_m=grid.lane_x_m[rows],
+        corridor=_counted(grid.corridor[rows]),
+        side=grid.side[rows],
+        along_start=along[0],
+        along_plant=along[1],
+        across_start=across[0],
+        across_plant=across[1],
+        twin=np.where(twin >= 0, new[twin], -1).astype(np.int32),
+    )
+
+
+def _counted(numbers: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return numbers without gaps in them, in the same order."""
+    return np.unique(numbers, return_inverse=True)[1].astype(np.int32)
+
+
+def _among(start: NDArray[np.int32], plant: NDArray[np.int32], new: NDArray[np.int32]) -> Lists:
+    """Return lists of neighbours among the plants that have a new number."""
+    owner = np.repeat(np.arange(len(new)), np.diff(start))
+    stays = (new[owner] >= 0) & (new[plant] >= 0)
+    n_neighbours = np.bincount(new[owner[stays]], minlength=int(new.max()) + 1)
+    starts = np.concatenate([[0], np.cumsum(n_neighbours)]).astype(np.int32)
+    return starts, new[plant[stays]]

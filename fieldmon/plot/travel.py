@@ -1,0 +1,351 @@
+"""Metres from any plant to any plant without crossing a row, and the line that is driven."""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numba as nb
+import numpy as np
+import shapely
+
+from fieldmon.compute.jit import inlined, loop
+from fieldmon.plot.road_network import Ways, row_lines, ways
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+    from shapely import MultiPolygon
+
+    from fieldmon.plot.grid import PlantGrid
+    from fieldmon.plot.robot import Robot
+
+    Float = NDArray[np.float64]
+
+GATE = -1
+_TOUCH_M = 0.01
+_BLOCK = 64
+_STRAIGHT = 1e-9
+
+
+class Ground(NamedTuple):
+    """What compiled loops need to know of a plot: plants, rows, and the ways between rows.
+
+    Parameters
+    ----------
+    x_m
+        ``(n,)`` position of each plant along its row.
+    row
+        ``(n,)`` int32 row of each plant.
+    row_start
+        ``(r + 1,)`` offsets: plants of row k are ``row_start[k]:row_start[k + 1]``.
+    end_x_m
+        ``(r, 2)`` x of the ends of each row's lane, low and high.
+    between_m
+        ``(2r + 1, 2r + 1)`` shortest ways between lane ends: 2k is the low-x end of lane k,
+        2k + 1 its high-x end, 2r the gate.
+    corridor
+        ``(r,)`` rows with the same number are inspected from the same stretch of aisle.
+    side
+        ``(r,)`` on which side of its lane the row is: -1 lower y, +1 higher y.
+    """
+
+    x_m: Float
+    row: NDArray[np.int32]
+    row_start: NDArray[np.int64]
+    end_x_m: Float
+    between_m: Float
+    corridor: NDArray[np.int32]
+    side: NDArray[np.int8]
+
+
+@dataclass(frozen=True, eq=False)
+class Aisles:
+    """The ways between the plants of a plot.
+
+    A robot drives along the aisles and changes rows in the headlands; it crosses no row. Plants
+    are given by number; -1 is the gate, where a working day starts and ends.
+
+    Parameters
+    ----------
+    grid
+        The plants.
+    ways
+        The network of ways between lane ends.
+    ground
+        The same for compiled loops, see `drive_m`.
+    """
+
+    grid: PlantGrid
+    ways: Ways
+    ground: Ground
+
+    @classmethod
+    def of(
+        cls,
+        grid: PlantGrid,
+        gate_xy_m: tuple[float, float] | None = None,
+        no_go_m: MultiPolygon | None = None,
+    ) -> Aisles:
+        """Find the ways on a plot; raise `PlotError` where a row cannot be reached.
+
+        Without a gate, work starts at the low-x lane end of the first row. `no_go_m` is what must
+        not be crossed either where parts of a plot can only be joined outside the boundary.
+        """
+        net = ways(grid, gate_xy_m, no_go_m)
+        between_m = np.empty((2 * grid.n_rows + 1, 2 * grid.n_rows + 1))
+        _reach(net, np.append(net.end.ravel(), net.gate), between_m)
+        ground = Ground(
+            np.ascontiguousarray(grid.xy_m[:, 0]),
+            grid.row,
+            grid.row_start,
+            grid.lane_x_m,
+            between_m,
+            grid.corridor,
+            grid.side,
+        )
+        for values in (*net[:-1], *ground):
+            values.setflags(write=False)
+        return cls(grid, net, ground)
+
+    @property
+    def gate_m(self) -> Float:
+        """Where a working day starts and ends, ``(2,)``."""
+        here: Float = self.ways.xy_m[self.ways.gate]
+        return here
+
+    @cached_property
+    def stop_m(self) -> Float:
+        """Where the robot stands to inspect each plant, ``(n, 2)``."""
+        stop_m = np.stack([self.grid.xy_m[:, 0], self.grid.lane_y_m[self.grid.row]], axis=1)
+        stop_m.setflags(write=False)
+        return stop_m
+
+    def distance_m(self, i: ArrayLike, j: ArrayLike) -> Float:
+        """Return the metres from plants i to plants j, -1 for the gate; shapes broadcast."""
+        shape = np.broadcast_shapes(np.shape(i), np.shape(j))
+        a, b = (np.array(np.broadcast_to(k, shape), np.int64).ravel() for k in (i, j))
+        metres = np.empty(a.size)
+        _drive_all(self.ground, a, b, metres)
+        return metres.reshape(shape)
+
+    def path(self, i: int, j: int) -> Float:
+        """Return the line ``(k, 2)`` driven from plant i to plant j, -1 for the gate.
+
+        It is as long as `distance_m` says, and has two points or more.
+        """
+        a, b = self._at(i), self._at(j)
+        rows = self.grid.row[[i, j]]
+        if min(i, j) >= 0 and self.grid.corridor[rows[0]] == self.grid.corridor[rows[1]]:
+            return np.stack([a, b])
+        out, out_m = self._exits(i)
+        back, back_m = self._exits(j)
+        way_m = out_m[:, None] + self.ground.between_m[out[:, None], back] + back_m
+        best = int(np.argmin(way_m))
+        first, last = out[best // len(back)], back[best % len(back)]
+        nodes = _trace(self.ways, self._stop_node[first], self._stop_node[last])
+        line: Float = _plain(np.concatenate([a[None], self.ways.xy_m[nodes], b[None]]))
+        return line
+
+    @cached_property
+    def _stop_node(self) -> NDArray[np.int64]:
+        """Node of each lane end, and of the gate, as numbered in `Ground.between_m`."""
+        return np.append(self.ways.end.ravel(), self.ways.gate)
+
+    def _exits(self, i: int) -> tuple[NDArray[np.int64], Float]:
+        """Return the ends of the lane of plant i as in `Ground.between_m`, and the metres there."""
+        if i < 0:
+            return np.array([2 * self.grid.n_rows]), np.zeros(1)
+        row = int(self.grid.row[i])
+        return 2 * row + np.arange(2), np.abs(self.grid.xy_m[i, 0] - self.grid.lane_x_m[row])
+
+    def _at(self, i: int) -> Float:
+        here: Float = self.gate_m if i < 0 else self.stop_m[i]
+        return here
+
+
+def crosses_rows(grid: PlantGrid, line_xy_m: Float) -> bool:
+    """Tell whether a line ``(k, 2)`` comes within a centimetre of a row.
+
+    A row is the line through its plants, from the first to the last.
+    """
+    # not by distance: to lines of no length, as a row of one plant is, GEOS finds none
+    rows = shapely.STRtree(shapely.buffer(row_lines(grid), _TOUCH_M))
+    steps = shapely.linestrings(np.stack([line_xy_m[:-1], line_xy_m[1:]], axis=1))
+    return bool(rows.query(steps, predicate="intersects").size)
+
+
+@inlined
+def drive_m(ground: Ground, i: int, j: int) -> float:
+    """Return the metres from plant i to plant j; -1 is the gate."""
+    # written out: loops over the ends cost ten times as much
+    x_m, end_m, between_m = ground.x_m, ground.end_x_m, ground.between_m
+    gate = between_m.shape[0] - 1
+    if i < 0:
+        i, j = j, i
+    if i < 0:
+        return 0.0
+    a = ground.row[i]
+    low_m, high_m = abs(x_m[i] - end_m[a, 0]), abs(end_m[a, 1] - x_m[i])
+    if j < 0:
+        return float(min(low_m + between_m[2 * a, gate], high_m + between_m[2 * a + 1, gate]))
+    b = ground.row[j]
+    if ground.corridor[a] == ground.corridor[b]:
+        return float(abs(x_m[i] - x_m[j]))
+    to_low_m = min(low_m + between_m[2 * a, 2 * b], high_m + between_m[2 * a + 1, 2 * b])
+    to_high_m = min(low_m + between_m[2 * a, 2 * b + 1], high_m + between_m[2 * a + 1, 2 * b + 1])
+    to_low_m += abs(x_m[j] - end_m[b, 0])
+    to_high_m += abs(end_m[b, 1] - x_m[j])
+    return float(min(to_low_m, to_high_m))
+
+
+@nb.njit(cache=True)
+def _drive_all(ground: Ground, i: NDArray[np.int64], j: NDArray[np.int64], metres: Float) -> None:
+    for k in range(i.size):
+        metres[k] = drive_m(ground, i[k], j[k])
+
+
+@nb.njit(cache=True)
+def _reach(ways: Ways, stops: NDArray[np.int64], between_m: Float) -> None:
+    """Fill in the shortest ways ``(s, s)`` between the given nodes.
+
+    Nodes are relaxed up and down the plot in turn, for some dozen sources side by side, until
+    nothing gets shorter. As nodes are sorted by y, one sweep carries a way on until it turns back:
+    on most plots a few sweeps do, far less work than a queue of nodes for each source.
+    """
+    n = ways.xy_m.shape[0]
+    near = np.empty((n, _BLOCK))
+    stale = np.empty(n, np.bool_)
+    for first in range(0, stops.size, _BLOCK):
+        width = min(_BLOCK, stops.size - first)
+        near[:] = np.inf
+        stale[:] = False
+        for s in range(width):
+            source = stops[first + s]
+            near[source, s] = 0.0
+            stale[ways.to[ways.start[source] : ways.start[source + 1]]] = True
+        while stale.any():
+            _sweep(ways, near, stale, (0, n, 1))
+            _sweep(ways, near, stale, (n - 1, -1, -1))
+        for s in range(width):
+            # there and back are the same to the last bit
+            for t in range(first + s + 1):
+                between_m[first + s, t] = between_m[t, first + s] = near[stops[t], s]
+
+
+@nb.njit(cache=True)
+def _sweep(ways: Ways, near: Float, stale: NDArray[np.bool_], order: tuple[int, int, int]) -> None:
+    """Relax the stale nodes in order, for all columns of ``near`` (m, s)."""
+    own = np.empty(_BLOCK)
+    for node in range(order[0], order[1], order[2]):
+        if not stale[node]:
+            continue
+        stale[node] = False
+        own[:] = near[node]
+        for e in range(ways.start[node], ways.start[node + 1]):
+            other, length_m = np.uint64(ways.to[e]), ways.length_m[e]
+            for s in range(_BLOCK):
+                way_m = near[other, s] + length_m
+                own[s] = way_m if way_m < own[s] else own[s]  # noqa: FURB136 - min is slower
+        nearer = False
+        for s in range(_BLOCK):
+            nearer |= own[s] < near[node, s]
+            near[node, s] = own[s]
+        if nearer:
+            for e in range(ways.start[node], ways.start[node + 1]):
+                stale[ways.to[e]] = True
+
+
+@nb.njit(cache=True)
+def _trace(ways: Ways, a: int, b: int) -> NDArray[np.int64]:
+    """Return the nodes on the shortest way from node a to node b (Dijkstra's, from b)."""
+    near = np.full(ways.xy_m.shape[0], np.inf)
+    onward = np.full(near.size, -1)
+    near[b] = 0.0
+    queue = [(0.0, b)]
+    while queue[0][1] != a:
+        node_m, node = heapq.heappop(queue)
+        if node_m > near[node]:
+            continue
+        for e in range(ways.start[node], ways.start[node + 1]):
+            other, way_m = int(ways.to[e]), node_m + float(ways.length_m[e])
+            if way_m < near[other]:
+                near[other], onward[other] = way_m, node
+                heapq.heappush(queue, (way_m, other))
+    nodes = [a]
+    while nodes[-1] != b:
+        nodes.append(onward[nodes[-1]])
+    return np.array(nodes)
+
+
+@nb.njit(cache=True)
+def _plain(line: Float) -> Float:
+    """Return a line without points that are passed straight on; its ends stay."""
+    k = 1
+    plain = line.copy()
+    for point in range(1, len(line) - 1):
+        back_x, back_y = line[point] - plain[k - 1]
+        on_x, on_y = line[point + 1] - line[point]
+        turn = abs(back_x * on_y - back_y * on_x)
+        reach = np.hypot(back_x, back_y) * np.hypot(on_x, on_y)
+        if turn > _STRAIGHT * reach or back_x * on_x + back_y * on_y < 0:
+            plain[k] = line[point]
+            k += 1
+    plain[k] = line[-1]
+    return plain[: k + 1]
+
+
+class Clock(NamedTuple):
+    """A robot's numbers for compiled loops: what driving, turning and looking cost."""
+
+    speed_m_s: float
+    row_change_s: float
+    turn_180_s: float
+    visit_s: float
+    seconds_left: float
+    returns: bool
+
+
+def robot_clock(robot: Robot, seconds_left: float) -> Clock:
+    """Return a robot's numbers for so much of a day."""
+    return Clock(
+        robot.speed_m_s,
+        robot.row_change_s,
+        robot.turn_180_s,
+        robot.visit_s,
+        float(seconds_left),
+        robot.returns,
+    )
+
+
+@inlined
+def travel_s(ground: Ground, clock: Clock, i: int, j: int) -> float:
+    """Return the seconds from plant (or gate) i to plant (or gate) j, without the stop itself."""
+    seconds = drive_m(ground, i, j) / clock.speed_m_s
+    if i < 0 or j < 0:
+        return seconds
+    a, b = ground.row[i], ground.row[j]
+    if ground.corridor[a] != ground.corridor[b]:
+        return seconds + clock.row_change_s
+    if ground.side[a] != ground.side[b]:
+        return seconds + clock.turn_180_s
+    return seconds
+
+
+@loop
+def driven_s(ground: Ground, clock: Clock, places: NDArray[np.int64]) -> float:
+    """Return the seconds of driving from place to place ``(k,)``, plants or the gate."""
+    seconds = 0.0
+    for k in range(1, places.size):
+        seconds += travel_s(ground, clock, places[k - 1], places[k])
+    return seconds
+
+
+@inlined
+def in_time(ground: Ground, clock: Clock, plant: int, arrive_s: float) -> bool:
+    """Tell whether a plant reached then fits into the day, way back to the gate included."""
+    end_s = arrive_s + clock.visit_s
+    if clock.returns:
+        end_s += travel_s(ground, clock, plant, -1)
+    return end_s <= clock.seconds_left

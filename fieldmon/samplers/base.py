@@ -1,0 +1,136 @@
+"""All that a sampler may know, what it answers, and what its time costs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
+
+from fieldmon.plot.travel import GATE, robot_clock
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.grid import PlantGrid
+    from fieldmon.plot.robot import Robot
+    from fieldmon.plot.travel import Aisles, Clock
+
+NEVER = -1
+
+
+class Looks(NamedTuple):
+    """The looks to choose from at a stop, the shortest first.
+
+    Seconds of the whole stop, ``(l,)``, and the chance to find what is there, ``(l,)``.
+    """
+
+    stop_s: NDArray[np.float64]
+    detects: NDArray[np.float64]
+
+
+class Stops(NamedTuple):
+    """The plants inspected in order, ``(k,)`` int32, and the seconds at arrival, ``(k,)``.
+
+    And which of its looks the sampler took at each, ``(k,)`` uint8, if it has several.
+    """
+
+    plant: NDArray[np.int32]
+    arrive_s: NDArray[np.float64]
+    look: NDArray[np.uint8] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A moment of a working day, as whoever plans it can know it; never the truth.
+
+    Parameters
+    ----------
+    aisles
+        The plot: plants and the ways between them.
+    robot
+        Who inspects.
+    chance
+        ``(n,)`` believed chance that each plant is infested.
+    last_inspected
+        ``(n,)`` int32 day on which each plant was inspected last, `NEVER` if it was not.
+    day
+        Today's number. A plant inspected on this day is not visited again.
+    at
+        Where the robot stands: a plant, or `GATE`.
+    seconds_left
+        What is left of the working day.
+    trail
+        ``(k,)`` int32 plants of the last working day before today, in order; empty if there was
+        none. A sweep goes on where it ends, in its direction.
+    key
+        64 random bits for samplers that draw, see `fieldmon.compute.random_streams.coin`.
+    both
+        ``(e,)`` believed chance that two plants side by side are both infested, in the order of
+        ``grid.adjacent``; None where nothing is believed of pairs.
+    """
+
+    aisles: Aisles
+    robot: Robot
+    chance: NDArray[np.float64]
+    last_inspected: NDArray[np.int32]
+    day: int = 0
+    at: int = GATE
+    seconds_left: float = 0.0
+    trail: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
+    key: np.uint64 = np.uint64(0)  # noqa: RUF009 - a number, not a call with effects
+    both: NDArray[np.float64] | None = None
+
+    @property
+    def grid(self) -> PlantGrid:
+        """Return the plants."""
+        return self.aisles.grid
+
+    @property
+    def resume(self) -> int:
+        """Return the plant after which a sweep goes on, or `NEVER` if it has not begun."""
+        if self.at >= 0:
+            return self.at
+        return int(self.trail[-1]) if len(self.trail) else NEVER
+
+    @cached_property
+    def clock(self) -> Clock:
+        """Return the robot's numbers for the rest of the day."""
+        return robot_clock(self.robot, self.seconds_left)
+
+    def blank(self) -> Stops:
+        """Return room for as many stops as the time left or the plants allow."""
+        return self.room(self.robot.visit_s)
+
+    def room(self, stop_s: float) -> Stops:
+        """Return room for as many stops of at least `stop_s` each."""
+        room = min(len(self.grid), int(self.seconds_left // stop_s) + 1)
+        return Stops(np.empty(room, np.int32), np.empty(room, np.float64))
+
+
+class Sampler(Protocol):
+    """Decides which plants come next.
+
+    One that reads neither ``chance`` nor ``both`` of a scene may say so by ``blind = True``: what
+    is believed is then not worked out for it.
+    """
+
+    def walk(self, scene: Scene, would_find: NDArray[Any]) -> Stops:
+        """Return the stops from here to the end of the day.
+
+        ``would_find`` (n,) says of each plant whether an inspection today would find it infested.
+        One that chooses how long to look (see `ChoosesLook`) is told from which of its looks on,
+        counted from 1, and 0 where none would find anything.
+        A sampler may read an entry only when it has driven to that plant and inspected it: plants
+        before the first find are those of a day on which nothing is found.
+        """
+        ...
+
+
+class ChoosesLook(Sampler, Protocol):
+    """A sampler that decides at each stop how long to look."""
+
+    def looks(self, robot: Robot) -> Looks:
+        """Return what it chooses from."""
+        ...

@@ -1,0 +1,128 @@
+"""Naive and Bouncy: row after row, every plant or every N-th, wherever the insects are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from fieldmon.compute.jit import loop, part
+from fieldmon.errors import SettingError
+from fieldmon.plot.travel import Clock, in_time, travel_s
+from fieldmon.samplers.base import Scene, Stops
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.travel import Ground
+
+
+@dataclass(frozen=True)
+class Naive:
+    """Inspect plant after plant, up one row and down the next; go on tomorrow where today ended.
+
+    At the end of the plot it starts again at the first row. The chance map is not looked at
+    (our reading of the thesis, whose text does not define the order).
+    """
+
+    blind: ClassVar[bool] = True
+
+    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+        """Return the sweep's next stops."""
+        return _sweep(scene, 1)
+
+
+@dataclass(frozen=True)
+class Bouncy:
+    """Inspect every N-th plant of the same sweep; the next pass takes other plants.
+
+    A pass starts at that one of the first N plants which was inspected least recently.
+
+    Parameters
+    ----------
+    every
+        N; the thesis leaves one plant out between two (2).
+    """
+
+    blind: ClassVar[bool] = True
+    every: int = 2
+
+    def __post_init__(self) -> None:
+        if self.every < 1:
+            raise SettingError(
+                f"Bouncy must inspect every 1st, 2nd, ... plant, but 'every' is {self.every}."
+            )
+
+    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+        """Return the sweep's next stops."""
+        return _sweep(scene, self.every)
+
+
+def _sweep(scene: Scene, every: int) -> Stops:
+    stops = scene.blank()
+    k = _walk(
+        scene.aisles.ground,
+        scene.clock,
+        (scene.grid.snake, scene.last_inspected.copy()),
+        (scene.at, scene.resume, scene.day, every),
+        stops,
+    )
+    return Stops(stops.plant[:k], stops.arrive_s[:k])
+
+
+@loop
+def _walk(
+    ground: Ground,
+    clock: Clock,
+    plants: tuple[NDArray[np.int32], NDArray[np.int32]],
+    start: tuple[int, int, int, int],
+    stops: Stops,
+) -> int:
+    snake, last = plants
+    at, after, today, every = start
+    left = 0
+    for day in last:
+        left += day != today
+    position = _first(snake, last, every) if after < 0 else _place(snake, after) + every
+    now_s, k = 0.0, 0
+    # where the pass began, and after how many stops
+    begin, before = 0, -1
+    while left > 0 and k < stops.plant.size:
+        if position >= snake.size:
+            # a pass on which all were inspected today leads nowhere: the next one takes others
+            position = _first(snake, last, every) if k > before else (begin + 1) % every
+            begin, before = position, k
+            continue
+        plant = snake[position]
+        position += every
+        if last[plant] == today:
+            continue
+        arrive_s = now_s + travel_s(ground, clock, at, plant)
+        if not in_time(ground, clock, plant, arrive_s):
+            break
+        stops.plant[k], stops.arrive_s[k] = plant, arrive_s
+        now_s = arrive_s + clock.visit_s
+        last[plant] = today
+        at = plant
+        left -= 1
+        k += 1
+    return k
+
+
+@part
+def _first(snake: NDArray[np.int32], last: NDArray[np.int32], every: int) -> int:
+    """Return where a new pass starts: at the first plant inspected least recently."""
+    best = 0
+    for position in range(1, min(every, snake.size)):
+        if last[snake[position]] < last[snake[best]]:
+            best = position
+    return best
+
+
+@part
+def _place(snake: NDArray[np.int32], plant: int) -> int:
+    """Return where in the sweep a plant stands."""
+    for position in range(snake.size):
+        if snake[position] == plant:
+            return position
+    return -1

@@ -1,0 +1,76 @@
+"""What a season comes to, in the measures of the thesis and in the grower's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from fieldmon.simulation.season import Day
+
+LEVELS_PCT = (30.0, 50.0, 80.0, 100.0)
+
+
+@dataclass(frozen=True, eq=False)
+class SeasonFigures:
+    """The days of one season as columns, ``(d,)`` each, and what they add up to.
+
+    Parameters
+    ----------
+    detection_pct
+        All finds so far in percent of all infestations so far, at the end of each day's work.
+    visited_pct
+        Plants inspected on each day in percent of all plants.
+    ever_visited_pct
+        Plants inspected so far at least once in percent of all plants.
+    found
+        Plants found infested on each day.
+    new
+        Infestations of the night before each day (on day 0: those at the start).
+    left
+        Infested plants after each day's work.
+    """
+
+    detection_pct: NDArray[np.float64]
+    visited_pct: NDArray[np.float64]
+    ever_visited_pct: NDArray[np.float64]
+    found: NDArray[np.int64]
+    new: NDArray[np.int64]
+    left: NDArray[np.int64]
+
+    @property
+    def infested_plant_days(self) -> int:
+        """Return the sum over all evenings of the plants still infested: the grower's loss."""
+        return int(self.left.sum())
+
+    def first_day(self, level_pct: float) -> int | None:
+        """Return the first day (from 1) at whose end `level_pct` of all so far were found.
+
+        The thesis's D_x; None if the season never gets there.
+        """
+        reached = np.flatnonzero(self.detection_pct >= level_pct - 1e-9)
+        return int(reached[0]) + 1 if reached.size else None
+
+
+def figures(season: Iterable[Day]) -> SeasonFigures:
+    """Return the columns of a season from its days; nothing of a day is kept."""
+    rows = [
+        (
+            day.detection_pct,
+            day.visited_pct,
+            day.ever_visited_pct,
+            day.found,
+            day.ever_infested,
+            day.left,
+        )
+        for day in season
+    ]
+    columns = np.array(rows, dtype=np.float64).reshape(-1, 6).T
+    found, ever, left = columns[3:].astype(np.int64)
+    return SeasonFigures(columns[0], columns[1], columns[2], found, np.diff(ever, prepend=0), left)

@@ -1,0 +1,1 @@
+"""Published experiments made again, and samplers and beliefs held against each other."""

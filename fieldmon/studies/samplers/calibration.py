@@ -1,0 +1,222 @@
+"""Beliefs side by side: whether what they say happens as often as they say it."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from functools import partial
+from html import escape
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.random_streams import Chance
+from fieldmon.infestation.belief import MeanField, Pairs
+from fieldmon.infestation.ensemble import Ensemble
+from fieldmon.infestation.plot_estimate import Outlook, outlook
+from fieldmon.simulation.season import days
+from fieldmon.studies.charts import Line, line_chart
+from fieldmon.studies.samplers.report import STYLE
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.belief import Belief, Learning
+    from fieldmon.infestation.spread import Spread
+    from fieldmon.plot.grid import PlantGrid
+    from fieldmon.samplers import Sampler
+    from fieldmon.studies.samplers.scenarios import Cell
+
+    Believe = Callable[[PlantGrid, NDArray[np.float64]], Belief]
+
+BELIEFS: dict[str, Believe] = {
+    "independent plants": MeanField,
+    "pairs": Pairs.of,
+    "pairs, clustering known": partial(Pairs.of, company=0.65),
+    "ensemble": Ensemble.of,
+}
+EDGES = (0.0, 0.001, 0.01, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0)
+CLEAN_EDGES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
+# the thesis knows only suspicious plants and others: this from a chance map, in chances
+_SUSPICIOUS = 0.5
+_LEAST = 1e-6
+_FEW = 50
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """How a belief's chances compare with what was so.
+
+    Parameters
+    ----------
+    said, was, count
+        Reliability: mean chance, share infested and number of plant-mornings between `EDGES`.
+    brier, log_score
+        Mean squared error, and mean of minus the logarithm of the chance given to what was so.
+    suspicious_log_score
+        The same for the map reduced to suspicious or not: each class at its share infested.
+    covered
+        Share of mornings on which the 90 % interval held the number of infested plants.
+    clean_said, clean_was, clean_count
+        Reliability of the chance that the plot is clean, between `CLEAN_EDGES`.
+    seconds_a_day
+        Time to learn a day's findings and pass a night.
+    """
+
+    said: NDArray[np.float64]
+    was: NDArray[np.float64]
+    count: NDArray[np.int64]
+    brier: float
+    log_score: float
+    suspicious_log_score: float
+    covered: float
+    clean_said: NDArray[np.float64]
+    clean_was: NDArray[np.float64]
+    clean_count: NDArray[np.int64]
+    seconds_a_day: float
+
+
+class _Watched:
+    """A belief that notes every morning, and the time it takes."""
+
+    def __init__(self, belief: Belief, mornings: list[Belief], seconds: list[float]) -> None:
+        self._belief, self._mornings, self._seconds = belief, mornings, seconds
+        self.chance, self.both = belief.chance, belief.both
+
+    def learn(
+        self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
+    ) -> _Watched:
+        """Learn, and note the time."""
+        began = time.process_time()
+        after = self._belief.learn(plants, found, learning)
+        self._seconds.append(time.process_time() - began)
+        return _Watched(after, self._mornings, self._seconds)
+
+    def overnight(self, spread: Spread) -> _Watched:
+        """Pass a night, and note the morning and the time."""
+        began = time.process_time()
+        after = self._belief.overnight(spread)
+        self._seconds.append(time.process_time() - began)
+        self._mornings.append(after)
+        return _Watched(after, self._mornings, self._seconds)
+
+    def treated(self, left: NDArray[np.float64]) -> _Watched:
+        """Hear of a treatment."""
+        return _Watched(self._belief.treated(left), self._mornings, self._seconds)
+
+
+def calibration(
+    cells: Sequence[Cell], sampler: Sampler, believe: Believe, seeds: int, n_days: int = 12
+) -> Calibration:
+    """Return how well a belief is calibrated over the mornings of the seasons of some cells."""
+    chances, truths, ahead, counts = [], [], [], []
+    seconds: list[float] = []
+    for cell in cells:
+        for seed in range(seeds):
+            mornings: list[Belief] = []
+
+            def watched(
+                grid: PlantGrid,
+                chance: NDArray[np.float64],
+                mornings: list[Belief] = mornings,
+            ) -> Belief:
+                mornings.append(believe(grid, chance))
+                return _Watched(mornings[0], mornings, seconds)
+
+            settings = replace(cell.settings, n_days=n_days, believe=watched)
+            start, chance = cell.begin(Chance(seed)), Chance(seed)
+            season = list(days(cell.aisles, cell.robot, sampler, start, settings, chance))
+            # a blind sampler has not asked: all mornings are worked out now, for the last one
+            season[-1].belief  # noqa: B018
+            for belief, day in zip(mornings, season, strict=True):
+                truth = day.infested
+                chances.append(belief.chance)
+                truths.append(truth)
+                ahead.append(_outlook(belief, cell.aisles.grid))
+                counts.append(np.count_nonzero(truth))
+    return _compared(chances, truths, (ahead, np.array(counts)), sum(seconds) / len(counts))
+
+
+def _outlook(belief: Belief, grid: PlantGrid) -> Outlook:
+    if isinstance(belief, Ensemble):
+        return belief.outlook()
+    if belief.both is not None:
+        return outlook(grid, belief.chance, belief.both)
+    start, other = grid.adjacent
+    return outlook(
+        grid, belief.chance, np.repeat(belief.chance, np.diff(start)) * belief.chance[other]
+    )
+
+
+def _compared(
+    chances: list[NDArray[np.float64]],
+    truths: list[NDArray[np.bool_]],
+    plots: tuple[list[Outlook], NDArray[np.int64]],
+    seconds_a_day: float,
+) -> Calibration:
+    ahead, counts = plots
+    p = np.clip(np.concatenate(chances), _LEAST, 1.0 - _LEAST)
+    y = np.concatenate(truths)
+    suspicious = np.concatenate([c >= _SUSPICIOUS * c.max() for c in chances])
+    classes = np.where(suspicious, _share(y[suspicious]), _share(y[~suspicious]))
+    clean = np.array([each.chance_clean for each in ahead])
+    inside = [o.low <= n <= o.high for o, n in zip(ahead, counts, strict=True)]
+    return Calibration(
+        *_reliability(p, y, EDGES),
+        float(np.mean((p - y) ** 2)),
+        _log_score(p, y),
+        _log_score(np.clip(classes, _LEAST, 1.0 - _LEAST), y),
+        float(np.mean(inside)),
+        *_reliability(clean, counts == 0, CLEAN_EDGES),
+        seconds_a_day,
+    )
+
+
+def _share(y: NDArray[np.bool_]) -> float:
+    return float(y.mean()) if len(y) else 0.0
+
+
+def _log_score(p: NDArray[np.float64], y: NDArray[np.bool_]) -> float:
+    return float(-np.mean(np.log(np.where(y, p, 1.0 - p))))
+
+
+def _reliability(
+    p: NDArray[np.float64], y: NDArray[np.bool_], edges: Sequence[float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+    """Return mean chance, share that was so, and number between each two edges."""
+    group = np.digitize(p, edges[1:-1])
+    count = np.bincount(group, minlength=len(edges) - 1)
+    some = np.maximum(count, 1)
+    said = np.bincount(group, p, len(edges) - 1) / some
+    return said, np.bincount(group, y, len(edges) - 1) / some, count
+
+
+def report_html(made: dict[str, Calibration], about: str) -> str:
+    """Return the calibrations of some beliefs as one HTML document."""
+    rows = "".join(
+        f'<tr><th scope="row">{escape(name)}</th><td>{c.brier:.5f}</td><td>{c.log_score:.4f}</td>'
+        f"<td>{c.suspicious_log_score:.4f}</td><td>{c.covered:.0%}</td>"
+        f"<td>{1000 * c.seconds_a_day:.0f}</td></tr>"
+        for name, c in made.items()
+    )
+    lines = [Line("as often as said", (0.0, 1.0), (0.0, 1.0))]
+    clean = list(lines)
+    for name, c in made.items():
+        some, told = c.count >= _FEW, c.clean_count > 0
+        lines.append(Line(name, c.said[some].tolist(), c.was[some].tolist()))
+        clean.append(Line(name, c.clean_said[told].tolist(), c.clean_was[told].tolist()))
+    axes = ("chance said", "share that was so")
+    return (
+        '<!doctype html><html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>Beliefs compared</title><style>{STYLE}</style></head><body>"
+        f"<h1>Beliefs compared</h1><p>{escape(about)}</p>"
+        '<div class="wide" tabindex="0"><table><thead><tr><th scope="col">belief</th>'
+        '<th scope="col">Brier score</th><th scope="col">log score</th>'
+        '<th scope="col">as suspicious or not</th><th scope="col">90 % interval holds</th>'
+        f'<th scope="col">ms a day</th></tr></thead><tbody>{rows}</tbody></table></div>'
+        f"{line_chart(f'Plants ({_FEW} mornings or more a dot)', lines, axes)}"
+        f"{line_chart('The plot is clean', clean, axes)}</body></html>\n"
+    )

@@ -1,0 +1,191 @@
+"""The situations in which samplers are compared: plot, insects, start, and what is known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.errors import SettingError
+from fieldmon.infestation.belief import Learning, Pairs
+from fieldmon.infestation.prior import PriorSettings, edge_chance, scaled, start_infested
+from fieldmon.infestation.spread import Spread
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
+from fieldmon.simulation.season import SeasonSettings, Start
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.compute.random_streams import Chance
+    from fieldmon.plot.grid import PlantGrid
+
+# the thesis's plots, plants a side: 1, 5 and 10 ha
+SIDES = {"A": 28, "B": 64, "C": 91}
+STARTS = ("clusters", "edge", "scattered")
+PRIORS = ("none", "edge", "records 1 %", "records 5 %", "wrong")
+FLAWS = ("", "spread", "records", "detection")
+# infested plants on the first morning, and how many stand together (our choice)
+_SHARE, _TOGETHER = 0.015, 8
+_GPS_M = 5.0
+_POOR_DETECTION = 0.5
+_BELIEVED_RATE = {0.3: 0.8, 0.5: 0.1, 0.8: 0.3}
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One situation.
+
+    Parameters
+    ----------
+    scenario
+        "A", "B" or "C": the thesis's plots of 28, 64 and 91 plants a side.
+    spread
+        What the insects do at night.
+    start
+        Where the 1.5 % infested plants of the first morning stand: in "clusters" of eight, along
+        the "edge", or "scattered".
+    prior
+        What is known: "none" (the share alone), that insects come from the "edge", "records 1 %"
+        or "records 5 %" of the plants looked at the evening before, or "wrong": a quarter of the
+        plot is suspected ten times as much as the rest, for no reason.
+    flaw
+        What the belief has wrong: nothing, the "spread" (another rate), the place of the
+        "records" (GPS error of 5 m, 1 sigma), the "detection" (0.84 believed, 0.5 true).
+    """
+
+    scenario: str = "B"
+    spread: Spread = field(default_factory=lambda: Spread(0.3, "one"))
+    start: str = "clusters"
+    prior: str = "none"
+    flaw: str = ""
+
+    def __post_init__(self) -> None:
+        known = (("scenario", SIDES), ("start", STARTS), ("prior", PRIORS), ("flaw", FLAWS))
+        for name, values in known:
+            if getattr(self, name) not in values:
+                raise SettingError(
+                    f"The {name} must be one of {', '.join(map(repr, values))}, "
+                    f"but it is {getattr(self, name)!r}."
+                )
+
+    @property
+    def name(self) -> str:
+        """Return the cell in words, unique."""
+        rate = f"spread {self.spread.rate_per_day:.0%} to {self.spread.to}"
+        words = f"{self.scenario}, {rate}, {self.start}, prior {self.prior}"
+        return f"{words}, {self.flaw} wrong" if self.flaw else words
+
+    @property
+    def aisles(self) -> Aisles:
+        """Return the plot."""
+        return _aisles(SIDES[self.scenario])
+
+    @property
+    def robot(self) -> Robot:
+        """Return who inspects, as it is."""
+        return Robot(detection=_POOR_DETECTION) if self.flaw == "detection" else Robot()
+
+    @property
+    def settings(self) -> SeasonSettings:
+        """Return what happens in the season, and what is believed of it."""
+        believed = None
+        if self.flaw == "spread":
+            rate = _BELIEVED_RATE.get(self.spread.rate_per_day, 0.3)
+            believed = Spread(rate, self.spread.to)
+        learning = Learning(detection=Robot().detects)
+        return SeasonSettings(spread=self.spread, believed_spread=believed, learning=learning)
+
+    def begin(self, chance: Chance) -> Start:
+        """Draw the first morning and what is known of it."""
+        grid = self.aisles.grid
+        infested = _infested(grid, self.start, chance.of("start"))
+        return Start(infested, _known(grid, self, infested, chance.of("records")))
+
+
+@cache
+def _aisles(side: int) -> Aisles:
+    return Aisles.of(rectangle(side, side))
+
+
+def usual_cells() -> list[Cell]:
+    """Return the cells of the study: one thing changed at a time in B and C, and A."""
+    cells = [Cell("A")]
+    for scenario in ("B", "C"):
+        cells += [Cell(scenario, Spread(rate, "one")) for rate in (0.3, 0.5, 0.8)]
+        cells += [Cell(scenario, Spread(rate, "each")) for rate in (0.3, 0.5)]
+        cells += [Cell(scenario, start=start) for start in STARTS[1:]]
+        cells += [Cell(scenario, start="edge", prior="edge")]
+        cells += [Cell(scenario, prior=prior) for prior in PRIORS[2:]]
+    cells += [Cell(flaw="spread"), Cell(flaw="detection")]
+    return [*cells, Cell(prior="records 5 %", flaw="records")]
+
+
+def all_cells() -> list[Cell]:
+    """Return every combination of scenario, spread, start and prior, and the flaws."""
+    grid = [
+        Cell(scenario, Spread(rate, "one"), start, prior)
+        for scenario in SIDES
+        for rate in (0.3, 0.5, 0.8)
+        for start in STARTS
+        for prior in PRIORS
+    ]
+    return list(dict.fromkeys([*usual_cells(), *grid]))
+
+
+def _infested(grid: PlantGrid, start: str, rng: np.random.Generator) -> NDArray[np.bool_]:
+    wanted = max(1, round(_SHARE * len(grid)))
+    if start == "scattered":
+        infested = np.zeros(len(grid), np.bool_)
+        infested[rng.choice(len(grid), wanted, replace=False)] = True
+        return infested
+    if start == "edge":
+        return start_infested(edge_chance(grid, PriorSettings()), _SHARE, rng)
+    infested = np.zeros(len(grid), np.bool_)
+    while np.count_nonzero(infested) < wanted:
+        _grow(grid, infested, min(_TOGETHER, wanted - int(np.count_nonzero(infested))), rng)
+    return infested
+
+
+def _grow(
+    grid: PlantGrid, infested: NDArray[np.bool_], size: int, rng: np.random.Generator
+) -> None:
+    """Infest a cluster: a plant drawn evenly, then plants beside those it has already."""
+    free = np.flatnonzero(~infested)
+    members = [int(rng.choice(free))]
+    infested[members] = True
+    start, other = grid.adjacent
+    while len(members) < size:
+        beside = np.concatenate([other[start[i] : start[i + 1]] for i in members])
+        beside = beside[~infested[beside]]
+        if not beside.size:
+            break
+        members.append(int(rng.choice(beside)))
+        infested[members[-1]] = True
+
+
+def _known(
+    grid: PlantGrid, cell: Cell, infested: NDArray[np.bool_], rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Return the chance map of the first morning, ``(n,)``."""
+    flat = np.full(len(grid), _SHARE)
+    if cell.prior == "edge":
+        return scaled(1.0 - (1.0 - 0.002) * (1.0 - edge_chance(grid, PriorSettings())), _SHARE)
+    if cell.prior == "wrong":
+        x, y = grid.xy_m.T
+        suspected = (x < np.median(x)) & (y < np.median(y))
+        return scaled(np.where(suspected, 0.1, 0.01), _SHARE)
+    if not cell.prior.startswith("records"):
+        return flat
+    share = 0.05 if cell.prior == "records 5 %" else 0.01
+    at = rng.choice(len(grid), round(share * len(grid)), replace=False)
+    found = infested[at] & (rng.random(len(at)) < Robot().detects)
+    if cell.flaw == "records":
+        away = grid.xy_m[at] + rng.normal(0.0, _GPS_M, (len(at), 2))
+        at = np.array([int(np.argmin(((grid.xy_m - xy) ** 2).sum(axis=1))) for xy in away])
+    plants = at.astype(np.int32)
+    learning = Learning(detection=Robot().detects, treated=False)
+    return Pairs.of(grid, flat).learn(plants, found, learning).chance

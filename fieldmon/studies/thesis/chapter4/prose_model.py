@@ -1,0 +1,249 @@
+"""The seven strategies as the thesis's prose describes them, on its own rectangular field.
+
+Independent of the listings and of fieldmon's samplers, so that each can be held against the others.
+Stops are numbered along the way the robot drives (from 0); faces as in `Vineyard` (from 0).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numba as nb
+import numpy as np
+
+from fieldmon.compute.random_streams import coin_table
+from fieldmon.studies.thesis.chapter4.listings import (
+    END,
+    EVER,
+    FOUND,
+    INFESTED,
+    LEFT_S,
+    NEW_COUNTED,
+    NEW_TRUE,
+    VISITED,
+)
+from fieldmon.studies.thesis.chapter4.vineyard import infest
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_STOP, _WAY, _DRAWN = range(3)
+
+
+class Way(NamedTuple):
+    """How a strategy goes about the field."""
+
+    plants: int
+    sides: int
+    neighbor: bool
+    skip: int
+    online: bool
+    scattered: bool
+    plant_s: float
+    stop_s: float
+    turn_s: float
+    change_s: float
+    day_s: float
+    days: int
+    reenter_anywhere: bool
+    severity: float
+    one_coin: bool
+
+
+class _Field(NamedTuple):
+    """What a day changes: faces, stops, and the robot's place in `at`."""
+
+    infested: NDArray[np.bool_]
+    seen: NDArray[np.bool_]
+    today: NDArray[np.bool_]
+    visits: NDArray[np.int64]
+    at: NDArray[np.int64]
+    steps: NDArray[np.float64]
+
+
+@nb.njit(cache=True, nogil=True)
+def _face(way: Way, stop: int) -> int:
+    """Return the face at a stop; for neighbor strategies that on the aisle's first side."""
+    block, j = divmod(stop, way.plants)
+    if block % 2 == 1:
+        j = way.plants - 1 - j
+    return (2 * block if way.neighbor else block) * way.plants + j
+
+
+@nb.njit(cache=True, nogil=True)
+def _look(field: _Field, face: int) -> int:
+    """Look at a face and clean it; return 1 if it was infested, else 0."""
+    found = 1 if field.infested[face] else 0
+    field.infested[face] = False
+    field.seen[face] = True
+    field.today[face] = True
+    return found
+
+
+@nb.njit(cache=True, nogil=True)
+def _drive_s(way: Way, here: int, there: int) -> float:
+    """Return the seconds from stop to stop: every vine passed, every side or aisle left."""
+    low, high = min(here, there), max(here, there)
+    seconds = (high - low) * way.plant_s
+    for block in range(low // way.plants, high // way.plants):
+        same_aisle = not way.neighbor and block % 2 == 0
+        seconds += way.turn_s if same_aisle else way.change_s
+    return seconds
+
+
+@nb.njit(cache=True, nogil=True)
+def _reentry(way: Way, field: _Field, here: int, n: int) -> int:
+    """Return where to go on at an end of the field: the least visited stop, then the nearest."""
+    stops = field.visits.size
+    first, last = (0, n - 1) if here < stops // 2 else (stops - n, stops - 1)
+    if way.reenter_anywhere and field.visits.min() == 0:
+        first, last = 0, stops - 1
+    best = first
+    for stop in range(first, last + 1):
+        fewer = field.visits[stop] - field.visits[best]
+        if fewer < 0 or (fewer == 0 and abs(stop - here) < abs(best - here)):
+            best = stop
+    return best
+
+
+@nb.njit(cache=True, nogil=True)
+def _next_stop(way: Way, field: _Field, here: int) -> int:
+    """Return the stop N further on, or where to turn round to."""
+    at = field.at
+    n = way.skip
+    if way.online:
+        n = 1 + int(4 * field.steps[at[_DRAWN]])
+        at[_DRAWN] += 1
+    there = int(here + at[_WAY] * n)
+    if 0 <= there < field.visits.size:
+        return there
+    at[_WAY] = -at[_WAY]
+    return _reentry(way, field, here, n)
+
+
+@nb.njit(cache=True, nogil=True)
+def _sweep_day(way: Way, field: _Field) -> tuple[float, int]:
+    """Go on along the field for one day; return the seconds left and how many faces were found."""
+    at, left_s, found = field.at, way.day_s, 0
+    here = at[_STOP]
+    while True:
+        there = at[_STOP]
+        cost_s = _drive_s(way, here, there) + way.stop_s
+        if cost_s > left_s:
+            return left_s, found
+        left_s -= cost_s
+        here = there
+        field.visits[here] += 1
+        face = _face(way, here)
+        found += _look(field, face)
+        if way.neighbor:
+            found += _look(field, face + way.plants)
+        at[_STOP] = _next_stop(way, field, here)
+
+
+@nb.njit(cache=True, nogil=True)
+def _scattered_day(way: Way, field: _Field) -> tuple[float, int]:
+    """Look at 1/N of the field, drawn anew, in the snake's order from its first face."""
+    stops = field.visits.size
+    deck = np.arange(stops)
+    chosen = stops // way.skip
+    for k in range(chosen):
+        pick = k + int((stops - k) * field.steps[field.at[_DRAWN]])
+        field.at[_DRAWN] += 1
+        deck[k], deck[pick] = deck[pick], deck[k]
+    left_s, found, here = way.day_s, 0, 0
+    for there in np.sort(deck[:chosen]):
+        cost_s = _drive_s(way, here, there) + way.stop_s
+        if cost_s > left_s:
+            break
+        left_s -= cost_s
+        here = there
+        field.visits[here] += 1
+        found += _look(field, _face(way, here))
+        field.at[_STOP] = here
+    return left_s, found
+
+
+@nb.njit(cache=True, nogil=True)
+def spread(way: Way, infested: NDArray[np.bool_], coins: NDArray[np.float64]) -> int:
+    """Let every infested face infect its row mates and its vine's other face, in place.
+
+    `coins` ``(3, T)``: one row for the vine before, the vine after and the other face; the first
+    row for all three where they share a coin. Return how many faces are new.
+    """
+    before = infested.copy()
+    plants = way.plants
+    for face in range(infested.size):
+        if not before[face]:
+            continue
+        side, j = divmod(face, plants)
+        other = face
+        if side % 2 == 1 and side < way.sides - 1:
+            other = face + plants
+        elif side % 2 == 0 and side > 0:
+            other = face - plants
+        targets = (face - 1 if j > 0 else face, face + 1 if j < plants - 1 else face, other)
+        for k in range(3):
+            if coins[0 if way.one_coin else k, face] < way.severity:
+                infested[targets[k]] = True
+    return int(infested.sum() - before.sum())
+
+
+@nb.njit(cache=True, nogil=True)
+def run(
+    way: Way,
+    infested: NDArray[np.bool_],
+    coins: NDArray[np.float64],
+    steps: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Run a strategy on one field; return the days' numbers, ``(days, 8)`` (see `listings`).
+
+    `infested` ``(T,)`` is not changed; `coins` ``(days, 3, T)`` are the nights', `steps` the
+    draws' uniform numbers (see `most_draws`).
+    """
+    days = np.zeros((way.days, 8))
+    faces = infested.size
+    field = _Field(
+        infested.copy(),
+        np.zeros(faces, np.bool_),
+        np.zeros(faces, np.bool_),
+        np.zeros(faces // 2 if way.neighbor else faces, np.int64),
+        np.array([0, 1, 0]),
+        steps,
+    )
+    for day in range(way.days):
+        row = days[day]
+        field.today[:] = False
+        row[INFESTED] = field.infested.sum()
+        if way.scattered:
+            row[LEFT_S], row[FOUND] = _scattered_day(way, field)
+        else:
+            row[LEFT_S], row[FOUND] = _sweep_day(way, field)
+        row[VISITED], row[EVER] = field.today.sum(), field.seen.sum()
+        row[END] = field.at[_STOP]
+        row[NEW_TRUE] = spread(way, field.infested, coins[day])
+        row[NEW_COUNTED] = row[NEW_TRUE]
+    return days
+
+
+def most_draws(way: Way) -> int:
+    """Return how many numbers a run can draw at most."""
+    if way.scattered:
+        return way.days * (way.plants * way.sides // way.skip)
+    return way.days * (int(way.day_s / way.stop_s) + 1) if way.online else 0
+
+
+@nb.njit(cache=True, nogil=True)
+def repeat(way: Way, start: float, draws: int, keys: NDArray[np.uint64]) -> NDArray[np.float64]:
+    """Run a strategy once for each row of `keys`; return the days' numbers ``(m, days, 8)``."""
+    replicates = keys.shape[0]
+    faces, vines = way.sides * way.plants, (way.sides // 2 + 1) * way.plants
+    days = np.empty((replicates, way.days, 8))
+    coins = np.empty((way.days, 3, faces))
+    used = faces if way.one_coin else 3 * faces
+    for k in range(replicates):
+        infested = infest(way.plants, way.sides, coin_table(keys[k, 0], vines), start)
+        for day in range(way.days):
+            coins[day].ravel()[:used] = coin_table(keys[k, 2 + day], used)
+        days[k] = run(way, infested, coins, coin_table(keys[k, 1], draws))
+    return days

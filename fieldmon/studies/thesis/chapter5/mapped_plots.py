@@ -1,0 +1,219 @@
+"""The three samplers on real maps of plants: the map is the truth, and its dates are the spread."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.random_streams import Chance, coin_table
+from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.belief import Learning, learn, overnight
+from fieldmon.infestation.prior import PriorSettings
+from fieldmon.planning.workday import outcomes
+from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.travel import Aisles
+from fieldmon.samplers import NEVER, Scene, sampler
+from fieldmon.studies.thesis.chapter4.measures import spread_of
+from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.spread import Spread
+    from fieldmon.plot.robot import Robot
+    from fieldmon.studies.thesis.chapter5.replicates import Progress
+
+    Floats = NDArray[np.float64]
+
+SHARES_PCT = np.arange(0.0, 101.0, 5.0)
+_LEAST = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class PlantMap:
+    """A mapped plot, every plant's state at one date or several.
+
+    Parameters
+    ----------
+    name
+        What it is called.
+    dates
+        ``(d,)`` as the file writes them, in order.
+    infested
+        ``(d, n)`` plants row by row.
+    n_rows, n_plants
+        Rows, and plants in each.
+    row_m, plant_m
+        Distances between rows and between plants.
+    """
+
+    name: str
+    dates: tuple[str, ...]
+    infested: NDArray[np.bool_]
+    n_rows: int
+    n_plants: int
+    row_m: float
+    plant_m: float
+
+    def __post_init__(self) -> None:
+        shape = (len(self.dates), self.n_rows * self.n_plants)
+        if self.infested.shape != shape:
+            raise ObservationError(
+                f"The map {self.name} must have one entry a plant and date {shape}, "
+                f"but it has {self.infested.shape}."
+            )
+
+    def aisles(self) -> Aisles:
+        """Return its plants and ways."""
+        planting = Planting(row_spacing_m=self.row_m, plant_spacing_m=self.plant_m)
+        return Aisles.of(rectangle(self.n_rows, self.n_plants, planting))
+
+
+@dataclass(frozen=True)
+class MapRules:
+    """How the maps are inspected.
+
+    Parameters
+    ----------
+    robot
+        Who inspects, and for how many hours a date.
+    spread
+        What the chance map takes to happen between dates; the map itself is what happens.
+    recorded_share
+        Share of the plants infested on the first date that a record points to.
+    """
+
+    robot: Robot
+    spread: Spread
+    recorded_share: float = 0.2
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.recorded_share <= 1.0:
+            raise SettingError(
+                f"recorded_share must be a share in 0..1, but it is {self.recorded_share}."
+            )
+
+
+@dataclass(frozen=True)
+class MapRow:
+    """Percent found of the infested plants of a date, after visiting a share of all plants.
+
+    NaN where no day got that far.
+    """
+
+    map: str
+    date: str
+    infested: int
+    sampler: str
+    visited_pct: float
+    mean: float
+    low: float
+    high: float
+    seeds: int
+
+
+def run_maps(
+    maps: Sequence[PlantMap],
+    rules: MapRules,
+    seeds: int = 20,
+    seed: int = 1,
+    progress: Progress | None = None,
+) -> list[MapRow]:
+    """Inspect each map on one working day a date; all samplers meet the same luck in looking.
+
+    What is found is taken out: later dates hold the map's infested plants without it.
+    """
+    table = []
+    for done, each in enumerate(maps, start=1):
+        aisles = each.aisles()
+        for name in SAMPLERS:
+            found = np.stack(
+                [inspect(each, aisles, name, rules, Chance(seed + k)) for k in range(seeds)]
+            )
+            table += _rows(each, name, found)
+        if progress is not None:
+            progress(done, len(maps))
+    return table
+
+
+def inspect(plants: PlantMap, aisles: Aisles, name: str, rules: MapRules, chance: Chance) -> Floats:
+    """Return percent found after each of `SHARES_PCT` visited, ``(d, shares)``; NaN if not reached.
+
+    Of the plants infested on a date and not found on earlier ones; 100 if there are none.
+    """
+    robot, grid = rules.robot, aisles.grid
+    belief = _told(plants, aisles, rules, chance)
+    last = np.full(len(grid), NEVER, np.int32)
+    gone = np.zeros(len(grid), np.bool_)
+    curves = np.empty((len(plants.dates), len(SHARES_PCT)))
+    trail = np.empty(0, np.int32)
+    for day in range(len(plants.dates)):
+        truth = plants.infested[day] & ~gone
+        would_find = outcomes(truth, robot.detects, chance.key("inspect", day))
+        scene = Scene(
+            aisles=aisles,
+            robot=robot,
+            chance=belief,
+            last_inspected=last,
+            day=day,
+            seconds_left=robot.day_s,
+            trail=trail,
+            key=chance.key("sampler", day),
+        )
+        trail = sampler(name).walk(scene, would_find).plant
+        found = would_find[trail]
+        curves[day] = _curve(found, int(np.count_nonzero(truth)), len(grid))
+        last[trail] = day
+        gone[trail[found]] = True
+        evening = learn(belief, grid, trail, found, Learning(detection=robot.detects))
+        belief = overnight(evening, grid, rules.spread)
+    return curves
+
+
+def _told(plants: PlantMap, aisles: Aisles, rules: MapRules, chance: Chance) -> Floats:
+    """Return what records of some plants of the first date make believed, ``(n,)``."""
+    first = plants.infested[0]
+    told = first & (coin_table(chance.key("records"), len(first)) < rules.recorded_share)
+    recorded = np.flatnonzero(told).astype(np.int32)
+    base = np.full(len(first), _LEAST)
+    finds = np.ones(len(recorded), np.bool_)
+    heard = learn(base, aisles.grid, recorded, finds, Learning(treated=False))
+    heard[recorded] = PriorSettings().at_record
+    return heard
+
+
+def _curve(found: NDArray[np.bool_], infested: int, n: int) -> Floats:
+    """Return percent found after each share of all plants was visited, ``(shares,)``."""
+    so_far = np.concatenate([[0], np.cumsum(found)])
+    visits = np.round(SHARES_PCT / 100.0 * n).astype(int)
+    reached = visits < len(so_far)
+    curve = np.full(len(SHARES_PCT), np.nan)
+    part = so_far[visits[reached]]
+    curve[reached] = 100.0 * part / infested if infested else 100.0
+    return curve
+
+
+def _rows(plants: PlantMap, name: str, found: Floats) -> list[MapRow]:
+    table = []
+    for day, date in enumerate(plants.dates):
+        infested = int(np.count_nonzero(plants.infested[day]))
+        for k, share in enumerate(SHARES_PCT):
+            ours = spread_of(found[:, day, k])
+            table.append(
+                MapRow(
+                    plants.name,
+                    date,
+                    infested,
+                    name,
+                    float(share),
+                    ours.mean,
+                    ours.low,
+                    ours.high,
+                    ours.replicates,
+                )
+            )
+    return table

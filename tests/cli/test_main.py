@@ -1,0 +1,313 @@
+"""The commands, as a person runs them."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import geopandas as gpd
+import numpy as np
+import pytest
+from shapely import MultiPolygon, Point, Polygon, box
+
+from fieldmon.cli import main
+from fieldmon.samplers import SAMPLERS
+from tests.paths import SAMPLE_DATA
+
+ESTATE = SAMPLE_DATA
+ZIP, MITES = str(ESTATE / "paran_estate.zip"), str(ESTATE / "mite_records.csv")
+
+
+@pytest.fixture
+def run(monkeypatch, capsys, tmp_path):
+    """Run a command in an empty folder; return exit code, output, complaints, files made."""
+    monkeypatch.chdir(tmp_path)
+
+    def go(*words):
+        before = set(tmp_path.rglob("*"))
+        monkeypatch.setattr(sys, "argv", ["fieldmon", *map(str, words)])
+        code = 0
+        try:
+            main.main()
+        except SystemExit as stop:
+            code = stop.code or 0
+        out, err = capsys.readouterr()
+        return code, out, err, set(tmp_path.rglob("*")) - before
+
+    return go
+
+
+def test_a_day_is_planned_and_its_route_written(run, tmp_path):
+    code, out, err, made = run("plan", ZIP, "--feature", "Gate", "--observations", MITES)
+    assert code == 0, err
+    assert made == {tmp_path / "route.geojson"}
+    route = json.loads((tmp_path / "route.geojson").read_text(encoding="utf-8"))
+    line, *stops = route["features"]
+    assert line["properties"]["plot"] == "Gate"
+    assert line["properties"]["stops"] == len(stops) > 100
+    assert line["properties"]["seconds"] <= 12 * 3600
+    assert f"{len(stops)} of " in out
+    assert "seen:" in err
+
+
+def test_what_the_options_say_is_done(run, tmp_path):
+    code, out, err, _ = run(
+        *["plan", ZIP, "--feature", "Nursery", "--hours", 2, "--look", 20, "--sampler", "bouncy"],
+        *["--every", 3, "--row-spacing", 4, "--plant-spacing", 2, "--headland", 3, "--bearing", 70],
+        *["--gate", "35.1529,30.3525", "--date", "2026-11-02", "--start", "07:30", "-o", "r.json"],
+    )
+    assert code == 0, err
+    assert "bearing 70.0 degrees, rows 4.00 m and plants 2.00 m apart" in out
+    line, first, *_ = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))["features"]
+    assert line["properties"]["start"] == "2026-11-02T07:30:00"
+    assert line["properties"]["seconds"] <= 7200
+    assert first["properties"]["inspect_s"] == 20
+    assert line["geometry"]["coordinates"][0] == pytest.approx([35.1529, 30.3525], abs=1e-7)
+
+
+def test_a_scout_on_foot_does_less_in_a_shorter_day(run, tmp_path):
+    for words, name in (([], "robot.json"), (["--scout"], "scout.json")):
+        assert run("plan", ZIP, "--feature", "Gate", "-o", name, *words)[0] == 0
+    robot, scout = (
+        json.loads((tmp_path / name).read_text(encoding="utf-8"))["features"][0]["properties"]
+        for name in ("robot.json", "scout.json")
+    )
+    assert scout["seconds"] <= 4 * 3600 < robot["seconds"]
+
+
+def test_a_season_is_simulated_and_its_table_written(run, tmp_path):
+    words = ["simulate", ZIP, "--feature", "Nursery", "--days", 3, "-o", "season.csv"]
+    code, out, err, _ = run(*words)
+    assert code == 0, err
+    lines = (tmp_path / "season.csv").read_text(encoding="utf-8").splitlines()
+    assert len(lines) == 1 + 3 * 3
+    assert all(name in out for name in ("naive", "bouncy", "dynamic"))
+    run(*words[:-1], "again.csv")
+    assert (tmp_path / "again.csv").read_text(encoding="utf-8").splitlines() == lines
+
+
+def test_the_plots_of_a_file_are_listed(run):
+    code, out, _, _ = run("plots", ZIP)
+    assert code == 0
+    assert "ha  Gate" in out
+    assert len(out.splitlines()) == 9
+
+
+def test_measured_plants_make_a_plot_without_a_boundary(run, tmp_path):
+    xy = np.array([(35.15 + 2e-5 * i, 30.36 + 4e-5 * j) for j in range(8) for i in range(20)])
+    plants = gpd.GeoSeries.from_xy(*xy.T, crs=4326)
+    plants.to_file(tmp_path / "plants.geojson")
+    code, out, err, _ = run("plan", "--plants", "plants.geojson", "-o", "r.json")
+    assert code == 0, err
+    assert "160 plants in 8 rows, bearing 90.0 degrees" in out
+
+
+def square(**changes):
+    plot = {"name": "plot", "geometry": box(35.15, 30.36, 35.151, 30.361)} | changes
+    return gpd.GeoDataFrame([plot], crs="EPSG:4326")
+
+
+def no_geometry(folder):
+    (folder / "p.csv").write_text("name,ha\na,1\n", encoding="utf-8")
+    return ["plan", "p.csv"]
+
+
+def no_crs(folder):
+    plot = square(geometry=box(209_000, 470_000, 209_100, 470_100))
+    plot.set_crs(2039, allow_override=True).to_file(folder / "p.shp")
+    (folder / "p.prj").unlink()
+    return ["plan", "p.shp"]
+
+
+def empty_geometry(folder):
+    square(geometry=Polygon()).to_file(folder / "p.geojson")
+    return ["plan", "p.geojson"]
+
+
+def too_small(folder):
+    square(geometry=Point(35.15, 30.36).buffer(2e-5)).to_file(folder / "p.geojson")
+    return ["plan", "p.geojson"]
+
+
+def records_elsewhere(folder):
+    square().to_file(folder / "p.geojson")
+    (folder / "r.csv").write_text("lon,lat,date,count\n8.0,49.0,2026-11-01,3\n", encoding="utf-8")
+    return ["plan", "p.geojson", "--observations", "r.csv"]
+
+
+def no_date(folder):
+    square().to_file(folder / "p.geojson")
+    rows = "lon,lat,date,count\n35.1505,30.3605,yesterday or so,3\n"
+    (folder / "r.csv").write_text(rows, encoding="utf-8")
+    return ["plan", "p.geojson", "--observations", "r.csv"]
+
+
+def nothing_at_all(_):
+    return ["plan"]
+
+
+def several_plots(_):
+    return ["plan", ZIP]
+
+
+def no_file(_):
+    return ["plan", "nowhere.zip"]
+
+
+def rubbish(folder):
+    (folder / "p.zip").write_bytes(b"PK\x03\x04 not a zip at all")
+    return ["plan", "p.zip"]
+
+
+def no_folder(_):
+    return ["plan", ZIP, "--feature", "Gate", "-o", "none/route.geojson"]
+
+
+def no_plain_file(folder):
+    (folder / "full.geojson").symlink_to("/dev/full")
+    return ["plan", ZIP, "--feature", "Gate", "-o", "full.geojson"]
+
+
+def bad_day(_):
+    return ["plan", ZIP, "--feature", "Gate", "--date", "16.11.2026"]
+
+
+def bad_gate(_):
+    return ["plan", ZIP, "--feature", "Gate", "--gate", "here"]
+
+
+def bad_start(_):
+    return ["plan", ZIP, "--feature", "Gate", "--start", "dawn"]
+
+
+def no_time(_):
+    return ["plan", ZIP, "--feature", "Gate", "--hours", "0.01"]
+
+
+def no_share(_):
+    return ["simulate", ZIP, "--feature", "Gate", "--infested", "0"]
+
+
+def bad_option(_):
+    return ["plan", ZIP, "--feature", "Gate", "--plot-option", "crs"]
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (no_geometry, "longitudes"),
+        (no_crs, "--crs"),
+        (empty_geometry, "geometry"),
+        (too_small, "room for one plant"),
+        (records_elsewhere, "km"),
+        (nothing_at_all, "--plants FILE"),
+        (several_plots, "--feature"),
+        (no_file, "nowhere.zip"),
+        (rubbish, "p.zip"),
+        (no_folder, "folder none must exist"),
+        (no_plain_file, "not a plain file"),
+        (bad_day, "YYYY-MM-DD"),
+        (bad_gate, "LON,LAT"),
+        (bad_start, "HH:MM"),
+        (no_time, "Give more --hours"),
+        (no_share, "between 0 and 1"),
+        (bad_option, "NAME=VALUE"),
+    ],
+)
+def test_bad_input_is_a_sentence_with_exit_code_2_and_nothing_written(run, tmp_path, make, says):
+    words = make(tmp_path)
+    code, _, err, made = run(*words)
+    assert (code, made) == (2, set())
+    last = err.strip().splitlines()[-1]
+    assert says in last
+    assert last.endswith((".", "?"))
+    assert "Traceback" not in err
+
+
+def test_a_date_that_is_none_is_said(run, tmp_path):
+    code, _, err, _ = run(*no_date(tmp_path))
+    assert code == 0
+    assert "yesterday or so" in err
+
+
+def test_a_mistake_of_our_own_is_an_apology_without_traceback(run, monkeypatch):
+    monkeypatch.setattr(main, "_day", lambda _: 1 / 0)
+    code, _, err, _ = run("plan", ZIP)
+    assert code == 1
+    assert "Sorry" in err
+    assert "FIELDMON_DEBUG" in err
+
+
+def test_the_names_of_the_samplers_are_those_of_the_program():
+    assert {name.value for name in main.SamplerName} == set(SAMPLERS)
+
+
+def test_help_is_there_at_once_and_teaches():
+    command = [sys.executable, "-X", "importtime", "-m", "fieldmon.cli", "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert "fieldmon plan estate.zip" in done.stdout
+    for heavy in ("numba", "geopandas", "shapely", "numpy", "streamlit", "pandas"):
+        assert f" {heavy}\n" not in done.stderr
+
+
+def test_a_port_in_use_is_a_sentence(run):
+    import socket
+
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        code, _, err, _ = run("app", "--port", taken.getsockname()[1])
+    assert code == 2
+    assert "must be free" in err
+
+
+def test_parts_and_holes_are_planned_around(run, tmp_path):
+    ring = box(35.15, 30.36, 35.152, 30.3615)
+    hole = box(35.1508, 30.3605, 35.1512, 30.3609)
+    shape = MultiPolygon([ring.difference(hole), box(35.1525, 30.36, 35.1532, 30.361)])
+    square(geometry=shape).to_file(tmp_path / "p.gpkg")
+    code, _, err, _ = run("plan", "p.gpkg", "--hours", 10)
+    assert code == 0, err
+    route = json.loads((tmp_path / "route.geojson").read_text(encoding="utf-8"))
+    for stop in route["features"][1:]:
+        assert shape.covers(Point(stop["geometry"]["coordinates"]))
+
+
+def test_records_that_name_rows_and_plants_or_plots_are_taken(run, tmp_path):
+    (tmp_path / "r.csv").write_text("row,plant,date,count\n3,7,2026-03-01,4\n99,1,2026-03-01,2\n")
+    words = ["plan", ZIP, "--feature", "Gate", "--date", "2026-03-02", "--hours", 1]
+    code, _, err, _ = run(*words, "--observations", "r.csv")
+    assert code == 0, err
+    assert "dropped: 1 record(s) name 1 plant(s) that are not known: 99/1." in err
+    (tmp_path / "p.csv").write_text("plot,date,count\nGATE,2026-03-01,4\nMoon,2026-03-01,2\n")
+    code, _, err, _ = run(*words, "--observations", "p.csv")
+    assert code == 0, err
+    assert "dropped: 1 record(s) name 1 plot(s) that are not known: Moon." in err
+    assert "1 record(s) are placed to" in err
+
+
+def test_a_finding_is_printed_with_its_remedy_and_the_remedy_works(run, tmp_path):
+    _, lon, lat, *_ = Path(MITES).read_text("utf-8").splitlines()[1].split(",")
+    (tmp_path / "r.csv").write_text(f"lon,lat,date,eggs\n{lon},{lat},03/04/2026,4\n")
+    words = ["plan", ZIP, "--feature", "Gate", "--date", "2026-05-02", "--hours", 1]
+    code, _, err, _ = run(*words, "--observations", "r.csv")
+    assert code == 0, err
+    assert "(Read month first: --record-option date_order=mdy)" in err
+    assert "(Take the count from eggs: --record-option columns=count=eggs)" in err
+    options = ["--record-option", "date_order=mdy", "--record-option", "columns=count=eggs"]
+    code, _, err, _ = run(*words, "--observations", "r.csv", *options)
+    assert code == 0, err
+    assert "guessed" not in err
+    assert "Counts are in column 'eggs'" in err
+
+
+def test_what_the_file_of_plants_leaves_open_is_asked_and_answered(run, tmp_path):
+    xy = [(214_000 + 2 * i, 474_400 + 4 * j) for j in range(8) for i in range(20)]
+    gpd.GeoSeries.from_xy(*zip(*xy, strict=True), crs=2039).to_file(tmp_path / "p.shp")
+    (tmp_path / "p.prj").unlink()
+    code, _, err, _ = run("plan", "--plants", "p.shp")
+    assert code == 2
+    assert "Answer with --plants-option crs=" in err
+    code, out, err, _ = run("plan", "--plants", "p.shp", "--plants-option", "crs=EPSG:2039")
+    assert code == 0, err
+    assert "160 plants in 8 rows" in out

@@ -1,0 +1,138 @@
+"""`fieldmon plan --all`: the same day on every plot of a file."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+import shapely
+from shapely import MultiPolygon
+from test_cli import run  # noqa: F401 - a fixture
+
+from fieldmon.plot.field import Field
+from fieldmon.plot.projection import Frame
+from tests.parcels import many, write_geojson
+
+FRAME = Frame(5.0, 45.0)
+SHAPES = [
+    Field("square", FRAME.geometry_lonlat(MultiPolygon([shapely.box(-30, -25, 30, 25)]))),
+    Field(
+        "bent",
+        FRAME.geometry_lonlat(
+            MultiPolygon(
+                [shapely.Polygon([(0, 0), (70, 0), (70, 30), (30, 30), (30, 60), (0, 60)])]
+            )
+        ),
+    ),
+]
+
+
+@pytest.fixture
+def summary(tmp_path):
+    def read(folder="routes"):
+        with (tmp_path / folder / "summary.csv").open(encoding="utf-8-sig") as file:
+            return {row["plot"]: row for row in csv.DictReader(file)}
+
+    return read
+
+
+@pytest.fixture
+def parcels(tmp_path):
+    """Return a file of six plots: two that say who works there, and two that cannot be planned."""
+    shapes = many(SHAPES, 5)
+    shapes.append(FRAME.geometry_lonlat(shapely.box(0.0, 0.0, 2.0, 2.0)))
+    write_geojson(
+        tmp_path / "parcels.geojson",
+        shapes,
+        hours=[None, 1.5, None, None, 3.0, 3.0],
+        robot=["robot", None, "scout", "donkey", None, None],
+    )
+    return tmp_path / "parcels.geojson"
+
+
+def properties(path):
+    return json.loads(path.read_text(encoding="utf-8"))["features"][0]["properties"]
+
+
+def test_every_plot_is_planned_and_those_that_cannot_be_are_named(run, parcels, summary):  # noqa: F811
+    code, out, err, _ = run("plan", parcels, "--all", "-o", "routes", "--date", "2026-11-02")
+    assert code == 0, err
+    rows = summary()
+    assert list(rows) == [f"Plot {k}" for k in range(1, 7)]
+    refused = {name for name, row in rows.items() if row["state"] == "refused"}
+    assert refused == {"Plot 4", "Plot 6"}
+    assert "donkey" in rows["Plot 4"]["sentence"]
+    assert "refused: Plot 6" in err
+    assert "4 of 6 plots planned" in out
+    folder = parcels.parent / "routes"
+    files = {path.name for path in folder.iterdir()} - {"summary.csv"}
+    assert files == {row["file"] for row in rows.values() if row["state"] == "planned"}
+    for name, row in rows.items():
+        if name not in refused:
+            said = properties(folder / row["file"])
+            assert said["plot"] == name
+            assert said["stops"] == int(row["stops"]) > 0
+            assert said["start"] == "2026-11-02T06:00:00"
+    assert 1.0 < float(rows["Plot 2"]["hours"]) <= 1.5
+    assert float(rows["Plot 1"]["hours"]) > 1.5
+    # a scout looks for 30 s and stops for 5, the robot looks for 40
+    seconds = properties(folder / rows["Plot 3"]["file"])["inspect_s"]
+    assert seconds == pytest.approx(35.0 * int(rows["Plot 3"]["stops"]))
+
+
+def test_a_plot_planned_in_the_crowd_is_planned_as_it_is_alone(run, parcels, summary):  # noqa: F811
+    words = ["plan", parcels, "--date", "2026-11-02"]
+    assert run(*words, "--all", "-o", "routes", "--hours", 2)[0] == 0
+    assert run(*words, "--feature", "Plot 5", "-o", "one.geojson", "--hours", 2)[0] == 0
+    together = parcels.parent / "routes" / summary()["Plot 5"]["file"]
+    assert together.read_bytes() == (parcels.parent / "one.geojson").read_bytes()
+
+
+def test_what_is_finished_is_not_planned_again_unless_something_changed(run, parcels, summary):  # noqa: F811
+    words = ["plan", parcels, "--all", "-o", "routes", "--hours", 2]
+    run(*words)
+    first = summary()
+    files = [parcels.parent / "routes" / first[name]["file"] for name in ("Plot 1", "Plot 2")]
+    files[0].unlink()
+    files[1].write_text("left alone")
+    assert "5 of 6 plots were planned already" in run(*words)[1]
+    assert summary() == first
+    assert properties(files[0])["plot"] == "Plot 1"
+    assert files[1].read_text() == "left alone"
+    assert "already" not in run(*words[:-1], 3)[1]
+    assert properties(files[1])["plot"] == "Plot 2"
+
+
+def test_a_run_that_is_stopped_keeps_what_is_finished_and_goes_on(tmp_path, summary):
+    shapes = many(SHAPES, 150)
+    write_geojson(tmp_path / "parcels.geojson", shapes)
+    # whoever runs the tests in the background has children that do not hear Ctrl-C
+    hears = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    code = f"{hears}from fieldmon.cli import main; main()"
+    words = [sys.executable, "-c", code, "plan", "parcels.geojson", "--all", "-o", "r"]
+    command = subprocess.Popen(
+        words, cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    until = time.monotonic() + 200
+    while not list((tmp_path / "r").glob("*.geojson")) and time.monotonic() < until:
+        time.sleep(0.02)
+    os.kill(command.pid, signal.SIGINT)
+    _, complaint = command.communicate(timeout=100)
+    assert command.returncode == 130, complaint
+    half = summary("r")
+    assert 0 < len(half) < 150
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert f"{len(half)} of 150 plots were planned already" in done.stdout
+    assert len(summary("r")) == 150
+    assert all(row["state"] == "planned" for row in summary("r").values())
+
+
+@pytest.mark.parametrize("words", [["--feature", "1"], ["--gate", "5,45"]])
+def test_what_is_of_one_plot_only_is_refused(run, parcels, words):  # noqa: F811
+    code, _, err, made = run("plan", parcels, "--all", *words)
+    assert (code, made) == (2, set())
+    assert "--all plans every plot" in err

@@ -1,0 +1,67 @@
+"""How many are still infested, and is the plot clean."""
+
+import itertools
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+
+from fieldmon.compute.random_streams import Chance
+from fieldmon.errors import SettingError
+from fieldmon.infestation.belief import Pairs, pairs
+from fieldmon.infestation.plot_estimate import outlook
+from fieldmon.plot.layout import rectangle
+
+GRID = rectangle(20, 20)
+
+
+def test_for_independent_plants_it_is_the_binomial():
+    chance = np.full(400, 0.03)
+    ahead = outlook(GRID, chance, pairs(chance, GRID, company=0.0))
+    assert ahead.expected == pytest.approx(12.0)
+    assert ahead.low == pytest.approx(binom.ppf(0.05, 400, 0.03), abs=1)
+    assert ahead.high == pytest.approx(binom.ppf(0.95, 400, 0.03), abs=1)
+    assert ahead.chance_clean == pytest.approx(0.97**400, rel=1e-6)
+
+
+def test_for_a_row_of_plants_the_chance_of_clean_is_that_of_the_chain():
+    row = rectangle(1, 5)
+    belief = Pairs.of(row, np.full(5, 0.2), company=0.6)
+    both = belief.both[0]
+    total = 0.0
+    for state in itertools.product([0, 1], repeat=5):
+        p = 0.2 if state[0] else 0.8
+        for one, other in itertools.pairwise(state):
+            table = {(1, 1): both, (1, 0): 0.2 - both, (0, 1): 0.2 - both, (0, 0): 0.6 + both}
+            p *= table[one, other] / (0.2 if one else 0.8)
+        total += p * (sum(state) == 0)
+    assert outlook(row, belief.chance, belief.both).chance_clean == pytest.approx(total, rel=1e-6)
+
+
+def test_plants_that_stand_together_make_the_number_less_sure_and_clean_more_likely():
+    chance = np.full(400, 0.01)
+    alone = outlook(GRID, chance, pairs(chance, GRID, company=0.0))
+    together = outlook(GRID, chance, pairs(chance, GRID, company=0.7))
+    assert together.expected == alone.expected
+    assert together.high - together.low > alone.high - alone.low
+    assert together.chance_clean > 2 * alone.chance_clean
+
+
+def test_the_same_key_gives_the_same_answer_and_a_surer_interval_is_wider():
+    chance = np.full(400, 0.05)
+    key = Chance(3).key("outlook")
+    assert outlook(GRID, chance, key=key) == outlook(GRID, chance, key=key)
+    sure, rough = outlook(GRID, chance, sure=0.99), outlook(GRID, chance, sure=0.5)
+    assert sure.low < rough.low <= rough.high < sure.high
+
+
+def test_it_says_so_in_a_sentence():
+    ahead = outlook(GRID, np.full(400, 0.05))
+    assert "About 20 plants" in ahead.sentence()
+    assert f"between {ahead.low} and {ahead.high}" in ahead.sentence()
+
+
+@pytest.mark.parametrize("sure", [0.0, 1.0, -2.0])
+def test_an_impossible_sureness_is_refused(sure):
+    with pytest.raises(SettingError, match="between 0 and 1"):
+        outlook(GRID, np.full(400, 0.05), sure=sure)

@@ -1,0 +1,37 @@
+"""Areas are what the ellipsoid says, whatever the shape."""
+
+import numpy as np
+import pyproj
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+from shapely import MultiPolygon, Polygon, box
+
+from fieldmon.io.parse.geometry import area_m2
+
+GEOD = pyproj.Geod(ellps="WGS84")
+
+
+@given(
+    lon=st.floats(-179, 179),
+    lat=st.floats(-70, 70),
+    size_deg=st.floats(1e-5, 0.01),
+    corners=st.integers(3, 60),
+    seed=st.integers(0, 1000),
+)
+def test_the_area_of_a_ragged_plot_with_a_hole_is_geodesic(lon, lat, size_deg, corners, seed):
+    angle = np.sort(np.random.default_rng(seed).random(corners)) * 2 * np.pi
+    ring = np.column_stack([lon + size_deg * np.cos(angle), lat + size_deg * np.sin(angle)])
+    hole = box(lon - size_deg / 9, lat - size_deg / 9, lon + size_deg / 9, lat + size_deg / 9)
+    plot = Polygon(ring).difference(hole)
+    geodesic = abs(GEOD.geometry_area_perimeter(shapely.orient_polygons(plot))[0])
+    # a side d bulges by d^2/8R tan(lat) at most; three of them, each twice the size; and the digits
+    # of the oracle end at a thousandth of a square metre
+    bulge_m2 = 6 * np.deg2rad(size_deg) * (size_deg * 111_000) ** 2
+    assert area_m2(plot) == pytest.approx(geodesic, rel=1e-5, abs=bulge_m2 + 1e-3)
+
+
+def test_the_whole_earth_but_the_poles_has_the_area_that_is_published():
+    halves = MultiPolygon([box(-180, -90, 0, 90).segmentize(1), box(0, -90, 180, 90).segmentize(1)])
+    assert area_m2(halves) == pytest.approx(510_065_621.724e6, rel=1e-9)

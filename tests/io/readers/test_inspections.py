@@ -1,0 +1,471 @@
+"""What comes back from the field finds its plants, once, whatever it is written in."""
+
+import json
+
+import geopandas as gpd
+import numpy as np
+import pandas as pd
+import pyogrio
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely import MultiPolygon, Polygon
+
+from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem, SettingError
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
+from fieldmon.io.formats.layer import Layer
+from fieldmon.io.import_report import Severity
+from fieldmon.io.options import Upload
+from fieldmon.io.readers.inspections import look_up, read_findings
+from fieldmon.io.readers.reported import FindingsOptions, reported_in
+from fieldmon.plot.field import Field
+from fieldmon.plot.grid import row_label
+from fieldmon.plot.layout import Planting, lay, rectangle
+
+GRID = rectangle(6, 10)
+
+
+def upload(text, name="found.csv"):
+    return Upload(name, text.encode())
+
+
+def read(text, options=None, grid=GRID, name="found.csv"):
+    return read_findings(upload(text, name), grid, options)
+
+
+def two_faced():
+    corners = np.array([(0, 0), (0, 30), (40, 30), (40, 0)]) / 111_320
+    field = Field("faces", MultiPolygon([Polygon(corners + np.array([35.0, 30.0]))]))
+    return lay(field, Planting(faces=2, row_spacing_m=3.0, plant_spacing_m=2.0))
+
+
+@pytest.mark.parametrize(
+    ("word", "result"),
+    [
+        *((w, FOUND) for w in ("yes", "TRUE", "1", "found", "x", "✓", "ja", "sí", "oui", "כן")),
+        *((w, FOUND) for w in ("+", "+3", "7", "<5", "3-5", "befall", "נגוע", "gefunden", "many")),
+        *(
+            (w, CLEAN)
+            for w in ("no", "False", "0", "clean", "nein", "לא", "נקי", "ok", "not found")
+        ),
+        *((w, SKIPPED) for w in ("not inspected", "could_not_inspect", "skipped", "לא נבדק")),
+    ],
+)
+def test_results_are_read_in_many_spellings(word, result):
+    findings = read(f"plant,found\n7,{word}\n8,clean\n").value
+    assert findings.plant.tolist() == [7, 8]
+    assert findings.result.tolist() == [result, CLEAN]
+
+
+@pytest.mark.parametrize("blank", ["", "  ", "NA", "?", "nan", "-"])
+def test_what_is_not_filled_in_stays_unknown(blank):
+    imported = read(f"plant,found,count\n7,{blank},\n8,no,\n")
+    assert imported.value.plant.tolist() == [8]
+    assert any("1 of 2 record(s) are not filled in" in f.sentence for f in imported.findings)
+
+
+def test_a_minus_is_clean_only_beside_a_plus():
+    assert read("plant,found\n7,-\n8,+\n").value.result.tolist() == [CLEAN, FOUND]
+    assert read("plant,found\n7,-\n8,x\n").value.plant.tolist() == [8]
+
+
+def test_a_word_that_says_nothing_is_named_and_left_unknown():
+    imported = read("plant,found\n7,maybe\n8,no\n")
+    assert imported.value.plant.tolist() == [8]
+    assert any("'maybe'" in f.sentence for f in imported.of(Severity.DOUBTFUL))
+
+
+def test_counts_alone_say_whether_and_how_many():
+    findings = read("plant,count\n1,0\n2,4\n3,<5\n4,\n5,2-6\n").value
+    assert findings.plant.tolist() == [1, 2, 3, 5]
+    assert findings.result.tolist() == [CLEAN, FOUND, FOUND, FOUND]
+    np.testing.assert_array_equal(findings.count, [np.nan, 4, np.nan, np.nan])
+
+
+def test_a_count_in_the_column_for_results_is_a_count_but_one_is_yes():
+    findings = read("plant,found,count\n1,7,\n2,1,\n3,+2,\n4,yes,9\n").value
+    np.testing.assert_array_equal(findings.count, [7, np.nan, 2, 9])
+
+
+def test_result_and_count_that_contradict_are_left_out_unless_one_asks():
+    text = "plant,found,count\n1,clean,4\n2,found,0\n3,,0\n4,skipped,0\n5,clean,0\n6,,3\n"
+    imported = read(text)
+    assert imported.value.plant.tolist() == [4, 5, 6]
+    assert imported.value.result.tolist() == [SKIPPED, CLEAN, FOUND]
+    doubts = imported.of(Severity.DOUBTFUL)
+    assert [f.feature for f in doubts] == ["record 1", "record 2", "record 3"]
+    assert {f.remedy.option for f in doubts} == {"take_doubtful"}
+    taken = read(text, FindingsOptions().choose("take_doubtful", "yes")).value
+    assert taken.result.tolist() == [FOUND, FOUND, CLEAN, SKIPPED, CLEAN, FOUND]
+    np.testing.assert_array_equal(taken.count[:2], [4, np.nan])
+
+
+def test_plants_are_named_by_row_and_number_in_every_dialect():
+    for text in (
+        "row,number,found\n2,3,x\n",
+        "row;plant;found\n2;3;x\n",
+        "שורה\tעץ\tנמצא\n2\t3\tכן\n",
+        "Reihe;Pflanze;Befall\n2;3;ja\n",
+        "plant,found\nR2/3,x\n",
+        "No,row,plant,found\n1,2,3,x\n",
+        "row,nr,found\n2,3,x\n",
+    ):
+        findings = read(text).value
+        label = row_label(GRID, findings.plant)
+        assert (label.line.tolist(), label.number.tolist()) == ([2], [3])
+
+
+def test_plants_that_the_plot_does_not_have_are_named_and_left_out():
+    imported = read(
+        "plant,row,number,found\n60,,,x\n,9,1,x\n,1,11,x\n,2147483647,2147483647,x\n-4,,,x\n5,,,x\n"
+    )
+    assert imported.value.plant.tolist() == [5]
+    said = " ".join(f.sentence for f in imported.of(Severity.DROPPED))
+    assert "plant 60 is none of 0 to 59" in said
+    assert "there is no plant 1 in row 9" in said
+    assert "there is no plant 11 in row 1" in said
+
+
+def test_a_file_of_another_plot_is_noticed():
+    lon, lat = GRID.lonlat(np.array([7]))[0]
+    text = f"plant,row,number,lon,lat,found\n7,1,8,{lon},{lat},x\n7,1,8,{lon + 0.001},{lat},x\n"
+    text += f"7,3,8,{lon},{lat},x\n7,1,8,{lon + 90},{lat},x\n,2,8,{lon + 0.001},{lat},x\n"
+    imported = read(text)
+    assert imported.value.source_row.tolist() == [1]
+    assert [f.feature for f in imported.of(Severity.DOUBTFUL)] == [
+        f"record {i}" for i in range(2, 6)
+    ]
+
+
+@given(
+    st.lists(st.integers(0, len(GRID) - 1), min_size=1, max_size=30, unique=True), st.integers(0)
+)
+@settings(max_examples=15)
+def test_positions_within_half_the_spacing_come_back_to_their_plant(plants, seed):
+    rng = np.random.default_rng(seed)
+    half = np.array([GRID.plant_spacing_m, GRID.row_spacing_m]) / 2
+    xy = GRID.xy_m[plants] + rng.uniform(-0.95, 0.95, (len(plants), 2)) * half
+    lonlat = GRID.frame.lonlat(xy)
+    rows = "\n".join(f"{lon:.9f},{lat:.9f},yes" for lon, lat in lonlat)
+    findings = read(f"lon,lat,found\n{rows}\n").value
+    assert findings.plant.tolist() == plants
+
+
+def test_a_position_between_two_plants_is_doubtful_as_far_as_it_is_inaccurate():
+    a, b = GRID.xy_m[12], GRID.xy_m[13]
+    at = a + 0.3 * (b - a)  # 0.2 of the spacing before the middle
+    (lon, lat), gap_m = GRID.frame.lonlat(at)[0], 0.2 * GRID.plant_spacing_m
+    for accuracy_m, is_sure in ((0.9 * gap_m, True), (1.1 * gap_m, False)):
+        text = f"lon,lat,accuracy,found\n{lon:.9f},{lat:.9f},{accuracy_m},yes\n"
+        imported = read(text)
+        assert imported.value.plant.tolist() == ([12] if is_sure else [])
+        told = read(text, FindingsOptions(take_doubtful=True))
+        assert told.value.plant.tolist() == [12]
+        bare = f"lon,lat,found\n{lon:.9f},{lat:.9f},yes\n"
+        by_hand = read(bare, FindingsOptions(accuracy_m=accuracy_m))
+        assert by_hand.value.plant.tolist() == ([12] if is_sure else [])
+    (doubt,) = read(text).of(Severity.DOUBTFUL)
+    assert "row 2, number 3 or row 2, number 4" in doubt.sentence
+
+
+def test_a_position_off_the_plants_is_doubtful_and_one_far_away_is_none():
+    lon, lat = GRID.frame.lonlat(GRID.xy_m[0] - (0.6 * GRID.plant_spacing_m, 0))[0]
+    text = f"lon,lat,found\n{lon:.9f},{lat:.9f},yes\n{lon + 5:.9f},{lat:.9f},yes\n"
+    imported = read(text)
+    assert len(imported.value) == 0
+    assert "more than half the spacing" in imported.of(Severity.DOUBTFUL)[0].sentence
+    assert "far from the plot" in imported.of(Severity.DROPPED)[0].sentence
+    assert read(text, FindingsOptions(take_doubtful=True)).value.plant.tolist() == [0]
+
+
+def test_both_faces_of_a_plant_are_told_apart_by_number_or_by_face():
+    grid = two_faced()
+    twin = int(grid.twin[3])
+    label = row_label(grid, np.array([3]))
+    place = f"{label.line[0]},{label.number[0]}"
+    imported = read(
+        f"plant,row,number,face,found\n3,,,,x\n{twin},,,,x\n,{place},1,no\n,{place},2,no\n"
+        f",{place},,skipped\n",
+        grid=grid,
+    )
+    first, second = sorted((3, twin))
+    assert imported.value.plant.tolist() == [3, twin, first, second, first]
+    assert any("1 record(s) do not say which face" in f.sentence for f in imported.findings)
+    lon, lat = grid.lonlat(np.array([twin]))[0]
+    snapped = read(f"lon,lat,accuracy,found\n{lon:.9f},{lat:.9f},0.1,x\n", grid=grid)
+    assert snapped.value.plant.tolist() == [first]
+
+
+# --- times -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("head", "row", "when"),
+    [
+        ("time", "2026-11-18T08:30:05", "2026-11-18T08:30:05"),
+        ("time", "2026-11-18 08:30", "2026-11-18T08:30:00"),
+        ("date,time", "18.11.2026,08:30", "2026-11-18T08:30:00"),
+        ("date,hour", "18/11/2026 8:30 PM,", "2026-11-18T20:30:00"),
+        ("when", "45979.5", "2025-11-18T12:00:00"),
+        ("time", "2026-11-18T08:30:05+02:00", "2026-11-18T08:30:05"),
+        ("תאריך,שעה", "18.11.2026,7:05", "2026-11-18T07:05:00"),
+    ],
+)
+def test_times_are_read_as_people_write_them(head, row, when):
+    findings = read(f"plant,found,{head}\n7,x,{row}\n").value
+    assert str(findings.when[0]) == when
+    assert str(findings.day[0]) == when[:10]
+    midnight = np.datetime64(when[:10], "s")
+    assert findings.second[0] == (np.datetime64(when) - midnight).astype(int)
+
+
+def test_utc_times_become_local_where_the_zone_is_told():
+    text = "plant,found,time\n7,x,2026-11-18T22:30:00Z\n"
+    kept = read(text)
+    assert str(kept.value.when[0]) == "2026-11-18T22:30:00"
+    assert [f.remedy.option for f in kept.of(Severity.GUESSED)] == ["zone"]
+    for zone in ("Asia/Jerusalem", "+02:00"):
+        moved = read(text, FindingsOptions(zone=zone)).value
+        assert (str(moved.when[0]), str(moved.day[0])) == ("2026-11-19T00:30:00", "2026-11-19")
+
+
+def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
+    told = FindingsOptions(day=np.datetime64("2026-11-20"))
+    planned = read("plant,arrive,found\n7,2026-11-18T08:30:00,x\n8,,x\n", told).value
+    assert np.isnat(planned.when).all()
+    assert planned.day.astype(str).tolist() == ["2026-11-18", "2026-11-20"]
+    assert np.isnat(read("plant,found\n7,x\n").value.day).all()
+    dated = read("plant,found,date\n7,x,17.11.2026\n", told).value
+    assert np.isnat(dated.when).all()
+    assert dated.day.astype(str).tolist() == ["2026-11-17"]
+
+
+def test_options_that_cannot_be_are_refused_in_a_sentence():
+    with pytest.raises(SettingError, match="time zone"):
+        FindingsOptions(zone="Paran")
+    with pytest.raises(SettingError, match="accuracy"):
+        FindingsOptions().choose("accuracy_m", "good")
+    with pytest.raises(SettingError, match="day"):
+        FindingsOptions().choose("day", "soon")
+    assert FindingsOptions().choose("day", "2026-11-18").day == np.datetime64("2026-11-18")
+
+
+# --- the same finding --------------------------------------------------------------------------
+
+
+def test_the_same_file_twice_or_sorted_anew_brings_the_same_digests():
+    rows = ["7,x,3,Noa,2026-11-18T08:30", "8,clean,,Noa,2026-11-18T08:31", "9,x,,,2026-11-18"]
+    head = "plant,found,count,who,time,notes\n"
+    once = read(head + "\n".join(rows)).value
+    anew = read(head + "\n".join(f"{row},later" for row in rows[::-1])).value
+    assert len(set(once.digest)) == 3
+    assert once.digest.tolist() == anew.digest.tolist()[::-1]
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        "8,x,3,Noa,2026-11-18T08:30",
+        "7,no,,Noa,2026-11-18T08:30",
+        "7,x,4,Noa,2026-11-18T08:30",
+        "7,x,,Noa,2026-11-18T08:30",
+        "7,x,3,Amir,2026-11-18T08:30",
+        "7,x,3,Noa,2026-11-18T08:31",
+        "7,x,3,Noa,2026-11-18",
+        "7,x,3,Noa,",
+    ],
+)
+def test_any_other_finding_has_another_digest(other):
+    findings = read(f"plant,found,count,who,time\n7,x,3,Noa,2026-11-18T08:30\n{other}\n").value
+    assert len(set(findings.digest)) == 2
+
+
+def test_what_a_file_says_twice_is_taken_once():
+    imported = read("plant,found\n7,x\n8,no\n7,yes\n")
+    assert imported.value.plant.tolist() == [7, 8]
+    assert any("say again" in f.sentence for f in imported.findings)
+
+
+# --- the formats -------------------------------------------------------------------------------
+
+TABLE = pd.DataFrame(
+    {
+        "plant": [7, 8, 9, 10],
+        "result": ["found", "clean", None, "not inspected"],
+        "count": [3.0, np.nan, np.nan, np.nan],
+        "who": ["נועה", "נועה", None, None],
+        "notes": ["leaf", None, None, "thorns"],
+        "time": ["2026-11-18T08:30:00", "2026-11-18T08:31:00", None, None],
+    }
+)
+
+
+def layer():
+    lonlat = GRID.lonlat(TABLE.plant.to_numpy())
+    return gpd.GeoDataFrame(TABLE, geometry=gpd.points_from_xy(*lonlat.T), crs=4326)
+
+
+def assert_table(findings):
+    assert findings.plant.tolist() == [7, 8, 10]
+    assert findings.result.tolist() == [FOUND, CLEAN, SKIPPED]
+    np.testing.assert_array_equal(findings.count, [3, np.nan, np.nan])
+    assert findings.who.tolist() == ["נועה", "נועה", ""]
+    assert findings.notes.tolist() == ["leaf", "", "thorns"]
+    assert findings.source_row.tolist() == [1, 2, 4]
+    assert findings.when.astype(str).tolist()[:2] == TABLE.time.tolist()[:2]
+
+
+@pytest.mark.parametrize("ending", ["csv", "tsv", "xlsx", "geojson", "gpkg", "shp"])
+def test_findings_come_in_from_every_format(tmp_path, ending):
+    path = tmp_path / f"found.{ending}"
+    if ending == "xlsx":
+        TABLE.to_excel(path, index=False)
+    elif ending in {"csv", "tsv"}:
+        path.write_text(TABLE.to_csv(index=False, sep="," if ending == "csv" else "\t"))
+    else:
+        layer().to_file(path)
+    first = read_findings(path, GRID).value
+    assert_table(first)
+    assert read_findings(path, GRID).value.digest.tolist() == first.digest.tolist()
+
+
+def test_an_edited_layer_is_found_among_the_others_of_a_project(tmp_path):
+    path = tmp_path / "season.gpkg"
+    frame = layer()
+    frame[["plant", "geometry"]].to_file(path, layer="rows")
+    frame.assign(result=None, count=np.nan).to_file(path, layer="inspections")
+    frame.to_crs(2039).to_file(path, layer="plants")
+    assert_table(read_findings(path, GRID).value)
+    named = FindingsOptions(layer="inspections")
+    unknown = read_findings(path, GRID, named)
+    assert len(unknown.value) == 0
+    assert any("2 record(s) have a note, but no result" in f.sentence for f in unknown.findings)
+
+
+def test_a_season_file_edited_in_qfield_gives_what_was_added_and_not_what_was_undone(tmp_path):
+    path = tmp_path / "season.gpkg"
+    lonlat = GRID.lonlat(np.array([7, 8, 9]))
+    kept = pd.DataFrame(
+        {
+            "plant": pd.Series([7, 8, None], dtype="Int32"),
+            "line": pd.Series([1, 1, None], dtype="Int32"),
+            "number": pd.Series([8, 9, None], dtype="Int32"),
+            "day": pd.Series([0, 0, None], dtype="Int32"),
+            "date": pd.to_datetime(["2026-11-18", "2026-11-18", "2026-11-19"]),
+            "time": ["08:30:00", None, "09:15"],
+            "result": ["clean", "found", "found"],
+            "count": [None, 3, 2],
+            "undone": [0, 1, 0],
+        }
+    )
+    shapes = gpd.points_from_xy(*lonlat.T)
+    bare = gpd.GeoDataFrame(
+        {"plant": [7, 8, 9], "line": 1, "number": [8, 9, 10]}, geometry=shapes, crs=4326
+    )
+    bare.to_file(path, layer="plants")
+    bare.to_file(path, layer="stops")
+    gpd.GeoDataFrame(kept, geometry=shapes, crs=4326).to_file(path, layer="inspections")
+    findings = read_findings(path, GRID).value
+    assert findings.plant.tolist() == [7, 9]
+    assert findings.when.astype(str).tolist() == ["2026-11-18T08:30:00", "2026-11-19T09:15:00"]
+    emptied = tmp_path / "emptied.gpkg"
+    bare.to_file(emptied, layer="stops")
+    gpd.GeoDataFrame(kept[:0], geometry=[], crs=4326).to_file(emptied, layer="inspections")
+    bare.assign(result=["found", None, None]).to_file(emptied, layer="plants")
+    assert read_findings(emptied, GRID).value.plant.tolist() == [7]
+
+
+def test_a_table_without_shapes_is_read_where_it_is_named(tmp_path):
+    path = tmp_path / "season.gpkg"
+    layer()[["plant", "geometry"]].to_file(path, layer="plots")
+    pyogrio.write_dataframe(TABLE, path, layer="inspections", append=True)
+    assert_table(read_findings(path, GRID).value)
+
+
+def test_waypoints_are_read_by_their_names():
+    names = ["+3", "-", "+", "0", "clean", "found", "001", "R1/9 +2", "Gate", "not inspected"]
+    xy = GRID.lonlat(np.array([*range(20, 27), 9, 28, 29]))  # R1/9 was taken one plant further on
+    points = "".join(
+        f'<wpt lat="{lat:.9f}" lon="{lon:.9f}"><time>2026-11-18T06:30:00Z</time>'
+        f"<name>{name}</name><desc>by the dripper</desc></wpt>"
+        for name, (lon, lat) in zip(names, xy, strict=True)
+    )
+    gpx = f'<gpx xmlns="http://www.topografix.com/GPX/1/1" version="1.1" creator="x">{points}</gpx>'
+    imported = read(gpx, FindingsOptions(zone="+02:00"), name="way.gpx")
+    findings = imported.value
+    assert findings.plant.tolist() == [20, 21, 22, 23, 24, 25, 8, 29]
+    assert findings.result.tolist() == [
+        *(FOUND, CLEAN, FOUND, CLEAN, CLEAN, FOUND, FOUND, SKIPPED),
+    ]
+    np.testing.assert_array_equal(findings.count, [3, *[np.nan] * 5, 2, np.nan])
+    assert set(findings.when.astype(str)) == {"2026-11-18T08:30:00"}
+    assert any("2 of 10 record(s) carry no finding" in f.sentence for f in imported.findings)
+
+
+def test_a_file_that_says_nothing_of_findings_asks_for_its_columns():
+    with pytest.raises(ChoiceNeeded, match="what was found") as asked:
+        read("plant,height\n7,3\n")
+    assert (asked.value.option, asked.value.choices) == ("columns", ("plant", "height"))
+    named = FindingsOptions().choose("columns", "present=height")
+    assert read("plant,height\n7,3\n", named).value.plant.tolist() == [7]
+    with pytest.raises(ChoiceNeeded, match="which plants"):
+        read("found,colour\nyes,red\n")
+
+
+@given(st.binary(max_size=300))
+@settings(max_examples=25)
+def test_any_bytes_end_in_findings_or_in_a_sentence(data):
+    for start in (b"", b"plant,found\n", b'{"type":"FeatureCollection","features":['):
+        try:
+            findings = read_findings(Upload("found.csv", start + data), GRID).value
+        except (ChoiceNeeded, FileProblem):
+            continue
+        assert (findings.plant >= 0).all()
+        assert (findings.plant < len(GRID)).all()
+
+
+def test_geojson_properties_of_every_type_are_read():
+    features = [
+        {
+            "type": "Feature",
+            "geometry": None,
+            "properties": {"plant": plant, "found": found, "count": count},
+        }
+        for plant, found, count in ((1, True, 2), ("2", False, None), (3.0, 1, None), (4, None, 0))
+    ]
+    text = json.dumps({"type": "FeatureCollection", "features": features})
+    findings = read(text, FindingsOptions(take_doubtful=True), name="a.geojson").value
+    assert findings.plant.tolist() == [1, 2, 3, 4]
+    assert findings.result.tolist() == [FOUND, CLEAN, FOUND, CLEAN]
+
+
+CELLS = st.one_of(
+    st.none(),
+    st.sampled_from(["", "x", "+", "-", "0", "1e400", "inf", "nan", "-3", "24:61", "99/99/2026"]),
+    st.sampled_from(["2026-11-18T08:30:00+25:00", "31.12.2026 8:30 pm", "12345.678", "R1/2b"]),
+    st.sampled_from([True, 3, -1, 2**40, 35.0, 0.5, float("inf")]),
+    st.text(max_size=8),
+)
+COLUMNS = (
+    *("plant", "row", "number", "lon", "lat", "accuracy", "found", "count", "time", "date", "face"),
+    *("name", "arrive", "who", "notes", "x", "y", "position"),
+)
+
+
+@given(
+    st.dictionaries(st.sampled_from(COLUMNS), st.lists(CELLS, min_size=3, max_size=3), min_size=1),
+    st.booleans(),
+)
+@settings(max_examples=150)
+def test_whatever_stands_in_cells_ends_in_findings_or_in_a_sentence(columns, take_doubtful):
+    cells = {name: np.array(values, dtype=object) for name, values in columns.items()}
+    options = FindingsOptions(zone="+02:00", take_doubtful=take_doubtful)
+    try:
+        reported = reported_in(Layer("cells", cells), options).value
+        findings, said = look_up(reported, GRID, options)
+    except FieldmonError:
+        return
+    assert len(findings) <= 3
+    assert ((findings.plant >= 0) & (findings.plant < len(GRID))).all()
+    assert set(findings.result.tolist()) <= {FOUND, CLEAN, SKIPPED}
+    assert all(finding.sentence.endswith((".", "?")) for finding in said)

@@ -1,0 +1,67 @@
+"""Which plant a record belongs to, and what is said where that cannot be told."""
+
+import numpy as np
+
+from fieldmon.infestation.observations import PRESENT, Observations
+from fieldmon.io.import_report import Remedy, Severity, guessed
+from fieldmon.io.readers.nearby import on_plants
+from fieldmon.io.readers.places import Places, Plants
+from fieldmon.plot.grid import row_label
+from fieldmon.plot.layout import Planting, rectangle
+
+GRID = rectangle(6, 10, Planting(row_spacing_m=3.0, plant_spacing_m=1.5))
+
+
+def records(offset_m, accuracy_m=np.nan):
+    lonlat = GRID.frame.lonlat(GRID.xy_m[[7]] + offset_m)
+    accuracy = np.full(1, accuracy_m)
+    return Observations.of(lonlat, np.array([PRESENT]), accuracy_m=accuracy)
+
+
+def test_a_record_at_its_plant_needs_no_words():
+    assert on_plants(records((0.4, 0.3)), GRID) == []
+    assert on_plants(records((0.4, 0.3), 1.0), GRID) == []
+
+
+def test_a_record_between_everything_lies_on_no_plant_unless_its_accuracy_reaches():
+    beyond = (0.0, -(GRID.xy_m[7, 1] - GRID.xy_m[:, 1].min()) - 5.0)
+    (said,) = on_plants(records(beyond), GRID)
+    assert said.severity == Severity.DOUBTFUL
+    assert "1 record(s) lie on no plant: 5 m to 5 m from the nearest" in said.sentence
+    (said,) = on_plants(records(beyond, 4.0), GRID)
+    assert said.severity == Severity.SEEN
+    assert "placed to 4 m while plants stand 1.5 m apart" in said.sentence
+
+
+def test_places_of_a_grid_carry_the_labels_that_people_count():
+    places = Places.of((), GRID)
+    label = row_label(GRID)
+    for line, number in ((1, 1), (3, 7), (6, 10)):
+        (i,) = np.flatnonzero((label.line == line) & (label.number == number))
+        (j,) = np.flatnonzero(
+            (places.plants.row == str(line)) & (places.plants.plant == str(number))
+        )
+        np.testing.assert_array_equal(places.plants.lonlat[j], GRID.lonlat(np.array([i]))[0])
+
+
+def test_both_faces_of_a_vine_have_one_place():
+    faces = rectangle(6, 10, Planting(faces=2))
+    assert len(Places.of((), faces).plants) == 60
+
+
+def test_measured_plants_keep_the_names_of_their_file():
+    measured = Plants(np.zeros((2, 2)), np.array(["1", "1"]), np.array(["A", "B"]))
+    assert Places.of((), GRID, measured).plants is measured
+    unnamed = Plants(np.zeros((2, 2)), np.array(["", ""]), np.array(["", ""]))
+    assert len(Places.of((), GRID, unnamed).plants) == 60
+
+
+def test_a_remedy_is_printed_as_it_is_typed_and_offers_every_choice():
+    remedy = Remedy("where", "species=T. urticae", "Only T. urticae", ("species=B. tabaci",))
+    finding = guessed("2 species are mixed.", "species", remedy)
+    assert finding.line("--record-option") == (
+        "guessed: species: 2 species are mixed. "
+        '(Only T. urticae: --record-option "where=species=T. urticae")'
+    )
+    assert remedy.choices == ("species=T. urticae", "species=B. tabaci")
+    assert Remedy("date_order", "mdy", "Read month first").setting == "date_order=mdy"

@@ -1,0 +1,73 @@
+"""Maps of plants in rows and columns."""
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import FileProblem
+from fieldmon.io.readers.plant_maps import LAYOUTS, Layout, read_plant_map, read_plant_maps
+
+DATED = Layout("row", "plant", "state", 4.0, 3.0, date="year")
+
+
+def write(path, *lines):
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def test_states_stand_where_row_and_plant_say(tmp_path):
+    head = "plant,row,year,state"
+    rows = ["3,1,2001,1", "1,2,2001,0", "1,2,2002,1", "2,1,2002,NA"]
+    (made,) = read_plant_map(write(tmp_path / "a.csv", head, *rows), DATED)
+    assert (made.n_rows, made.n_plants, made.dates) == (2, 3, ("2001", "2002"))
+    assert made.infested.tolist() == [
+        [False, False, True, False, False, False],
+        [False, False, False, True, False, False],
+    ]
+    xy_m = made.aisles().grid.xy_m
+    assert np.allclose(np.diff(xy_m[:3, 0]), 3.0)
+    assert np.isclose(xy_m[3, 1] - xy_m[0, 1], 4.0)
+
+
+def test_dates_that_are_numbers_are_in_their_order(tmp_path):
+    rows = ["1,1,100,1", "1,1,9,0", "1,1,20,0"]
+    (made,) = read_plant_map(write(tmp_path / "a.csv", "row,plant,year,state", *rows), DATED)
+    assert made.dates == ("9", "20", "100")
+    assert made.infested[:, 0].tolist() == [False, False, True]
+
+
+def test_several_plots_in_a_file_are_several_maps(tmp_path):
+    layout = Layout("row", "plant", "state", 1.0, 1.0, part="field")
+    rows = ["F1\t1\t1\tY", "F1\t1\t2\tN", "F2\t1\t1\tN"]
+    made = read_plant_map(write(tmp_path / "p.txt", "field\trow\tplant\tstate", *rows), layout)
+    assert [each.name for each in made] == ["p F1", "p F2"]
+    assert [each.infested.tolist() for each in made] == [[[True, False]], [[False]]]
+
+
+@pytest.mark.parametrize(
+    ("lines", "says"),
+    [
+        (["row,plant,state", "1,1,1"], "year is missing"),
+        (["row,plant,year,state", "x,1,2001,1"], "whole numbers"),
+        (["row,plant,year,state", "0,1,2001,1"], "from 1"),
+        (["row,plant,year,state", "99999,99999,2001,1"], "at most"),
+    ],
+)
+def test_files_that_are_no_maps_are_refused_in_a_sentence(tmp_path, lines, says):
+    with pytest.raises(FileProblem, match=says):
+        read_plant_map(write(tmp_path / "a.csv", *lines), DATED)
+
+
+def test_a_folder_without_maps_is_refused(tmp_path):
+    with pytest.raises(FileProblem, match="hold a map"):
+        read_plant_maps(tmp_path)
+    with pytest.raises(FileProblem, match="must exist"):
+        read_plant_maps(tmp_path / "none")
+
+
+def test_known_maps_are_found_by_name_in_folders(tmp_path):
+    (tmp_path / "deep").mkdir()
+    name = next(iter(LAYOUTS))
+    write(tmp_path / "deep" / name, "x,y,t,i", "1,1,1991,1", "2,1,1991,0")
+    write(tmp_path / "other.csv", "a", "b")
+    (made,) = read_plant_maps(tmp_path)
+    assert made.infested.tolist() == [[True, False]]

@@ -1,0 +1,81 @@
+"""Awkward files come in right, or repaired and said so, or are refused with a sentence."""
+
+import numpy as np
+import pytest
+import shapely
+
+from fieldmon.errors import ChoiceNeeded, FieldmonError
+from fieldmon.io import read
+from fieldmon.io.import_report import Severity
+from tests import awkward
+
+
+def come_in(case, folder):
+    folder.mkdir()
+    source = case.source(folder)
+    if case.door == "records":
+        return read.read_records(source, case.options, near=case.near, places=case.places)
+    return getattr(read, f"read_{case.door}")(source, case.options)
+
+
+def is_said(expected, findings):
+    severity, _, words = expected.partition(": ")
+    words, _, choice = words.partition(" [")
+    return any(
+        f.severity == severity
+        and words in f"{f.feature or ''} {f.sentence}"
+        and (not choice or (f.remedy and f"{f.remedy.option}={f.remedy.value}]" == choice))
+        for f in findings
+    )
+
+
+def assert_is_at(case, value):
+    wanted = np.array(case.at)
+    if case.door == "records":
+        np.testing.assert_allclose(value.lonlat, wanted, atol=2e-8)
+        return
+    corners = shapely.get_coordinates([field.boundary for field in value])
+    for place in wanted:
+        assert np.abs(corners - place).max(axis=1).min() < 2e-8
+
+
+GOOD = [case for case in awkward.CASES if case.refuses is None]
+BAD = [case for case in awkward.CASES if case.refuses is not None]
+
+
+@pytest.mark.parametrize("case", GOOD, ids=lambda case: case.name)
+def test_it_comes_in_where_it_is_and_says_what_was_odd(case, tmp_path):
+    imported = come_in(case, tmp_path / "made")
+    told = "\n".join(str(f) for f in imported.findings)
+    for expected in case.says:
+        assert is_said(expected, imported.findings), told
+    for grave in imported.of(Severity.DROPPED, Severity.DOUBTFUL):
+        assert any(is_said(expected, [grave]) for expected in case.says), f"unexpected: {grave}"
+    if case.at:
+        assert_is_at(case, imported.value)
+    if case.check:
+        case.check(imported.value)
+
+
+@pytest.mark.parametrize("case", BAD, ids=lambda case: case.name)
+def test_it_is_asked_about_or_refused_with_a_sentence(case, tmp_path):
+    with pytest.raises(FieldmonError) as refused:
+        come_in(case, tmp_path / "made")
+    said = str(refused.value)
+    assert case.refuses in said
+    assert said.endswith((".", "?"))
+    assert str(tmp_path.parent.parent) not in said
+    if case.asks:
+        option, *choices = case.asks
+        assert isinstance(refused.value, ChoiceNeeded), said
+        assert refused.value.option == option
+        assert set(choices) <= set(refused.value.choices)
+        if option == "crs" and choices:
+            assert refused.value.choices[0] == choices[0]
+    else:
+        assert not isinstance(refused.value, ChoiceNeeded), said
+
+
+def test_the_battery_is_as_large_as_it_claims():
+    names = [case.name for case in awkward.CASES]
+    assert len(set(names)) == len(names) >= 60

@@ -1,0 +1,98 @@
+"""Damaged files end in sentences; the long run is ``python tests/fuzz.py``."""
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fieldmon.io import read
+from fieldmon.io.options import Upload
+from fieldmon.io.sandbox import process
+from tests import fuzz
+
+
+def test_damaged_files_leave_only_sentences():
+    tally = fuzz.fuzz(100, seconds=250.0)
+    assert tally.failures == []
+    assert tally.outcomes.total() == 100
+    assert tally.outcomes["refused"] > 0
+    assert tally.outcomes["came in"] > 0
+
+
+def test_every_structure_is_changed_and_the_same_number_gives_the_same_file(tmp_path):
+    corpus = fuzz.seeds(tmp_path)
+    endings = {part.name.rpartition(".")[2] for seed in corpus for part in seed.parts}
+    assert {"shp", "dbf", "zip", "geojson", "csv", "kml", "tif", "gpkg", "xlsx"} <= endings
+    for number, seed in enumerate(corpus[:40]):
+        once, again = (fuzz.mutated(seed, np.random.default_rng(number)) for _ in range(2))
+        assert once == again
+
+
+@pytest.mark.parametrize(
+    ("does", "failure"),
+    [
+        (lambda *_: 1 / 0, "ZeroDivisionError"),
+        (lambda *_: str(Path("left.txt").write_text("here")), "a file was left: left.txt"),
+    ],
+)
+def test_the_fuzzer_notices_what_it_looks_for(monkeypatch, does, failure):
+    monkeypatch.setattr(fuzz, "seeds", lambda _: [fuzz.Seed("one", "plots", (GOOD,))])
+    monkeypatch.setattr(fuzz, "read", does)
+    (said,) = fuzz.fuzz(1).failures
+    assert failure in said
+
+
+GOOD = Upload("p.csv", b"lon,lat\n35.15,30.36\n35.16,30.36\n35.16,30.37\n")
+
+
+def test_a_reader_that_hangs_or_crashes_is_ended_and_the_next_file_is_read():
+    for task, number, said in (
+        ("time:sleep", 20, "within"),
+        ("math:factorial", 3_000_000, "within"),
+        ("os:_exit", 1, "crash"),
+    ):
+        with pytest.raises(fuzz.FileProblem, match=said):
+            process.call(task, number, seconds=0.5)
+    assert len(read.read_plots(GOOD).value) == 1
+
+
+def test_a_reader_started_ahead_has_loaded_what_reads():
+    loaded = "'fieldmon.io.sandbox.tasks' in __import__('sys').modules"
+    process.stop()
+    assert not process.call("builtins:eval", loaded)
+    process.stop()
+    process.warm()
+    assert process.call("builtins:eval", loaded)
+
+
+def test_a_reader_that_fills_the_memory_is_stopped():
+    with pytest.raises(fuzz.FileProblem, match="of memory at most"):
+        process.call("numpy:ones", 400_000_000)
+
+
+def test_a_reader_has_no_drivers_that_lead_elsewhere():
+    drivers = set(process.call("pyogrio:list_drivers"))
+    assert "GPKG" in drivers
+    assert not drivers & {"OGR_VRT", "WFS", "OAPIF", "HTTP", "CSW", "Elasticsearch", "GPSBabel"}
+
+
+class Process:
+    pid = 0
+
+    def kill(self):
+        self.killed_at = time.monotonic()
+
+
+@pytest.mark.parametrize(
+    ("waits", "at_least_s"),
+    [(False, 0.2), (True, 0.6)],
+    ids=["one that sleeps", "one kept from working by others"],
+)
+def test_a_reader_is_given_patience(monkeypatch, waits, at_least_s):
+    monkeypatch.setattr(process, "_work", lambda _: process._Work(0.0, waits))
+    began, running = time.monotonic(), Process()
+    clock = process._Clock(running, 0.2)
+    clock.run()
+    assert clock.is_late
+    assert running.killed_at - began >= at_least_s

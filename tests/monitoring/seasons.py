@@ -1,0 +1,70 @@
+"""Seasons for tests: a small plot with records, and what a day's work finds on it."""
+
+from datetime import date, timedelta
+
+import numpy as np
+from shapely import MultiPolygon, box
+
+from fieldmon.compute.random_streams import Chance
+from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.prior import start_infested
+from fieldmon.infestation.spread import night
+from fieldmon.monitoring import Project, Results, Setup
+from fieldmon.planning.workday import outcomes
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.robot import Robot
+
+BEGINS = date(2026, 4, 6)
+ROBOT = Robot(hours=1.5)
+
+
+def a_plot(width=0.0008, height=0.0007, **planting):
+    hole = box(35.1503, 30.3603, 35.1504, 30.3604)
+    boundary = MultiPolygon([box(35.15, 30.36, 35.15 + width, 30.36 + height).difference(hole)])
+    field = Field("מטע Paran", boundary, gate=(35.15, 30.36))
+    return Plot.of(field, Planting(**planting))
+
+
+def some_records(plot):
+    here = plot.grid.lonlat()[[10, 11, 60]]
+    day = np.array(["2026-03-30", "2026-04-02", "NaT"], "datetime64[D]")
+    return Observations.of(here, np.array([1, 1, 0], np.int8), day)
+
+
+def a_season(path, plot=None, **choices):
+    plot = plot or a_plot()
+    setup = Setup(BEGINS, **({"robot": ROBOT} | choices))
+    return Project.create(path, plot, some_records(plot), setup)
+
+
+class Insects:
+    """The truth of a season: what an inspection would find, and what a night does."""
+
+    def __init__(self, project, seed=1):
+        self.project, self.chance = project, Chance(seed)
+        begin = start_infested(project.morning(BEGINS), 0.1, self.chance.of("start"))
+        self.infested = begin[project.plot.grid.vine]
+
+    def look(self, day, plants):
+        """Return the results of inspecting plants on a day, and let the night come."""
+        grid, setup = self.project.plot.grid, self.project.setup
+        finds = outcomes(self.infested, setup.robot.detects, self.chance.key("inspect", day))
+        found = finds[plants]
+        self.infested = self.infested.copy()
+        self.infested[plants[found]] = False
+        self.infested = night(
+            grid, self.infested, setup.beliefs.spread, self.chance.key("spread", day)
+        )
+        on = np.datetime64(BEGINS + timedelta(days=day), "D")
+        return Results.of(plants, np.where(found, FOUND, CLEAN), on)
+
+
+def some_results(project, n=5, day=0, found=()):
+    """Return results of the first n plants of the day's route."""
+    on = BEGINS + timedelta(days=day)
+    plants = project.plan(on, keep=False).route.plant[:n]
+    result = np.where(np.isin(np.arange(n), found), FOUND, CLEAN)
+    return Results.of(plants, result, np.datetime64(on, "D"))

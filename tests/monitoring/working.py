@@ -1,0 +1,30 @@
+"""What a process does in a season until it is done, or killed."""
+
+from datetime import timedelta
+
+import numpy as np
+
+from fieldmon.monitoring import Project, Results
+from tests.monitoring.seasons import BEGINS
+
+
+def one_by_one(path, who, rounds):
+    """Record one result after another, each of its own plant."""
+    project = Project(path)
+    n = len(project.plot.grid)
+    for k in range(rounds):
+        plant = np.array([(k * 2 + who) % n])
+        on = np.datetime64(BEGINS + timedelta(days=1), "D")
+        project.record(Results.of(plant, np.array([0]), on, who=np.array([str(who)])), f"{who}-{k}")
+
+
+def day_by_day(path):
+    """Plan and record day after day, without end."""
+    project = Project(path)
+    day = 0
+    while True:
+        on = BEGINS + timedelta(days=day % 300)
+        plants = project.plan(on).route.plant[:20]
+        found = (plants % 7 == 0).astype(np.int8)
+        project.record(Results.of(plants, found, np.datetime64(on, "D")), f"day {day}")
+        day += 1

@@ -1,0 +1,67 @@
+"""What a day's stops are for, in words."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+
+from fieldmon.planning.explain import explain
+from fieldmon.planning.workday import plan_day
+from fieldmon.plot.layout import rectangle
+from fieldmon.samplers import NEVER, Adaptive
+from tests.scenes import scene_on
+
+GRID = rectangle(40, 30)
+
+
+def day(last=NEVER, today=12, hours=3.0):
+    last_inspected = np.full(len(GRID), NEVER, np.int32)
+    last_inspected[:] = last
+    return replace(scene_on(GRID, hours=hours, last_inspected=last_inspected), day=today)
+
+
+def counts(said):
+    return sum(int(re.match(r"\d+", sentence).group()) for sentence in said)
+
+
+def test_every_stop_is_told_once():
+    scene = day()
+    work = plan_day(scene, Adaptive())
+    finds = work.plant[[3, len(work) // 2]].astype(np.int32)
+    assert counts(explain(scene, work)) == len(work)
+    assert counts(explain(scene, work, finds, ["Monday", "Tuesday"])) == len(work)
+
+
+def test_stops_near_a_find_are_told_by_its_day_row_and_plant():
+    scene = day()
+    work = plan_day(scene, Adaptive())
+    find = work.plant[:1].astype(np.int32)
+    said = explain(scene, work, find, ["Tuesday"])[0]
+    row, number = int(find[0]) // 30 + 1, int(find[0]) % 30 + 1
+    assert re.fullmatch(rf"\d+ plants? around Tuesday's find in row {row}, plant {number}\.", said)
+
+
+def test_many_finds_are_told_together_the_most_plants_first():
+    scene = day()
+    work = plan_day(scene, Adaptive())
+    finds = work.plant[::4].astype(np.int32)
+    said = explain(scene, work, finds)
+    assert counts(said) == len(work)
+    around = [int(s.split()[0]) for s in said if "around the find in row" in s]
+    assert len(around) == 5
+    assert around == sorted(around, reverse=True)
+    assert re.fullmatch(r"\d+ plants around \d+ other finds\.", said[5])
+
+
+def test_rows_are_told_by_how_long_they_were_not_inspected():
+    never = explain(day(), plan_day(day(), Adaptive()))
+    assert all(sentence.endswith("never inspected yet.") for sentence in never)
+    scene = day(last=3)
+    assert all("not inspected for 9 days" in s for s in explain(scene, plan_day(scene, Adaptive())))
+
+
+def test_a_day_without_stops_says_so():
+    scene = day(hours=0.001)
+    assert explain(scene, plan_day(scene, Adaptive())) == [
+        "No plant can be reached in the hours left."
+    ]

@@ -1,0 +1,64 @@
+"""Robots and scouts: the numbers that cost time and find insects."""
+
+import pytest
+
+from fieldmon.errors import SettingError
+from fieldmon.plot.robot import Robot, Viewpoints, scout
+
+
+@pytest.mark.parametrize(
+    ("seconds", "chance"),
+    [
+        *[(0, 0), (19.9, 0), (20, 0.5), (24, 0.5), (25, 0.6), (30, 0.69), (35, 0.77), (40, 0.84)],
+        *[(40.1, 0.9), (90, 0.9)],
+    ],
+)
+def test_viewpoints_follow_the_table_of_the_thesis(seconds, chance):
+    assert Viewpoints().detection(seconds) == chance
+
+
+def test_the_default_robot_is_that_of_the_thesis():
+    robot = Robot()
+    assert (robot.speed_m_s * 3.6, robot.hours, robot.look_s) == (2.5, 12, 40)
+    assert robot.detects == 0.84
+    assert robot.day_s == 43_200
+
+
+def test_a_detection_given_by_hand_wins_over_the_table():
+    assert Robot(detection=0.4).detects == 0.4
+
+
+def test_a_scout_is_a_robot_with_other_numbers():
+    assert isinstance(scout(), Robot)
+    assert scout().speed_m_s > Robot().speed_m_s
+
+
+@pytest.mark.parametrize(
+    ("setting", "value"),
+    [
+        ("speed_m_s", 0),
+        ("look_s", -1),
+        ("hours", 0),
+        ("hours", 25),
+        ("row_change_s", -1),
+        ("turn_180_s", float("nan")),
+        ("stop_s", float("inf")),
+        ("detection", 1.5),
+    ],
+)
+def test_an_impossible_number_is_refused_by_name(setting, value):
+    with pytest.raises(SettingError, match=f"{setting} must be .* but it is {value}"):
+        Robot(**{setting: value})
+
+
+@pytest.mark.parametrize(
+    "steps", [(), ((20, 0.5), (20, 0.6)), ((20, 0.5), (30, 0.4)), ((0, 0.5),), ((20, -0.1),)]
+)
+def test_viewpoints_must_rise(steps):
+    with pytest.raises(SettingError, match="both rising"):
+        Viewpoints(steps)
+
+
+def test_no_chance_is_above_one():
+    with pytest.raises(SettingError, match=r"in 0\.\.1"):
+        Viewpoints(longer=1.2)

@@ -1,0 +1,63 @@
+"""Dynamic as the thesis words it: open list, closed list, nearest next, neighbours after a find."""
+
+import numpy as np
+import pytest
+
+from fieldmon.planning.workday import plan_day, work_day
+from fieldmon.samplers import GATE, NEVER, Dynamic, Scene
+from tests.scenes import GRIDS, charged_s, scene_on
+
+GRID = GRIDS["rectangle"]
+
+
+def scene_with(suspicious, hours=6.0, base=0.001):
+    chance = np.full(len(GRID), base)
+    chance[suspicious] = 0.5
+    plain = scene_on(GRID, hours=hours)
+    return Scene(
+        aisles=plain.aisles,
+        robot=plain.robot,
+        chance=chance,
+        last_inspected=np.full(len(GRID), NEVER, np.int32),
+        seconds_left=hours * 3600,
+    )
+
+
+def nearest(scene, at, open_plants):
+    return min(open_plants, key=lambda plant: (charged_s(scene, at, plant), plant))
+
+
+def test_the_nearest_open_plant_is_always_next():
+    scene = scene_with([])
+    room = int(scene.seconds_left // scene.robot.visit_s)
+    open_plants, at = set(range(min(room, len(GRID)))), GATE
+    for plant in plan_day(scene, Dynamic()).plant.tolist():
+        best_s = min(charged_s(scene, at, other) for other in open_plants)
+        assert charged_s(scene, at, plant) == pytest.approx(best_s)
+        open_plants.remove(plant)
+        at = plant
+
+
+def test_suspicious_plants_come_before_all_others():
+    suspicious = [20, 21, 22, 90, 150]
+    plants = plan_day(scene_with(suspicious), Dynamic()).plant.tolist()
+    assert set(plants[:5]) == set(suspicious)
+    assert len(plants) > 5
+
+
+def test_after_a_find_the_plants_beside_it_are_inspected_while_near():
+    scene = scene_with(list(range(17 * 5, 17 * 6)), hours=1.0)
+    calm = plan_day(scene, Dynamic())
+    found = np.zeros(len(GRID), bool)
+    find = int(calm.plant[3])
+    found[find] = True
+    work = work_day(scene, Dynamic(), found)
+    start, plant = GRID.adjacent
+    beside = set(plant[start[find] : start[find + 1]].tolist())
+    assert beside & set(work.plant.tolist()) > beside & set(calm.plant.tolist())
+
+
+def test_a_closed_plant_is_never_opened_again():
+    scene = scene_with([])
+    work = work_day(scene, Dynamic(), np.ones(len(GRID), bool))
+    assert len(set(work.plant.tolist())) == len(work)

@@ -1,0 +1,34 @@
+"""What a season comes to."""
+
+import numpy as np
+import pytest
+from test_season import season
+
+from fieldmon.simulation.metrics import SeasonFigures, figures
+
+
+def by_hand(detection):
+    zeros = np.zeros(len(detection), int)
+    return SeasonFigures(np.array(detection), zeros, zeros, zeros, zeros, zeros)
+
+
+@pytest.mark.parametrize(("level", "day"), [(30, 2), (50, 3), (80, None), (100, None)])
+def test_d_levels_count_days_from_one(level, day):
+    assert by_hand([10.0, 30.0, 55.0, 54.0]).first_day(level) == day
+
+
+def test_infested_plant_days_are_counted_in_the_evening():
+    days = season("naive")
+    assert figures(days).infested_plant_days == sum(day.left for day in days)
+
+
+def test_the_columns_are_those_of_the_days():
+    days = season("bouncy")
+    columns = figures(iter(days))
+    assert columns.detection_pct.tolist() == [day.detection_pct for day in days]
+    assert columns.found.sum() == days[-1].ever_found
+    assert columns.new.sum() == days[-1].ever_infested
+
+
+def test_no_days_have_no_figures():
+    assert len(figures([]).found) == 0

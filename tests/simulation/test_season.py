@@ -1,0 +1,130 @@
+"""Many working days while the insects spread."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from fieldmon.compute.random_streams import Chance
+from fieldmon.errors import PlotError, SettingError
+from fieldmon.infestation.spread import Spread
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
+from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.simulation.season import SeasonSettings, Start, days
+
+AISLES = Aisles.of(rectangle(20, 20))
+N = 400
+NAMES = sorted(SAMPLERS)
+
+
+def start(share=0.02, seed=3):
+    infested = Chance(seed).of("start").random(N) < share
+    return Start(infested, np.full(N, share))
+
+
+def season(name="naive", robot=None, settings=None, seed=3, first=None):
+    robot = robot or Robot(hours=2.0)
+    settings = settings or SeasonSettings(n_days=6, spread=Spread(0.2))
+    return list(days(AISLES, robot, sampler(name), first or start(), settings, Chance(seed)))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_same_seed_gives_the_same_season(name):
+    for one, other in zip(season(name), season(name), strict=True):
+        assert (one.work.plant == other.work.plant).all()
+        assert (one.infested == other.infested).all()
+        assert (one.chance == other.chance).all()
+
+
+def test_another_seed_gives_another_season():
+    assert any(
+        (a.infested != b.infested).any() for a, b in zip(season(), season(seed=4), strict=True)
+    )
+
+
+def test_all_samplers_meet_the_same_insects():
+    mornings = [season(name)[0].infested for name in NAMES]
+    assert all((mornings[0] == other).all() for other in mornings)
+    blind = Robot(hours=2.0, detection=0.0)
+    # who chooses how long to look needs a robot that says what looking longer brings
+    ends = [season(name, blind)[-1].infested for name in NAMES if name != "adaptive-looks"]
+    assert all((ends[0] == other).all() for other in ends)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_only_infested_plants_are_found_and_found_insects_are_destroyed(name):
+    for today, tomorrow in zip(season(name)[:-1], season(name)[1:], strict=True):
+        finds = today.work.plant[today.work.found]
+        assert today.infested[finds].all()
+        cleared = np.zeros(N, bool)
+        cleared[finds] = True
+        stayed = today.infested & ~cleared
+        assert tomorrow.infested[stayed].all()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_figures_of_every_day_add_up(name):
+    found, before = 0, None
+    for day in season(name):
+        found += day.found
+        assert day.ever_found == found
+        assert day.ever_infested == found + day.left
+        assert 0 <= day.detection_pct <= 100
+        assert day.visited_pct == pytest.approx(100 * len(day.work) / N)
+        assert day.ever_visited_pct >= (before.ever_visited_pct if before else 0)
+        before = day
+
+
+def test_perfect_looking_with_time_for_all_clears_a_field_at_once():
+    robot = Robot(hours=24.0, detection=1.0)
+    (first, second) = season(robot=robot, settings=SeasonSettings(n_days=2))
+    assert (first.detection_pct, first.left) == (100.0, 0)
+    assert not second.infested.any()
+
+
+def test_missed_insects_are_found_at_the_stated_rate():
+    robot = Robot(hours=24.0, detection=0.6)
+    infested = Start(np.ones(N, bool), np.full(N, 0.5))
+    found = [
+        season(robot=robot, settings=SeasonSettings(n_days=1), seed=s, first=infested)[0].found
+        for s in range(40)
+    ]
+    assert np.mean(found) == pytest.approx(0.6 * N, rel=0.03)
+
+
+def test_a_robot_that_stays_out_goes_on_where_it_stopped():
+    robot = Robot(hours=1.0, returns=False)
+    one, two = season(robot=robot)[:2]
+    assert abs(int(two.work.plant[0]) - int(one.work.plant[-1])) in (1, 20)
+    assert two.work.arrive_s[0] < 60
+
+
+def test_a_season_can_be_left_half_way():
+    settings = SeasonSettings(n_days=10**9)
+    walk = days(AISLES, Robot(hours=1.0), sampler("naive"), start(), settings, Chance(1))
+    assert [next(walk).number for _ in range(3)] == [0, 1, 2]
+
+
+def test_a_field_without_insects_is_fully_detected():
+    nothing = Start(np.zeros(N, bool), np.full(N, 0.01))
+    assert all(day.detection_pct == 100.0 for day in season(first=nothing))
+
+
+def test_a_start_of_another_plot_is_refused():
+    with pytest.raises(PlotError, match="one entry a plant"):
+        season(first=Start(np.zeros(3, bool), np.zeros(3)))
+
+
+def test_a_season_of_no_days_is_refused():
+    with pytest.raises(SettingError, match="1 day or more"):
+        SeasonSettings(n_days=0)
+
+
+def test_what_was_believed_on_a_morning_does_not_depend_on_when_one_asks():
+    asked_daily = [day.chance for day in season("naive")]
+    later = season("naive")
+    for number in (3, 1, 5, 0):
+        assert (later[number].chance == asked_daily[number]).all()
+    assert any((one != other).any() for one, other in pairwise(asked_daily))

@@ -1,0 +1,62 @@
+"""The belief in use says chances that come true; the others are measured beside it."""
+
+import numpy as np
+import pytest
+
+from fieldmon.compute.random_streams import Chance
+from fieldmon.samplers import Naive
+from fieldmon.studies.samplers.calibration import BELIEFS, EDGES, calibration, report_html
+from fieldmon.studies.samplers.scenarios import Cell
+
+
+@pytest.fixture(scope="module")
+def made():
+    return {
+        name: calibration([Cell("B")], Naive(), BELIEFS[name], seeds=3, n_days=8)
+        for name in ("independent plants", "pairs")
+    }
+
+
+def test_pairs_score_better_than_independent_plants_and_than_suspicious_or_not(made):
+    pairs, independent = made["pairs"], made["independent plants"]
+    assert pairs.log_score < 0.8 * independent.log_score
+    assert pairs.log_score < 0.8 * pairs.suspicious_log_score
+    assert pairs.brier < independent.brier
+
+
+def test_of_plants_given_a_chance_about_that_share_is_infested(made):
+    pairs = made["pairs"]
+    for k in np.flatnonzero(pairs.count >= 400):
+        if EDGES[k] >= 0.01:
+            assert 0.5 * EDGES[k] <= pairs.was[k] <= 1.5 * EDGES[k + 1]
+
+
+def test_the_interval_for_the_number_infested_holds_it_mostly(made):
+    assert made["pairs"].covered >= 0.75
+    assert made["pairs"].covered > made["independent plants"].covered
+
+
+def test_a_belief_that_never_learns_scores_as_the_share_it_says():
+    class Stubborn:
+        def __init__(self, chance):
+            self.chance, self.both = chance, None
+
+        def learn(self, *_):
+            return self
+
+        def overnight(self, _):
+            return self
+
+    cell = Cell("B")
+    blind = calibration([cell], Naive(), lambda _, chance: Stubborn(chance), seeds=1, n_days=2)
+    assert blind.count.sum() == 2 * 4096
+    said = cell.begin(Chance(0)).chance[0]
+    share = np.average(blind.was, weights=blind.count)
+    assert blind.brier == pytest.approx(share * (1 - said) ** 2 + (1 - share) * said**2)
+    assert blind.seconds_a_day < 0.01
+
+
+def test_the_report_shows_every_belief(made):
+    page = report_html(made, "B, for a test")
+    assert all(name in page for name in made)
+    assert "B, for a test" in page

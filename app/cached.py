@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.hotspots import HotSpots, hot_spots, record_states
 from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.infestation.spread import Spread
 from fieldmon.io import read
-from fieldmon.io.import_report import Finding, Severity
+from fieldmon.io.import_report import ImportMessage, Severity
 from fieldmon.io.rasters.at_plants import read_missing, read_risk
 from fieldmon.io.rasters.read import read_backdrop
-from fieldmon.monitoring import Project
+from fieldmon.monitoring import Season
 from fieldmon.monitoring.transactions import get_meta
-from fieldmon.planning.plan import Plans, Today, plan_from
+from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from
 from fieldmon.plot.plot import Plot
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import SeasonFigures, figures
@@ -116,10 +116,10 @@ def today(
     sampler_name: str,
     _plot: Plot,
     _known: tuple[Observations, Array | None],
-) -> Today:
+) -> DayPlan:
     """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
     chance = believed(key, day, _plot, _known)
-    return plan_from(_plot, chance, Plans(robot, sampler(sampler_name)))
+    return plan_from(_plot, chance, PlanSettings(robot, sampler(sampler_name)))
 
 
 @st.cache_resource(max_entries=_FEW)
@@ -150,18 +150,18 @@ def recorded_hot_spots(key: str, _plot: Plot, _records: Observations) -> HotSpot
 # -- seasons that are kept
 
 
-def project(path: Path) -> Project:
+def project(path: Path) -> Season:
     """Open a season; all sessions share it, and each call of it reads what is new in the file."""
     inode = path.stat().st_ino if path.is_file() else 0
     return _project(path, inode)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
-def _project(path: Path, inode: int) -> Project:  # noqa: ARG001 - another file of the same name
-    return Project(path)
+def _project(path: Path, inode: int) -> Season:  # noqa: ARG001 - another file of the same name
+    return Season(path)
 
 
-def revision(season: Project) -> str:
+def revision(season: Season) -> str:
     """Return what changes with every change of a season, whoever made it."""
     with season.store.reading() as db:
         kept = get_meta(db, "revision")
@@ -172,77 +172,77 @@ def revision(season: Project) -> str:
 
 
 @st.cache_resource(max_entries=_FEW)
-def remarks(path: str, _season: Project) -> tuple[Remark, ...]:  # noqa: ARG001
+def remarks(path: str, _season: Season) -> tuple[Remark, ...]:  # noqa: ARG001
     """Return what the imports had to say when a season began."""
     return _season.remarks()
 
 
-def finding_of(remark: Remark) -> Finding:
+def finding_of(remark: Remark) -> ImportMessage:
     """Return a kept remark as a finding, its remedy gone: the plants are laid."""
-    return Finding(Severity(remark.severity), remark.sentence, remark.feature)
+    return ImportMessage(Severity(remark.severity), remark.sentence, remark.feature)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
-def season_today(path: str, revision: str, day: str, _season: Project) -> Today:  # noqa: ARG001
+def season_today(path: str, revision: str, day: str, _season: Season) -> DayPlan:  # noqa: ARG001
     """Return what is left of a season's day."""
     return _season.plan(np.datetime64(day).item(), keep=False)
 
 
 @st.cache_resource(max_entries=_FEW)
-def season_route(path: str, revision: str, day: str, _season: Project) -> Array:  # noqa: ARG001
+def season_route(path: str, revision: str, day: str, _season: Season) -> Array:  # noqa: ARG001
     """Return the plants of the route that was given out for a day; empty if none was."""
     return _season.kept_route(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_FEW)
-def season_done(path: str, revision: str, day: str, _season: Project) -> Route:  # noqa: ARG001
+def season_done(path: str, revision: str, day: str, _season: Season) -> Route:  # noqa: ARG001
     """Return a day's way as it was worked; empty if nothing was recorded."""
     return day_figures.done(_season, np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_FEW)
-def kept_figures(path: str, revision: str, _season: Project) -> dict[str, DayFigures]:  # noqa: ARG001
+def kept_figures(path: str, revision: str, _season: Season) -> dict[str, DayFigures]:  # noqa: ARG001
     """Return the figures of a season's days on which something happened."""
     return day_figures.kept(_season)
 
 
-def day_in_figures(path: str, revision: str, day: str, season: Project) -> DayFigures:
+def day_in_figures(path: str, revision: str, day: str, season: Season) -> DayFigures:
     """Return a day of a season in figures."""
     kept = kept_figures(path, revision, season)
     return kept[day] if day in kept else _worked_out(path, revision, day, season)
 
 
 @st.cache_resource(max_entries=200)
-def _worked_out(path: str, revision: str, day: str, _season: Project) -> DayFigures:  # noqa: ARG001
+def _worked_out(path: str, revision: str, day: str, _season: Season) -> DayFigures:  # noqa: ARG001
     return day_figures.of(_season, np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def known(path: str, revision: str, day: str, _season: Project) -> Known:  # noqa: ARG001
+def known(path: str, revision: str, day: str, _season: Season) -> Known:  # noqa: ARG001
     """Return what is known up to a day of a season."""
     return day_figures.known(_season, np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def season_hot_spots(path: str, revision: str, day: str, _season: Project) -> HotSpots:  # noqa: ARG001
+def season_hot_spots(path: str, revision: str, day: str, _season: Season) -> HotSpots:  # noqa: ARG001
     """Return where finds cluster on a day of a season."""
     number = _season.setup.day(np.datetime64(day).item())
     return hot_spots(_season.plot.grid, _season.history.states(number))
 
 
 @st.cache_resource(max_entries=_MAPS)
-def evening(path: str, revision: str, day: str, _season: Project) -> Array:  # noqa: ARG001
+def evening(path: str, revision: str, day: str, _season: Season) -> Array:  # noqa: ARG001
     """Return the chance map of a day after what was recorded of it."""
     return _season.evening(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def morning(path: str, revision: str, day: str, _season: Project) -> Array:  # noqa: ARG001
+def morning(path: str, revision: str, day: str, _season: Season) -> Array:  # noqa: ARG001
     """Return the chance map of a morning."""
     return _season.morning(np.datetime64(day).item())
 
 
-def days_of(season: Project, until: date) -> list[str]:
+def days_of(season: Season, until: date) -> list[str]:
     """Return the days of a season from the first up to one, ISO."""
     first = np.datetime64(season.setup.begins, "D")
     return [str(day) for day in np.arange(first, np.datetime64(until, "D") + 1)]
@@ -314,9 +314,9 @@ def season(
     `numbers` are days, share infested at the start, spread a night, and seed.
     """
     n_days, share, rate, seed = numbers
-    drawn = start_infested(_chance, share, Chance(seed).of("start"))
+    drawn = start_infested(_chance, share, RandomStreams(seed).of("start"))
     begin = Start(drawn[_plot.grid.vine], _chance)
     settings = SeasonSettings(n_days=n_days, spread=Spread(rate))
-    chance = Chance(seed)
+    chance = RandomStreams(seed)
     walk = list(days(_plot.aisles, robot, sampler(sampler_name), begin, settings, chance))
     return walk, figures(walk)

@@ -13,7 +13,6 @@ from fieldmon.errors import FieldmonError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.plot import robot as robots
-from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting
 from fieldmon.plot.plot import Plot, planting_of
 
@@ -38,8 +37,9 @@ from .units import AREAS_M2, DATES, LENGTHS, Units
 if TYPE_CHECKING:
     from streamlit.delta_generator import DeltaGenerator
 
-    from fieldmon.monitoring import Project
-    from fieldmon.planning.plan import Today
+    from fieldmon.monitoring import Season
+    from fieldmon.planning.plan import DayPlan
+    from fieldmon.plot.field import Field
     from fieldmon.plot.robot import Robot
 
     from .early import Places
@@ -90,7 +90,7 @@ class Choices:
     sampler: str
     day: str
     units: Units
-    project: Project | None = None
+    project: Season | None = None
     plot_key: str = ""
     risk: cached.Array | None = None
 
@@ -119,7 +119,7 @@ class Choices:
         """Return the height of the map: half a phone's screen, more on a laptop."""
         return early.map_px()
 
-    def today(self) -> Today:
+    def today(self) -> DayPlan:
         """Return the planned day: what is left of it, once something of it was recorded."""
         if self.project is not None:
             return cached.season_today(self.key, self.revision, self.day, self.project)
@@ -295,7 +295,7 @@ def _field(
     if file.key.startswith(_SAMPLE):
         field = replace(field, paths=cached.paths(_sample("tracks.geojson").source))
     key = f"{plant_key}{file.key}{options}{number}"
-    heard = tuple(Heard(file.key, f) for f in read.findings if f.feature in (None, field.name))
+    heard = tuple(Heard(file.key, f) for f in read.messages if f.feature in (None, field.name))
     return field, key, heard
 
 
@@ -351,7 +351,7 @@ def _records(
     options = files.settled(file, RecordOptions())
     key = f"{key}{file.key}{options}"
     read = cached.records(key, options, file.source, plot.field)
-    return read.value, tuple(Heard(file.key, finding) for finding in read.findings), key
+    return read.value, tuple(Heard(file.key, finding) for finding in read.messages), key
 
 
 def _work(where: str) -> tuple[Robot, str, str]:

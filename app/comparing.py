@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import stdtrit
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.prior import start_infested
 from fieldmon.infestation.spread import Spread
@@ -158,7 +158,7 @@ class Comparison:
             self.problem = error
 
     def _season(self, arm: Arm, seed: int) -> SeasonFigures:
-        asked, chance = self.asked, Chance(seed)
+        asked, chance = self.asked, RandomStreams(seed)
         drawn = start_infested(self._chance, asked.share, chance.of("start"))
         begin = Start(drawn[self._plot.grid.vine], self._chance)
         settings = SeasonSettings(n_days=asked.n_days, spread=Spread(asked.rate))

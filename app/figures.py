@@ -18,7 +18,7 @@ from fieldmon.samplers.base import NEVER, Scene
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.monitoring import Project
+    from fieldmon.monitoring import Season
     from fieldmon.planning.route import Route
 
 
@@ -46,7 +46,7 @@ class Known:
     days_since: NDArray[np.float64]
 
 
-def kept(project: Project) -> dict[str, DayFigures]:
+def kept(project: Season) -> dict[str, DayFigures]:
     """Return the figures of the days on which something happened, by ISO date, in order.
 
     They stand in the season's file, written by each recording; to work them out anew takes
@@ -60,7 +60,7 @@ def kept(project: Project) -> dict[str, DayFigures]:
     return {day: DayFigures(date.fromisoformat(day), *more) for day, *more in rows}
 
 
-def of(project: Project, on: date) -> DayFigures:
+def of(project: Season, on: date) -> DayFigures:
     """Return the figures of any day."""
     now = project.status(on)
     out = now.outlook
@@ -69,7 +69,7 @@ def of(project: Project, on: date) -> DayFigures:
     )
 
 
-def done(project: Project, on: date) -> Route:
+def done(project: Season, on: date) -> Route:
     """Return the way from plant to plant as a day was worked, at the times noted.
 
     Where a time is missing, all are those that driving and looking cost.
@@ -99,7 +99,7 @@ def done(project: Project, on: date) -> Route:
     return route_of(scene, work)
 
 
-def known(project: Project, on: date) -> Known:
+def known(project: Season, on: date) -> Known:
     """Return what is known up to a day."""
     day, grid, history = project.setup.day(on), project.plot.grid, project.history
     done = history.inspections.before(day + 1).looked

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from fieldmon.io.import_report import Finding, Imported
+    from fieldmon.io.import_report import Imported, ImportMessage
     from fieldmon.io.options import Source
     from fieldmon.plot.plot import Plot
 
@@ -40,7 +40,7 @@ class Heard:
     """A finding of an import, and the file it is about."""
 
     key: str
-    finding: Finding
+    finding: ImportMessage
 
 
 def brought() -> dict[str, File]:
@@ -113,7 +113,7 @@ def read_kept(
     except FieldmonError as error:
         st.session_state[f"{kept_as} problem"] = error
         return None, (), key
-    heard = tuple(Heard(file.key, finding) for finding in imported.findings)
+    heard = tuple(Heard(file.key, finding) for finding in imported.messages)
     return imported.value, heard, longer
 
 

@@ -11,7 +11,7 @@ import streamlit as st
 
 from fieldmon.errors import FieldmonError
 from fieldmon.io.options import Upload
-from fieldmon.monitoring import Project, Remark, Results, Setup, results_from
+from fieldmon.monitoring import Remark, Results, Season, SeasonSetup, results_from
 from fieldmon.plot.grid import plant_at
 
 from . import cached, panels, seasons, texts, verdicts
@@ -49,14 +49,14 @@ def begin(choices: Choices) -> None:
 
 def _create(choices: Choices) -> None:
     name = st.session_state["season_name"].strip()
-    setup = Setup(choices.on, panels.STARTS, choices.robot, choices.sampler)
+    setup = SeasonSetup(choices.on, panels.STARTS, choices.robot, choices.sampler)
     remarks = [
         Remark("import", str(h.finding.severity), h.finding.feature, h.finding.sentence)
         for h in choices.heard
     ]
     try:
         path = seasons.new_path(name)
-        Project.create(path, choices.plot, choices.records, setup, remarks, choices.risk)
+        Season.create(path, choices.plot, choices.records, setup, remarks, choices.risk)
     except FieldmonError as error:
         note("error", str(error))
         return
@@ -108,7 +108,7 @@ def record_file(choices: Choices, name: str, data: bytes) -> str:
     options = FindingsOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
     options = options.choose("day", choices.day)
     read = read_findings(Upload(name, data), choices.plot.grid, options)
-    remarks = "".join(f"\n- {finding.sentence}" for finding in read.findings)
+    remarks = "".join(f"\n- {finding.sentence}" for finding in read.messages)
     return _recorded(choices, results_from(read.value), name) + remarks
 
 

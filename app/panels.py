@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.writers import HandoffPlan
     from fieldmon.io.writers.handoff import Format
-    from fieldmon.planning.plan import Today
+    from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot
@@ -49,14 +49,14 @@ _SEEN = {"found": PRESENT, "clean": ABSENT}
 _ROW, _PLANT = "history row", "history plant"
 
 
-def starts(choices: Choices, today: Today) -> datetime:
+def starts(choices: Choices, today: DayPlan) -> datetime:
     """Return the local time at which the planned route, or what is left of it, starts."""
     begins = STARTS if choices.project is None else choices.project.setup.starts
     gone = timedelta(seconds=today.scene.robot.day_s - today.scene.seconds_left)
     return datetime.combine(choices.on, begins) + gone
 
 
-def stops(choices: Choices, today: Today) -> pd.DataFrame:
+def stops(choices: Choices, today: DayPlan) -> pd.DataFrame:
     """Return the stops in order, as a table."""
     label = row_label(choices.plot.grid, today.route.plant)
     gone = pd.to_timedelta(today.route.arrive_s.round(), unit="s")
@@ -254,7 +254,7 @@ def captions(parts: Sequence[str]) -> None:
     st.caption(" · ".join(parts))
 
 
-def route_figures(choices: Choices, today: Today) -> None:
+def route_figures(choices: Choices, today: DayPlan) -> None:
     """Show the figures to decide by."""
     route, n = today.route, len(choices.plot.grid)
     finds = route.expected_found
@@ -265,7 +265,7 @@ def route_figures(choices: Choices, today: Today) -> None:
         st.metric(texts.FINDS, f"{finds:.1f}", help=texts.FINDS_HELP, width="content")
 
 
-def said_of_day(choices: Choices, today: Today) -> None:
+def said_of_day(choices: Choices, today: DayPlan) -> None:
     """Say what was recorded of the day, and why there is no route where there is none."""
     said = "" if len(today.route) else texts.NO_STOPS
     if choices.project is not None:
@@ -321,7 +321,7 @@ def found_on_day(choices: Choices) -> dict[str, str]:
     return {row: ", ".join(numbers) for row, numbers in rows.items()}
 
 
-def reasons(choices: Choices, today: Today) -> list[str]:
+def reasons(choices: Choices, today: DayPlan) -> list[str]:
     """Return what the stops of the day are for, in sentences."""
     project = choices.project
     if project is None or not len(today.route):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from fieldmon.planning.plan import Today
+    from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
     from fieldmon.plot.robot import Robot
 
@@ -56,7 +56,7 @@ class Facts:
     results: dict[str, str]
 
 
-def html(facts: Facts, today: Today, stops: pd.DataFrame, days: list[DayFigures]) -> str:
+def html(facts: Facts, today: DayPlan, stops: pd.DataFrame, days: list[DayFigures]) -> str:
     """Return the whole page."""
     title = escape(texts.REPORT_TITLE.format(name=texts.isolated(facts.name), day=facts.day))
     parts = [
@@ -163,7 +163,7 @@ def _line(places: NDArray[np.float64], colour: str, wide: float) -> str:
     return f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{wide}"/>'
 
 
-def _figures(facts: Facts, today: Today) -> dict[str, str]:
+def _figures(facts: Facts, today: DayPlan) -> dict[str, str]:
     route = today.route
     return {
         texts.PLANTS_TO_INSPECT: f"{len(route):,} / {len(facts.chance):,}",

@@ -17,7 +17,7 @@ from . import cached, keeping, panels, texts
 from .keeping import CLEAN, FOUND, SKIPPED
 
 if TYPE_CHECKING:
-    from fieldmon.planning.plan import Today
+    from fieldmon.planning.plan import DayPlan
 
     from .choices import Choices
     from .figures import Known
@@ -55,7 +55,7 @@ def status(choices: Choices) -> Known:
     return cached.known(choices.key, choices.revision, choices.day, choices.project)
 
 
-def next_step(choices: Choices, today: Today) -> Step:
+def next_step(choices: Choices, today: DayPlan) -> Step:
     """Return where to go next, from where the last result was noted."""
     route, grid, scene = today.route, choices.plot.grid, today.scene
     plant = int(route.plant[0])

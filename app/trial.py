@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from shapely import MultiPolygon
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.hotspots import hot_spots, record_states
 from fieldmon.infestation.observations import PRESENT, Observations
-from fieldmon.planning.plan import Plans, first_day
+from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.plot import Plot
@@ -24,7 +24,7 @@ def plan() -> None:
     """Plan a day from a record, and look for hot spots, as Today does."""
     plot = Plot.of(Field("", MultiPolygon([(_CORNERS, [])])))
     record = Observations.of(np.array([(35.1502, 30.3602)]), np.array([PRESENT]))
-    first_day(plot, record, np.datetime64("2026-11-16"), Plans())
+    first_day(plot, record, np.datetime64("2026-11-16"), PlanSettings())
     hot_spots(plot.grid, record_states(plot.grid, record))
 
 
@@ -33,4 +33,4 @@ def simulate() -> None:
     for name in ("adaptive", "dynamic", "naive"):
         start = Start(np.ones(9, np.bool_), np.full(9, 0.1))
         settings, aisles = SeasonSettings(n_days=2), Aisles.of(rectangle(3, 3))
-        list(days(aisles, Robot(), sampler(name), start, settings, Chance(0)))
+        list(days(aisles, Robot(), sampler(name), start, settings, RandomStreams(0)))

@@ -14,7 +14,7 @@ from fieldmon.io.writers.geojson import RouteNotes, route_geojson
 if TYPE_CHECKING:
     from app.choices import Choices
     from app.early import Places
-    from fieldmon.planning.plan import Today
+    from fieldmon.planning.plan import DayPlan
 
 
 def show(choices: Choices, places: Places) -> None:
@@ -47,14 +47,14 @@ def show(choices: Choices, places: Places) -> None:
             st.dataframe(panels.stops(choices, today), height=300)
 
 
-def _layers(choices: Choices, today: Today, shown: list[str]) -> list:
+def _layers(choices: Choices, today: DayPlan, shown: list[str]) -> list:
     layers = panels.plant_layers(choices, "chance") if "plants" in shown else []
     if "route" in shown:
         layers = layers + panels.route_layers(choices, today.route, numbers="numbers" in shown)
     return panels.with_marks(choices, layers, shown)
 
 
-def _hand_out(choices: Choices, today: Today) -> None:
+def _hand_out(choices: Choices, today: DayPlan) -> None:
     if not len(today.route):
         return
     notes = RouteNotes(choices.plot.field.name, choices.sampler, panels.starts(choices, today))

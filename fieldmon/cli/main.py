@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeAlias
 
 import typer
 
-from fieldmon.cli import rasters, season, study
+from fieldmon.cli import rasters, study
+from fieldmon.cli import season as season_cli
 from fieldmon.cli.app import open_app
 from fieldmon.cli.waiting import WAITING
 from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from fieldmon.infestation.observations import Observations
-    from fieldmon.io.import_report import Finding, Imported
+    from fieldmon.io.import_report import Imported, ImportMessage
     from fieldmon.io.readers.crews import Crew
     from fieldmon.io.readers.places import Places
     from fieldmon.io.readers.places import Plants as Measured
@@ -53,7 +54,7 @@ app = typer.Typer(
 
 
 app.add_typer(study.app, name="study")
-season.register(app)
+season_cli.register(app)
 app.command(name="app")(open_app)
 
 
@@ -275,16 +276,16 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     who works on each plot; options given here go before them.
     """
     from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
-    from fieldmon.planning.plan import Plans, first_day  # noqa: PLC0415
+    from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
 
-    if plot is not None and season.is_season(plot):
-        season.plan_season(context, plot, output)
+    if plot is not None and season_cli.is_season(plot):
+        season_cli.plan_season(context, plot, output)
         return
     if now is not None:
         raise SettingError("--now needs a season (see fieldmon init), but this is a plot file.")
     day, begins = _day(on), _clock(start)
     robot = _robot(scout, hours, look, speed, row_change, turn)
-    plans = Plans(robot, _sampler(sampler, every))
+    plans = PlanSettings(robot, _sampler(sampler, every))
     given = {
         "row_bearing_deg": bearing,
         "row_spacing_m": row_spacing,
@@ -340,7 +341,7 @@ def plan(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         f"{route.drive_m / 1000:.2f} km; about {route.expected_finds:.1f} of them infested, "
         f"about {route.expected_found:.1f} of these would be found."
     )
-    season.hand_off(route, RouteNotes(laid.field.name, sampler.value, began), output)
+    season_cli.hand_off(route, RouteNotes(laid.field.name, sampler.value, began), output)
     rasters.write_map(chance_map, laid, today.chance)
 
 
@@ -395,12 +396,12 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     """
     from dataclasses import replace  # noqa: PLC0415
 
-    from fieldmon.monitoring import Project, Setup  # noqa: PLC0415
+    from fieldmon.monitoring import Season, SeasonSetup  # noqa: PLC0415
     from fieldmon.monitoring.history import Beliefs  # noqa: PLC0415
     from fieldmon.samplers import EVERY  # noqa: PLC0415
 
     day, beliefs = _day(on), Beliefs(treated=not flag_only)
-    setup = Setup(
+    setup = SeasonSetup(
         day.astype(date),
         _clock(start),
         _robot(scout, hours, look, speed, row_change, turn),
@@ -428,7 +429,7 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         laid = rasters.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
         at_risk = rasters.risk_of(laid, risk, risk_option, _tell)
     _hear(records, day)
-    project = Project.create(season, laid, records, setup, season.remarks(notes), at_risk)
+    project = Season.create(season, laid, records, setup, season_cli.remarks(notes), at_risk)
     ahead = project.status(setup.begins).outlook
     typer.echo(
         f"Season begun in {season}: {len(records)} records, about {ahead.expected:.0f} plants "
@@ -488,7 +489,7 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
 
     Example: fieldmon simulate vines.zip --feature 3 --sampler naive --sampler dynamic --days 10
     """
-    from fieldmon.planning.plan import Plans, first_day  # noqa: PLC0415
+    from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
 
     day = _day(on)
     robot = _robot(scout, hours, look, speed, row_change, turn)
@@ -511,7 +512,7 @@ def simulate(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     at_risk = rasters.risk_of(laid, risk, risk_option, _tell)
     _hear(records, day)
     begin = _start(
-        laid, first_day(laid, records, day, Plans(robot), at_risk).chance, infested, seed
+        laid, first_day(laid, records, day, PlanSettings(robot), at_risk).chance, infested, seed
     )
     rows = []
     for name in sampler or list(SamplerName)[:3]:
@@ -532,7 +533,7 @@ def _read_plots(
     more: list[str] | None,
 ) -> tuple[Field, ...]:
     read = _plots_of(path, feature, crs, layer, more)
-    _tell(read.findings, path, "--plot-option")
+    _tell(read.messages, path, "--plot-option")
     return read.value
 
 
@@ -573,11 +574,11 @@ def _read_crews(
             options = options.choose(name, value)
     with _asking("--plot-option"):
         read, crews = read_crews(path, _chosen(options, more))
-    _tell(read.findings, path, "--plot-option")
+    _tell(read.messages, path, "--plot-option")
     fields = read.value
     if paths is not None:
         lines = read_lines(paths, ReadOptions())
-        _tell(lines.findings, paths)
+        _tell(lines.messages, paths)
         fields = tuple(replace(field, paths=lines.value) for field in fields)
     return [(field, crews[field.name]) for field in fields]
 
@@ -593,7 +594,7 @@ def _read_all_records(path: Path | None, more: list[str] | None) -> Observations
 
     with _asking("--record-option"):
         read = read_records(path, _chosen(RecordOptions(), more))
-    _tell(read.findings, path, "--record-option")
+    _tell(read.messages, path, "--record-option")
     return read.value
 
 
@@ -647,7 +648,7 @@ def _read_records(
             if question.option != "places":
                 raise
             read = read_records(path, options, plot.field, named(plot.grid))
-    _tell(read.findings, path, "--record-option")
+    _tell(read.messages, path, "--record-option")
     _tell(on_plants(read.value, plot.grid), path)
     return read.value
 
@@ -693,12 +694,12 @@ def _place(
     field = fields[0]
     if plants[0] is not None:
         measured = _read_plants(*plants)
-        _tell(measured.findings, plants[0], "--plants-option")
+        _tell(measured.messages, plants[0], "--plants-option")
         field = replace(field, plants=measured.value.lonlat.copy())
     if paths[0] is not None:
         with _asking("--paths-option"):
             lines = read_lines(paths[0], _chosen(ReadOptions(), paths[1]))
-        _tell(lines.findings, paths[0], "--paths-option")
+        _tell(lines.messages, paths[0], "--paths-option")
         field = replace(field, paths=lines.value)
     return field if gate is None else replace(field, gate=_lonlat(gate))
 
@@ -742,7 +743,7 @@ def _around(
     from fieldmon.plot.plot import Plot  # noqa: PLC0415
 
     measured = _read_plants(plants, plants_option)
-    _tell(measured.findings, plants, "--plants-option")
+    _tell(measured.messages, plants, "--plants-option")
     by_hand = {name: value for name, value in given.items() if value is not None}
     lonlat = measured.value.lonlat.copy()
     planting = Planting(**by_hand)  # type: ignore[arg-type]
@@ -762,7 +763,7 @@ def _describe(plot: Plot) -> None:
 
 
 def _start(plot: Plot, chance: Any, infested: float, seed: int) -> Start:  # noqa: ANN401
-    from fieldmon.compute.random_streams import Chance  # noqa: PLC0415
+    from fieldmon.compute.random_streams import RandomStreams  # noqa: PLC0415
     from fieldmon.infestation.prior import start_infested  # noqa: PLC0415
     from fieldmon.simulation.season import Start  # noqa: PLC0415
 
@@ -770,7 +771,7 @@ def _start(plot: Plot, chance: Any, infested: float, seed: int) -> Start:  # noq
         raise SettingError(
             f"The share infested at the start must be between 0 and 1, but it is {infested}."
         )
-    begin = start_infested(chance, infested, Chance(seed).of("start"))
+    begin = start_infested(chance, infested, RandomStreams(seed).of("start"))
     return Start(begin[plot.grid.vine], chance)
 
 
@@ -781,7 +782,7 @@ def _season(
     begin: Start,
     numbers: tuple[int, float, int],
 ) -> list[str]:
-    from fieldmon.compute.random_streams import Chance  # noqa: PLC0415
+    from fieldmon.compute.random_streams import RandomStreams  # noqa: PLC0415
     from fieldmon.infestation.spread import Spread  # noqa: PLC0415
     from fieldmon.simulation.season import SeasonSettings  # noqa: PLC0415
     from fieldmon.simulation.season import days as season_days  # noqa: PLC0415
@@ -789,7 +790,7 @@ def _season(
     n_days, rate, seed = numbers
     settings = SeasonSettings(n_days=n_days, spread=Spread(rate))
     name, decides = sampler
-    walk = season_days(plot.aisles, robot, decides, begin, settings, Chance(seed))
+    walk = season_days(plot.aisles, robot, decides, begin, settings, RandomStreams(seed))
     rows = []
     typer.echo(f"\n{name}\n day  detection %  visited %  found  infested left")
     for day in walk:
@@ -829,7 +830,7 @@ def _asking(flag: str) -> Iterator[None]:
         ) from None
 
 
-def _tell(findings: Iterable[Finding], source: object = "", flag: str = "") -> None:
+def _tell(findings: Iterable[ImportMessage], source: object = "", flag: str = "") -> None:
     for finding in findings:
         typer.echo(finding.line(flag), err=True)
         for notes in _NOTES.get():
@@ -837,13 +838,13 @@ def _tell(findings: Iterable[Finding], source: object = "", flag: str = "") -> N
 
 
 # what is being noted beside being printed, see _noting
-_NOTES: ContextVar[tuple[list[tuple[str, Finding]], ...]] = ContextVar("notes", default=())
+_NOTES: ContextVar[tuple[list[tuple[str, ImportMessage]], ...]] = ContextVar("notes", default=())
 
 
 @contextmanager
-def _noting() -> Iterator[list[tuple[str, Finding]]]:
+def _noting() -> Iterator[list[tuple[str, ImportMessage]]]:
     """Note what imports have to say, with the file it is about."""
-    notes: list[tuple[str, Finding]] = []
+    notes: list[tuple[str, ImportMessage]] = []
     token = _NOTES.set((notes,))
     try:
         yield notes

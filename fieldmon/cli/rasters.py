@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.raster_risk import RiskSettings
-    from fieldmon.io.import_report import Finding
+    from fieldmon.io.import_report import ImportMessage
     from fieldmon.io.rasters.values import How, RasterOptions
     from fieldmon.plot.plot import Plot
 
@@ -59,7 +59,9 @@ ChanceMap = Annotated[
 class Tell(Protocol):
     """Tells a person what an import has to say about a file, and keeps it where it is noted."""
 
-    def __call__(self, findings: Iterable[Finding], source: object = "", flag: str = "", /) -> None:
+    def __call__(
+        self, findings: Iterable[ImportMessage], source: object = "", flag: str = "", /
+    ) -> None:
         """Tell findings about a source; `flag` takes their remedies."""
 
 
@@ -79,7 +81,7 @@ def without_missing(
     flag = "--canopy-option"
     options, how = _options(_pairs(more, flag))
     read = _asked(lambda: read_missing(canopy, options, plot, below, how), flag)
-    tell(read.findings, canopy, flag)
+    tell(read.messages, canopy, flag)
     return plot.without(read.value)
 
 
@@ -98,7 +100,7 @@ def risk_of(
     settings = _risk_settings(given)
     options, how = _options(given)
     read = _asked(lambda: read_risk(path, options, plot, settings, how), flag)
-    tell(read.findings, path, flag)
+    tell(read.messages, path, flag)
     return read.value
 
 

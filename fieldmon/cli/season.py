@@ -15,10 +15,10 @@ from fieldmon.errors import SettingError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from fieldmon.io.import_report import Finding
+    from fieldmon.io.import_report import ImportMessage
     from fieldmon.io.readers.reported import FindingsOptions
     from fieldmon.io.writers.geojson import RouteNotes
-    from fieldmon.monitoring import Project, Remark, Status
+    from fieldmon.monitoring import Remark, Season, Status
     from fieldmon.planning.route import Route
 
 SeasonFile = Annotated[Path, typer.Argument(help="The season's file, made by fieldmon init.")]
@@ -60,7 +60,7 @@ def is_season(path: Path) -> bool:
     return asked(path)
 
 
-def remarks(notes: Iterable[tuple[str, Finding]]) -> list[Remark]:
+def remarks(notes: Iterable[tuple[str, ImportMessage]]) -> list[Remark]:
     """Return what imports had to say, as the season's file keeps it."""
     from fieldmon.monitoring import Remark  # noqa: PLC0415
 
@@ -164,7 +164,7 @@ def record(
         heard = [read_findings(source, project.plot.grid, options) for source in sources]
     read = list(zip(files, heard, strict=True))
     for file, found in read:
-        for finding in found.findings:
+        for finding in found.messages:
             typer.echo(f"{file.name}: {finding}", err=True)
     last = None
     for file, found in read:
@@ -205,7 +205,7 @@ def status(
         typer.echo(f"doubtful: {sentence}", err=True)
 
 
-def _lines(project: Project, now: Status) -> Iterable[str]:
+def _lines(project: Season, now: Status) -> Iterable[str]:
     ahead = now.outlook
     yield f"{project.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
     yield f"  inspected today        {now.inspected_today:6d}, {now.found_today} found infested"
@@ -226,7 +226,7 @@ def _lines(project: Project, now: Status) -> Iterable[str]:
     )
 
 
-def _show_rows(project: Project, now: Status) -> None:
+def _show_rows(project: Season, now: Status) -> None:
     import numpy as np  # noqa: PLC0415
 
     lines = project.plot.grid.row_line + 1
@@ -286,7 +286,7 @@ def treat(
         from fieldmon.io.read import read_plots  # noqa: PLC0415
 
         read = read_plots(area)
-        for finding in read.findings:
+        for finding in read.messages:
             typer.echo(str(finding), err=True)
         whole = shapely.union_all([field.boundary for field in read.value])
         ground = MultiPolygon(list(shapely.get_parts(whole)))
@@ -365,10 +365,10 @@ def salvage(
         )
 
 
-def _open(season: Path) -> Project:
-    from fieldmon.monitoring import Project  # noqa: PLC0415
+def _open(season: Path) -> Season:
+    from fieldmon.monitoring import Season  # noqa: PLC0415
 
-    return Project(season)
+    return Season(season)
 
 
 def _chosen(options: FindingsOptions, more: list[str] | None) -> FindingsOptions:

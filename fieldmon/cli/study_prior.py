@@ -13,7 +13,7 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from fieldmon.io.import_report import Finding
+    from fieldmon.io.import_report import ImportMessage
     from fieldmon.studies.thesis.chapter5.calibrate import Calibration
     from fieldmon.studies.thesis.chapter5.sites import Site
     from fieldmon.studies.thesis.chapter5.study import Study
@@ -109,8 +109,8 @@ def calibrate(
 
 
 def _on_maps(folder: Path, seeds: int, seed: int, output: Path) -> None:
-    from fieldmon.io.readers.plant_maps import read_plant_maps  # noqa: PLC0415
     from fieldmon.plot.robot import Robot  # noqa: PLC0415
+    from fieldmon.studies.plant_maps import read_plant_maps  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.mapped_plots import MapRules, run_maps  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.report import maps_html  # noqa: PLC0415
@@ -157,7 +157,7 @@ def _site(file: Path, feature: str | None, observations: Path | None) -> Site:
     from fieldmon.studies.thesis.chapter5.sites import Site  # noqa: PLC0415
 
     read = read_plots(file, PlotOptions(feature=feature))
-    _say(read.findings)
+    _say(read.messages)
     fields = read.value
     if len(fields) > 1:
         names = tuple(field.name for field in fields)
@@ -171,7 +171,7 @@ def _site(file: Path, feature: str | None, observations: Path | None) -> Site:
     if observations is None:
         return Site(plot.field.name, plot.aisles, plot.field)
     heard = read_records(observations, near=plot.field)
-    _say(heard.findings)
+    _say(heard.messages)
     records = heard.value
     dated = records.day[~np.isnat(records.day)]
     last = dated.max() if dated.size else np.datetime64("today", "D")
@@ -179,7 +179,7 @@ def _site(file: Path, feature: str | None, observations: Path | None) -> Site:
     return Site(plot.field.name, plot.aisles, plot.field, chance)
 
 
-def _say(findings: Iterable[Finding]) -> None:
+def _say(findings: Iterable[ImportMessage]) -> None:
     for finding in findings:
         typer.echo(str(finding), err=True)
 

@@ -1,7 +1,7 @@
 """Named, independent random streams.
 
-``Chance(seed).of("spread", 3)`` is the generator for the spread of night 3, whatever else was drawn
-before: every sampler meets the same insects, so comparisons are paired.
+``RandomStreams(seed).of("spread", 3)`` is the generator for the spread of night 3, whatever
+else was drawn before: every sampler meets the same insects, so comparisons are paired.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _S11, _S27, _S30, _S31 = np.uint64(11), np.uint64(27), np.uint64(30), np.uint64(
 
 
 @dataclass(frozen=True)
-class Chance:
+class RandomStreams:
     """The root of all randomness of one season or study.
 
     Parameters

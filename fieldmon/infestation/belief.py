@@ -31,7 +31,7 @@ _HABIT, _MORE = 3.0, 1.5
 _LEAST_SAY = 1e-6
 # correlation of neighbours before anything was found beside a find: where clusters are believed
 # in more, single infested plants cost more looks, and the other way round; it is learnt soon
-COMPANY = 0.25
+CLUSTERING = 0.25
 # rows of the room for the plants beside one: chance that each infects it; that it does not
 # where there is an infestation beside it; and that with the most infested one left out
 _SHARED, _FREE, _FREE_BUT = 0, 1, 2
@@ -165,27 +165,27 @@ def _overnight(
 
 
 def pairs(
-    chance: NDArray[np.float64], grid: PlantGrid, company: float = COMPANY
+    chance: NDArray[np.float64], grid: PlantGrid, company: float = CLUSTERING
 ) -> NDArray[np.float64]:
     """Return the chance that both of two plants side by side are infested, ``(e,)``.
 
     In the order of ``grid.adjacent``. `company` is the correlation of the two: about the chance
     that a plant beside an infested one is infested too, where few are.
     """
-    both = np.empty(len(grid.adjacent.plant))
-    _pairs(np.ascontiguousarray(chance), grid.adjacent, company, both)
-    return both
+    pair_chance = np.empty(len(grid.adjacent.plant))
+    _pairs(np.ascontiguousarray(chance), grid.adjacent, company, pair_chance)
+    return pair_chance
 
 
 @loop
 def _pairs(
-    chance: NDArray[np.float64], adjacent: Csr, company: float, both: NDArray[np.float64]
+    chance: NDArray[np.float64], adjacent: Csr, company: float, pair_chance: NDArray[np.float64]
 ) -> None:
     for i in range(chance.size):
         for e in range(adjacent.start[i], adjacent.start[i + 1]):
             p, q = chance[i], chance[adjacent.plant[e]]
             together = p * q + company * np.sqrt(p * (1.0 - p) * q * (1.0 - q))
-            both[e] = min(together, p, q)
+            pair_chance[e] = min(together, p, q)
 
 
 class Belief(Protocol):
@@ -197,7 +197,7 @@ class Belief(Protocol):
         ...
 
     @property
-    def both(self) -> NDArray[np.float64] | None:
+    def pair_chance(self) -> NDArray[np.float64] | None:
         """Chance that two plants side by side are both infested, ``(e,)``; None: no idea."""
         ...
 
@@ -217,26 +217,26 @@ class Belief(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class MeanField:
+class IndependentPlants:
     """Plants taken as independent of each other: see :func:`learn` and :func:`overnight`."""
 
     grid: PlantGrid
     chance: NDArray[np.float64]
-    both: None = None
+    pair_chance: None = None
 
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
-    ) -> MeanField:
+    ) -> IndependentPlants:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
-        return MeanField(self.grid, learn(self.chance, self.grid, plants, found, learning))
+        return IndependentPlants(self.grid, learn(self.chance, self.grid, plants, found, learning))
 
-    def overnight(self, spread: Spread) -> MeanField:
+    def overnight(self, spread: Spread) -> IndependentPlants:
         """Return what is believed the next morning."""
-        return MeanField(self.grid, overnight(self.chance, self.grid, spread))
+        return IndependentPlants(self.grid, overnight(self.chance, self.grid, spread))
 
-    def treated(self, left: NDArray[np.float64]) -> MeanField:
+    def treated(self, left: NDArray[np.float64]) -> IndependentPlants:
         """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
-        return MeanField(self.grid, np.maximum(self.chance * left, _LEAST))
+        return IndependentPlants(self.grid, np.maximum(self.chance * left, _LEAST))
 
 
 @dataclass(frozen=True, eq=False)
@@ -249,10 +249,10 @@ class Pairs:
 
     grid: PlantGrid
     chance: NDArray[np.float64]
-    both: NDArray[np.float64]
+    pair_chance: NDArray[np.float64]
 
     @classmethod
-    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = COMPANY) -> Pairs:
+    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = CLUSTERING) -> Pairs:
         """Begin with a chance map, see :func:`pairs`."""
         chance = np.clip(chance, _LEAST, _MOST)
         return cls(grid, chance, pairs(chance, grid, company))
@@ -261,17 +261,17 @@ class Pairs:
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
     ) -> Pairs:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
-        mind = self.chance.copy(), self.both.copy()
+        mind = self.chance.copy(), self.pair_chance.copy()
         looks = plants, found, learning.detects(len(plants))
-        _regroup(mind, self.grid.linked, looks, Company.none(len(self.chance)))
+        _regroup(mind, self.grid.linked, looks, ClusterEstimate.none(len(self.chance)))
         _learn_pairs(mind, self.grid.linked, looks, learning.treated, near(len(self.chance)))
         return Pairs(self.grid, *mind)
 
     def overnight(self, spread: Spread) -> Pairs:
         """Return what is believed the next morning."""
-        after = np.empty_like(self.chance), np.empty_like(self.both)
-        close, spared = np.empty_like(self.chance), np.empty_like(self.both)
-        mind, linked = (self.chance, self.both), self.grid.linked
+        after = np.empty_like(self.chance), np.empty_like(self.pair_chance)
+        close, spared = np.empty_like(self.chance), np.empty_like(self.pair_chance)
+        mind, linked = (self.chance, self.pair_chance), self.grid.linked
         rule = spread.rate_per_day, spread.to == "one", spread.arrivals_per_day
         beside = np.empty((3, int(np.diff(linked.start).max(initial=0))))
         _stand_close(mind, close, linked)
@@ -284,7 +284,7 @@ class Pairs:
         start, other = self.grid.adjacent
         one = np.repeat(left, np.diff(start))
         chance = np.maximum(self.chance * left, _LEAST)
-        return Pairs(self.grid, chance, self.both * one * left[other])
+        return Pairs(self.grid, chance, self.pair_chance * one * left[other])
 
 
 class Near(NamedTuple):
@@ -310,12 +310,12 @@ def look(
 ) -> int:
     """Let one look teach what it can about a plant and those near it; return how many it touched.
 
-    `mind` is ``chance (n,)`` and ``both (e,)``, changed in place; `rule` the detection and whether
-    finds are treated. Exact where the plants' neighbourhood is a tree; round the loops of a
+    `mind` is ``chance (n,)`` and ``pair_chance (e,)``, changed in place; `rule` the detection and
+    whether finds are treated. Exact where the plants' neighbourhood is a tree; round the loops of a
     lattice the messages that arrive by several ways are combined as if independent. What a look
     says about plants farther than three away is left out.
     """
-    chance, both = mind
+    chance, pair_chance = mind
     i, found = result
     detection, treated = rule
     p = chance[i]
@@ -326,7 +326,7 @@ def look(
     for ring in range(2, _RINGS + 2):
         end = n
         for t in range(first, end):
-            n = _tell(mind, linked, (np.uint64(touched.plant[t]), ring), touched, n)
+            n = _propagate(mind, linked, (np.uint64(touched.plant[t]), ring), touched, n)
         first = end
     for t in range(n):
         _keep_company(mind, linked, np.uint64(touched.plant[t]), touched)
@@ -336,13 +336,13 @@ def look(
     if found and treated:
         chance[i] = _LEAST
         for e in range(linked.start[i], linked.start[i + 1]):
-            both[e] = both[linked.back[e]] = 0.0
+            pair_chance[e] = pair_chance[linked.back[e]] = 0.0
     return int(n)
 
 
 # the next two are copied into `look`: calling them costs a quarter of what they do
 @inlined
-def _tell(
+def _propagate(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,
     teller: tuple[np.uint64, int],
@@ -350,7 +350,7 @@ def _tell(
     n: np.uint64,
 ) -> np.uint64:
     """Pass on what a plant has learnt to its neighbours in the next ring."""
-    chance, both = mind
+    chance, pair_chance = mind
     j, ring = teller
     p, after = chance[j], touched.after[j]
     if abs(after - p) < _LEAST_SAY:
@@ -364,7 +364,7 @@ def _tell(
             n += _64
         elif its_ring != ring:
             continue
-        told = _told(p, q, both[e], after)
+        told = _conditional(p, q, pair_chance[e], after)
         if told < q:
             own *= told / q
         else:
@@ -385,7 +385,7 @@ def _keep_company(
     What an infested plant says about its neighbour changes by as much as the neighbour has heard
     from others.
     """
-    chance, both = mind
+    chance, pair_chance = mind
     p, after, ring = chance[j], touched.after[j], touched.ring[j]
     for e in range(np.uint32(linked.start[j]), np.uint32(linked.start[j + _64])):
         k = np.uint32(linked.plant[e])
@@ -394,12 +394,12 @@ def _keep_company(
             continue
         q = chance[k]
         own = q if its_ring == 0 else touched.after[k]
-        told = _told(p, q, both[e], after)
+        told = _conditional(p, q, pair_chance[e], after)
         from_others = own / (1.0 - own) * (1.0 - told) / told
-        beside = _least(both[e] / p, 1.0)
+        beside = _least(pair_chance[e] / p, 1.0)
         beside = beside * from_others / (beside * from_others + 1.0 - beside + _LEAST)
         c = _bounded(beside * after, own, after)
-        both[e] = both[np.uint32(linked.back[e])] = c
+        pair_chance[e] = pair_chance[np.uint32(linked.back[e])] = c
 
 
 @inlined
@@ -421,21 +421,21 @@ def _sure(chance: float) -> float:
 
 
 @inlined
-def _bounded(both: float, p: float, q: float) -> float:
+def _bounded(pair_chance: float, p: float, q: float) -> float:
     """Return the chance of both of two plants, within what their own chances p and q allow."""
     apart = p * q
     most = apart + _CLOSEST * (_least(p, q) - apart)
-    return _most(_least(both, most), _most(p + q - 1.0, 0.0))
+    return _most(_least(pair_chance, most), _most(p + q - 1.0, 0.0))
 
 
 @inlined
-def _told(p: float, q: float, both: float, after: float) -> float:
+def _conditional(p: float, q: float, pair_chance: float, after: float) -> float:
     """Return the chance of a plant, q until now, when its neighbour's goes from p to `after`."""
-    c = _bounded(both, p, q)
+    c = _bounded(pair_chance, p, q)
     return _sure(c / p * after + (q - c) / (1.0 - p) * (1.0 - after))
 
 
-class Company(NamedTuple):
+class ClusterEstimate(NamedTuple):
     """What a day's looks tell of how much infested plants stand together.
 
     Parameters
@@ -455,23 +455,23 @@ class Company(NamedTuple):
     finds: NDArray[np.float64]
 
     @classmethod
-    def none(cls, n: int) -> Company:
+    def none(cls, n: int) -> ClusterEstimate:
         """Return what is known of `n` plants before anybody looked."""
         return cls(np.full(n, -1, np.int8), np.zeros(n), np.full(2, _HABIT))
 
 
 @part
-def meet(
+def update_clusters(
     dawn: tuple[NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,
     result: tuple[int, bool, float],
-    company: Company,
+    company: ClusterEstimate,
 ) -> None:
     """Note a look (plant, found, detection), and what it says beside other looks of the day.
 
-    `dawn` is ``chance (n,)`` and ``both (e,)`` as believed before the first of them.
+    `dawn` is ``chance (n,)`` and ``pair_chance (e,)`` as believed before the first of them.
     """
-    chance, both = dawn
+    chance, pair_chance = dawn
     i, found, detects = result
     company.outcome[i], company.detects[i] = found, detects
     for e in range(linked.start[i], linked.start[i + 1]):
@@ -480,14 +480,14 @@ def meet(
             continue
         if found:
             company.finds[0] += company.outcome[j] - company.detects[j] * chance[j]
-            company.finds[1] += company.detects[j] * (both[e] / chance[i] - chance[j])
+            company.finds[1] += company.detects[j] * (pair_chance[e] / chance[i] - chance[j])
         if company.outcome[j] == 1:
             company.finds[0] += found - detects * chance[i]
-            company.finds[1] += detects * (both[e] / chance[j] - chance[i])
+            company.finds[1] += detects * (pair_chance[e] / chance[j] - chance[i])
 
 
 @part
-def closeness(company: Company) -> float:
+def closeness(company: ClusterEstimate) -> float:
     """Return by how much infested plants stand closer together than believed at dawn."""
     return float(min(max(company.finds[0], 0.0) / max(company.finds[1], _HABIT), _MORE))
 
@@ -497,12 +497,12 @@ def regroup(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]], linked: Linked, scale: float
 ) -> None:
     """Scale what pairs have in common, all over the plot."""
-    chance, both = mind
+    chance, pair_chance = mind
     for i in range(np.uint64(chance.size)):
         p = chance[i]
         for e in range(np.uint32(linked.start[i]), np.uint32(linked.start[i + _64])):
             q = chance[np.uint32(linked.plant[e])]
-            both[e] = _bounded(p * q + scale * (both[e] - p * q), p, q)
+            pair_chance[e] = _bounded(p * q + scale * (pair_chance[e] - p * q), p, q)
 
 
 @loop
@@ -510,12 +510,12 @@ def _regroup(
     mind: tuple[NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,
     looks: tuple[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]],
-    company: Company,
+    company: ClusterEstimate,
 ) -> None:
     """Learn from a day's looks beside its finds how much infested plants stand together."""
     plants, found, detects = looks
     for k in range(plants.size):
-        meet(mind, linked, (_0 + plants[k], found[k], detects[k]), company)
+        update_clusters(mind, linked, (_0 + plants[k], found[k], detects[k]), company)
     regroup(mind, linked, closeness(company))
 
 
@@ -539,12 +539,12 @@ def _stand_close(
     linked: Linked,
 ) -> None:
     """Find how close infested plants stand about each, ``(n,)``."""
-    chance, both = mind
+    chance, pair_chance = mind
     for i in range(np.uint64(chance.size)):
         first, end = np.uint32(linked.start[i]), np.uint32(linked.start[i + _64])
         beside = 0.0
         for e in range(first, end):
-            beside += both[e] / chance[i]
+            beside += pair_chance[e] / chance[i]
         close[i] = beside / (end - first) if end > first else 0.0
 
 
@@ -708,7 +708,7 @@ def _overnight_pairs(
     rate: float,
 ) -> None:
     """Find the chances of pairs in the morning from what `_spare_pairs` has found."""
-    (chance, both), (morning, pair, close, spared) = mind, after
+    (chance, pair_chance), (morning, pair, close, spared) = mind, after
     twice = 1.0 - (1.0 - rate) ** 2
     for i in range(np.uint64(chance.size)):
         for e in range(np.uint32(linked.start[i]), np.uint32(linked.start[i + _64])):
@@ -716,7 +716,9 @@ def _overnight_pairs(
             a, b = 1.0 - spared[e], 1.0 - spared[np.uint32(linked.back[e])]
             # what comes to two neighbours at once mostly comes from one infestation
             at_once = _most(a * b, twice * _least(close[i], close[j]) * _least(a, b))
-            neither = _most(1.0 - chance[i] - chance[j] + both[e], 0.0) * (1.0 - a - b + at_once)
+            neither = _most(1.0 - chance[i] - chance[j] + pair_chance[e], 0.0) * (
+                1.0 - a - b + at_once
+            )
             c = morning[i] + morning[j] - 1.0 + neither
             c = _most(c, _most(0.0, morning[i] + morning[j] - 1.0))
             pair[e] = _least(_least(c, morning[i]), morning[j])

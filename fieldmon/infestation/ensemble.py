@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 import numba as nb
 import numpy as np
 
-from fieldmon.compute.random_streams import Chance, coin
-from fieldmon.infestation.belief import COMPANY, pairs
-from fieldmon.infestation.plot_estimate import Outlook, draw_fields
+from fieldmon.compute.random_streams import RandomStreams, coin
+from fieldmon.infestation.belief import CLUSTERING, pairs
+from fieldmon.infestation.plot_estimate import PlotEstimate, draw_fields
 from fieldmon.infestation.spread import night
 
 if TYPE_CHECKING:
@@ -39,16 +39,18 @@ class Ensemble:
 
     grid: PlantGrid
     fields: NDArray[np.bool_]
-    chances: Chance
+    chances: RandomStreams
     steps: int = 0
 
     @classmethod
-    def of(cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = COMPANY) -> Ensemble:
+    def of(
+        cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = CLUSTERING
+    ) -> Ensemble:
         """Draw fields from a chance map, see :func:`fieldmon.infestation.belief.pairs`."""
         fields = np.zeros((_FIELDS, len(grid)), np.bool_)
         believed = chance, pairs(chance, grid, company)
-        draw_fields(believed, grid.adjacent, Chance(0).key("fields"), fields)
-        return cls(grid, fields, Chance(0))
+        draw_fields(believed, grid.adjacent, RandomStreams(0).key("fields"), fields)
+        return cls(grid, fields, RandomStreams(0))
 
     @cached_property
     def chance(self) -> NDArray[np.float64]:
@@ -58,11 +60,11 @@ class Ensemble:
         return np.minimum(chance, _MOST)
 
     @cached_property
-    def both(self) -> NDArray[np.float64]:
+    def pair_chance(self) -> NDArray[np.float64]:
         """Chance that two plants side by side are both infested, ``(e,)``."""
-        both = np.empty(len(self.grid.adjacent.plant))
-        _both(self.fields, self.grid.adjacent, both)
-        return both
+        pair_chance = np.empty(len(self.grid.adjacent.plant))
+        _pair_chance(self.fields, self.grid.adjacent, pair_chance)
+        return pair_chance
 
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
@@ -85,24 +87,26 @@ class Ensemble:
         luck = self.chances.of("treated", self.steps).random(self.fields.shape)
         return Ensemble(self.grid, self.fields & (luck < left), self.chances, self.steps + 1)
 
-    def outlook(self, sure: float = 0.9) -> Outlook:
+    def outlook(self, sure: float = 0.9) -> PlotEstimate:
         """Return what the fields say of the whole plot."""
         counts = self.fields.sum(axis=1)
         low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
         clean = float(np.mean(counts == 0))
-        return Outlook(float(counts.mean()), int(np.floor(low)), int(np.ceil(high)), clean)
+        return PlotEstimate(float(counts.mean()), int(np.floor(low)), int(np.ceil(high)), clean)
 
 
 @nb.njit(cache=True, nogil=True)
-def _both(fields: NDArray[np.bool_], adjacent: Csr, both: NDArray[np.float64]) -> None:
-    both[:] = 0.0
+def _pair_chance(
+    fields: NDArray[np.bool_], adjacent: Csr, pair_chance: NDArray[np.float64]
+) -> None:
+    pair_chance[:] = 0.0
     m, n = fields.shape
     for k in range(m):
         for i in range(n):
             if fields[k, i]:
                 for e in range(adjacent.start[i], adjacent.start[i + 1]):
-                    both[e] += fields[k, adjacent.plant[e]]
-    both /= m
+                    pair_chance[e] += fields[k, adjacent.plant[e]]
+    pair_chance /= m
 
 
 @nb.njit(cache=True, nogil=True)

@@ -28,7 +28,7 @@ _DRAWS = 400
 
 
 @dataclass(frozen=True)
-class Outlook:
+class PlotEstimate:
     """How many plants are infested, as believed.
 
     Parameters
@@ -58,18 +58,18 @@ class Outlook:
 def outlook(
     grid: PlantGrid,
     chance: NDArray[np.float64],
-    both: NDArray[np.float64] | None = None,
+    pair_chance: NDArray[np.float64] | None = None,
     sure: float = 0.9,
     key: np.uint64 = np.uint64(0),  # noqa: B008 - a number, not a call with effects
-) -> Outlook:
+) -> PlotEstimate:
     """Return what a chance map ``(n,)`` says of the whole plot.
 
     Parameters
     ----------
-    both
-        Chance ``(e,)`` that two plants side by side are both infested (`Belief.both`); without
-        it they share their fate as :func:`fieldmon.infestation.belief.pairs` has it. Taken as independent,
-        the number would seem far surer than it is.
+    pair_chance
+        Chance ``(e,)`` that two plants side by side are both infested (`Belief.pair_chance`);
+        without it they share their fate as `fieldmon.infestation.belief.pairs` has it. Taken as
+        independent, the number would seem far surer than it is.
     sure
         Chance that the interval holds the number.
     key
@@ -77,16 +77,16 @@ def outlook(
     """
     if not 0.0 < sure < 1.0:
         raise SettingError(f"'sure' must be a chance between 0 and 1, but it is {sure}.")
-    if both is None:
-        both = pairs(chance, grid)
-    table = _table(chance, both, grid.adjacent)
+    if pair_chance is None:
+        pair_chance = pairs(chance, grid)
+    table = _table(chance, pair_chance, grid.adjacent)
     drawn = _drawn(table, key, len(chance))
     clean = float(np.exp(np.log1p(-table[-1]).sum()))  # the same chain draws no infested plant
     expected = float(chance.sum())
     # round the loops of a lattice the drawn fields are a little off the map: put right together
     counts = drawn * (expected / max(float(drawn.mean()), 1e-9))
     low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
-    return Outlook(expected, int(np.floor(low)), int(np.ceil(high)), clean)
+    return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), clean)
 
 
 def _drawn(table: _Table, key: np.uint64, n: int) -> NDArray[np.int64]:
@@ -131,16 +131,16 @@ def draw_fields(
     key: np.uint64,
     fields: NDArray[np.bool_],
 ) -> None:
-    """Draw whole fields ``(m, n)`` in place from ``chance (n,)`` and ``both (e,)``."""
-    chance, both = believed
-    table = _table(chance, both, adjacent)
+    """Draw whole fields ``(m, n)`` in place from ``chance (n,)`` and ``pair_chance (e,)``."""
+    chance, pair_chance = believed
+    table = _table(chance, pair_chance, adjacent)
     for k in range(fields.shape[0]):
         for i in range(chance.size):
             fields[k, i] = coin(key, k * chance.size + i) < _given(table, fields[k], i)
 
 
 @nb.njit(cache=True)
-def _table(chance: NDArray[np.float64], both: NDArray[np.float64], adjacent: Csr) -> _Table:
+def _table(chance: NDArray[np.float64], pair_chance: NDArray[np.float64], adjacent: Csr) -> _Table:
     """Return what a neighbour of lower number does to each plant's odds: drawn hundreds of times.
 
     Start of each plant's neighbours, the neighbours, the factor of an infested and of a clean one,
@@ -160,7 +160,7 @@ def _table(chance: NDArray[np.float64], both: NDArray[np.float64], adjacent: Csr
             if j > i:
                 continue
             q = chance[j]
-            c = min(both[e], p, q)
+            c = min(pair_chance[e], p, q)
             plant[at] = j
             factor[at, 0] = (1.0 - c / p) / max(1.0 - (q - c) / (1.0 - p), 1e-9)
             factor[at, 1] = (c / p) / max((q - c) / (1.0 - p), 1e-9)

@@ -229,16 +229,16 @@ def record_chance(
     xy_m = grid.frame.xy_m(heard.lonlat)
     age_days = _age_days(heard, on_day, settings)
     find = heard.present == PRESENT
-    spoken = _Speech(*(column[near] for column in speech))
+    spoken = _RecordKernel(*(column[near] for column in speech))
     # oldest first, a day's finds before its clean looks; the rest only settles the last digit
     order = np.lexsort((*spoken, *xy_m.T, ~find, -age_days))
     records = _Records(xy_m[order, 0].copy(), xy_m[order, 1].copy(), age_days[order], find[order])
     chance = base.copy()
-    _hear(
+    _apply_records(
         chance,
         _rows(grid),
         records,
-        _Speech(*(column[order] for column in spoken)),
+        _RecordKernel(*(column[order] for column in spoken)),
         1.0 / settings.half_life_days,
     )
     return chance
@@ -309,7 +309,7 @@ def start_infested(
     return drawn
 
 
-class _Speech(NamedTuple):
+class _RecordKernel(NamedTuple):
     """What each record says, ``(m,)`` each: at its own plant and about it, and how far."""
 
     own: Floats  # peak at the plant itself
@@ -358,7 +358,7 @@ def _entering(grid: PlantGrid, lines: shapely.Geometry, chance: float, depth_m: 
     return chance * np.exp(-_distance_m(_rows(grid), pieces, farthest_m) / depth_m)
 
 
-def _speech(grid: PlantGrid, observations: Observations, settings: PriorSettings) -> _Speech:
+def _speech(grid: PlantGrid, observations: Observations, settings: PriorSettings) -> _RecordKernel:
     find = observations.present == PRESENT
     accuracy_m = np.where(
         observations.accuracy_m >= 0.0, observations.accuracy_m, settings.accuracy_m
@@ -372,7 +372,7 @@ def _speech(grid: PlantGrid, observations: Observations, settings: PriorSettings
     near = _beside(observations, settings) * settings.reach_m**2 / near_m2
     strength = np.where(find, 1.0, _detection(observations, settings))
     radius_m = np.maximum(_radius_m(own, own_m2), _radius_m(near, near_m2))
-    return _Speech(own, own_m2, near, near_m2, strength, radius_m)
+    return _RecordKernel(own, own_m2, near, near_m2, strength, radius_m)
 
 
 def _beside(observations: Observations, settings: PriorSettings) -> Floats:
@@ -462,8 +462,8 @@ def _distance_m(rows: _Rows, pieces: Floats, farthest_m: float) -> Floats:
 
 
 @nb.njit(cache=True, nogil=True)
-def _hear(
-    chance: Floats, rows: _Rows, records: _Records, speech: _Speech, fade_per_day: float
+def _apply_records(
+    chance: Floats, rows: _Rows, records: _Records, speech: _RecordKernel, fade_per_day: float
 ) -> None:
     """Let each record, in order, change the plants in its radius; then age them all to today."""
     base = chance.copy()

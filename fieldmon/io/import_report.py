@@ -71,7 +71,7 @@ class Remedy:
 
 
 @dataclass(frozen=True)
-class Finding:
+class ImportMessage:
     """One thing that an import has to say.
 
     Parameters
@@ -116,42 +116,50 @@ class Imported(Generic[T]):
     """
 
     value: T
-    findings: tuple[Finding, ...] = ()
+    messages: tuple[ImportMessage, ...] = ()
 
     @property
     def worst(self) -> Severity | None:
         """Return the gravest severity, or None where there is nothing to say."""
-        return max((f.severity for f in self.findings), key=lambda s: s.rank, default=None)
+        return max((f.severity for f in self.messages), key=lambda s: s.rank, default=None)
 
-    def of(self, *severities: Severity) -> tuple[Finding, ...]:
+    def of(self, *severities: Severity) -> tuple[ImportMessage, ...]:
         """Return the findings of the given severities."""
-        return tuple(f for f in self.findings if f.severity in severities)
+        return tuple(f for f in self.messages if f.severity in severities)
 
-    def having(self, value: U, more: Iterable[Finding] = ()) -> Imported[U]:
+    def having(self, value: U, more: Iterable[ImportMessage] = ()) -> Imported[U]:
         """Return another value with these findings and more."""
-        return Imported(value, (*self.findings, *more))
+        return Imported(value, (*self.messages, *more))
 
 
-def seen(sentence: str, feature: str | None = None, remedy: Remedy | None = None) -> Finding:
+def seen(sentence: str, feature: str | None = None, remedy: Remedy | None = None) -> ImportMessage:
     """Return a finding that is good to know."""
-    return Finding(Severity.SEEN, sentence, feature, remedy)
+    return ImportMessage(Severity.SEEN, sentence, feature, remedy)
 
 
-def repaired(sentence: str, feature: str | None = None, remedy: Remedy | None = None) -> Finding:
+def repaired(
+    sentence: str, feature: str | None = None, remedy: Remedy | None = None
+) -> ImportMessage:
     """Return a finding about something put right."""
-    return Finding(Severity.REPAIRED, sentence, feature, remedy)
+    return ImportMessage(Severity.REPAIRED, sentence, feature, remedy)
 
 
-def guessed(sentence: str, feature: str | None = None, remedy: Remedy | None = None) -> Finding:
+def guessed(
+    sentence: str, feature: str | None = None, remedy: Remedy | None = None
+) -> ImportMessage:
     """Return a finding about something that could have been read otherwise."""
-    return Finding(Severity.GUESSED, sentence, feature, remedy)
+    return ImportMessage(Severity.GUESSED, sentence, feature, remedy)
 
 
-def dropped(sentence: str, feature: str | None = None, remedy: Remedy | None = None) -> Finding:
+def dropped(
+    sentence: str, feature: str | None = None, remedy: Remedy | None = None
+) -> ImportMessage:
     """Return a finding about something left out."""
-    return Finding(Severity.DROPPED, sentence, feature, remedy)
+    return ImportMessage(Severity.DROPPED, sentence, feature, remedy)
 
 
-def doubtful(sentence: str, feature: str | None = None, remedy: Remedy | None = None) -> Finding:
+def doubtful(
+    sentence: str, feature: str | None = None, remedy: Remedy | None = None
+) -> ImportMessage:
     """Return a finding about something to look at before the data are used."""
-    return Finding(Severity.DOUBTFUL, sentence, feature, remedy)
+    return ImportMessage(Severity.DOUBTFUL, sentence, feature, remedy)

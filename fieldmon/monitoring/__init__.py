@@ -10,8 +10,8 @@ from fieldmon.monitoring.inspection_table import (
     counting_copy,
     results_from,
 )
-from fieldmon.monitoring.season_file import Project, Recorded, Status
-from fieldmon.monitoring.settings import Setup
+from fieldmon.monitoring.season_file import Recorded, Season, Status
+from fieldmon.monitoring.settings import SeasonSetup
 from fieldmon.monitoring.tables import Remark
 from fieldmon.monitoring.transactions import Store, is_season
 
@@ -19,11 +19,11 @@ __all__ = [
     "NAMES",
     "RESULTS",
     "Batch",
-    "Project",
     "Recorded",
     "Remark",
     "Results",
-    "Setup",
+    "Season",
+    "SeasonSetup",
     "Status",
     "Store",
     "counting_copy",

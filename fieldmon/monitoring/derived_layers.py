@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.hotspots import HotSpots
-    from fieldmon.infestation.plot_estimate import Outlook
+    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring.history import History
-    from fieldmon.monitoring.settings import Setup
+    from fieldmon.monitoring.settings import SeasonSetup
     from fieldmon.plot.plot import Plot
 
 STATES = {-1: "never inspected", 0: "looked clean", 1: "found infested"}
@@ -40,18 +40,18 @@ def digest(chance: NDArray[np.float64]) -> str:
     return hashlib.sha256(plain).hexdigest()[:24]
 
 
-def outlook_of(history: History, morning: Belief, day: int) -> Outlook:
+def outlook_of(history: History, morning: Belief, day: int) -> PlotEstimate:
     """Return how many plants are infested and not found yet, after a day's work."""
     evening = history.evening(morning, day)
     if not history.beliefs.treated:  # what was found is known: it is not out there any more
         evening = evening.treated(np.where(history.states(day) == PRESENT, 0.0, 1.0))
-    return outlook(history.grid, evening.chance, evening.both)
+    return outlook(history.grid, evening.chance, evening.pair_chance)
 
 
 def refresh(
     db: sqlite3.Connection,
     plot: Plot,
-    setup: Setup,
+    setup: SeasonSetup,
     history: History,
     morning: Callable[[int], Belief],
     since: int = 0,
@@ -71,7 +71,7 @@ def refresh(
     _write_states(db, setup, history, spots, (days[-1], morning(days[-1])))
 
 
-def _day_row(setup: Setup, history: History, morning: Belief, day: int) -> tuple[object, ...]:
+def _day_row(setup: SeasonSetup, history: History, morning: Belief, day: int) -> tuple[object, ...]:
     today = history.inspections.on(day).looked
     ahead = outlook_of(history, morning, day)
     found = int(np.count_nonzero(today.result == FOUND))
@@ -108,7 +108,7 @@ def spot_area(plot: Plot, spots: HotSpots, h: int) -> MultiPolygon:
 
 def _write_states(
     db: sqlite3.Connection,
-    setup: Setup,
+    setup: SeasonSetup,
     history: History,
     spots: HotSpots,
     latest: tuple[int, Belief],

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import FOUND, Inspections
@@ -154,7 +154,7 @@ class History:
             aisles=aisles,
             robot=robot,
             chance=believed.chance,
-            both=believed.both,
+            pair_chance=believed.pair_chance,
             last_inspected=last,
             day=day,
             at=int(today.plant[-1]) if len(today) else resting,
@@ -187,7 +187,7 @@ class Crew:
     aisles: Aisles
     robot: Robot
     starts_s: float = 6 * 3600.0
-    chance: Chance = Chance(1)  # noqa: RUF009 - a seed, not a call with effects
+    chance: RandomStreams = RandomStreams(1)  # noqa: RUF009 - a seed, not a call with effects
 
 
 def _gone_s(crew: Crew, today: Inspections, resting: int, now_s: float | None) -> float:

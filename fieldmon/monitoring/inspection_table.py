@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.readers.inspections import Findings
-    from fieldmon.monitoring.settings import Setup
+    from fieldmon.monitoring.settings import SeasonSetup
     from fieldmon.plot.grid import PlantGrid, RowLabel
 
 NAMES = {CLEAN: "clean", FOUND: "found", SKIPPED: "skipped"}
@@ -125,7 +125,7 @@ def counting_copy(season: Path, folder: Path) -> Path:
 
 
 def rows(
-    results: Results, grid: PlantGrid, label: RowLabel, setup: Setup, batch: tuple[int, str]
+    results: Results, grid: PlantGrid, label: RowLabel, setup: SeasonSetup, batch: tuple[int, str]
 ) -> list[tuple[object, ...]]:
     """Return results as rows of the table of inspections; raise where they do not fit.
 

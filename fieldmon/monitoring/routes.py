@@ -17,19 +17,19 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.monitoring.settings import Setup
-    from fieldmon.planning.plan import Today
+    from fieldmon.monitoring.settings import SeasonSetup
+    from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.grid import RowLabel
 
 
-def begins(setup: Setup, today: Today) -> datetime:
+def begins(setup: SeasonSetup, today: DayPlan) -> datetime:
     """Return the local time at which a route begins: the start of work, or half-way."""
     gone_s = setup.robot.day_s - today.scene.seconds_left
     start = datetime.combine(setup.date(today.scene.day), setup.starts)
     return start + timedelta(seconds=round(gone_s))
 
 
-def keep(db: sqlite3.Connection, setup: Setup, label: RowLabel, today: Today) -> bool:
+def keep(db: sqlite3.Connection, setup: SeasonSetup, label: RowLabel, today: DayPlan) -> bool:
     """Keep a day's route, unless it is the one kept last; tell whether it was."""
     day, route = today.scene.day, today.route
     digest = _digest(today)
@@ -88,7 +88,7 @@ def plants(db: sqlite3.Connection, day: int) -> NDArray[np.int32]:
     return np.array([plant for (plant,) in rows], np.int32)
 
 
-def _digest(today: Today) -> str:
+def _digest(today: DayPlan) -> str:
     said = hashlib.sha256(today.route.plant.astype("<i4").tobytes())
     said.update(np.round(today.route.arrive_s, 3).astype("<f8").tobytes())
     said.update(repr((today.scene.at, round(today.scene.seconds_left, 3))).encode())

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import insert
-from fieldmon.monitoring.season_file import Project
+from fieldmon.monitoring.season_file import Season
 from fieldmon.monitoring.transactions import Store
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
         insert(new, schema.DAYS, [(0, None, 0, 0, None, None, None, None, "")])
     whole = True
     try:
-        Project(to).rebuild()
+        Season(to).rebuild()
     except FieldmonError:
         whole = False
     return Salvaged({name: len(rows) for name, rows in saved.items()}, tuple(lost), whole)

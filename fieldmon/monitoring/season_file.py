@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.belief import Pairs
 from fieldmon.infestation.hotspots import HotSpots, hot_spots
@@ -29,13 +29,12 @@ from fieldmon.monitoring import (
 )
 from fieldmon.monitoring.geopackage import blob, geometry, touch
 from fieldmon.monitoring.history import Crew, History, Treatment
-from fieldmon.monitoring.settings import Setup, as_json, from_json, seconds
+from fieldmon.monitoring.settings import SeasonSetup, as_json, from_json, seconds
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
-from fieldmon.planning.plan import Today
+from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_day
 from fieldmon.plot.grid import RowLabel, row_label
-from fieldmon.plot.plot import Plot
 
 if TYPE_CHECKING:
     import sqlite3
@@ -48,10 +47,11 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.observations import Observations
-    from fieldmon.infestation.plot_estimate import Outlook
+    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.inspection_table import Results
     from fieldmon.monitoring.tables import Remark
+    from fieldmon.plot.plot import Plot
 
     Floats = NDArray[np.float64]
 
@@ -104,7 +104,7 @@ class Status:
     found: int
     inspected_today: int
     found_today: int
-    outlook: Outlook
+    outlook: PlotEstimate
     days_since: Floats
     hot_spots: HotSpots
 
@@ -120,7 +120,7 @@ class _Snapshot:
     """What the file said when it was read last; mornings are added as they are asked for."""
 
     revision: str
-    setup: Setup
+    setup: SeasonSetup
     history: History
     mornings: list[Belief]
 
@@ -131,8 +131,8 @@ class _Snapshot:
         return self.mornings[day]
 
 
-class Project:
-    """A season on disk. Begin one with `create`, come back to it with ``Project(path)``.
+class Season:
+    """A season on disk. Begin one with `create`, come back to it with ``Season(path)``.
 
     Each call reads what is new in the file before it answers, and what it writes is one
     transaction: windows and programs can work on the same season at once.
@@ -159,10 +159,10 @@ class Project:
         path: str | Path,
         plot: Plot,
         observations: Observations,
-        setup: Setup,
+        setup: SeasonSetup,
         remarks: Iterable[Remark] = (),
         risk: Floats | None = None,
-    ) -> Project:
+    ) -> Season:
         """Begin a season in a new file, whole or not at all; raise `FileProblem` if it exists.
 
         `risk` ``(n,)`` is one more chance of being infested at the start, from a raster for
@@ -189,7 +189,7 @@ class Project:
         return self.store.path
 
     @property
-    def setup(self) -> Setup:
+    def setup(self) -> SeasonSetup:
         """Return what is chosen for the season."""
         return self._now().setup
 
@@ -203,7 +203,7 @@ class Project:
         """Row and number of every plant, as people count."""
         return row_label(self.plot.grid)
 
-    def change(self, setup: Setup, seen: Setup) -> None:
+    def change(self, setup: SeasonSetup, seen: SeasonSetup) -> None:
         """Choose otherwise; raise `FileProblem` if the choices are no longer those `seen`."""
         with self._lock, self.store.writing() as db:
             if as_json(_setup(db)) != as_json(seen):
@@ -214,13 +214,13 @@ class Project:
             settings_log.write(db, as_json(setup))
             self._refresh(db)
 
-    def before_change(self) -> Setup | None:
+    def before_change(self) -> SeasonSetup | None:
         """Return what counted before the last change of settings; None: nothing was changed."""
         with self.store.reading() as db:
             parts = settings_log.before_now(db)
         return None if parts is None else from_json(parts)
 
-    def undo_change(self) -> Setup:
+    def undo_change(self) -> SeasonSetup:
         """Take the last change of settings back; return what counts again.
 
         Raise `SettingError` if there is none.
@@ -232,7 +232,7 @@ class Project:
 
     # -- the working day
 
-    def plan(self, on: date, now: time | None = None, *, keep: bool = True) -> Today:
+    def plan(self, on: date, now: time | None = None, *, keep: bool = True) -> DayPlan:
         """Plan what is left of a day from all that is known.
 
         Parameters
@@ -249,11 +249,13 @@ class Project:
             snapshot = self._now()
             setup = snapshot.setup
             day = setup.day(on)
-            crew = Crew(self.plot.aisles, setup.robot, seconds(setup.starts), Chance(setup.seed))
+            crew = Crew(
+                self.plot.aisles, setup.robot, seconds(setup.starts), RandomStreams(setup.seed)
+            )
             now_s = None if now is None else seconds(now)
             scene = snapshot.history.scene(crew, day, snapshot.morning(day), now_s)
             work = plan_day(scene, setup.decides())
-            today = Today(scene, work, route_of(scene, work))
+            today = DayPlan(scene, work, route_of(scene, work))
             if keep and len(today.route):
                 with self.store.writing() as db:
                     if routes.keep(db, setup, self.label, today):
@@ -429,7 +431,7 @@ class Project:
             self._last = _Snapshot(revision, setup, history, [history.prior])
         return self._last
 
-    def _first_morning(self, setup: Setup) -> Floats:
+    def _first_morning(self, setup: SeasonSetup) -> Floats:
         key = (setup.begins, setup.prior)
         if self._prior is None or self._prior[0] != key:
             begins = np.datetime64(setup.begins, "D")
@@ -452,7 +454,7 @@ class Project:
         self._last = None  # the transaction may yet fail
 
 
-def _nothing_yet(plot: Plot, setup: Setup, prior: Floats) -> History:
+def _nothing_yet(plot: Plot, setup: SeasonSetup, prior: Floats) -> History:
     belief = Pairs.of(plot.grid, prior)
     return History(plot.grid, belief, beliefs=setup.beliefs, detection=setup.robot.detects)
 
@@ -463,5 +465,5 @@ def _revision(db: sqlite3.Connection) -> str:
     return repr((get_meta(db, "revision"), counted))
 
 
-def _setup(db: sqlite3.Connection) -> Setup:
+def _setup(db: sqlite3.Connection) -> SeasonSetup:
     return from_json(settings_log.now(db))

@@ -25,7 +25,7 @@ _MOST_DAYS = 800
 
 
 @dataclass(frozen=True)
-class Setup:
+class SeasonSetup:
     """What is chosen for a season.
 
     Parameters
@@ -91,7 +91,7 @@ def seconds(at: time) -> float:
     return at.hour * 3600.0 + at.minute * 60.0 + at.second
 
 
-def as_json(setup: Setup) -> dict[str, str]:
+def as_json(setup: SeasonSetup) -> dict[str, str]:
     """Return each part of a setup as JSON, by name."""
     parts = {name: getattr(setup, name) for name in ("robot", "prior", "beliefs")}
     plain: dict[str, Any] = {name: asdict(part) for name, part in parts.items()}
@@ -104,7 +104,7 @@ def as_json(setup: Setup) -> dict[str, str]:
     return {name: json.dumps(part, sort_keys=True) for name, part in plain.items()}
 
 
-def from_json(parts: dict[str, str]) -> Setup:
+def from_json(parts: dict[str, str]) -> SeasonSetup:
     """Return the setup that `as_json` wrote; raise `FileProblem` where it cannot be read."""
     try:
         plain = {name: json.loads(text) for name, text in parts.items()}
@@ -112,7 +112,7 @@ def from_json(parts: dict[str, str]) -> Setup:
         steps = tuple((float(s), float(p)) for s, p in robot["viewpoints"]["steps"])
         viewpoints = Viewpoints(steps, robot["viewpoints"]["longer"])
         beliefs = plain["beliefs"]
-        return Setup(
+        return SeasonSetup(
             begins=date.fromisoformat(season["begins"]),
             starts=time.fromisoformat(season["starts"]),
             robot=Robot(**{**robot, "viewpoints": viewpoints}),

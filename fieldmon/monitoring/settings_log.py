@@ -17,7 +17,7 @@ from fieldmon.monitoring.tables import utc_now
 if TYPE_CHECKING:
     import sqlite3
 
-    from fieldmon.monitoring.settings import Setup
+    from fieldmon.monitoring.settings import SeasonSetup
 
 #: each part of a setup as JSON, by name
 Parts = dict[str, str]
@@ -51,7 +51,7 @@ def before_now(db: sqlite3.Connection) -> Parts | None:
     return counted[-2] if len(counted) > 1 else None
 
 
-def undo(db: sqlite3.Connection) -> Setup:
+def undo(db: sqlite3.Connection) -> SeasonSetup:
     """Take the last change back; return what counts again, or raise `SettingError`."""
     parts = before_now(db)
     if parts is None:

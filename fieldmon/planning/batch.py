@@ -10,14 +10,14 @@ import numpy as np
 import shapely
 
 from fieldmon.errors import SettingError
-from fieldmon.planning.plan import Plans, first_day
+from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.plot import Plot, planting_of
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.samplers import sampler
 
 if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
-    from fieldmon.planning.plan import Today
+    from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.field import Field
 
 
@@ -79,14 +79,14 @@ class Task:
         return everything.hexdigest()[:16]
 
 
-def plan_task(task: Task, observations: Observations) -> Today:
+def plan_task(task: Task, observations: Observations) -> DayPlan:
     """Plan the day on one plot; raise a `FieldmonError` where it cannot be done."""
     orders = task.orders
     robot = _robot(task)
     settings = {} if orders.every is None else {"every": orders.every}
     plot = Plot.of(task.plot, planting_of(task.plot, **orders.planting))
     today = first_day(
-        plot, observations, orders.day, Plans(robot, sampler(orders.sampler, **settings))
+        plot, observations, orders.day, PlanSettings(robot, sampler(orders.sampler, **settings))
     )
     if not len(today.route):
         raise SettingError(

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Plans:
+class PlanSettings:
     """How a day is planned.
 
     Parameters
@@ -43,7 +43,7 @@ class Plans:
 
 
 @dataclass(frozen=True, eq=False)
-class Today:
+class DayPlan:
     """A planned day: what is believed, where to go, and the scene it was planned in."""
 
     scene: Scene
@@ -60,15 +60,15 @@ def first_day(
     plot: Plot,
     observations: Observations,
     on_day: np.datetime64,
-    plans: Plans,
+    plans: PlanSettings,
     risk: NDArray[np.float64] | None = None,
-) -> Today:
+) -> DayPlan:
     """Plan a day on a plot of which nothing but records is known, and perhaps a risk ``(n,)``."""
     chance = prior_chance(plot.grid, plot.field, observations, on_day, plans.prior, risk)
     return plan_from(plot, chance, plans)
 
 
-def plan_from(plot: Plot, chance: NDArray[np.float64], plans: Plans) -> Today:
+def plan_from(plot: Plot, chance: NDArray[np.float64], plans: PlanSettings) -> DayPlan:
     """Plan a first day from a chance map ``(n,)``."""
     scene = Scene(
         aisles=plot.aisles,
@@ -77,7 +77,7 @@ def plan_from(plot: Plot, chance: NDArray[np.float64], plans: Plans) -> Today:
         last_inspected=np.full(len(plot.grid), NEVER, np.int32),
         seconds_left=plans.robot.day_s,
         # as a season believes: it goes the same way on its first day
-        both=pairs(chance, plot.grid),
+        pair_chance=pairs(chance, plot.grid),
     )
     work = plan_day(scene, plans.sampler)
-    return Today(scene, work, route_of(scene, work))
+    return DayPlan(scene, work, route_of(scene, work))

@@ -10,7 +10,7 @@ import numpy as np
 from fieldmon.compute.jit import loop
 from fieldmon.compute.random_streams import coin_bits, coin_limit
 from fieldmon.plot.travel import GATE, travel_s
-from fieldmon.samplers.base import Looks
+from fieldmon.samplers.base import InspectionTimes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -76,16 +76,16 @@ def work_day(
     return Workday(stops.plant, stops.arrive_s, found, stop_s, detects, end_s)
 
 
-def looks_of(robot: Robot, sampler: Sampler) -> Looks:
-    """Return the looks that a sampler chooses from (see `ChoosesLook`); most have the robot's."""
+def looks_of(robot: Robot, sampler: Sampler) -> InspectionTimes:
+    """Return the looks that a sampler chooses from; most have the robot's."""
     # asking whether it is an instance of the protocol takes as long as a day's drive
-    chosen: Callable[[Robot], Looks] | None = getattr(sampler, "looks", None)
+    chosen: Callable[[Robot], InspectionTimes] | None = getattr(sampler, "looks", None)
     if chosen is not None:
         return chosen(robot)
-    return Looks(np.array([robot.visit_s]), np.array([robot.detects]))
+    return InspectionTimes(np.array([robot.visit_s]), np.array([robot.detects]))
 
 
-def luck(infested: NDArray[np.bool_], looks: Looks, key: np.uint64) -> NDArray[np.uint8]:
+def luck(infested: NDArray[np.bool_], looks: InspectionTimes, key: np.uint64) -> NDArray[np.uint8]:
     """Draw ``(n,)`` the first look, from 1, that would find what is on each plant today; 0: none.
 
     A longer look finds what a shorter one does.

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
 import shapely
 from shapely import MultiLineString, MultiPolygon
 
@@ -13,6 +12,7 @@ from fieldmon.errors import PlotError
 from fieldmon.plot.projection import Frame
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, found_planting, grid_from_plants, lay
 from fieldmon.plot.missing_plants import without
 from fieldmon.plot.travel import Aisles
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid

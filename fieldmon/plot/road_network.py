@@ -45,7 +45,7 @@ class Where(Enum):
     ANYWHERE = "over holes too, but not over no-go areas"
 
 
-class Ways(NamedTuple):
+class RoadNetwork(NamedTuple):
     """A network of straight ways: m nodes, sorted by y, then x.
 
     Parameters
@@ -223,7 +223,7 @@ def ways(
     grid: PlantGrid,
     gate_xy_m: tuple[float, float] | None = None,
     no_go_m: MultiPolygon | None = None,
-) -> Ways:
+) -> RoadNetwork:
     """Return the network of ways between the lane ends of a plot and its gate.
 
     Nodes are the lane ends, the points beside them where one may cross the line of a row clear of
@@ -475,7 +475,7 @@ def _short_ones(net: _Net, bridges: Index) -> Index:
     return bridges[length_m <= 2 * shortest[part]]
 
 
-def _sorted(net: _Net, end: Index, gate: int) -> Ways:
+def _sorted(net: _Net, end: Index, gate: int) -> RoadNetwork:
     """Return the network as sorted lists, without what cannot be reached from the gate."""
     part = net.component()
     kept = np.flatnonzero(part == part[gate])
@@ -488,7 +488,7 @@ def _sorted(net: _Net, end: Index, gate: int) -> Ways:
     xy_m = net.xy_m[kept]
     start = np.searchsorted(from_to[:, 0], np.arange(len(kept) + 1))
     length_m = _Net(xy_m, from_to).length_m()
-    return Ways(
+    return RoadNetwork(
         xy_m,
         start,
         from_to[:, 1].astype(np.int64),

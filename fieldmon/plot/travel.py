@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 
 from fieldmon.compute.jit import inlined, loop
-from fieldmon.plot.road_network import Ways, row_lines, ways
+from fieldmon.plot.road_network import RoadNetwork, row_lines, ways
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -29,7 +29,7 @@ _BLOCK = 64
 _STRAIGHT = 1e-9
 
 
-class Ground(NamedTuple):
+class TravelTable(NamedTuple):
     """What compiled loops need to know of a plot: plants, rows, and the ways between rows.
 
     Parameters
@@ -78,8 +78,8 @@ class Aisles:
     """
 
     grid: PlantGrid
-    ways: Ways
-    ground: Ground
+    ways: RoadNetwork
+    ground: TravelTable
 
     @classmethod
     def of(
@@ -96,7 +96,7 @@ class Aisles:
         net = ways(grid, gate_xy_m, no_go_m)
         between_m = np.empty((2 * grid.n_rows + 1, 2 * grid.n_rows + 1))
         _reach(net, np.append(net.end.ravel(), net.gate), between_m)
-        ground = Ground(
+        ground = TravelTable(
             np.ascontiguousarray(grid.xy_m[:, 0]),
             grid.row,
             grid.row_start,
@@ -150,11 +150,11 @@ class Aisles:
 
     @cached_property
     def _stop_node(self) -> NDArray[np.int64]:
-        """Node of each lane end, and of the gate, as numbered in `Ground.between_m`."""
+        """Node of each lane end, and of the gate, as numbered in `TravelTable.between_m`."""
         return np.append(self.ways.end.ravel(), self.ways.gate)
 
     def _exits(self, i: int) -> tuple[NDArray[np.int64], Float]:
-        """Return the ends of the lane of plant i as in `Ground.between_m`, and the metres there."""
+        """Return the ends of the lane of plant i as in `TravelTable`, and the metres there."""
         if i < 0:
             return np.array([2 * self.grid.n_rows]), np.zeros(1)
         row = int(self.grid.row[i])
@@ -177,7 +177,7 @@ def crosses_rows(grid: PlantGrid, line_xy_m: Float) -> bool:
 
 
 @inlined
-def drive_m(ground: Ground, i: int, j: int) -> float:
+def drive_m(ground: TravelTable, i: int, j: int) -> float:
     """Return the metres from plant i to plant j; -1 is the gate."""
     # written out: loops over the ends cost ten times as much
     x_m, end_m, between_m = ground.x_m, ground.end_x_m, ground.between_m
@@ -201,13 +201,15 @@ def drive_m(ground: Ground, i: int, j: int) -> float:
 
 
 @nb.njit(cache=True)
-def _drive_all(ground: Ground, i: NDArray[np.int64], j: NDArray[np.int64], metres: Float) -> None:
+def _drive_all(
+    ground: TravelTable, i: NDArray[np.int64], j: NDArray[np.int64], metres: Float
+) -> None:
     for k in range(i.size):
         metres[k] = drive_m(ground, i[k], j[k])
 
 
 @nb.njit(cache=True)
-def _reach(ways: Ways, stops: NDArray[np.int64], between_m: Float) -> None:
+def _reach(ways: RoadNetwork, stops: NDArray[np.int64], between_m: Float) -> None:
     """Fill in the shortest ways ``(s, s)`` between the given nodes.
 
     Nodes are relaxed up and down the plot in turn, for some dozen sources side by side, until
@@ -235,7 +237,9 @@ def _reach(ways: Ways, stops: NDArray[np.int64], between_m: Float) -> None:
 
 
 @nb.njit(cache=True)
-def _sweep(ways: Ways, near: Float, stale: NDArray[np.bool_], order: tuple[int, int, int]) -> None:
+def _sweep(
+    ways: RoadNetwork, near: Float, stale: NDArray[np.bool_], order: tuple[int, int, int]
+) -> None:
     """Relax the stale nodes in order, for all columns of ``near`` (m, s)."""
     own = np.empty(_BLOCK)
     for node in range(order[0], order[1], order[2]):
@@ -258,7 +262,7 @@ def _sweep(ways: Ways, near: Float, stale: NDArray[np.bool_], order: tuple[int, 
 
 
 @nb.njit(cache=True)
-def _trace(ways: Ways, a: int, b: int) -> NDArray[np.int64]:
+def _trace(ways: RoadNetwork, a: int, b: int) -> NDArray[np.int64]:
     """Return the nodes on the shortest way from node a to node b (Dijkstra's, from b)."""
     near = np.full(ways.xy_m.shape[0], np.inf)
     onward = np.full(near.size, -1)
@@ -320,7 +324,7 @@ def robot_clock(robot: Robot, seconds_left: float) -> Clock:
 
 
 @inlined
-def travel_s(ground: Ground, clock: Clock, i: int, j: int) -> float:
+def travel_s(ground: TravelTable, clock: Clock, i: int, j: int) -> float:
     """Return the seconds from plant (or gate) i to plant (or gate) j, without the stop itself."""
     seconds = drive_m(ground, i, j) / clock.speed_m_s
     if i < 0 or j < 0:
@@ -334,7 +338,7 @@ def travel_s(ground: Ground, clock: Clock, i: int, j: int) -> float:
 
 
 @loop
-def driven_s(ground: Ground, clock: Clock, places: NDArray[np.int64]) -> float:
+def driven_s(ground: TravelTable, clock: Clock, places: NDArray[np.int64]) -> float:
     """Return the seconds of driving from place to place ``(k,)``, plants or the gate."""
     seconds = 0.0
     for k in range(1, places.size):
@@ -343,7 +347,7 @@ def driven_s(ground: Ground, clock: Clock, places: NDArray[np.int64]) -> float:
 
 
 @inlined
-def in_time(ground: Ground, clock: Clock, plant: int, arrive_s: float) -> bool:
+def in_time(ground: TravelTable, clock: Clock, plant: int, arrive_s: float) -> bool:
     """Tell whether a plant reached then fits into the day, way back to the gate included."""
     end_s = arrive_s + clock.visit_s
     if clock.returns:

@@ -16,16 +16,25 @@ import numpy as np
 
 from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import Company, Near, closeness, look, meet, near, pairs, regroup
+from fieldmon.infestation.belief import (
+    ClusterEstimate,
+    Near,
+    closeness,
+    look,
+    near,
+    pairs,
+    regroup,
+    update_clusters,
+)
 from fieldmon.plot.travel import Clock, travel_s
-from fieldmon.samplers.base import Looks, Scene, Stops
+from fieldmon.samplers.base import InspectionTimes, Scene, Stops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import Linked
     from fieldmon.plot.robot import Robot
-    from fieldmon.plot.travel import Ground
+    from fieldmon.plot.travel import TravelTable
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
@@ -47,22 +56,22 @@ _BLOCK = 32
 _NEARLY = 1.0 - 1e-9
 
 
-class _Mind(NamedTuple):
+class _BeliefArrays(NamedTuple):
     """What is believed during the day.
 
-    `worth` is of a find, 0 once inspected; `behind` is where in `both` each plant
+    `worth` is of a find, 0 once inspected; `behind` is where in `pair_chance` each plant
     stands with the one before it in its row, -1 if there is none. `dawn_...`: before the first
     look; `company` is what the looks since say of it, and `scale` ``(1,)`` what was made of that.
     """
 
     chance: Float
-    both: Float
+    pair_chance: Float
     worth: Float
     near: Near
     behind: Int
     dawn_chance: Float
     dawn_both: Float
-    company: Company
+    company: ClusterEstimate
     scale: Float
 
 
@@ -96,7 +105,7 @@ class _Rows(NamedTuple):
         return cls(np.zeros(ways), np.zeros(ways), last, stale, n_pays, pays, *room, most)
 
 
-class _Onward(NamedTuple):
+class _BestTours(NamedTuple):
     """The best rest of the day from a lane end, going up (0) or down (1) the plot, ``(2, r, 2)``.
 
     ``way`` is how the row is driven, or -1 where it is passed by; ``to`` the lane end
@@ -115,7 +124,7 @@ class _Onward(NamedTuple):
     home_s: Float
 
     @classmethod
-    def of(cls, n_rows: int) -> _Onward:
+    def of(cls, n_rows: int) -> _BestTours:
         """Return room for so many rows."""
         net, seconds, left_net, left_seconds = np.zeros((4, 2, n_rows, 2))
         way, to = np.full((2, 2, n_rows, 2), _NOWHERE)
@@ -149,7 +158,7 @@ class _Piece(NamedTuple):
     seconds: float
 
 
-_Work: TypeAlias = tuple[_Mind, _Rows, _Onward, Looks, _Either]
+_Work: TypeAlias = tuple[_BeliefArrays, _Rows, _BestTours, InspectionTimes, _Either]
 
 
 @dataclass(frozen=True)
@@ -184,39 +193,39 @@ class Adaptive:
                 f"Adaptive's beside_find must be a chance in 0..1, but it is {self.beside_find}."
             )
 
-    def looks(self, robot: Robot) -> Looks:
+    def looks(self, robot: Robot) -> InspectionTimes:
         """Return the looks to choose from; raise `SettingError` if the robot's table is unknown."""
         if not self.chooses_look:
-            return Looks(np.array([robot.visit_s]), np.array([robot.detects]))
+            return InspectionTimes(np.array([robot.visit_s]), np.array([robot.detects]))
         if robot.detection is not None:
             raise SettingError(
                 "A robot must state what each time of looking detects (viewpoints) if the sampler "
                 f"is to choose, but its detection is given outright ({robot.detection})."
             )
         seconds, detects = np.array(robot.viewpoints.steps).T
-        return Looks(robot.stop_s + seconds, detects)
+        return InspectionTimes(robot.stop_s + seconds, detects)
 
     def walk(self, scene: Scene, would_find: NDArray[np.bool_] | NDArray[np.uint8]) -> Stops:
         """Return the stops of the rest of the day."""
         looks = self.looks(scene.robot)
         stops = scene.room(float(looks.stop_s[0]))
         taken = np.zeros(len(stops.plant), np.uint8)
-        both = scene.both
-        if both is None:
-            both = pairs(scene.chance, scene.grid, self.beside_find)
+        pair_chance = scene.pair_chance
+        if pair_chance is None:
+            pair_chance = pairs(scene.chance, scene.grid, self.beside_find)
         n, n_rows = len(scene.chance), scene.grid.n_rows
-        mind = _Mind(
+        mind = _BeliefArrays(
             np.maximum(scene.chance, _LEAST),
-            both.copy(),
+            pair_chance.copy(),
             np.zeros(n),
             near(n),
             np.full(n, _NOWHERE),
             np.maximum(scene.chance, _LEAST),
-            both.copy(),
-            Company.none(n),
+            pair_chance.copy(),
+            ClusterEstimate.none(n),
             np.ones(1),
         )
-        onward = _Onward.of(n_rows)
+        onward = _BestTours.of(n_rows)
         _measure(scene.aisles.ground, scene.clock, onward.next_s, onward.home_s)
         k = _walk(
             scene.aisles.ground,
@@ -231,10 +240,10 @@ class Adaptive:
 
 @loop
 def _walk(
-    ground: Ground,
+    ground: TravelTable,
     clock: Clock,
-    plants: tuple[Linked, _Mind, NDArray[np.uint8]],
-    room: tuple[_Rows, _Onward, Looks, _Either],
+    plants: tuple[Linked, _BeliefArrays, NDArray[np.uint8]],
+    room: tuple[_Rows, _BestTours, InspectionTimes, _Either],
     start: tuple[int, float, NDArray[np.bool_]],
     stops: tuple[NDArray[np.int32], Float, NDArray[np.uint8]],
 ) -> int:
@@ -274,7 +283,7 @@ def _walk(
 
 @part
 def _visit(
-    ground: Ground,
+    ground: TravelTable,
     clock: Clock,
     stops: tuple[NDArray[np.int32], Float, NDArray[np.uint8]],
     move: tuple[int, int, int],
@@ -289,7 +298,9 @@ def _visit(
 
 
 @part
-def _fits(ground: Ground, clock: Clock, move: tuple[int, int], stop_s: float, now_s: float) -> bool:
+def _fits(
+    ground: TravelTable, clock: Clock, move: tuple[int, int], stop_s: float, now_s: float
+) -> bool:
     """Tell whether a stop of so long fits into the day, way back to the gate included."""
     at, plant = move
     end_s = now_s + travel_s(ground, clock, at, plant) + stop_s
@@ -299,7 +310,9 @@ def _fits(ground: Ground, clock: Clock, move: tuple[int, int], stop_s: float, no
 
 
 @inlined
-def _best_look(looks: Looks, worth: float, chance: float, price: float) -> tuple[float, int]:
+def _best_look(
+    looks: InspectionTimes, worth: float, chance: float, price: float
+) -> tuple[float, int]:
     """Return what the best look gains at a price, and which it is."""
     best, look = -np.inf, 0
     for k in range(looks.stop_s.size):
@@ -310,7 +323,7 @@ def _best_look(looks: Looks, worth: float, chance: float, price: float) -> tuple
 
 
 @part
-def _worths(linked: Linked, mind: _Mind, closed: NDArray[np.bool_], spares: float) -> None:
+def _worths(linked: Linked, mind: _BeliefArrays, closed: NDArray[np.bool_], spares: float) -> None:
     """Work out what a find would be worth, and where each plant's pair with the last one stands."""
     chance = mind.chance
     for i in range(chance.size):
@@ -325,7 +338,7 @@ def _worths(linked: Linked, mind: _Mind, closed: NDArray[np.bool_], spares: floa
 
 
 @loop
-def _measure(ground: Ground, clock: Clock, next_s: Float, home_s: Float) -> None:
+def _measure(ground: TravelTable, clock: Clock, next_s: Float, home_s: Float) -> None:
     """Find the seconds from every lane end to the next lanes in line, and to the gate.
 
     In the table of all ways each of them stands far from the last: it is read once a day.
@@ -349,17 +362,17 @@ def _measure(ground: Ground, clock: Clock, next_s: Float, home_s: Float) -> None
 
 @part
 def _look(
-    ground: Ground,
+    ground: TravelTable,
     linked: Linked,
-    mind: _Mind,
+    mind: _BeliefArrays,
     rows: _Rows,
     result: tuple[int, bool, float],
 ) -> None:
     """Close a plant and let what was seen teach about those near it."""
     i, found, detects = result
-    believed = mind.chance, mind.both
+    believed = mind.chance, mind.pair_chance
     n = look(believed, linked, (i, found), (detects, True), mind.near)
-    meet((mind.dawn_chance, mind.dawn_both), linked, (i, found, detects), mind.company)
+    update_clusters((mind.dawn_chance, mind.dawn_both), linked, (i, found, detects), mind.company)
     mind.worth[i] = 0.0
     for t in range(n):
         near_it = mind.near.plant[t]
@@ -367,19 +380,22 @@ def _look(
 
 
 @part
-def _regroup(linked: Linked, mind: _Mind, rows: _Rows) -> None:
+def _regroup(linked: Linked, mind: _BeliefArrays, rows: _Rows) -> None:
     """Take to heart how much infested plants stand together, once it differs enough."""
     scale = closeness(mind.company)
     if abs(scale - mind.scale[0]) < _NOTABLE * mind.scale[0]:
         return
-    regroup((mind.chance, mind.both), linked, scale / max(mind.scale[0], _LEAST))
+    regroup((mind.chance, mind.pair_chance), linked, scale / max(mind.scale[0], _LEAST))
     mind.scale[0] = scale
     rows.stale[:] = True
 
 
 @part
 def _next_in(
-    ground: Ground, work: tuple[_Mind, Looks], piece: _Piece, state: tuple[int, float]
+    ground: TravelTable,
+    work: tuple[_BeliefArrays, InspectionTimes],
+    piece: _Piece,
+    state: tuple[int, float],
 ) -> tuple[int, int]:
     """Return the next plant of a piece that is worth its stop and the look it gets, or -1, 0."""
     mind, looks = work
@@ -401,7 +417,9 @@ def _next_in(
 
 
 @part
-def _best_left(ground: Ground, clock: Clock, work: _Work, at: int, now_s: float) -> tuple[int, int]:
+def _best_left(
+    ground: TravelTable, clock: Clock, work: _Work, at: int, now_s: float
+) -> tuple[int, int]:
     """Return the plant with the most worth for its time that still fits into the day, or -1.
 
     And the look it gets.
@@ -431,7 +449,7 @@ def _best_left(ground: Ground, clock: Clock, work: _Work, at: int, now_s: float)
 
 
 @part
-def _least_s(ground: Ground, clock: Clock, at: int, row: int) -> float:
+def _least_s(ground: TravelTable, clock: Clock, at: int, row: int) -> float:
     """Return seconds that it takes at least from a place to any plant of a row."""
     own = _row_of(ground, at)
     if own < 0 or ground.corridor[own] == ground.corridor[row]:
@@ -445,7 +463,7 @@ def _least_s(ground: Ground, clock: Clock, at: int, row: int) -> float:
 
 @part
 def _first_price(
-    ground: Ground,
+    ground: TravelTable,
     clock: Clock,
     work: _Work,
     at: int,
@@ -474,7 +492,7 @@ def _first_price(
 
 @part
 def _plan_on(
-    ground: Ground,
+    ground: TravelTable,
     clock: Clock,
     work: _Work,
     state: tuple[int, float, float],
@@ -497,14 +515,14 @@ def _plan_on(
 
 
 @part
-def _row_of(ground: Ground, at: int) -> int:
+def _row_of(ground: TravelTable, at: int) -> int:
     """Return the row of a plant, -1 for the gate; of one integer type, as numba wants it."""
     return 0 + ground.row[at] if at >= 0 else _NOWHERE
 
 
 @part
 def _plan_at(
-    ground: Ground,
+    ground: TravelTable,
     clock: Clock,
     work: _Work,
     state: tuple[int, float],
@@ -515,7 +533,7 @@ def _plan_at(
 
 @part
 def _replan(
-    ground: Ground,
+    ground: TravelTable,
     clock: Clock,
     work: _Work,
     state: tuple[int, float],
@@ -529,7 +547,7 @@ def _replan(
             _value_row(ground, clock, (mind, rows, looks), (row, price))
             rows.stale[row] = False
     for down in range(2):
-        _go(clock, rows, onward, (down, own, price))
+        _extend(clock, rows, onward, (down, own, price))
     if at < 0:
         _, seconds, onto = _leave(ground, clock, onward, 2 * (rows.stale.size), price)
         return _first_piece(rows, onward, onto, seconds)
@@ -538,9 +556,9 @@ def _replan(
 
 @part
 def _value_row(
-    ground: Ground,
+    ground: TravelTable,
     clock: Clock,
-    work: tuple[_Mind, _Rows, Looks],
+    work: tuple[_BeliefArrays, _Rows, InspectionTimes],
     state: tuple[int, float],
 ) -> None:
     """Work out what each way of driving a row comes to at a price.
@@ -577,7 +595,7 @@ def _value_row(
 
 
 @inlined
-def _pays_from(looks: Looks, price: float) -> float:
+def _pays_from(looks: InspectionTimes, price: float) -> float:
     """Return what a find must be expected to be worth for any look to pay; a little less."""
     least = np.inf
     for k in range(looks.stop_s.size):
@@ -586,7 +604,7 @@ def _pays_from(looks: Looks, price: float) -> float:
 
 
 @inlined
-def _most_in(mind: _Mind, rows: _Rows, block: int) -> float:
+def _most_in(mind: _BeliefArrays, rows: _Rows, block: int) -> float:
     """Return the most that a find in a block is expected to be worth."""
     most = rows.most[block]
     if most < 0.0:
@@ -599,19 +617,19 @@ def _most_in(mind: _Mind, rows: _Rows, block: int) -> float:
 
 # copied: handing over all of a mind takes longer than this
 @inlined
-def _after_clean(mind: _Mind, i: int, detects: float) -> float:
+def _after_clean(mind: _BeliefArrays, i: int, detects: float) -> float:
     """Return the chance of plant i once the one before it was looked at and seemed clean."""
     p, e = mind.chance[i], mind.behind[i]
     if e < 0:
         return float(p)
     q = mind.chance[i - 1]
-    c = min(mind.both[e], p, q)
+    c = min(mind.pair_chance[e], p, q)
     return float((p - detects * c) / max(1.0 - detects * q, _LEAST))
 
 
 @part
 def _in_and_out(
-    ground: Ground, clock: Clock, rows: _Rows, state: tuple[int, int], price: float
+    ground: TravelTable, clock: Clock, rows: _Rows, state: tuple[int, int], price: float
 ) -> None:
     """Value a row that is left by the end it was entered by, as far in as pays best."""
     row, way = state
@@ -632,7 +650,7 @@ def _in_and_out(
 
 
 @part
-def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) -> None:
+def _through(ground: TravelTable, clock: Clock, rows: _Rows, row: int, price: float) -> None:
     """Value a row that is driven from end to end, either way."""
     first, n = ground.row_start[row], rows.n_pays[row]
     gains, looking_s = 0.0, 0.0
@@ -647,10 +665,10 @@ def _through(ground: Ground, clock: Clock, rows: _Rows, row: int, price: float) 
 
 
 @part
-def _go(
+def _extend(
     clock: Clock,
     rows: _Rows,
-    onward: _Onward,
+    onward: _BestTours,
     state: tuple[int, int, float],
 ) -> None:
     """Find the best rest of the day from every lane end, row after row up or down the plot."""
@@ -683,7 +701,7 @@ def _go(
 
 
 @part
-def _after(onward: _Onward, place: tuple[int, int, int], price: float) -> None:
+def _after(onward: _BestTours, place: tuple[int, int, int], price: float) -> None:
     """Find the best rest of the day after a row: home, or to one of the next rows in line."""
     down, row, end = place
     n_rows = onward.net.shape[1]
@@ -705,7 +723,7 @@ def _after(onward: _Onward, place: tuple[int, int, int], price: float) -> None:
 
 @part
 def _leave(
-    ground: Ground, clock: Clock, onward: _Onward, here: int, price: float
+    ground: TravelTable, clock: Clock, onward: _BestTours, here: int, price: float
 ) -> tuple[float, float, tuple[int, int, int]]:
     """Return the best way on from a lane end or the gate: its net, seconds, and where to."""
     gate = ground.between_m.shape[0] - 1
@@ -728,7 +746,7 @@ def _leave(
 
 @part
 def _first_piece(
-    rows: _Rows, onward: _Onward, onto: tuple[int, int, int], seconds: float
+    rows: _Rows, onward: _BestTours, onto: tuple[int, int, int], seconds: float
 ) -> _Piece:
     down, row, end = onto
     if row < 0:
@@ -738,7 +756,7 @@ def _first_piece(
 
 
 @part
-def _from_row(ground: Ground, clock: Clock, work: _Work, at: int, price: float) -> _Piece:
+def _from_row(ground: TravelTable, clock: Clock, work: _Work, at: int, price: float) -> _Piece:
     """Return the first piece of the best plan from the middle of a row.
 
     The row is left by either end, with the plants that way; before that, plants the other way
@@ -768,7 +786,7 @@ def _from_row(ground: Ground, clock: Clock, work: _Work, at: int, price: float) 
 
 @part
 def _along(
-    ground: Ground, clock: Clock, rows: _Rows, either: _Either, state: tuple[int, int, float]
+    ground: TravelTable, clock: Clock, rows: _Rows, either: _Either, state: tuple[int, int, float]
 ) -> None:
     """Value one direction along a row: all the way out, and there and back as far as it pays."""
     at, end, price = state

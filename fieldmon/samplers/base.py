@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 NEVER = -1
 
 
-class Looks(NamedTuple):
+class InspectionTimes(NamedTuple):
     """The looks to choose from at a stop, the shortest first.
 
     Seconds of the whole stop, ``(l,)``, and the chance to find what is there, ``(l,)``.
@@ -80,7 +80,7 @@ class Scene:
     seconds_left: float = 0.0
     trail: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
     key: np.uint64 = np.uint64(0)  # noqa: RUF009 - a number, not a call with effects
-    both: NDArray[np.float64] | None = None
+    pair_chance: NDArray[np.float64] | None = None
 
     @property
     def grid(self) -> PlantGrid:
@@ -112,25 +112,25 @@ class Scene:
 class Sampler(Protocol):
     """Decides which plants come next.
 
-    One that reads neither ``chance`` nor ``both`` of a scene may say so by ``blind = True``: what
-    is believed is then not worked out for it.
+    One that reads neither ``chance`` nor ``pair_chance`` of a scene may say so by ``blind = True``:
+    what is believed is then not worked out for it.
     """
 
     def walk(self, scene: Scene, would_find: NDArray[Any]) -> Stops:
         """Return the stops from here to the end of the day.
 
         ``would_find`` (n,) says of each plant whether an inspection today would find it infested.
-        One that chooses how long to look (see `ChoosesLook`) is told from which of its looks on,
-        counted from 1, and 0 where none would find anything.
+        One that chooses how long to look (see `ChoosesInspectionTime`) is told from which of its
+        looks on, counted from 1, and 0 where none would find anything.
         A sampler may read an entry only when it has driven to that plant and inspected it: plants
         before the first find are those of a day on which nothing is found.
         """
         ...
 
 
-class ChoosesLook(Sampler, Protocol):
+class ChoosesInspectionTime(Sampler, Protocol):
     """A sampler that decides at each stop how long to look."""
 
-    def looks(self, robot: Robot) -> Looks:
+    def looks(self, robot: Robot) -> InspectionTimes:
         """Return what it chooses from."""
         ...

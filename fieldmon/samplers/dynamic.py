@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import Csr, PlantGrid
-    from fieldmon.plot.travel import Ground
+    from fieldmon.plot.travel import TravelTable
 
 # the upper bits of a positive float64 rise with it, in 8 steps an octave: 7 to 13 % each
 _LEVEL_BITS = 49
@@ -103,7 +103,7 @@ class Dynamic:
 
 @loop
 def _walk(
-    ground: Ground,
+    ground: TravelTable,
     clock: Clock,
     plants: tuple[Csr, NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]],
     lists: tuple[NDArray[np.bool_], _Open],
@@ -139,7 +139,7 @@ def _walk(
 
 
 @inlined
-def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) -> int:
+def _open(ground: TravelTable, opened: _Open, closed: NDArray[np.bool_], plant: int) -> int:
     """Put a plant on the open list; return how many joined it (0 or 1)."""
     if closed[plant] or opened.flag[plant]:
         return 0
@@ -153,7 +153,7 @@ def _open(ground: Ground, opened: _Open, closed: NDArray[np.bool_], plant: int) 
 
 @part
 def _refill(
-    ground: Ground,
+    ground: TravelTable,
     opened: _Open,
     plants: tuple[NDArray[np.bool_], NDArray[np.int64]],
     limits: tuple[int, int],
@@ -219,7 +219,7 @@ def _least_of(
 
 @inlined
 def _nearest(
-    ground: Ground, clock: Clock, opened: _Open, lane_y_m: NDArray[np.float64], at: int
+    ground: TravelTable, clock: Clock, opened: _Open, lane_y_m: NDArray[np.float64], at: int
 ) -> tuple[int, float]:
     """Return the open plant that is reached first from `at` (a plant or the gate), and the seconds.
 
@@ -250,7 +250,7 @@ def _nearest(
 
 @inlined
 def _nearest_in(
-    ground: Ground, clock: Clock, opened: _Open, at: int, row: int
+    ground: TravelTable, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
     """Return the open plant of a row that is reached first, and the seconds."""
     if at >= 0 and ground.corridor[row] == ground.corridor[ground.row[at]]:
@@ -260,7 +260,7 @@ def _nearest_in(
 
 @inlined
 def _nearest_end(
-    ground: Ground, clock: Clock, opened: _Open, at: int, row: int
+    ground: TravelTable, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
     """Return the outermost open plant of another row that is reached first, and the seconds.
 
@@ -280,7 +280,7 @@ def _nearest_end(
 
 @inlined
 def _nearest_along(
-    ground: Ground, clock: Clock, opened: _Open, at: int, row: int
+    ground: TravelTable, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
     """Return the open plant of a row in the same aisle that is reached first, and the seconds."""
     best, best_s = -1, np.inf

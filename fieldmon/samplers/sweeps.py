@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.plot.travel import Ground
+    from fieldmon.plot.travel import TravelTable
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def _sweep(scene: Scene, every: int) -> Stops:
 
 @loop
 def _walk(
-    ground: Ground,
+    ground: TravelTable,
     clock: Clock,
     plants: tuple[NDArray[np.int32], NDArray[np.int32]],
     start: tuple[int, int, int, int],

@@ -1,6 +1,6 @@
 """The thesis's seven samplers without prior information: snake, neighbor, random.
 
-As its chapter 4 describes them (not as its listings ran, see `fieldmon.studies.thesis.chapter4`), on any plot.
+As its chapter 4 describes them (not as its listings ran, see `fieldmon.studies`), on any plot.
 A *station* is where the robot stops: one plant for the snake and the random sampler, the plants
 that face each other across an aisle for the neighbor sampler.
 """
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.plot.travel import Ground
+    from fieldmon.plot.travel import TravelTable
 
 _ONLINE = 0
 # a sweep over a plot of which all was visited today ends after so many times round
@@ -204,7 +204,7 @@ def _walked(
 
 @loop
 def _walk(
-    ground: Ground,
+    ground: TravelTable,
     clock: Clock,
     stations: Stations,
     plants: tuple[NDArray[np.bool_], NDArray[np.int32]],
@@ -241,7 +241,7 @@ def _walk(
 
 @part
 def _next_here(
-    ground: Ground,
+    ground: TravelTable,
     stations: Stations,
     plants: tuple[NDArray[np.bool_], NDArray[np.int32], int],
     position: int,

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.compute.random_streams import Chance
+    from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.infestation.belief import Belief
     from fieldmon.planning.workday import Workday
     from fieldmon.plot.grid import PlantGrid
@@ -174,7 +174,7 @@ def days(
     sampler: Sampler,
     start: Start,
     settings: SeasonSettings,
-    chance: Chance,
+    chance: RandomStreams,
 ) -> Iterator[Day]:
     """Yield the days of a season, one by one, as they happen.
 
@@ -203,7 +203,7 @@ def days(
             aisles=aisles,
             robot=robot,
             chance=start.chance if belief is None else belief.chance,
-            both=None if belief is None else belief.both,
+            pair_chance=None if belief is None else belief.pair_chance,
             last_inspected=last_inspected,
             day=number,
             at=at,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.infestation.spread import Spread
@@ -77,7 +77,7 @@ def _laid(digest: str, held: _Held) -> tuple[Plot, NDArray[np.float64]]:  # noqa
 
 
 def _row(chunk: Chunk, plot: Plot, chance: NDArray[np.float64], seed: int) -> dict[str, Any]:
-    case, luck = chunk.case, Chance(seed)
+    case, luck = chunk.case, RandomStreams(seed)
     infested = start_infested(chance, case.infested, luck.of("start"))
     settings = SeasonSettings(n_days=chunk.n_days, spread=Spread(case.spread))
     robot = Robot(hours=case.hours, look_s=case.look_s)

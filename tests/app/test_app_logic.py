@@ -13,7 +13,7 @@ from app.comparing import Arm, Asked, Comparison, curve, estimate, outcomes
 from app.edits import Edit, edited, points_of
 from app.units import DATES, Units
 from fieldmon.errors import SettingError
-from fieldmon.planning.plan import Plans, plan_from
+from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.plot import Plot
@@ -182,7 +182,7 @@ def test_each_pixel_of_a_picture_shows_the_most_important_plant_on_it(monkeypatc
 
 def test_numbers_of_stops_do_not_cover_each_other_where_the_whole_route_is_in_view(plot):
     chance = np.random.default_rng(1).random(len(plot.grid))
-    route = plan_from(plot, chance, Plans()).route
+    route = plan_from(plot, chance, PlanSettings()).route
     numbers = next(layer for layer in maps.route(route) if layer.id == "numbers")
     shown = [int(row["n"]) for row in numbers.data]
     assert 1 in shown

@@ -18,8 +18,8 @@ from app import maps
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.read import read_lines, read_plots, read_records
-from fieldmon.monitoring import Project, Results, Setup
-from fieldmon.planning.plan import Plans, first_day
+from fieldmon.monitoring import Results, Season, SeasonSetup
+from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.plot import Plot
 from tests.app.app_driving import zipped
 
@@ -95,7 +95,7 @@ def sample():
     field = replace(field, paths=read_lines(ESTATE + "tracks.geojson").value)
     plot = Plot.of(field)
     records = read_records(ESTATE + "mite_records.csv", RecordOptions(), near=field).value
-    return plot, first_day(plot, records, np.datetime64("2026-11-16"), Plans())
+    return plot, first_day(plot, records, np.datetime64("2026-11-16"), PlanSettings())
 
 
 def pixels(grid, lonlat, shape, room_px=maps.PAGE_PX):
@@ -149,7 +149,7 @@ def test_plants_and_route_are_drawn_where_they_are(page, address):
 def test_nothing_is_asked_of_the_world(page, address):
     shown(page, address)
     for name in ("Map", "Scout", "Season", "Compare", "Plot & records", "Report", "Simulate",
-                 "Study", "Today"):  # fmt: skip
+                 "Study", "DayPlan"):  # fmt: skip
         page.get_by_role("link", name=name, exact=True).click()
         page.get_by_role("link", name=name, exact=True).and_(
             page.locator("[aria-current=page]")
@@ -234,7 +234,7 @@ def scale_px_of_m(page):
 
 
 def season(path, plot):
-    return Project.create(path, plot, Observations.none(), Setup(date(2026, 11, 16)))
+    return Season.create(path, plot, Observations.none(), SeasonSetup(date(2026, 11, 16)))
 
 
 def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
@@ -262,7 +262,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     title = page.get_by_role("heading", name="מטע הדרים").bounding_box()
     assert title["width"] > 50
     gate, size = a_gate_and_an_area_are_drawn_by_clicks(page)
-    page.get_by_role("link", name="Today").click()
+    page.get_by_role("link", name="DayPlan").click()
     far = still(page)
     first = stops(page)
     assert len(first) > 10
@@ -274,7 +274,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     moved = [np.mean(np.abs(after - other).max(axis=2) > 30) for other in (near, far)]
     assert moved[0] < 0.2 * moved[1], f"what is said above the map lost its zoom: {moved}"
     assert stops(page) == first
-    project = Project(served_seasons / "עונה 2026.gpkg")
+    project = Season(served_seasons / "עונה 2026.gpkg")
     what_was_drawn_is_where_the_clicks_were(project.plot, gate, size)
     page.get_by_role("link", name="Season").click()
     box = page.get_by_role("spinbutton", name="Stops done")
@@ -284,7 +284,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     page.get_by_role("tabpanel").get_by_role("button", name="Record", exact=True).first.click()
     page.get_by_text("8 recorded").wait_for(timeout=60_000)
     page.reload()
-    page.get_by_role("link", name="Today").click()
+    page.get_by_role("link", name="DayPlan").click()
     page.get_by_text("8 plants inspected today so far").wait_for(timeout=60_000)
     rest = stops(page)
     assert len(first) - 20 < len(rest) < len(first)
@@ -310,7 +310,7 @@ def a_gate_and_an_area_are_drawn_by_clicks(page):
     assert plants.inner_text() == before
     size = still(page).shape
     with page.expect_download() as download:
-        page.get_by_role("link", name="Today").click()
+        page.get_by_role("link", name="DayPlan").click()
         page.get_by_role("button", name="Download the route").click()
     route = json.loads(download.value.path().read_text(encoding="utf-8"))
     return tuple(route["features"][0]["geometry"]["coordinates"][0]), size

@@ -13,7 +13,7 @@ from streamlit.testing.v1 import AppTest
 
 from app import warming
 from fieldmon.compute.jit_progress import FIRST_USE
-from fieldmon.monitoring import Project
+from fieldmon.monitoring import Season
 from tests.app.app_driving import (
     PAGES,
     begun,
@@ -431,7 +431,7 @@ def test_a_raster_of_risk_changes_the_chances_and_the_season_keeps_it(app, seaso
     go(app, "today")
     assert float(metric(app, "Expected finds")) > before
     begun(app)
-    risk = Project(seasons_folder / "Gate 2026.gpkg").risk
+    risk = Season(seasons_folder / "Gate 2026.gpkg").risk
     assert risk is not None
     assert 0.1 < np.nanmean(risk) < 0.4
 

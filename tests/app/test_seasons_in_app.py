@@ -10,7 +10,7 @@ import pytest
 
 from app import figures
 from fieldmon.errors import SettingError
-from fieldmon.monitoring import Project, Results
+from fieldmon.monitoring import Results, Season
 from tests.app.app_driving import begun, go, heading, layer, metric, opened, press, texts_of
 
 
@@ -32,7 +32,7 @@ def app(begun_file, seasons_folder):
 
 @pytest.fixture
 def season(seasons_folder):
-    return lambda: Project(seasons_folder / "Gate 2026.gpkg")
+    return lambda: Season(seasons_folder / "Gate 2026.gpkg")
 
 
 def tap(app, key):
@@ -245,7 +245,7 @@ def test_a_file_that_does_not_fit_is_a_sentence(app, season, data):
 
 def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(app, season, tmp_path):
     mine = season()
-    twin = Project.create(tmp_path / "twin.gpkg", mine.plot, mine.observations, mine.setup)
+    twin = Season.create(tmp_path / "twin.gpkg", mine.plot, mine.observations, mine.setup)
     for day in range(16, 26):
         on = date(2026, 11, day)
         app.date_input(key="day Gate 2026").set_value(on).run()

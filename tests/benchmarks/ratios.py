@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.planning.workday import plan_day
 from fieldmon.plot.layout import rectangle
@@ -66,7 +66,7 @@ def nights():
 
     grid = rectangle(SIDE, SIDE)
     infested = np.random.default_rng(1).random(len(grid)) < 0.1
-    key = Chance(1).key("spread")
+    key = RandomStreams(1).key("spread")
     ours, after = best_of(lambda: night(grid, infested, Spread(0.5), key), 50)
     square, rng = infested.reshape(SIDE, SIDE), np.random.default_rng(2)
     arrays, other = best_of(lambda: night_in_numpy(square, 0.5, rng), 20)
@@ -85,7 +85,7 @@ def published():
     trial = Trial(field, Strategy(1), 3, rules=AS_PUBLISHED)
     slips = AS_PUBLISHED.without("night_other_face", "phantom_infections")
     walk, dark = walk_of(trial, slips), night_of(trial, slips)
-    keys = draws.keys(Chance(1), runs, trial.hours.days)
+    keys = draws.keys(RandomStreams(1), runs, trial.hours.days)
     ours, (days, _) = best_of(lambda: listings.repeat(walk, dark, trial.START, 0, keys), 20)
     found = days[:, :, listings.FOUND].sum()
     known = days[:, 0, listings.INFESTED].sum() + days[:, :, listings.NEW_TRUE].sum()

@@ -19,14 +19,14 @@ from pathlib import Path
 import numpy as np
 
 from app import maps
-from fieldmon.compute.random_streams import Chance
-from fieldmon.infestation.belief import MeanField, Pairs, overnight, pairs
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.belief import IndependentPlants, Pairs, overnight, pairs
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
 from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.io.writers.geojson import RouteNotes, write_route
-from fieldmon.monitoring import Project, Setup
-from fieldmon.planning.plan import Plans, plan_from
+from fieldmon.monitoring import Season, SeasonSetup
+from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_day
 from fieldmon.plot.layout import Planting, lay
@@ -75,18 +75,20 @@ def measure(n_plants):
     )
     n = len(grid)
     infested = rng.random(n) < 0.1
-    spread, key = Spread(0.5), Chance(1).key("spread")
+    spread, key = Spread(0.5), RandomStreams(1).key("spread")
     took["a night, a tenth infested"], _ = best_of(lambda: night(grid, infested, spread, key))
     took["a night of the chance map"], _ = best_of(lambda: overnight(chance, grid, spread))
     last = np.full(n, NEVER, np.int32)
     # as the app, the commands and a season plan: with what is believed of plants side by side
-    took["what is believed of neighbours"], both = best_of(lambda: pairs(chance, grid))
-    scene = Scene(aisles, Robot(), chance, last, seconds_left=Robot().day_s, both=both)
+    took["what is believed of neighbours"], pair_chance = best_of(lambda: pairs(chance, grid))
+    scene = Scene(
+        aisles, Robot(), chance, last, seconds_left=Robot().day_s, pair_chance=pair_chance
+    )
     for name in SAMPLERS:
         took[f"a day's plan and route: {name}"], _ = best_of(
             lambda name=name: route_of(scene, plan_day(scene, sampler(name)))
         )
-    start = Start(start_infested(chance, 0.02, Chance(1).of("start")), chance)
+    start = Start(start_infested(chance, 0.02, RandomStreams(1).of("start")), chance)
     for name in THESIS:
         took[f"a season of 25 days: {name}"], _ = best_of(
             lambda name=name: season(aisles, name, start)
@@ -97,25 +99,25 @@ def measure(n_plants):
 
 def season(aisles, name, start, believe=Pairs.of):
     settings = SeasonSettings(n_days=25, spread=Spread(0.1), believe=believe)
-    walk = days(aisles, Robot(), sampler(name), start, settings, Chance(2))
+    walk = days(aisles, Robot(), sampler(name), start, settings, RandomStreams(2))
     return [day.detection_pct for day in walk]
 
 
 def files_and_map(plot, chance, observations):
     """Return the seconds of writing the route, of a season's file, and of the first map."""
     took = {}
-    today = plan_from(plot, chance, Plans())
+    today = plan_from(plot, chance, PlanSettings())
     with tempfile.TemporaryDirectory() as folder:
         to = Path(folder)
         notes = RouteNotes("plot", "adaptive")
         took["writing the route"], _ = best_of(
             lambda: write_route(to / "route.geojson", today.route, notes)
         )
-        setup = Setup(date(2026, 5, 20))
+        setup = SeasonSetup(date(2026, 5, 20))
         took["beginning a season's file"], _ = best_of(
-            lambda: Project.create(to / "season.gpkg", plot, observations, setup), 1
+            lambda: Season.create(to / "season.gpkg", plot, observations, setup), 1
         )
-        took["opening a season's file"], _ = best_of(lambda: Project(to / "season.gpkg"))
+        took["opening a season's file"], _ = best_of(lambda: Season(to / "season.gpkg"))
 
     def first_map():
         plants = maps.plants(plot.grid, maps.by_chance(chance), maps.unsaid)
@@ -145,7 +147,7 @@ def per_visit_and_night():
     infested = np.random.default_rng(1).random(n) < 0.1
     nights = {
         "insects": best_of(
-            lambda: night(aisles.grid, infested, Spread(0.5), Chance(1).key("x")), 200
+            lambda: night(aisles.grid, infested, Spread(0.5), RandomStreams(1).key("x")), 200
         )[0],
         "chance map": best_of(lambda: overnight(chance, aisles.grid, Spread(0.5)), 200)[0],
     }
@@ -167,10 +169,10 @@ def seasons():
 
     aisles = Aisles.of(rectangle(91, 91))
     chance = np.full(len(aisles.grid), 0.02)
-    start = Start(start_infested(chance, 0.02, Chance(1).of("start")), chance)
+    start = Start(start_infested(chance, 0.02, RandomStreams(1).of("start")), chance)
     took = {}
     for name in (*THESIS, "adaptive"):
-        for how, believe in (("pairs", Pairs.of), ("one by one", MeanField)):
+        for how, believe in (("pairs", Pairs.of), ("one by one", IndependentPlants)):
             took[f"a season on 91 x 91 plants: {name}, {how}"], _ = best_of(
                 lambda name=name, believe=believe: season(aisles, name, start, believe), 50
             )

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
 from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS
 from fieldmon.studies.thesis.chapter5.seasons import Luck, Trial, play
@@ -12,7 +12,7 @@ from fieldmon.studies.thesis.chapter5.study import run_prior
 
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_season_of_chapter_5_in_scenario_c(benchmark, name):
-    trial, luck = Trial(name, CALIBRATED, 10.0), Luck.of(Chance(1))
+    trial, luck = Trial(name, CALIBRATED, 10.0), Luck.of(RandomStreams(1))
     assert len(benchmark(play, square(10.0), trial, luck)) == 25
 
 

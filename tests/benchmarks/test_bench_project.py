@@ -5,10 +5,10 @@ from datetime import date, timedelta
 import numpy as np
 import pytest
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import start_infested
-from fieldmon.monitoring import Project, Results, Setup
+from fieldmon.monitoring import Results, Season, SeasonSetup
 from fieldmon.planning.workday import outcomes
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle
@@ -24,8 +24,8 @@ def plot_of(n_rows, n_plants):
 
 
 def season_of(path, plot, n_days):
-    project = Project.create(path, plot, Observations.none(), Setup(BEGINS))
-    infested = start_infested(project.morning(BEGINS), 0.02, Chance(1).of("start"))
+    project = Season.create(path, plot, Observations.none(), SeasonSetup(BEGINS))
+    infested = start_infested(project.morning(BEGINS), 0.02, RandomStreams(1).of("start"))
     for day in range(n_days):
         work(project, day, infested)
     return project
@@ -34,7 +34,7 @@ def season_of(path, plot, n_days):
 def work(project, day, infested):
     on = BEGINS + timedelta(days=day)
     plants = project.plan(on).route.plant
-    found = outcomes(infested, 0.84, Chance(1).key("inspect", day))[plants]
+    found = outcomes(infested, 0.84, RandomStreams(1).key("inspect", day))[plants]
     project.record(Results.of(plants, found, np.datetime64(on, "D")), f"day {day}")
 
 
@@ -51,7 +51,7 @@ def test_opening_a_season_and_its_status(benchmark, season):
     on = BEGINS + timedelta(days=n_days - 1)
     benchmark.extra_info["megabytes"] = round(project.path.stat().st_size / 1e6, 1)
     benchmark.extra_info["plants"] = len(project.plot.grid)
-    status = benchmark(lambda: Project(project.path).status(on))
+    status = benchmark(lambda: Season(project.path).status(on))
     assert status.inspected > 1000
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_day
@@ -19,11 +19,11 @@ N = len(AISLES.grid)
 
 @pytest.mark.parametrize("name", sorted(SAMPLERS))
 def test_season_of_scenario_c(benchmark, name):
-    start = Start(Chance(1).of("start").random(N) < 0.02, np.full(N, 0.02))
+    start = Start(RandomStreams(1).of("start").random(N) < 0.02, np.full(N, 0.02))
     settings = SeasonSettings(n_days=25, spread=Spread(0.1))
 
     def season():
-        walk = days(AISLES, Robot(), sampler(name), start, settings, Chance(2))
+        walk = days(AISLES, Robot(), sampler(name), start, settings, RandomStreams(2))
         return [day.detection_pct for day in walk]
 
     assert len(benchmark(season)) == 25
@@ -34,7 +34,7 @@ def test_plan_and_route_of_a_day_on_scenario_c(benchmark, name):
     scene = Scene(
         aisles=AISLES,
         robot=Robot(),
-        chance=Chance(1).of("prior").beta(0.3, 3.0, N).clip(1e-6, 1 - 1e-6),
+        chance=RandomStreams(1).of("prior").beta(0.3, 3.0, N).clip(1e-6, 1 - 1e-6),
         last_inspected=np.full(N, NEVER, np.int32),
         seconds_left=Robot().day_s,
     )
@@ -43,6 +43,6 @@ def test_plan_and_route_of_a_day_on_scenario_c(benchmark, name):
 
 
 def test_night_on_scenario_c(benchmark):
-    infested = Chance(1).of("start").random(N) < 0.1
-    after = benchmark(night, AISLES.grid, infested, Spread(0.5), Chance(1).key("spread"))
+    infested = RandomStreams(1).of("start").random(N) < 0.1
+    after = benchmark(night, AISLES.grid, infested, Spread(0.5), RandomStreams(1).key("spread"))
     assert after.sum() > infested.sum()

@@ -11,10 +11,10 @@ import time
 import pytest
 import shapely
 from shapely import MultiPolygon
-from test_cli import run  # noqa: F401 - a fixture
 
 from fieldmon.plot.field import Field
 from fieldmon.plot.projection import Frame
+from tests.cli.test_main import run  # noqa: F401 - a fixture
 from tests.parcels import many, write_geojson
 
 FRAME = Frame(5.0, 45.0)
@@ -112,7 +112,7 @@ def test_a_run_that_is_stopped_keeps_what_is_finished_and_goes_on(tmp_path, summ
     write_geojson(tmp_path / "parcels.geojson", shapes)
     # whoever runs the tests in the background has children that do not hear Ctrl-C
     hears = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-    code = f"{hears}from fieldmon.cli import main; main()"
+    code = f"{hears}from fieldmon.cli.main import main; main()"
     words = [sys.executable, "-c", code, "plan", "parcels.geojson", "--all", "-o", "r"]
     command = subprocess.Popen(
         words, cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True

@@ -149,9 +149,9 @@ def test_a_season_begins_with_rasters_and_maps_its_days(run, tmp_path):
         assert f"Chance map written to {season}.tif" in out
     (_, plain_east), (_, east) = chances("plain.tif"), chances("season.tif")
     assert east > plain_east + 0.2
-    from fieldmon.monitoring import Project
+    from fieldmon.monitoring import Season
 
-    said = [remark.sentence for remark in Project("season.gpkg").remarks()]
+    said = [remark.sentence for remark in Season("season.gpkg").remarks()]
     assert any("Risk by chance" in sentence for sentence in said)
     code, _, err = run("plan", "season.gpkg", *day, "--risk", risk)
     assert code == 2

@@ -9,10 +9,10 @@ import numpy as np
 import pyogrio
 import pytest
 import shapely
-from test_cli import run  # noqa: F401 - a fixture
 
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring import Project, Results
+from fieldmon.monitoring import Results, Season
+from tests.cli.test_main import run  # noqa: F401 - a fixture
 from tests.paths import SAMPLE_DATA
 
 ESTATE = SAMPLE_DATA / "paran_estate.zip"
@@ -56,7 +56,7 @@ def test_a_day_from_plan_to_status(run, season, tmp_path):  # noqa: F811
     assert "2 found infested" in out
     code, out, _, _ = run("record", season, "r.csv", "--date", BEGINS, "--who", "Ben")
     assert "0 new, 10 known" in out
-    history = Project(season).history
+    history = Season(season).history
     assert sorted(history.inspections.plant) == sorted(plants)
     assert np.count_nonzero(history.inspections.result == FOUND) == 2
     code, out, _, _ = run("status", season, "--batches", "--rows")
@@ -81,25 +81,25 @@ def test_half_way_the_rest_of_the_day_is_planned(run, season, tmp_path):  # noqa
 def test_undo_and_treat(run, season, tmp_path):  # noqa: F811
     run("plan", season, "--date", BEGINS, "-o", "r.csv")
     filled_in(tmp_path / "r.csv", finds={0}, n=5)
-    before = Project(season).evening(date.fromisoformat(BEGINS))
+    before = Season(season).evening(date.fromisoformat(BEGINS))
     run("record", season, "r.csv", "--date", BEGINS)
     code, out, _, _ = run("undo", season)
     assert (code, "5 findings from r.csv" in out) == (0, True)
-    assert np.array_equal(Project(season).evening(date.fromisoformat(BEGINS)), before)
+    assert np.array_equal(Season(season).evening(date.fromisoformat(BEGINS)), before)
     code, out, err, _ = run("treat", season, "--efficacy", "0.5", "--date", BEGINS)
     assert code == 0, err
-    assert Project(season).evening(date.fromisoformat(BEGINS)) == pytest.approx(before / 2)
+    assert Season(season).evening(date.fromisoformat(BEGINS)) == pytest.approx(before / 2)
     code, out, _, _ = run("treat", season, "--efficacy", "0.5", "--date", BEGINS)
     assert "nothing changed" in out
 
 
 def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):  # noqa: F811
     """The app calls the library: the same findings give the same belief and the same routes."""
-    with_library = Project.create(
+    with_library = Season.create(
         tmp_path / "library.gpkg",
-        Project(season).plot,
-        Project(season).observations,
-        Project(season).setup,
+        Season(season).plot,
+        Season(season).observations,
+        Season(season).setup,
     )
     for day in range(10):
         on = date.fromisoformat(BEGINS) + timedelta(days=day)
@@ -111,7 +111,7 @@ def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):
         assert with_library.plan(on).route.plant[:12].tolist() == plants
         found = np.isin(np.arange(12), [day, day + 3])
         with_library.record(Results.of(np.array(plants), found, np.datetime64(on)), "app")
-        assert np.array_equal(with_library.evening(on), Project(season).evening(on))
+        assert np.array_equal(with_library.evening(on), Season(season).evening(on))
     assert len(with_library.history.inspections) == 120
 
 
@@ -124,7 +124,7 @@ def test_what_qfield_adds_to_a_copy_comes_back_and_what_was_undone_does_not(
     filled_in(tmp_path / "r.csv", finds={0}, n=5)
     run("record", season, "r.csv", "--date", BEGINS)
     copy = shutil.copy(season, tmp_path / "copy.gpkg")
-    grid = Project(season).plot.grid
+    grid = Season(season).plot.grid
     extra = pyogrio.read_dataframe(copy, layer="inspections").tail(1)
     extra.geometry = shapely.points(grid.lonlat(np.array([77])))
     extra[["digest", "batch", "undone", "plant", "line", "number", "day"]] = None
@@ -133,7 +133,7 @@ def test_what_qfield_adds_to_a_copy_comes_back_and_what_was_undone_does_not(
     code, out, err, _ = run("record", season, copy)
     assert code == 0, err
     assert "1 new, 5 known" in out
-    assert Project(season).history.inspections.plant[-1] == 77
+    assert Season(season).history.inspections.plant[-1] == 77
     run("undo", season, "--batch", 1)
     copy = shutil.copy(season, tmp_path / "later.gpkg")
     code, out, err, _ = run("record", season, copy)
@@ -143,7 +143,7 @@ def test_what_qfield_adds_to_a_copy_comes_back_and_what_was_undone_does_not(
 def test_choices_can_be_changed(run, season):  # noqa: F811
     code, _, err, _ = run("change", season, "--sampler", "snake", "--every", 2, "--hours", "0.5")
     assert code == 0, err
-    setup = Project(season).setup
+    setup = Season(season).setup
     assert (setup.sampler, setup.sampler_settings, setup.robot.hours) == (
         "snake",
         {"every": 2},
@@ -153,7 +153,7 @@ def test_choices_can_be_changed(run, season):  # noqa: F811
     code, out, err, _ = run("undo", season, "--change")
     assert code == 0, err
     assert "adaptive, 1 h" in out
-    assert Project(season).setup.robot.hours == 1.0
+    assert Season(season).setup.robot.hours == 1.0
     code, _, err, _ = run("undo", season, "--change")
     assert (code, "there is none" in err) == (2, True)
 

@@ -4,8 +4,8 @@ import csv
 import re
 
 import pytest
-from test_cli import run  # noqa: F401 - a fixture
 
+from tests.cli.test_main import run  # noqa: F401 - a fixture
 from tests.paths import SHARED
 
 HEADS = {"golden.csv": 240, "golden_fix1.csv": 120, "golden_row.csv": 72}

@@ -3,7 +3,8 @@
 import csv
 
 import pytest
-from test_cli import MITES, ZIP, run  # noqa: F401 - a fixture
+
+from tests.cli.test_main import MITES, ZIP, run  # noqa: F401 - a fixture
 
 
 def table(path):

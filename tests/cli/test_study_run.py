@@ -1,9 +1,9 @@
 """`fieldmon study run`: a study of one's own plots."""
 
 import pytest
-from test_cli import ZIP, run  # noqa: F401 - a fixture
 
 from fieldmon.simulation import results
+from tests.cli.test_main import ZIP, run  # noqa: F401 - a fixture
 
 FEW = ["--seeds", 3, "--days", 2, "--workers", 1, "--date", "2026-11-02"]
 

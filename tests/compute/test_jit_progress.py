@@ -13,9 +13,9 @@ from fieldmon.compute.jit_progress import FirstUse
 
 A_NIGHT = """
 import numpy as np
-from fieldmon.first_use import FIRST_USE
-from fieldmon.planting import rectangle
-from fieldmon.spread import Spread, night
+from fieldmon.compute.jit_progress import FIRST_USE
+from fieldmon.plot.layout import rectangle
+from fieldmon.infestation.spread import Spread, night
 night(rectangle(3, 3), np.ones(9, bool), Spread(), np.uint64(1))
 print(FIRST_USE.compiled)
 """

@@ -9,38 +9,40 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from fieldmon.compute.random_streams import Chance, coin, coin_bits, coin_limit, coin_table
+from fieldmon.compute.random_streams import RandomStreams, coin, coin_bits, coin_limit, coin_table
 from fieldmon.errors import SettingError
 
 
 def test_a_stream_does_not_depend_on_what_else_was_drawn():
-    chance = Chance(7)
+    chance = RandomStreams(7)
     chance.of("start").random(1000)
-    assert chance.of("spread", 3).random() == Chance(7).of("spread", 3).random()
+    assert chance.of("spread", 3).random() == RandomStreams(7).of("spread", 3).random()
 
 
 @pytest.mark.parametrize("other", [("spread", 4), ("inspect", 3), ("spread",), ("spread", 3, 0)])
 def test_streams_of_other_names_and_days_differ(other):
-    assert Chance(7).key("spread", 3) != Chance(7).key(*other)
+    assert RandomStreams(7).key("spread", 3) != RandomStreams(7).key(*other)
 
 
 def test_seeds_differ():
-    assert Chance(1).key("start") != Chance(2).key("start")
+    assert RandomStreams(1).key("start") != RandomStreams(2).key("start")
 
 
 def test_a_negative_seed_is_refused_with_a_sentence():
     with pytest.raises(SettingError, match="0 or more, but it is -1"):
-        Chance(-1)
+        RandomStreams(-1)
 
 
 @given(seed=st.integers(0, 2**40), i=st.integers(0, 10_000))
 def test_a_coin_is_its_entry_of_the_table(seed, i):
-    key = Chance(seed).key("inspect")
+    key = RandomStreams(seed).key("inspect")
     assert coin(key, i) == coin_table(key, i + 1)[i]
 
 
 def test_coins_are_uniform_and_independent_of_their_neighbours_and_of_the_next_key():
-    tables = np.array([coin_table(Chance(seed).key("spread", 1), 5000) for seed in range(40)])
+    tables = np.array(
+        [coin_table(RandomStreams(seed).key("spread", 1), 5000) for seed in range(40)]
+    )
     assert stats.kstest(tables.ravel(), "uniform").pvalue > 1e-3
     assert abs(np.corrcoef(tables[:, 1:].ravel(), tables[:, :-1].ravel())[0, 1]) < 0.01
     assert abs(np.corrcoef(tables[1:].ravel(), tables[:-1].ravel())[0, 1]) < 0.01
@@ -56,12 +58,12 @@ def test_coins_agree_with_the_published_splitmix64_sequence():
 def test_a_key_is_what_numpys_seed_sequence_makes_of_seed_and_name(seed, key, name):
     spawn_key = (zlib.crc32(name.encode()), *key)
     (state,) = np.random.SeedSequence(seed, spawn_key=spawn_key).generate_state(1, np.uint64)
-    assert Chance(seed).key(name, *key) == state
+    assert RandomStreams(seed).key(name, *key) == state
 
 
 @given(seed=st.integers(0, 2**140), name=st.text())
 def test_keys_are_the_keys_one_by_one(seed, name):
-    chance = Chance(seed)
+    chance = RandomStreams(seed)
     assert list(islice(chance.keys(name), 70)) == [chance.key(name, day) for day in range(70)]
 
 

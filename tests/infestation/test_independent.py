@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning, learn, overnight
 from fieldmon.infestation.spread import Spread, night
@@ -62,7 +62,7 @@ def test_after_one_night_from_independent_plants_the_map_is_the_simulated_share(
     rng = np.random.default_rng(2)
     share = np.mean(
         [
-            night(GRID, rng.random(len(GRID)) < start, spread, Chance(s).key("spread"))
+            night(GRID, rng.random(len(GRID)) < start, spread, RandomStreams(s).key("spread"))
             for s in range(8000)
         ],
         axis=0,

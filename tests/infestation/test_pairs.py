@@ -5,17 +5,22 @@ import itertools
 import numpy as np
 import pytest
 
-from fieldmon.compute.random_streams import Chance
-from fieldmon.infestation.belief import Learning, MeanField, Pairs
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.belief import IndependentPlants, Learning, Pairs
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.plot.layout import rectangle
 
 ROW = rectangle(1, 5)
 
 
-def chain(p, both):
+def chain(p, pair_chance):
     """Return the chance of every state of a row of five plants with equal pairs."""
-    table = {(1, 1): both, (1, 0): p - both, (0, 1): p - both, (0, 0): 1 - 2 * p + both}
+    table = {
+        (1, 1): pair_chance,
+        (1, 0): p - pair_chance,
+        (0, 1): p - pair_chance,
+        (0, 0): 1 - 2 * p + pair_chance,
+    }
     states = {}
     for state in itertools.product([0, 1], repeat=5):
         chance = p if state[0] else 1 - p
@@ -29,7 +34,7 @@ def chain(p, both):
 @pytest.mark.parametrize("plant", [0, 2, 4])
 def test_in_a_row_what_a_look_teaches_is_bayes_rule_for_the_whole_row(plant, found):
     belief = Pairs.of(ROW, np.full(5, 0.1), company=0.5)
-    states = chain(0.1, belief.both[0])
+    states = chain(0.1, belief.pair_chance[0])
     said = {1: 0.84 if found else 0.16, 0: 0.0 if found else 1.0}
     after = {state: chance * said[state[plant]] for state, chance in states.items()}
     wanted = np.array(
@@ -70,7 +75,7 @@ def test_after_one_night_from_independent_plants_the_map_is_the_simulated_share(
     rng = np.random.default_rng(2)
     share = np.mean(
         [
-            night(grid, rng.random(len(grid)) < start, spread, Chance(s).key("spread"))
+            night(grid, rng.random(len(grid)) < start, spread, RandomStreams(s).key("spread"))
             for s in range(8000)
         ],
         axis=0,
@@ -88,7 +93,9 @@ def test_a_lone_infestation_grows_as_fast_as_simulated_ones(rate, to):
         infested = np.zeros(n, bool)
         infested[middle] = True
         for day in range(6):
-            infested = night(grid, infested, Spread(rate, to), Chance(seed).key("spread", day))
+            infested = night(
+                grid, infested, Spread(rate, to), RandomStreams(seed).key("spread", day)
+            )
         truth.append(infested.sum())
     known = np.full(n, 1e-6)
     # one infestation somewhere: the belief does not know where
@@ -96,7 +103,7 @@ def test_a_lone_infestation_grows_as_fast_as_simulated_ones(rate, to):
     sizes = {}
     for name, belief in (
         ("pairs", Pairs.of(grid, unknown, 0.0)),
-        ("mean field", MeanField(grid, np.maximum(unknown, known))),
+        ("mean field", IndependentPlants(grid, np.maximum(unknown, known))),
     ):
         for _ in range(6):
             belief = belief.overnight(Spread(rate, to))  # noqa: PLW2901 - night after night
@@ -111,7 +118,7 @@ def test_many_nights_of_fast_spread_end_with_every_plant_infested_and_no_chance_
     for _ in range(40):
         belief = belief.overnight(Spread(0.8, "each", arrivals_per_day=0.001))
         assert ((belief.chance > 0) & (belief.chance < 1)).all()
-        assert (belief.both >= 0).all()
+        assert (belief.pair_chance >= 0).all()
     assert belief.chance.min() > 0.99
 
 
@@ -125,14 +132,14 @@ def test_finds_that_stand_alone_teach_that_infested_plants_do():
     one, two = 850, 851
     start, other = grid.adjacent
     e = start[one] + np.flatnonzero(other[start[one] : start[one + 1]] == two)[0]
-    before = belief.both[e] / belief.chance[one]
-    assert after.both[e] / after.chance[one] < 0.5 * before
+    before = belief.pair_chance[e] / belief.chance[one]
+    assert after.pair_chance[e] / after.chance[one] < 0.5 * before
 
 
 def test_beliefs_stay_as_they_were():
     grid = rectangle(9, 9)
     belief = Pairs.of(grid, np.full(81, 0.05))
-    chance, both = belief.chance.copy(), belief.both.copy()
+    chance, pair_chance = belief.chance.copy(), belief.pair_chance.copy()
     belief.learn(np.array([40], np.int32), np.array([True]), Learning()).overnight(Spread())
     assert (belief.chance == chance).all()
-    assert (belief.both == both).all()
+    assert (belief.pair_chance == pair_chance).all()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Pairs, pairs
 from fieldmon.infestation.plot_estimate import outlook
@@ -27,15 +27,22 @@ def test_for_independent_plants_it_is_the_binomial():
 def test_for_a_row_of_plants_the_chance_of_clean_is_that_of_the_chain():
     row = rectangle(1, 5)
     belief = Pairs.of(row, np.full(5, 0.2), company=0.6)
-    both = belief.both[0]
+    pair_chance = belief.pair_chance[0]
     total = 0.0
     for state in itertools.product([0, 1], repeat=5):
         p = 0.2 if state[0] else 0.8
         for one, other in itertools.pairwise(state):
-            table = {(1, 1): both, (1, 0): 0.2 - both, (0, 1): 0.2 - both, (0, 0): 0.6 + both}
+            table = {
+                (1, 1): pair_chance,
+                (1, 0): 0.2 - pair_chance,
+                (0, 1): 0.2 - pair_chance,
+                (0, 0): 0.6 + pair_chance,
+            }
             p *= table[one, other] / (0.2 if one else 0.8)
         total += p * (sum(state) == 0)
-    assert outlook(row, belief.chance, belief.both).chance_clean == pytest.approx(total, rel=1e-6)
+    assert outlook(row, belief.chance, belief.pair_chance).chance_clean == pytest.approx(
+        total, rel=1e-6
+    )
 
 
 def test_plants_that_stand_together_make_the_number_less_sure_and_clean_more_likely():
@@ -49,7 +56,7 @@ def test_plants_that_stand_together_make_the_number_less_sure_and_clean_more_lik
 
 def test_the_same_key_gives_the_same_answer_and_a_surer_interval_is_wider():
     chance = np.full(400, 0.05)
-    key = Chance(3).key("outlook")
+    key = RandomStreams(3).key("outlook")
     assert outlook(GRID, chance, key=key) == outlook(GRID, chance, key=key)
     sure, rough = outlook(GRID, chance, sure=0.99), outlook(GRID, chance, sure=0.5)
     assert sure.low < rough.low <= rough.high < sure.high

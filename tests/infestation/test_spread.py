@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.plot.field import Field
@@ -13,7 +13,7 @@ from fieldmon.plot.layout import Planting, lay, rectangle
 
 
 def key(seed):
-    return Chance(seed).key("spread", 0)
+    return RandomStreams(seed).key("spread", 0)
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,7 @@ def test_three_nights_agree_in_distribution_with_a_plain_simulation(ragged):
     for seed in range(600):
         a = b = infested_at(ragged, 20, 21, 75)
         for day in range(3):
-            a = night(ragged, a, Spread(0.3), Chance(seed).key("spread", day))
+            a = night(ragged, a, Spread(0.3), RandomStreams(seed).key("spread", day))
             b = night_plant_by_plant(ragged, b, 0.3, rng)
         ours.append(a)
         plain.append(b)

@@ -46,9 +46,9 @@ BAD = [case for case in awkward.CASES if case.refuses is not None]
 @pytest.mark.parametrize("case", GOOD, ids=lambda case: case.name)
 def test_it_comes_in_where_it_is_and_says_what_was_odd(case, tmp_path):
     imported = come_in(case, tmp_path / "made")
-    told = "\n".join(str(f) for f in imported.findings)
+    told = "\n".join(str(f) for f in imported.messages)
     for expected in case.says:
-        assert is_said(expected, imported.findings), told
+        assert is_said(expected, imported.messages), told
     for grave in imported.of(Severity.DROPPED, Severity.DOUBTFUL):
         assert any(is_said(expected, [grave]) for expected in case.says), f"unexpected: {grave}"
     if case.at:

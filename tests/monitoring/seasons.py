@@ -5,12 +5,12 @@ from datetime import date, timedelta
 import numpy as np
 from shapely import MultiPolygon, box
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import start_infested
 from fieldmon.infestation.spread import night
-from fieldmon.monitoring import Project, Results, Setup
+from fieldmon.monitoring import Results, Season, SeasonSetup
 from fieldmon.planning.workday import outcomes
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting
@@ -36,15 +36,15 @@ def some_records(plot):
 
 def a_season(path, plot=None, **choices):
     plot = plot or a_plot()
-    setup = Setup(BEGINS, **({"robot": ROBOT} | choices))
-    return Project.create(path, plot, some_records(plot), setup)
+    setup = SeasonSetup(BEGINS, **({"robot": ROBOT} | choices))
+    return Season.create(path, plot, some_records(plot), setup)
 
 
 class Insects:
     """The truth of a season: what an inspection would find, and what a night does."""
 
     def __init__(self, project, seed=1):
-        self.project, self.chance = project, Chance(seed)
+        self.project, self.chance = project, RandomStreams(seed)
         begin = start_infested(project.morning(BEGINS), 0.1, self.chance.of("start"))
         self.infested = begin[project.plot.grid.vine]
 

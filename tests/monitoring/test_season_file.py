@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from shapely import MultiPolygon, box
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, ObservationError, SettingError
 from fieldmon.infestation.inspections import FOUND, SKIPPED
-from fieldmon.monitoring import Project, Remark, Results, Setup
+from fieldmon.monitoring import Remark, Results, Season, SeasonSetup
 from fieldmon.monitoring.history import Beliefs
 from fieldmon.samplers import sampler
 from fieldmon.simulation.season import SeasonSettings, Start, days
@@ -37,7 +37,7 @@ def on(day):
 def test_a_season_comes_back_bit_for_bit(tmp_path):
     plot = a_plot(faces=2)
     records = some_records(plot)
-    setup = Setup(
+    setup = SeasonSetup(
         BEGINS,
         starts=time(5, 30),
         robot=ROBOT,
@@ -46,8 +46,8 @@ def test_a_season_comes_back_bit_for_bit(tmp_path):
         seed=9,
     )
     said = Remark("mites.csv", "guessed", "row 3", "A date was read as day-month.", "--date-order")
-    Project.create(tmp_path / "s.gpkg", plot, records, setup, [said])
-    again = Project(tmp_path / "s.gpkg")
+    Season.create(tmp_path / "s.gpkg", plot, records, setup, [said])
+    again = Season(tmp_path / "s.gpkg")
     assert again.setup == setup
     assert again.remarks() == (said,)
     for name in (each.name for each in fields(plot.grid)):
@@ -79,9 +79,11 @@ def test_ten_days_on_disk_are_ten_days_of_the_simulator(tmp_path, name):
     truth = Insects(project)
     start = Start(truth.infested, project.morning(BEGINS))
     settings = SeasonSettings(n_days=10, spread=setup.beliefs.spread)
-    simulated = days(plot.aisles, setup.robot, sampler(name), start, settings, Chance(setup.seed))
+    simulated = days(
+        plot.aisles, setup.robot, sampler(name), start, settings, RandomStreams(setup.seed)
+    )
     for day in simulated:
-        today = Project(project.path)  # as on a new morning
+        today = Season(project.path)  # as on a new morning
         assert np.array_equal(today.morning(on(day.number)), day.chance)
         # re-planned after every find, as the simulator's sampler does within its day
         results = truth.look(day.number, day.work.plant)
@@ -274,12 +276,12 @@ def test_the_status_counts(season):
 def test_settings_can_be_changed_and_the_old_ones_stay_in_the_file(season):
     seen = season.setup
     season.record(some_results(season), "x")
-    season.change(Setup(BEGINS, robot=ROBOT.with_hours(2.0), sampler="naive"), seen)
-    assert Project(season.path).setup.sampler == "naive"
+    season.change(SeasonSetup(BEGINS, robot=ROBOT.with_hours(2.0), sampler="naive"), seen)
+    assert Season(season.path).setup.sampler == "naive"
     with season.store.reading() as db:
         assert db.execute("SELECT count(*) FROM settings WHERE name = 'robot'").fetchone() == (2,)
     with pytest.raises(FileProblem, match="another window"):
-        season.change(Setup(BEGINS, sampler="bouncy"), seen)
+        season.change(SeasonSetup(BEGINS, sampler="bouncy"), seen)
     assert season.setup.sampler == "naive"
 
 
@@ -297,7 +299,7 @@ def test_changes_are_taken_back_one_after_the_other_and_nothing_is_deleted(seaso
     season.change(second, first)
     assert season.before_change() == first
     assert season.undo_change() == first
-    assert Project(season.path).setup == first
+    assert Season(season.path).setup == first
     assert season.undo_change() == begun
     assert season.plan(tomorrow, keep=False).route.plant.tolist() == planned
     with pytest.raises(SettingError, match="there is none"):
@@ -344,7 +346,7 @@ def test_results_that_do_not_fit_are_a_sentence_and_leave_no_trace(
 
 
 def test_two_windows_see_each_others_work(season):
-    other = Project(season.path)
+    other = Season(season.path)
     other.record(some_results(other, found=[0]), "other")
     assert season.status(BEGINS).found == 1
     season.record(some_results(season), "mine")

@@ -14,7 +14,7 @@ import pyogrio
 import pytest
 
 from fieldmon.errors import FieldmonError, FileProblem
-from fieldmon.monitoring import Project, Results, is_season, schema
+from fieldmon.monitoring import Results, Season, is_season, schema
 from fieldmon.monitoring.salvage import salvage
 from tests.monitoring.seasons import BEGINS, a_season, some_results
 from tests.monitoring.working import day_by_day, one_by_one
@@ -45,7 +45,7 @@ def working(task, *words):
 
 def state(path):
     """Return what counts of a season: it must hold together."""
-    project = Project(path)
+    project = Season(path)
     project.store.check()
     assert project.verify() == ()
     with project.store.reading() as db:
@@ -64,7 +64,7 @@ def test_a_process_killed_at_any_moment_leaves_a_whole_season(path):
     """Kill -9 at random moments; 200 of them with FIELDMON_KILLS=200."""
     rng = random.Random(1)
     started = time.monotonic()
-    season = Project(path)
+    season = Season(path)
     season.plan(BEGINS)
     season.record(three_results(), "to see how long it takes")
     pace_s = time.monotonic() - started  # of this machine, now
@@ -79,7 +79,7 @@ def test_a_process_killed_at_any_moment_leaves_a_whole_season(path):
         grew += now > before
         before = now
     assert grew > KILLS / 10, "hardly anything was written between the kills: they prove nothing"
-    with Project(path).store.writing():
+    with Season(path).store.writing():
         pass  # a killed process may leave an empty journal; who writes next takes it away
     assert [file.name for file in path.parent.iterdir()] == ["season.gpkg"]
 
@@ -89,7 +89,7 @@ def test_what_is_no_season_is_not_called_a_damaged_one(content, tmp_path):
     other = tmp_path / "other.csv"
     other.write_bytes(content)
     with pytest.raises(FileProblem, match="must be the file of a season"):
-        Project(other)
+        Season(other)
     assert other.read_bytes() == content
 
 
@@ -99,9 +99,9 @@ def test_two_processes_recording_at_once_lose_nothing(path):
     for process in both:
         process.join(240)
         assert process.exitcode == 0
-    with Project(path).store.reading() as db:
+    with Season(path).store.reading() as db:
         rows = db.execute("SELECT who, plant FROM inspections WHERE fid > ?", (before,)).fetchall()
-    n = len(Project(path).plot.grid)
+    n = len(Season(path).plot.grid)
     wanted = {(str(who), (k * 2 + who) % n) for who in (0, 1) for k in range(rounds)}
     assert len(rows) == 2 * rounds
     assert set(rows) == wanted
@@ -109,7 +109,7 @@ def test_two_processes_recording_at_once_lose_nothing(path):
 
 
 def test_gdal_opens_every_layer_where_it_is(path):
-    season = Project(path)
+    season = Season(path)
     layers = dict(pyogrio.list_layers(path))
     shown = {table.name for table in (*schema.TABLES, schema.CHANCE) if table.shape}
     assert shown <= set(layers)
@@ -167,7 +167,7 @@ def test_a_file_of_version_1_becomes_one_of_today(path):
         db.execute("ALTER TABLE routes DROP COLUMN seconds_left")
         db.execute("UPDATE fieldmon SET value = '1' WHERE key = 'version'")
         db.commit()
-    season = Project(path)
+    season = Season(path)
     assert season.status(BEGINS).found == 3
     season.treat(BEGINS, 0.5)
     season.plan(BEGINS)
@@ -179,7 +179,7 @@ def test_a_file_of_a_newer_version_is_refused(path):
         db.execute("UPDATE fieldmon SET value = '99' WHERE key = 'version'")
         db.commit()
     with pytest.raises(FileProblem, match="newer fieldmon"):
-        Project(path)
+        Season(path)
 
 
 def test_other_files_are_no_seasons(path, tmp_path):
@@ -191,7 +191,7 @@ def test_other_files_are_no_seasons(path, tmp_path):
     for name in ("plots.gpkg", "text.gpkg", "empty.gpkg", "none.gpkg"):
         assert not is_season(tmp_path / name)
         with pytest.raises(FileProblem):
-            Project(tmp_path / name)
+            Season(tmp_path / name)
 
 
 def test_a_damaged_file_is_refused_or_right_and_mostly_salvaged(path, tmp_path):
@@ -205,7 +205,7 @@ def test_a_damaged_file_is_refused_or_right_and_mostly_salvaged(path, tmp_path):
         path.write_bytes(data)
         said = "salvage"
         try:
-            season = Project(path)
+            season = Season(path)
             season.store.check()
             season.status(BEGINS)
         except FieldmonError as problem:
@@ -221,7 +221,7 @@ def test_a_damaged_file_is_refused_or_right_and_mostly_salvaged(path, tmp_path):
             continue
         saved.append(done.rows["inspections"])
         if done.whole:
-            assert len(Project(rescued).history.inspections) == done.rows["inspections"]
+            assert len(Season(rescued).history.inspections) == done.rows["inspections"]
     assert sum(n == 12 for n in saved) >= 10
 
 
@@ -229,7 +229,7 @@ def test_half_a_file_is_refused_and_what_is_left_is_saved(path, tmp_path):
     data = path.read_bytes()
     path.write_bytes(data[: int(len(data) * 0.9)])
     with pytest.raises(FileProblem, match="salvage"):
-        Project(path).store.check()
+        Season(path).store.check()
     saved = salvage(path, tmp_path / "rescued.gpkg")
     assert saved.rows["plants"] > 0
 
@@ -237,14 +237,14 @@ def test_half_a_file_is_refused_and_what_is_left_is_saved(path, tmp_path):
 def test_a_whole_file_is_salvaged_whole(path, tmp_path):
     saved = salvage(path, tmp_path / "rescued.gpkg")
     assert (saved.lost, saved.whole) == ((), True)
-    one, other = Project(path), Project(tmp_path / "rescued.gpkg")
+    one, other = Season(path), Season(tmp_path / "rescued.gpkg")
     assert np.array_equal(one.evening(BEGINS), other.evening(BEGINS))
     assert state(tmp_path / "rescued.gpkg") == 12
 
 
 def test_a_file_held_by_another_program_is_a_sentence(path, monkeypatch):
     monkeypatch.setattr("fieldmon.monitoring.transactions._PATIENCE_S", 0.2)
-    season = Project(path)
+    season = Season(path)
     with closing(sqlite3.connect(path)) as other:
         other.execute("BEGIN EXCLUSIVE")
         with pytest.raises(FileProblem, match="another program"):
@@ -252,7 +252,7 @@ def test_a_file_held_by_another_program_is_a_sentence(path, monkeypatch):
 
 
 def test_a_file_that_cannot_be_written_is_a_sentence(path):
-    season = Project(path)
+    season = Season(path)
     results = three_results()
     with closing(sqlite3.connect(path)) as db:  # a disk without room, as SQLite sees it
         pages = db.execute("PRAGMA page_count").fetchone()[0]
@@ -284,7 +284,7 @@ def three_results():
 
 
 def test_rows_that_another_program_adds_do_not_count_before_they_are_recorded(path):
-    season = Project(path)
+    season = Season(path)
     before = season.evening(BEGINS)
     extra = pyogrio.read_dataframe(path, layer="inspections").tail(1)
     extra[["digest", "batch", "undone", "plant", "day"]] = None

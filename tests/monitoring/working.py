@@ -4,13 +4,13 @@ from datetime import timedelta
 
 import numpy as np
 
-from fieldmon.monitoring import Project, Results
+from fieldmon.monitoring import Results, Season
 from tests.monitoring.seasons import BEGINS
 
 
 def one_by_one(path, who, rounds):
     """Record one result after another, each of its own plant."""
-    project = Project(path)
+    project = Season(path)
     n = len(project.plot.grid)
     for k in range(rounds):
         plant = np.array([(k * 2 + who) % n])
@@ -20,7 +20,7 @@ def one_by_one(path, who, rounds):
 
 def day_by_day(path):
     """Plan and record day after day, without end."""
-    project = Project(path)
+    project = Season(path)
     day = 0
     while True:
         on = BEGINS + timedelta(days=day % 300)

@@ -41,7 +41,7 @@ def test_riseholme_poles_and_paths_are_points_and_lines(shared):
     paths = read_lines(shared / "riseholme_vines/topological_map.geojson")
     assert len(paths.value.geoms) == 106 - 18  # a node's link to itself has no length
     np.testing.assert_allclose(paths.value.geoms[0].coords[0], (-0.524551, 53.26801), atol=1e-9)
-    said = " ".join(f.sentence for f in paths.findings)
+    said = " ".join(f.sentence for f in paths.messages)
     assert "81 feature(s) that are no lines" in said
     assert "18 line(s) that do not lead anywhere" in said
 
@@ -177,10 +177,10 @@ def test_aphid_counts_lie_on_the_fields_they_name_and_six_names_are_unknown(shar
     options = RecordOptions().naming(count="SweepsPeaAphids")
     path = folder / "parasitism-2011-2019.csv"
     read = read_records(path, options, places=Places(fields))
-    (unknown,) = [f.sentence for f in read.findings if "that are not known" in f.sentence]
+    (unknown,) = [f.sentence for f in read.messages if "that are not known" in f.sentence]
     assert "6 plot(s)" in unknown
     assert unknown.endswith(": 110/110, 2110, 349_Clover, 4110, 635S, N1902.")
-    assert any("1 record(s) name no plot" in f.sentence for f in read.findings)
+    assert any("1 record(s) name no plot" in f.sentence for f in read.messages)
     named = {field.name: field.boundary for field in fields}
     assert named["219"].contains(Point(read.value.lonlat[0]))
     assert read.value.count[:3].tolist() == [209, 430, 1005]
@@ -192,7 +192,7 @@ def test_moth_counts_hang_in_the_traps_they_name(shared):
     traps = read_plants(folder / "mwoolf-farmsense-expt-2020-07-01.kml").value
     read = read_records(folder / "y20_farmsense_wingtrap_counts.csv", places=Places(plants=traps))
     assert len(read.value) == 357
-    assert any("by their digits alone" in f.sentence for f in read.findings)
+    assert any("by their digits alone" in f.sentence for f in read.messages)
     (third,) = traps.lonlat[traps.plant == "Block1-3"]
     np.testing.assert_array_equal(read.value.lonlat[0], third)  # PlotID 13: block 1, position 3
     assert (read.value.count[0], str(read.value.day[0])) == (15, "2020-07-02")

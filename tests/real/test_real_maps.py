@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from fieldmon.compute.random_streams import Chance
-from fieldmon.io.readers.plant_maps import read_plant_maps
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.plot.robot import Robot
+from fieldmon.studies.plant_maps import read_plant_maps
 from fieldmon.studies.thesis.chapter4.measures import spread_of
 from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
 from fieldmon.studies.thesis.chapter5.mapped_plots import SHARES_PCT, MapRules, inspect, run_maps
@@ -45,7 +45,10 @@ def gap(plants, one, other, seeds=40):
     """Return found in the first quarter of the plants on the first date, one less other."""
     aisles = plants.aisles()
     found = [
-        [inspect(plants, aisles, name, RULES, Chance(seed))[0, QUARTER] for seed in range(seeds)]
+        [
+            inspect(plants, aisles, name, RULES, RandomStreams(seed))[0, QUARTER]
+            for seed in range(seeds)
+        ]
         for name in (one, other)
     ]
     return spread_of(np.subtract(*found))

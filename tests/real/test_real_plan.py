@@ -12,7 +12,7 @@ from pyproj import Geod
 from fieldmon.cli import main
 from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.read import read_plots, read_records
-from fieldmon.planning.plan import Plans, first_day
+from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.travel import crosses_rows
 
@@ -80,7 +80,7 @@ def test_the_line_on_a_real_parcel_crosses_no_row(shared, name):
     file, feature = PLOTS[name]
     plot = Plot.of(read_plots(shared / file, PlotOptions(feature=feature)).value[0])
     none = read_records_of_nowhere()
-    route = first_day(plot, none, np.datetime64("2026-11-21"), Plans()).route
+    route = first_day(plot, none, np.datetime64("2026-11-21"), PlanSettings()).route
     assert not crosses_rows(plot.grid, route.line_m)
 
 

@@ -55,7 +55,7 @@ def test_the_four_bands_are_asked_for_and_the_picture_takes_the_first_three(shar
     with pytest.raises(ChoiceNeeded, match="4 bands"):
         read_raster(path)
     picture = read_backdrop(path)
-    assert "bands 1, 2, 3 of 4" in picture.findings[0].sentence
+    assert "bands 1, 2, 3 of 4" in picture.messages[0].sentence
     # 256 pixels of 0.6 m from 601845.6, 4397523 in UTM zone 10, as the file's own header says
     x, y = Transformer.from_crs(4326, 26910, always_xy=True).transform(
         *picture.value.corners_lonlat.T

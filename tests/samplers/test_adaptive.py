@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Pairs
 from fieldmon.infestation.spread import Spread
@@ -24,12 +24,12 @@ N = len(GRID)
 def scene_with(chance, hours=2.0, company=0.0):
     plain = scene_on(GRID, hours=hours)
     belief = Pairs.of(GRID, chance, company)
-    return replace(plain, chance=belief.chance, both=belief.both)
+    return replace(plain, chance=belief.chance, pair_chance=belief.pair_chance)
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_it_expects_more_finds_than_dynamic_and_naive(seed):
-    scene = replace(scene_on(GRID, hours=3.0, seed=seed), both=None)
+    scene = replace(scene_on(GRID, hours=3.0, seed=seed), pair_chance=None)
     chance = scene.chance
     expected = {
         type(s).__name__: chance[plan_day(scene, s).plant].sum()
@@ -103,7 +103,12 @@ def test_a_season_learns_from_short_looks_less_than_from_long_ones():
     start = Start(np.zeros(400, bool), np.full(400, 0.05))
     settings = SeasonSettings(n_days=2, spread=Spread(0.0, arrivals_per_day=0.0))
     season = days(
-        Aisles.of(grid), Robot(hours=1.5), Adaptive(chooses_look=True), start, settings, Chance(1)
+        Aisles.of(grid),
+        Robot(hours=1.5),
+        Adaptive(chooses_look=True),
+        start,
+        settings,
+        RandomStreams(1),
     )
     first, second = season
     short = first.work.plant[first.work.detects == 0.5]

@@ -14,7 +14,7 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.cli import study_run
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.plot.field import Field
@@ -99,7 +99,7 @@ def test_a_killed_worker_costs_only_what_it_had_in_hand(undisturbed, tmp_path):
 def test_a_killed_client_costs_only_unfinished_chunks(tmp_path):
     write_geojson(tmp_path / "plot.geojson", [area(60.0)])
     command = f"from fieldmon.simulation import design; design._CHUNK_S = {CHUNK_S}; "
-    command += "from fieldmon.cli import main; main()"
+    command += "from fieldmon.cli.main import main; main()"
     words = [sys.executable, "-c", command, "study", "run", "plot.geojson", "--seeds", "40"]
     words += ["--days", "10", "--workers", "2", "--date", "2026-11-02"]
     command = subprocess.Popen([*words, "-o", "killed"], cwd=tmp_path, stderr=subprocess.DEVNULL)
@@ -152,9 +152,11 @@ def test_a_season_of_a_study_is_that_of_the_simulator(undisturbed):
     plot = Plot.of(site().field, Planting())
     assert isinstance(plot.aisles, Aisles)
     chance = prior_chance(plot.grid, plot.field, Observations.none(), DAY, PriorSettings())
-    start = Start(start_infested(chance, 0.05, Chance(37).of("start")), chance)
+    start = Start(start_infested(chance, 0.05, RandomStreams(37).of("start")), chance)
     settings = SeasonSettings(n_days=4, spread=Spread(0.1))
-    walk = days(plot.aisles, Robot(hours=3.0), sampler("dynamic"), start, settings, Chance(37))
+    walk = days(
+        plot.aisles, Robot(hours=3.0), sampler("dynamic"), start, settings, RandomStreams(37)
+    )
     season = figures(walk)
     assert row["found_by_day"] == season.found.tolist()
     assert row["detection_pct"] == season.detection_pct[-1]

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from test_season import season
 
 from fieldmon.simulation.metrics import SeasonFigures, figures
+from tests.simulation.test_season import season
 
 
 def by_hand(detection):

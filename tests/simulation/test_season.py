@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.layout import rectangle
@@ -20,14 +20,14 @@ NAMES = sorted(SAMPLERS)
 
 
 def start(share=0.02, seed=3):
-    infested = Chance(seed).of("start").random(N) < share
+    infested = RandomStreams(seed).of("start").random(N) < share
     return Start(infested, np.full(N, share))
 
 
 def season(name="naive", robot=None, settings=None, seed=3, first=None):
     robot = robot or Robot(hours=2.0)
     settings = settings or SeasonSettings(n_days=6, spread=Spread(0.2))
-    return list(days(AISLES, robot, sampler(name), first or start(), settings, Chance(seed)))
+    return list(days(AISLES, robot, sampler(name), first or start(), settings, RandomStreams(seed)))
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -103,7 +103,7 @@ def test_a_robot_that_stays_out_goes_on_where_it_stopped():
 
 def test_a_season_can_be_left_half_way():
     settings = SeasonSettings(n_days=10**9)
-    walk = days(AISLES, Robot(hours=1.0), sampler("naive"), start(), settings, Chance(1))
+    walk = days(AISLES, Robot(hours=1.0), sampler("naive"), start(), settings, RandomStreams(1))
     assert [next(walk).number for _ in range(3)] == [0, 1, 2]
 
 

@@ -11,7 +11,7 @@ from pyogrio.errors import DataLayerError, DataSourceError
 
 from fieldmon.errors import FileProblem
 from fieldmon.io.formats.layer import Layer
-from fieldmon.io.import_report import Finding, doubtful, repaired, seen
+from fieldmon.io.import_report import ImportMessage, doubtful, repaired, seen
 from fieldmon.io.parse.text import Decoder
 from fieldmon.io.sandbox import limits
 
@@ -69,24 +69,24 @@ def read_layer(path: Path, name: str, layer: str | None, encoding: str | None = 
 
 def read_shapefile(path: Path, name: str, encoding: str | None) -> Layer:
     """Return a staged shapefile, its text read by its own evidence, with what is missing said."""
-    findings: list[Finding] = []
+    messages: list[ImportMessage] = []
     if not path.with_suffix(".shx").exists():
-        findings.append(repaired("The index (.shx) was missing and was made anew."))
+        messages.append(repaired("The index (.shx) was missing and was made anew."))
     if not path.with_suffix(".dbf").exists():
-        findings.append(seen("The table (.dbf) is missing: there are shapes only."))
+        messages.append(seen("The table (.dbf) is missing: there are shapes only."))
     try:
         raw = read_layer(path, name, None, _BYTE_FOR_BYTE)
     except (FileProblem, UnboundLocalError):  # the latter is pyogrio's own, for a broken .prj
         if not path.with_suffix(".prj").exists():
             raise
         path.with_suffix(".prj").unlink()
-        findings.append(doubtful("The coordinate system (.prj) cannot be understood; it was left."))
+        messages.append(doubtful("The coordinate system (.prj) cannot be understood; it was left."))
         raw = read_layer(path, name, None, _BYTE_FOR_BYTE)
     decoder = Decoder(_all_bytes(raw), _stated_encoding(path), encoding)
     columns = {
         decoder(_bytes(column)): _decoded(values, decoder) for column, values in raw.columns.items()
     }
-    return Layer(name, columns, raw.geometry, raw.crs, (*findings, *decoder.findings))
+    return Layer(name, columns, raw.geometry, raw.crs, (*messages, *decoder.messages))
 
 
 def _stated_encoding(path: Path) -> str | None:

@@ -13,7 +13,7 @@ from shapely.errors import ShapelyError
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer
-from fieldmon.io.import_report import Finding, dropped, seen
+from fieldmon.io.import_report import ImportMessage, dropped, seen
 from fieldmon.io.parse.text import decode
 from fieldmon.io.sandbox import limits
 
@@ -45,7 +45,7 @@ _NOT_GEOMETRY = (
 
 def read_geojson(path: Path, name: str, encoding: str | None) -> Layer:
     """Return the one layer of a GeoJSON file (also newline-delimited)."""
-    content, findings = decode(path.read_bytes(), encoding)
+    content, messages = decode(path.read_bytes(), encoding)
     root = _parsed(content, name)
     features = _features(root, name)
     limits.check("features", len(features), limits.FEATURES, name)
@@ -53,7 +53,7 @@ def read_geojson(path: Path, name: str, encoding: str | None) -> Layer:
     properties = [_properties(feature) for feature in features]
     columns = _columns(properties, name)
     crs, crs_findings = _crs(root)
-    return Layer(name, columns, geometry, crs, (*findings, *more, *crs_findings))
+    return Layer(name, columns, geometry, crs, (*messages, *more, *crs_findings))
 
 
 @contextmanager
@@ -117,7 +117,7 @@ def _features(root: dict[str, Any], name: str) -> list[dict[str, Any]]:
     )
 
 
-def _crs(root: dict[str, Any]) -> tuple[str | None, list[Finding]]:
+def _crs(root: dict[str, Any]) -> tuple[str | None, list[ImportMessage]]:
     """Return what the old `crs` member says; without one it is WGS84 (RFC 7946)."""
     stated = root.get("crs")
     if stated is None:
@@ -162,7 +162,7 @@ def _cell(value: object) -> object:
 
 def _geometries(
     features: list[dict[str, Any]], name: str
-) -> tuple[NDArray[np.object_], list[Finding]]:
+) -> tuple[NDArray[np.object_], list[ImportMessage]]:
     geometry = np.full(len(features), None, dtype=object)
     broken = []
     n_vertices = 0
@@ -177,11 +177,11 @@ def _geometries(
             continue
         n_vertices += int(shapely.get_num_coordinates(geometry[i]))
         limits.check("vertices", n_vertices, limits.VERTICES, name)
-    findings = [
+    messages = [
         dropped("The geometry cannot be understood and is left out.", f"feature {i + 1}")
         for i in broken
     ]
-    return geometry, findings
+    return geometry, messages
 
 
 def _geometry(stated: dict[str, Any]) -> shapely.Geometry:

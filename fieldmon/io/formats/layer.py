@@ -14,7 +14,7 @@ from fieldmon.io.import_report import dropped, seen
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.io.import_report import Finding
+    from fieldmon.io.import_report import ImportMessage
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class Layer:
     columns: dict[str, NDArray[np.object_]]
     geometry: NDArray[np.object_] | None = None
     crs: str | None = None
-    findings: tuple[Finding, ...] = ()
+    messages: tuple[ImportMessage, ...] = ()
 
     def __len__(self) -> int:
         """Return the number of features or records."""
@@ -54,28 +54,28 @@ class Layer:
             {name: values[which] for name, values in self.columns.items()},
             None if self.geometry is None else self.geometry[which],
             self.crs,
-            self.findings,
+            self.messages,
         )
 
-    def saying(self, *more: Finding) -> Layer:
+    def saying(self, *more: ImportMessage) -> Layer:
         """Return the same layer with more findings."""
-        return replace(self, findings=(*self.findings, *more))
+        return replace(self, messages=(*self.messages, *more))
 
     def checked(self) -> Layer:
         """Return the layer flat, without geometries whose coordinates are no numbers."""
         if self.geometry is None:
             return self
-        findings = []
+        messages = []
         if shapely.has_z(self.geometry).any() or shapely.has_m(self.geometry).any():
-            findings.append(seen("Heights and measures (Z, M) are not used."))
+            messages.append(seen("Heights and measures (Z, M) are not used."))
         flat = shapely.force_2d(self.geometry)
         coordinates, feature = shapely.get_coordinates(flat, return_index=True)
         broken = np.unique(feature[~np.isfinite(coordinates).all(axis=1)])
         flat[broken] = None
         if len(broken):
             said = f"{len(broken)} feature(s) have coordinates that are no numbers; left out."
-            findings.append(dropped(said, f"feature {broken[0] + 1}"))
-        return replace(self, geometry=flat, findings=(*self.findings, *findings))
+            messages.append(dropped(said, f"feature {broken[0] + 1}"))
+        return replace(self, geometry=flat, messages=(*self.messages, *messages))
 
     def where(self, condition: str | None) -> Layer:
         """Return the features that fulfil ``column=value``; all of them for None."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.import_report import Finding, dropped, seen
+from fieldmon.io.import_report import ImportMessage, dropped, seen
 from fieldmon.io.parse.columns import recognised
 from fieldmon.io.parse.text import decode
 from fieldmon.io.sandbox import limits
@@ -31,7 +31,7 @@ _LOOKED_AT = 50
 
 def read_text_table(path: Path, name: str, options: ReadOptions) -> Layer:
     """Return a CSV or TSV file as a layer without geometry."""
-    content, findings = decode(path.read_bytes(), options.encoding)
+    content, messages = decode(path.read_bytes(), options.encoding)
     if "\x00" in content:
         raise FileProblem(f"{name} must be a text table, but it holds bytes that are no text.")
     content, told = _told_delimiter(content)
@@ -42,7 +42,7 @@ def read_text_table(path: Path, name: str, options: ReadOptions) -> Layer:
     except csv.Error as bad:
         raise FileProblem(f"{name} must be a text table, but it cannot be read: {bad}.") from bad
     layer = _table(rows, name)
-    return Layer(name, layer.columns, findings=(*findings, *layer.findings))
+    return Layer(name, layer.columns, messages=(*messages, *layer.messages))
 
 
 def sheet_names(path: Path, name: str) -> tuple[str, ...]:
@@ -136,9 +136,9 @@ def _table(rows: list[list[Any]], name: str) -> Layer:
     head = _head_row(rows)
     if head is None:
         raise FileProblem(f"{name} must hold a table with a line of column names, but holds none.")
-    findings: list[Finding] = []
+    messages: list[ImportMessage] = []
     if head:
-        findings.append(seen(f"{head} line(s) above the column names were passed over."))
+        messages.append(seen(f"{head} line(s) above the column names were passed over."))
     limits.check("columns", len(rows[head]), limits.COLUMNS, name)
     names = _names(rows[head])
     body = [row for row in rows[head + 1 :] if any(map(_is_filled, row))]
@@ -146,12 +146,12 @@ def _table(rows: list[list[Any]], name: str) -> Layer:
         raise FileProblem(f"{name} must hold records below its column names, but holds none.")
     longer = sum(len(row) > len(names) and any(text(v) for v in row[len(names) :]) for row in body)
     if longer:
-        findings.append(
+        messages.append(
             dropped(
                 f"{longer} line(s) have more cells than there are columns; those were left out."
             )
         )
-    return Layer(name, _columns(names, body), findings=tuple(findings))
+    return Layer(name, _columns(names, body), messages=tuple(messages))
 
 
 def _columns(names: list[str], body: list[list[Any]]) -> dict[str, NDArray[np.object_]]:

@@ -17,7 +17,7 @@ from pyproj.exceptions import CRSError, ProjError
 from pyproj.transformer import TransformerGroup
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.import_report import Finding, doubtful, seen
+from fieldmon.io.import_report import ImportMessage, doubtful, seen
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -83,7 +83,7 @@ class Way:
         lon, lat = self.transformer.transform(xy[:, 0], xy[:, 1])
         return np.stack([lon, lat], axis=1)
 
-    def findings(self) -> list[Finding]:
+    def messages(self) -> list[ImportMessage]:
         """Return what there is to say about the accuracy."""
         if self.transformer is None:
             return []

@@ -10,7 +10,7 @@ import shapely
 from shapely import MultiPolygon, Polygon
 from shapely.errors import GEOSException
 
-from fieldmon.io.import_report import Finding, doubtful, dropped, repaired
+from fieldmon.io.import_report import ImportMessage, doubtful, dropped, repaired
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -111,10 +111,10 @@ def filled(line: shapely.Geometry) -> MultiPolygon:
     return MultiPolygon([Polygon(part.coords) for part in shapely.get_parts(line)])
 
 
-def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Finding]]:
+def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[ImportMessage]]:
     """Return one feature's lon/lat area as a valid MultiPolygon (empty where nothing is left)."""
     drawn = _polygons(area)
-    whole, findings = drawn, []
+    whole, messages = drawn, []
     if not shapely.is_valid(drawn):
         why = _plain(shapely.is_valid_reason(drawn))
         try:
@@ -124,11 +124,11 @@ def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Find
             return MultiPolygon(), [dropped(said, name)]
     measured = _measured(whole)
     if whole is not drawn:
-        findings.append(_repaired(drawn, whole, measured, name, why))
+        messages.append(_repaired(drawn, whole, measured, name, why))
     is_wide = _is_wide(measured)
     if not is_wide.all():
         whole = MultiPolygon([p for p, wide in zip(whole.geoms, is_wide, strict=True) if wide])
-        findings.append(
+        messages.append(
             dropped(
                 f"{int((~is_wide).sum())} part(s) too small or narrow for a plant were left out "
                 f"(under {_SLIVER_M2:g} m2 or {_SLIVER_WIDTH_M:g} m wide).",
@@ -136,13 +136,13 @@ def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Find
             )
         )
     if not whole.is_empty:
-        findings += _questions(float(measured.area_m2[is_wide].sum()), name)
-    return whole, findings
+        messages += _questions(float(measured.area_m2[is_wide].sum()), name)
+    return whole, messages
 
 
 def _repaired(
     drawn: MultiPolygon, whole: MultiPolygon, now: _Measured, name: str, why: str
-) -> Finding:
+) -> ImportMessage:
     """Return what to say of an area made valid: parts that overlap are one, holes stay holes."""
     parts = "" if len(whole.geoms) == len(drawn.geoms) else f" in {len(whole.geoms)} part(s)"
     change = f"{_amount(area_m2(drawn))} as drawn, {_amount(now.area_m2.sum())}{parts} now"
@@ -164,7 +164,7 @@ def _is_wide(measured: _Measured) -> NDArray[np.bool_]:
     return (measured.area_m2 >= _SLIVER_M2) & (width_m >= _SLIVER_WIDTH_M)
 
 
-def _questions(area: float, name: str) -> list[Finding]:
+def _questions(area: float, name: str) -> list[ImportMessage]:
     if SMALLEST_M2 <= area <= LARGEST_M2:
         return []
     return [

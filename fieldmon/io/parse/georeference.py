@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.import_report import Finding, Remedy, doubtful, repaired, seen
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, repaired, seen
 from fieldmon.io.parse.crs import ask_for_crs, km_between, system, utm_zone, way_from
 
 if TYPE_CHECKING:
@@ -39,31 +39,31 @@ class Placed:
 
     lonlat: NDArray[np.float64]
     step_m: float
-    findings: tuple[Finding, ...]
+    messages: tuple[ImportMessage, ...]
 
 
 def place_geometry(
     geometry: NDArray[np.object_], stated: str | None, options: ReadOptions
-) -> tuple[NDArray[np.object_], tuple[Finding, ...]]:
+) -> tuple[NDArray[np.object_], tuple[ImportMessage, ...]]:
     """Return geometries ``(n,)`` in degrees WGS84, lon/lat, and what was found on the way."""
     placed = place(np.asarray(shapely.get_coordinates(geometry)), stated, options)
     moved = geometry.copy()
     shapely.set_coordinates(moved, placed.lonlat)
-    return moved, placed.findings
+    return moved, placed.messages
 
 
 def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> Placed:
     """Return degrees WGS84 for a file's coordinates ``(n, 2)``; ask where they cannot be known."""
-    findings: list[Finding] = []
+    messages: list[ImportMessage] = []
     if not np.isfinite(xy).all():
         raise FileProblem(
             "All coordinates must be numbers, but some are infinite or none. Export the file again."
         )
     if options.swap_axes:
         xy = xy[:, ::-1]
-        findings.append(seen("First and second coordinate were exchanged, as asked."))
+        messages.append(seen("First and second coordinate were exchanged, as asked."))
     if options.crs is not None and stated is not None:
-        findings.append(seen(f"The coordinate system named by hand, {options.crs}, was used."))
+        messages.append(seen(f"The coordinate system named by hand, {options.crs}, was used."))
     wanted = options.crs or stated
     if wanted is None:
         raise ask_for_crs(xy, options, "The file does not say in which coordinate system it is.")
@@ -74,7 +74,7 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
     lonlat = way.lonlat(xy)
     _check_landing(lonlat, crs)
     step_m = _step(xy) * (_DEGREE_M if crs.is_geographic else 1.0)
-    found = (*findings, *more, *way.findings(), *_distance(lonlat, options))
+    found = (*messages, *more, *way.messages(), *_distance(lonlat, options))
     return Placed(lonlat, step_m, found)
 
 
@@ -103,7 +103,7 @@ def _check_range(xy: NDArray[np.float64], crs: pyproj.CRS, options: ReadOptions)
 
 def _without_zone(
     xy: NDArray[np.float64], crs: pyproj.CRS
-) -> tuple[NDArray[np.float64], list[Finding]]:
+) -> tuple[NDArray[np.float64], list[ImportMessage]]:
     """Return coordinates without the zone number that some offices write before the easting."""
     zone = utm_zone(crs)
     prefixed = np.floor(xy[:, 0] / 1e6)
@@ -126,7 +126,7 @@ def _check_landing(lonlat: NDArray[np.float64], crs: pyproj.CRS) -> None:
         )
 
 
-def _distance(lonlat: NDArray[np.float64], options: ReadOptions) -> list[Finding]:
+def _distance(lonlat: NDArray[np.float64], options: ReadOptions) -> list[ImportMessage]:
     """Return a doubt where the file lies far from the place named by hand."""
     if options.near is None:
         return []

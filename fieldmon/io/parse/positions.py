@@ -13,7 +13,15 @@ from pyproj.exceptions import CRSError
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.import_report import Finding, Remedy, doubtful, dropped, guessed, repaired, seen
+from fieldmon.io.import_report import (
+    ImportMessage,
+    Remedy,
+    doubtful,
+    dropped,
+    guessed,
+    repaired,
+    seen,
+)
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import sort_out
 from fieldmon.io.parse.georeference import place
@@ -57,7 +65,7 @@ class Located:
     layer: Layer
     lonlat: NDArray[np.float64]
     accuracy_m: NDArray[np.float64]
-    findings: tuple[Finding, ...]
+    messages: tuple[ImportMessage, ...]
 
 
 def located(layer: Layer, options: ReadOptions, places: Places | None = None) -> Located:
@@ -78,15 +86,15 @@ def _points(layer: Layer, options: ReadOptions) -> Located:
             f"{layer.name} must hold points, but it holds {int(areas.sum())} area(s) and "
             f"{int(lines.sum())} line(s). Choose another file or layer."
         )
-    findings = []
+    messages = []
     others = len(layer) - int(points.sum())
     if others:
-        findings.append(dropped(f"{others} feature(s) that are no points were left out."))
+        messages.append(dropped(f"{others} feature(s) that are no points were left out."))
     single, index = shapely.get_parts(geometry[points], return_index=True)
     kept = layer.take(np.flatnonzero(points)[index])
     placed = place(shapely.get_coordinates(single), layer.crs, options)
     accuracy, coarse = _rounding(placed.step_m, len(kept))
-    return Located(kept, placed.lonlat, accuracy, (*findings, *placed.findings, *coarse))
+    return Located(kept, placed.lonlat, accuracy, (*messages, *placed.messages, *coarse))
 
 
 def _way(layer: Layer, options: ReadOptions) -> tuple[str, tuple[str, ...]] | None:
@@ -124,7 +132,7 @@ def _by_coordinates(
     layer: Layer, options: ReadOptions, how: str, names: tuple[str, ...]
 ) -> Located:
     shown = " and ".join(repr(name) for name in names)
-    xy, crs, findings = _coordinates(layer, options, how, names)
+    xy, crs, messages = _coordinates(layer, options, how, names)
     stated, more = _stated_crs(layer, options)
     there = _finite(xy)
     if not there.any():
@@ -133,7 +141,7 @@ def _by_coordinates(
             f"{_for_instance(layer, names, there)}. Correct them or name other columns."
         )
     if not there.all():
-        findings.append(
+        messages.append(
             dropped(
                 f"{int((~there).sum())} record(s) without a usable position were left out"
                 f"{_for_instance(layer, names, there)}."
@@ -141,12 +149,12 @@ def _by_coordinates(
         )
     placed = place(xy[there], stated or crs, options)
     accuracy, coarse = _rounding(placed.step_m, int(there.sum()))
-    found = (seen(f"Positions are in column(s) {shown}."), *findings, *more)
+    found = (seen(f"Positions are in column(s) {shown}."), *messages, *more)
     return Located(
         layer.take(np.flatnonzero(there)),
         placed.lonlat,
         accuracy,
-        (*found, *placed.findings, *coarse),
+        (*found, *placed.messages, *coarse),
     )
 
 
@@ -156,7 +164,7 @@ def _finite(xy: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 def _coordinates(
     layer: Layer, options: ReadOptions, how: str, names: tuple[str, ...]
-) -> tuple[NDArray[np.float64], str | None, list[Finding]]:
+) -> tuple[NDArray[np.float64], str | None, list[ImportMessage]]:
     """Return what the columns hold ``(n, 2)``, its coordinate system if that is sure, findings."""
     columns = [layer.column(name) for name in names]
     if how == "metres":
@@ -179,7 +187,7 @@ def _letters_are_crossed(layer: Layer, names: tuple[str, ...]) -> bool:
     return bool(lon | lat) and lon <= set("NS") and lat <= set("EW")
 
 
-def _order_of(is_certain: bool, name: str) -> list[Finding]:  # noqa: FBT001 - one caller
+def _order_of(is_certain: bool, name: str) -> list[ImportMessage]:  # noqa: FBT001 - one caller
     if is_certain:
         return []
     return [
@@ -199,7 +207,7 @@ def _for_instance(layer: Layer, names: tuple[str, ...], there: NDArray[np.bool_]
     return ""
 
 
-def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Finding]]:
+def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[ImportMessage]]:
     """Return the coordinate system that a column of the table states for all of its records."""
     name = options.column("crs") or find("crs", layer.columns)
     if name is None or options.crs is not None:
@@ -276,7 +284,7 @@ def _check_one_plot(layer: Layer, plot: str | None) -> None:
 def _kept(layer: Layer, named: Named) -> Located:
     there = _finite(named.lonlat)
     if not there.any():
-        said = " ".join(finding.sentence for finding in named.findings)
+        said = " ".join(message.sentence for message in named.messages)
         raise FileProblem(
             f"Records of {layer.name} must name places that are known, but none does. {said}"
         )
@@ -284,11 +292,11 @@ def _kept(layer: Layer, named: Named) -> Located:
         layer.take(np.flatnonzero(there)),
         named.lonlat[there],
         named.accuracy_m[there],
-        named.findings,
+        named.messages,
     )
 
 
-def _rounding(step_m: float, n: int) -> tuple[NDArray[np.float64], list[Finding]]:
+def _rounding(step_m: float, n: int) -> tuple[NDArray[np.float64], list[ImportMessage]]:
     """Return the accuracy that rounding leaves ``(n,)``, and a doubt where that is too little."""
     if step_m <= _COARSE_M:
         return np.full(n, np.nan), []

@@ -7,7 +7,7 @@ import re
 from typing import TYPE_CHECKING
 
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.io.import_report import Finding, Remedy, guessed, repaired
+from fieldmon.io.import_report import ImportMessage, Remedy, guessed, repaired
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -29,7 +29,7 @@ _ENOUGH = 0.6
 _WESTERN = frozenset({"cp1252", "iso8859-1", "ascii", "iso8859-15", "utf-8"})
 
 
-def decode(data: bytes, encoding: str | None = None) -> tuple[str, list[Finding]]:
+def decode(data: bytes, encoding: str | None = None) -> tuple[str, list[ImportMessage]]:
     """Return text and what was found about how it is written."""
     if encoding is not None:
         return _as_told(data, encoding), []
@@ -68,7 +68,7 @@ class Decoder:
 
     def __init__(self, samples: Iterable[bytes], stated: str | None, told: str | None) -> None:
         telling = [s for s in set(samples) if not s.isascii()]
-        self.findings: list[Finding] = []
+        self.messages: list[ImportMessage] = []
         if told is not None:
             self.encoding = told
             for sample in telling:
@@ -88,14 +88,14 @@ class Decoder:
         if all(_is_utf8(sample) for sample in telling):
             if stated not in {None, "utf-8"}:
                 said = f"The .cpg file says {stated}, but the text is UTF-8 and was read so."
-                self.findings.append(repaired(said))
+                self.messages.append(repaired(said))
             return "utf-8"
         if stated is not None and stated not in _WESTERN and _fits(telling, stated):
             return stated
         best = evidence(telling)
         if best == "cp1252" and stated in {"cp1252", "iso8859-1"}:
             return best
-        self.findings.append(_guess(best, stated))
+        self.messages.append(_guess(best, stated))
         return best
 
 
@@ -128,7 +128,7 @@ def _fits(samples: list[bytes], encoding: str) -> bool:
         return False
 
 
-def _guess(best: str, stated: str | None = None) -> Finding:
+def _guess(best: str, stated: str | None = None) -> ImportMessage:
     other, *more = (name for name in ENCODINGS if name != best)
     why = f"The .cpg file says {stated}, but the" if stated else "The"
     return guessed(

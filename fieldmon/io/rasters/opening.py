@@ -18,7 +18,7 @@ from rasterio.windows import Window
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.signatures import Kind
-from fieldmon.io.import_report import Finding, Remedy, guessed, seen
+from fieldmon.io.import_report import ImportMessage, Remedy, guessed, seen
 from fieldmon.io.options import source_name
 from fieldmon.io.parse.crs import Way, ask_for_crs, code_of, km_between, system, way_from
 from fieldmon.io.rasters.values import Affine, map_xy, pixel_xy, projected
@@ -81,7 +81,7 @@ class Opened:
     to_map: Affine
     crs: pyproj.CRS
     way: Way
-    findings: tuple[Finding, ...]
+    messages: tuple[ImportMessage, ...]
 
 
 @contextmanager
@@ -115,11 +115,11 @@ def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -
     to_map = _to_map(tif, name)
     size = np.array([[tif.width / 2, tif.height / 2]])
     middle = map_xy(to_map, size)[0]
-    crs, findings = _system(tif, path, to_map, options)
+    crs, messages = _system(tif, path, to_map, options)
     if crs.is_geographic and 180.0 < middle[0] <= 360.0:  # counted eastward all around the earth
         to_map = (*to_map[:2], to_map[2] - 360.0, *to_map[3:])
         middle = map_xy(to_map, size)[0]
-        findings.append(seen("Longitudes beyond 180 degrees were read as west of Greenwich."))
+        messages.append(seen("Longitudes beyond 180 degrees were read as west of Greenwich."))
     if crs.is_geographic and (abs(middle[0]) > 180 or abs(middle[1]) > 90):
         raise ask_for_crs(
             middle[None], options, f"{name} says {crs.name}, in degrees, but it lies nowhere so."
@@ -133,10 +133,10 @@ def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -
     a, b, _, d, e, _ = to_map
     if abs(b) > 1e-6 * abs(a) or abs(d) > 1e-6 * abs(e):
         turn = math.degrees(math.atan2(d, a))
-        findings.append(seen(f"The raster is turned by {turn:.4g} degrees; positions follow it."))
+        messages.append(seen(f"The raster is turned by {turn:.4g} degrees; positions follow it."))
     elif e > 0:
-        findings.append(seen("The raster's first line lies in the south; positions follow it."))
-    return Opened(tif, name, to_map, crs, way, (*findings, *way.findings()))
+        messages.append(seen("The raster's first line lies in the south; positions follow it."))
+    return Opened(tif, name, to_map, crs, way, (*messages, *way.messages()))
 
 
 def _check_shape(tif: DatasetReader, name: str) -> None:
@@ -185,7 +185,7 @@ def _to_map(tif: DatasetReader, name: str) -> Affine:
 
 def _system(
     tif: DatasetReader, path: Path, to_map: Affine, options: RasterOptions
-) -> tuple[pyproj.CRS, list[Finding]]:
+) -> tuple[pyproj.CRS, list[ImportMessage]]:
     if options.crs is not None:
         chosen = system(options.crs)
         return chosen, [seen(f"Read in {chosen.name} ({code_of(chosen)}), as chosen.")]
@@ -293,7 +293,7 @@ def without_value(
     part: Part,
     raw: NDArray[Any],
     nodata: str | None,
-) -> tuple[NDArray[np.bool_], list[Finding]]:
+) -> tuple[NDArray[np.bool_], list[ImportMessage]]:
     """Return which pixels ``(h, w)`` hold no value, by the file's word or by what was chosen."""
     if nodata == "none":
         return np.zeros(part.shape, bool), []
@@ -311,7 +311,7 @@ def without_value(
     return missing, found
 
 
-def _undeclared(raw: NDArray[Any], missing: NDArray[np.bool_]) -> list[Finding]:
+def _undeclared(raw: NDArray[Any], missing: NDArray[np.bool_]) -> list[ImportMessage]:
     """Take out what looks like an undeclared nodata value, and say so."""
     if raw.dtype.kind not in "if":
         return []
@@ -334,7 +334,7 @@ def _undeclared(raw: NDArray[Any], missing: NDArray[np.bool_]) -> list[Finding]:
     ]
 
 
-def what_was_read(opened: Opened, bands: tuple[int, ...], part: Part) -> Finding:
+def what_was_read(opened: Opened, bands: tuple[int, ...], part: Part) -> ImportMessage:
     """Return what the raster is, and how much of it was read."""
     tif = opened.tif
     window = part.window

@@ -10,7 +10,7 @@ from rasterio.io import MemoryFile
 from rasterio.shutil import copy
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.import_report import Finding, Imported, doubtful, seen
+from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
 from fieldmon.io.rasters.opening import (
     M_PER_DEGREE,
     Part,
@@ -65,8 +65,8 @@ def backdrop(
             image, stretched = _stretched(raw, ~missing)
             said += stretched
         corners, bent = _corners(opened, part)
-        findings = (what_was_read(opened, bands, part), *opened.findings, *said, *bent)
-        return Imported(Backdrop(*_encoded(image, missing), corners), findings)
+        messages = (what_was_read(opened, bands, part), *opened.messages, *said, *bent)
+        return Imported(Backdrop(*_encoded(image, missing), corners), messages)
 
 
 def _shown(opened: Opened, wanted: str | None) -> tuple[int, ...]:
@@ -112,7 +112,7 @@ def _coloured(
 
 def _stretched(
     raw: NDArray[Any], shown: NDArray[np.bool_]
-) -> tuple[NDArray[np.uint8], list[Finding]]:
+) -> tuple[NDArray[np.uint8], list[ImportMessage]]:
     """Return the bands as bytes; other numbers are stretched so that the contrast is seen."""
     if raw.dtype == np.uint8:
         return raw, []
@@ -126,7 +126,7 @@ def _stretched(
     return image, [seen(f"Contrast is stretched over the middle 96 %: {'; '.join(spans)}.")]
 
 
-def _corners(opened: Opened, part: Part) -> tuple[Float, list[Finding]]:
+def _corners(opened: Opened, part: Part) -> tuple[Float, list[ImportMessage]]:
     """Return the corners ``(4, 2)`` in degrees, and how far off the map the picture is between.
 
     A map draws the picture as two flat triangles between its corners; the projection bends it.

@@ -24,7 +24,7 @@ from fieldmon.io.sandbox import process
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.io.import_report import Finding, Imported
+    from fieldmon.io.import_report import Imported, ImportMessage
     from fieldmon.plot.field import Field
 
 _LOOKED_AT = 10_000
@@ -52,7 +52,7 @@ def read_raster(
     FileProblem
         Where the raster is unusable, or holds nothing of the plot.
     """
-    read: Imported[Raster] = _read("raster_reading:raster", source, options, near)
+    read: Imported[Raster] = _read("reading:raster", source, options, near)
     if near is None:
         return read
     return read.having(read.value, _coverage(read.value, near, source_name(source)))
@@ -62,7 +62,7 @@ def read_backdrop(
     source: Source, options: RasterOptions | None = None, near: Field | None = None
 ) -> Imported[Backdrop]:
     """Return a picture of the ground for a map: the whole raster, or what lies about a plot."""
-    picture: Imported[Backdrop] = _read("raster_picture:backdrop", source, options, near)
+    picture: Imported[Backdrop] = _read("picture:backdrop", source, options, near)
     return picture
 
 
@@ -78,10 +78,10 @@ def _read(task: str, source: Source, options: RasterOptions | None, near: Field 
     if isinstance(source, str | Path):
         source = Path(source).absolute()
     with tempfile.TemporaryDirectory(prefix="fieldmon-", ignore_cleanup_errors=True) as folder:
-        return process.call(f"fieldmon.io.{task}", folder, source, options, bounds)
+        return process.call(f"fieldmon.io.rasters.{task}", folder, source, options, bounds)
 
 
-def _coverage(raster: Raster, field: Field, name: str) -> list[Finding]:
+def _coverage(raster: Raster, field: Field, name: str) -> list[ImportMessage]:
     """Return a doubt where the plot has values in part only; refuse where it has none."""
     covered = float(np.mean(~np.isnan(raster.at(_within(field)))))
     if covered == 0.0:

@@ -8,7 +8,7 @@ import numpy as np
 from rasterio.enums import ColorInterp
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.import_report import Finding, Imported, doubtful, seen
+from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
 from fieldmon.io.rasters.opening import (
     band_named,
     open_raster,
@@ -45,10 +45,10 @@ def raster(
         values[~np.isfinite(values)] = np.nan
         said += _scaled(opened, band, values)
         is_classes = opened.tif.colorinterp[band - 1] == ColorInterp.palette
-        findings = [what_was_read(opened, (band,), part), *opened.findings, *said, *_empty(values)]
+        messages = [what_was_read(opened, (band,), part), *opened.messages, *said, *_empty(values)]
         text = opened.crs.to_wkt()
         value = Raster(values, part.to_map(opened.to_map), text, bool(is_classes))
-        return Imported(value, tuple(findings))
+        return Imported(value, tuple(messages))
 
 
 def _band(opened: Opened, wanted: str | None) -> int:
@@ -73,7 +73,7 @@ def _band(opened: Opened, wanted: str | None) -> int:
     )
 
 
-def _scaled(opened: Opened, band: int, values: NDArray[np.floating]) -> list[Finding]:
+def _scaled(opened: Opened, band: int, values: NDArray[np.floating]) -> list[ImportMessage]:
     """Apply the scale and offset that a band declares, in place."""
     scale, offset = opened.tif.scales[band - 1], opened.tif.offsets[band - 1]
     if (scale, offset) == (1.0, 0.0):
@@ -85,7 +85,7 @@ def _scaled(opened: Opened, band: int, values: NDArray[np.floating]) -> list[Fin
     return [seen(f"Values were scaled as the band says: times {scale:g}, plus {offset:g}.")]
 
 
-def _empty(values: NDArray[np.floating]) -> list[Finding]:
+def _empty(values: NDArray[np.floating]) -> list[ImportMessage]:
     """Return how much of what was read has no value."""
     share = float(np.isnan(values).mean())
     if share == 1.0:

@@ -28,7 +28,15 @@ from scipy.spatial import cKDTree
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
-from fieldmon.io.import_report import Finding, Imported, Remedy, doubtful, dropped, guessed, seen
+from fieldmon.io.import_report import (
+    Imported,
+    ImportMessage,
+    Remedy,
+    doubtful,
+    dropped,
+    guessed,
+    seen,
+)
 from fieldmon.io.read import read_reported
 from fieldmon.io.readers.reported import FindingsOptions, Reported
 from fieldmon.plot.grid import row_label
@@ -56,7 +64,7 @@ class Findings:
     plant
         int32, number in the grid.
     result
-        int8, as in `fieldmon.monitoring.history`: `FOUND`, `CLEAN` or `SKIPPED` (could not be inspected).
+        int8: `FOUND`, `CLEAN` or `SKIPPED` (could not be inspected).
     count
         Pests counted; NaN where they were not.
     when
@@ -124,7 +132,7 @@ def read_findings(
 
 def look_up(
     reported: Reported, grid: PlantGrid, options: FindingsOptions
-) -> tuple[Findings, tuple[Finding, ...]]:
+) -> tuple[Findings, tuple[ImportMessage, ...]]:
     """Return what was reported with its plants, and what was left out or guessed on the way."""
     named = _by_number(reported, grid)
     plant, problems, doubts = named.plant, named.problems, named.doubts
@@ -315,7 +323,7 @@ def _own_doubts(reported: Reported) -> dict[int, str]:
 
 def _listed(
     reported: Reported, why: dict[int, str], verdict: str, remedy: Remedy | None
-) -> list[Finding]:
+) -> list[ImportMessage]:
     """Return a finding for each of the first records, and one for the rest."""
     make = dropped if verdict.startswith("cannot") else doubtful
     rows = sorted(why)
@@ -330,7 +338,7 @@ def _listed(
 
 def _about_faces(
     reported: Reported, grid: PlantGrid, plant: NDArray[np.int64], taken: NDArray[np.bool_]
-) -> list[Finding]:
+) -> list[ImportMessage]:
     unsaid = taken & (reported.plant < 0) & (reported.face == 0)
     unsaid[unsaid] = grid.twin[plant[unsaid]] >= 0
     if not unsaid.any():
@@ -341,7 +349,7 @@ def _about_faces(
 
 def _about_accuracy(
     reported: Reported, options: FindingsOptions, snapped: NDArray[np.bool_]
-) -> list[Finding]:
+) -> list[ImportMessage]:
     unsaid = snapped & np.isnan(reported.accuracy_m)
     if options.accuracy_m is not None or not unsaid.any():
         return []

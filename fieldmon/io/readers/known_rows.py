@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.io.import_report import Finding, seen
+from fieldmon.io.import_report import ImportMessage, seen
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.values import numbers
 
@@ -34,7 +34,7 @@ _COLUMNS = {
 
 def with_known_rows(
     fields: tuple[Field, ...], layer: Layer, names: list[str]
-) -> tuple[tuple[Field, ...], list[Finding]]:
+) -> tuple[tuple[Field, ...], list[ImportMessage]]:
     """Return the plots with the row bearing and spacings that the layer's columns state.
 
     `names` are those of the layer's features, in its order; plots are told apart by them.

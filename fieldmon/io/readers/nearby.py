@@ -10,7 +10,7 @@ import pyproj
 import shapely
 
 from fieldmon.errors import ChoiceNeeded, ObservationError
-from fieldmon.io.import_report import Finding, Remedy, doubtful, dropped, seen
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, dropped, seen
 from fieldmon.plot.grid import nearest_plants
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class Apart:
     outside: Observations
     outside_m: NDArray[np.float64]
 
-    def findings(self, plot: str) -> list[Finding]:
+    def messages(self, plot: str) -> list[ImportMessage]:
         """Return what there is to say about the records elsewhere."""
         n = len(self.outside)
         if n == 0:
@@ -65,12 +65,12 @@ def apart(observations: Observations, field: Field) -> Apart:
     return Apart(observations.take(near), observations.take(~near), away[~near])
 
 
-def of_plot(observations: Observations, field: Field) -> tuple[Observations, list[Finding]]:
+def of_plot(observations: Observations, field: Field) -> tuple[Observations, list[ImportMessage]]:
     """Return the records of one plot; ask or refuse where not one is there."""
     split = apart(observations, field)
     if len(split.inside):
-        findings = split.findings(field.name) + _questioned(split.outside, field)
-        return split.inside, findings
+        messages = split.messages(field.name) + _questioned(split.outside, field)
+        return split.inside, messages
     nearest = _far(split.outside_m.min())
     swapped_m = distance_m(observations.lonlat[:, ::-1], field)
     if np.median(swapped_m) < min(10_000.0, 0.01 * float(np.median(split.outside_m))):
@@ -88,7 +88,7 @@ def of_plot(observations: Observations, field: Field) -> tuple[Observations, lis
     )
 
 
-def on_plants(observations: Observations, grid: PlantGrid) -> list[Finding]:
+def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage]:
     """Return what to say about records that cannot be told a plant of their own.
 
     A record belongs to the nearest plant within half a row and its own accuracy.
@@ -97,9 +97,9 @@ def on_plants(observations: Observations, grid: PlantGrid) -> list[Finding]:
     own_m = np.nan_to_num(observations.accuracy_m)
     beside = (away > grid.row_spacing_m / 2 + own_m) & np.isfinite(away)
     rough = np.isfinite(away) & ~beside & (own_m > grid.plant_spacing_m)
-    findings = []
+    messages = []
     if beside.any():
-        findings.append(
+        messages.append(
             doubtful(
                 f"{int(beside.sum())} record(s) lie on no plant: {_far(away[beside].min())} to "
                 f"{_far(away[beside].max())} from the nearest. They count for the plants around "
@@ -107,14 +107,14 @@ def on_plants(observations: Observations, grid: PlantGrid) -> list[Finding]:
             )
         )
     if rough.any():
-        findings.append(
+        messages.append(
             seen(
                 f"{int(rough.sum())} record(s) are placed to {_far(float(np.median(own_m[rough])))}"
                 f" while plants stand {grid.plant_spacing_m:g} m apart: they count "
                 "for the nearest plant and for those around it."
             )
         )
-    return findings
+    return messages
 
 
 def distance_m(lonlat: NDArray[np.float64], field: Field) -> NDArray[np.float64]:
@@ -133,7 +133,7 @@ def distance_m(lonlat: NDArray[np.float64], field: Field) -> NDArray[np.float64]
     return away
 
 
-def _questioned(observations: Observations, field: Field) -> list[Finding]:
+def _questioned(observations: Observations, field: Field) -> list[ImportMessage]:
     """Return a doubt where records would fit the plot better with their axes exchanged."""
     here = distance_m(observations.lonlat, field)
     there = distance_m(observations.lonlat[:, ::-1], field)

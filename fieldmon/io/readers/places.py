@@ -11,7 +11,7 @@ import shapely
 
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.formats.layer import text
-from fieldmon.io.import_report import Finding, dropped, guessed, seen
+from fieldmon.io.import_report import ImportMessage, dropped, guessed, seen
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.parse.values import is_missing
@@ -95,7 +95,7 @@ class Named:
 
     lonlat: NDArray[np.float64]
     accuracy_m: NDArray[np.float64]
-    findings: tuple[Finding, ...]
+    messages: tuple[ImportMessage, ...]
 
 
 def by_plant(row: NDArray[np.object_] | None, plant: NDArray[np.object_], places: Places) -> Named:
@@ -115,8 +115,8 @@ def by_plant(row: NDArray[np.object_] | None, plant: NDArray[np.object_], places
         wanted = [f"{r}/{p}" if r and p else "" for r, p in both]
     match, how = _join(wanted, known)
     lonlat = np.where(match[:, None] >= 0, plants.lonlat[match], np.nan)
-    findings = (*how, *_unmatched(wanted, match, "plant"))
-    return Named(lonlat, np.full(len(wanted), np.nan), findings)
+    messages = (*how, *_unmatched(wanted, match, "plant"))
+    return Named(lonlat, np.full(len(wanted), np.nan), messages)
 
 
 def by_plot(names: NDArray[np.object_], places: Places) -> Named:
@@ -146,7 +146,7 @@ def _names(column: NDArray[np.object_]) -> list[str]:
     return ["" if is_missing(value) else text(value) for value in column]
 
 
-def _join(wanted: list[str], known: list[str]) -> tuple[NDArray[np.int64], list[Finding]]:
+def _join(wanted: list[str], known: list[str]) -> tuple[NDArray[np.int64], list[ImportMessage]]:
     """Return which known name each wanted one is, -1 for none, and how they were compared.
 
     Names are compared as they are; else without capitals, spaces and marks; else by their digits
@@ -174,17 +174,17 @@ _KEYS: tuple[tuple[Callable[[str], str], str], ...] = (
 )
 
 
-def _unmatched(wanted: list[str], match: NDArray[np.int64], what: str) -> list[Finding]:
+def _unmatched(wanted: list[str], match: NDArray[np.int64], what: str) -> list[ImportMessage]:
     missing = [name for name, found in zip(wanted, match, strict=True) if found < 0]
     named = sorted({name for name in missing if name})
-    findings = []
+    messages = []
     if named:
         shown = ", ".join(named[:_MOST_NAMED]) + (", ..." if len(named) > _MOST_NAMED else "")
         n = sum(bool(name) for name in missing)
-        findings.append(
+        messages.append(
             dropped(f"{n} record(s) name {len(named)} {what}(s) that are not known: {shown}.")
         )
     if len(missing) > sum(bool(name) for name in missing):
         n = sum(not name for name in missing)
-        findings.append(dropped(f"{n} record(s) name no {what} at all."))
-    return findings
+        messages.append(dropped(f"{n} record(s) name no {what} at all."))
+    return messages

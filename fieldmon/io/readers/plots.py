@@ -12,7 +12,7 @@ from shapely import MultiPolygon
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.import_report import Finding, Imported, doubtful, dropped, guessed, seen
+from fieldmon.io.import_report import Imported, ImportMessage, doubtful, dropped, guessed, seen
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import boundary, closed_lines, filled, sort_out
 from fieldmon.io.parse.georeference import place_geometry
@@ -30,13 +30,13 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     """Return the plots of a layer, each valid and in degrees WGS84."""
     if layer.geometry is None:
         return _plot_of_corners(layer, options)
-    areas, findings = _areas(layer)
+    areas, messages = _areas(layer)
     names, name_findings = plot_names(areas, options.name_column)
     chosen = _chosen(names, options.feature)
     placed, place_findings = place_geometry(_shapes(areas)[chosen], layer.crs, options)
     fields, shape_findings = _fields(placed, [names[i] for i in chosen])
     fields, row_findings = with_known_rows(fields, areas, names)
-    found = (*layer.findings, *findings, *name_findings, *place_findings, *shape_findings)
+    found = (*layer.messages, *messages, *name_findings, *place_findings, *shape_findings)
     return Imported(fields, (*found, *row_findings))
 
 
@@ -54,21 +54,21 @@ def _shapes(layer: Layer) -> NDArray[np.object_]:
     return layer.geometry
 
 
-def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[Finding]]:
+def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[ImportMessage]]:
     """Return a different name for every feature, and where the names come from."""
     named = column or find("name", layer.columns)
-    findings: list[Finding] = []
+    messages: list[ImportMessage] = []
     if named is None:
         base = [layer.name] * len(layer)
         if len(layer) > 1:
-            findings.append(
+            messages.append(
                 guessed("No column was recognised as the plots' names; they are numbered.")
             )
     else:
         base = [text(v) or layer.name for v in layer.column(named)]
         if len(layer) > 1 or column is None:
-            findings.append(seen(f"Plots are named by column {named!r}."))
-    return _told_apart(base), findings
+            messages.append(seen(f"Plots are named by column {named!r}."))
+    return _told_apart(base), messages
 
 
 def _told_apart(names: list[str]) -> list[str]:
@@ -81,28 +81,28 @@ def _told_apart(names: list[str]) -> list[str]:
     return apart
 
 
-def _areas(layer: Layer) -> tuple[Layer, list[Finding]]:
+def _areas(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     """Return the features that have an area; offer lines and points for what they can be."""
-    findings: list[Finding] = []
+    messages: list[ImportMessage] = []
     areas, lines, points = sort_out(_shapes(layer))
     if not areas.any() and lines.any():
-        layer, findings = _outlines(layer)
+        layer, messages = _outlines(layer)
         areas, lines, points = sort_out(_shapes(layer))
     if not areas.any():
         _refuse_without_areas(layer, int(lines.sum()), int(points.sum()))
     missing = len(layer) - int((areas | lines | points).sum())
     if missing:
-        findings.append(dropped(f"{missing} feature(s) without a geometry were left out."))
+        messages.append(dropped(f"{missing} feature(s) without a geometry were left out."))
     if lines.any():
         said = f"{int(lines.sum())} line(s) were left out: import them as rows or paths."
-        findings.append(dropped(said))
+        messages.append(dropped(said))
     if points.any():
         said = f"{int(points.sum())} point(s) were left out: import them as plants or records."
-        findings.append(dropped(said))
-    return layer.take(np.flatnonzero(areas)), findings
+        messages.append(dropped(said))
+    return layer.take(np.flatnonzero(areas)), messages
 
 
-def _outlines(layer: Layer) -> tuple[Layer, list[Finding]]:
+def _outlines(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     """Return the layer with closed lines as the areas inside them."""
     shapes = _shapes(layer)
     closed = closed_lines(shapes)
@@ -155,58 +155,58 @@ def _chosen(names: list[str], feature: str | int | None) -> NDArray[np.int64]:
 
 def _fields(
     geometry: NDArray[np.object_], names: list[str]
-) -> tuple[tuple[Field, ...], list[Finding]]:
-    fields, findings = [], []
+) -> tuple[tuple[Field, ...], list[ImportMessage]]:
+    fields, messages = [], []
     for area, name in zip(geometry, names, strict=True):
         kept, found = boundary(area, name)
-        findings += found
+        messages += found
         if kept.is_empty:
-            findings.append(dropped("Nothing of this plot is left to use.", name))
+            messages.append(dropped("Nothing of this plot is left to use.", name))
             continue
         fields.append(Field(name, kept))
     if not fields:
-        said = "; ".join(f.sentence for f in findings[:5])
+        said = "; ".join(f.sentence for f in messages[:5])
         raise FileProblem(f"At least one plot must have an area, but none has. {said}")
-    return tuple(fields), [*findings, *_parts(fields), *_duplicates(fields)]
+    return tuple(fields), [*messages, *_parts(fields), *_duplicates(fields)]
 
 
-def _parts(fields: list[Field]) -> list[Finding]:
+def _parts(fields: list[Field]) -> list[ImportMessage]:
     several = [f.name for f in fields if len(f.boundary.geoms) > 1]
     holed = [f.name for f in fields if any(len(p.interiors) for p in f.boundary.geoms)]
-    findings = []
+    messages = []
     if several:
-        findings.append(
+        messages.append(
             seen(f"{len(several)} plot(s) have several parts, which were kept: {_some(several)}.")
         )
     if holed:
-        findings.append(
+        messages.append(
             seen(f"{len(holed)} plot(s) have holes, kept as places without plants: {_some(holed)}.")
         )
-    return findings
+    return messages
 
 
 def _some(names: list[str]) -> str:
     return ", ".join(names[:5]) + (", ..." if len(names) > 5 else "")
 
 
-def _duplicates(fields: list[Field]) -> list[Finding]:
+def _duplicates(fields: list[Field]) -> list[ImportMessage]:
     first: dict[bytes, str] = {}
-    findings = []
+    messages = []
     bounds = Counter(field.boundary.bounds for field in fields)
     for field in fields:
         if bounds[field.boundary.bounds] == 1:
             continue
         key = shapely.to_wkb(shapely.normalize(field.boundary))
         if key in first:
-            findings.append(doubtful(f"It has the same outline as {first[key]}.", field.name))
+            messages.append(doubtful(f"It has the same outline as {first[key]}.", field.name))
         first.setdefault(key, field.name)
-    return findings
+    return messages
 
 
 def _plot_of_corners(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     """Return the one plot whose corners a table lists in order."""
     found = located(layer, options)
-    points, findings = found.lonlat, found.findings
+    points, messages = found.lonlat, found.messages
     if not 3 <= len(points) <= 1000:
         raise _which_are_corners(layer, len(points))
     ring = MultiPolygon([shapely.Polygon(points)])
@@ -218,7 +218,7 @@ def _plot_of_corners(layer: Layer, options: PlotOptions) -> Imported[tuple[Field
     said = guessed(
         f"{len(points)} positions were taken as the corners of one plot, in their order."
     )
-    return Imported((Field(layer.name, kept),), (*layer.findings, *findings, said, *more))
+    return Imported((Field(layer.name, kept),), (*layer.messages, *messages, said, *more))
 
 
 def _which_are_corners(layer: Layer, n_points: int) -> ChoiceNeeded:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
     """Return the plants of a layer of points, or of a table with positions."""
     found = located(layer, options)
-    findings = list(found.findings)
+    messages = list(found.messages)
     taken: set[str] = set()
     labels = []
     for role in ("row", "plant"):
@@ -35,18 +35,18 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
             labels.append(np.full(len(found.layer), "", dtype=np.str_))
             continue
         taken.add(named)
-        findings.append(seen(f"Column {named!r} names the {role}s."))
+        messages.append(seen(f"Column {named!r} names the {role}s."))
         labels.append(np.array([text(v) for v in found.layer.column(named)], dtype=np.str_))
     _, first, times = np.unique(found.lonlat, axis=0, return_index=True, return_counts=True)
     if (times > 1).any():
         again = found.layer.take(first[times > 1])
-        findings.append(
+        messages.append(
             doubtful(
                 f"{int((times - 1).sum())} plant(s) stand at the very place of another, "
                 f"first {_called(again)}."
             )
         )
-    return Imported(Plants(found.lonlat, *labels), (*layer.findings, *findings))
+    return Imported(Plants(found.lonlat, *labels), (*layer.messages, *messages))
 
 
 def _called(layer: Layer) -> str:
@@ -64,16 +64,16 @@ def lines_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:
             f"{layer.name} must hold lines, but it holds {int(areas.sum())} area(s) and "
             f"{int(points.sum())} point(s). Choose another file or layer."
         )
-    findings = []
+    messages = []
     others = len(layer) - int(lines.sum())
     if others:
-        findings.append(dropped(f"{others} feature(s) that are no lines were left out."))
+        messages.append(dropped(f"{others} feature(s) that are no lines were left out."))
     placed, more = place_geometry(layer.geometry[lines], layer.crs, options)
     parts = shapely.get_parts(shapely.get_parts(placed))
     is_line = np.isin(shapely.get_type_id(parts), (1, 2))
     has_length = is_line & (shapely.length(parts) > 0)
     if has_length.sum() < is_line.sum():
         n_points = int(is_line.sum() - has_length.sum())
-        findings.append(dropped(f"{n_points} line(s) that do not lead anywhere were left out."))
+        messages.append(dropped(f"{n_points} line(s) that do not lead anywhere were left out."))
     whole = MultiLineString(list(parts[has_length]))
-    return Imported(whole, (*layer.findings, *findings, *more))
+    return Imported(whole, (*layer.messages, *messages, *more))

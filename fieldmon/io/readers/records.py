@@ -11,7 +11,15 @@ import numpy as np
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.observations import PRESENT, UNKNOWN, Observations
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.import_report import Finding, Imported, Remedy, doubtful, dropped, guessed, seen
+from fieldmon.io.import_report import (
+    Imported,
+    ImportMessage,
+    Remedy,
+    doubtful,
+    dropped,
+    guessed,
+    seen,
+)
 from fieldmon.io.parse.columns import find, recognised
 from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.values import (
@@ -59,8 +67,8 @@ def records_of(
         stage=table.texts("stage"),
         leaves_sampled=table.numbers("leaves"),
     )
-    findings = (*layer.findings, *repeated, *found.findings, *day_findings, *counts.findings)
-    return Imported(observations, (*findings, *_species(table), *_same_visit(observations)))
+    messages = (*layer.messages, *repeated, *found.messages, *day_findings, *counts.messages)
+    return Imported(observations, (*messages, *_species(table), *_same_visit(observations)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,10 +105,10 @@ class _Table:
 class _Counts(NamedTuple):
     number: NDArray[np.float64]
     present: NDArray[np.int8]
-    findings: list[Finding]
+    messages: list[ImportMessage]
 
 
-def _once_each(layer: Layer) -> tuple[Layer, list[Finding]]:
+def _once_each(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     """Return the layer without records that repeat another in every column."""
     columns = [list(values) for values in layer.columns.values()]
     if layer.geometry is not None:
@@ -116,7 +124,7 @@ def _once_each(layer: Layer) -> tuple[Layer, list[Finding]]:
     return layer.take(kept), [dropped(said)]
 
 
-def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[Finding]]:
+def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[ImportMessage]]:
     parts = tuple(name for role in ("year", "month", "day") if (name := table.named(role)))
     by_hand = table.options.column("date")
     if len(set(parts)) == 3 and by_hand is None:
@@ -133,10 +141,10 @@ def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[Finding]]:
     return read.day, [seen(f"Dates are in column(s) {where}."), *_about_dates(read, where)]
 
 
-def _about_dates(read: Dated, where: str) -> list[Finding]:
-    findings = []
+def _about_dates(read: Dated, where: str) -> list[ImportMessage]:
+    messages = []
     if read.is_ambiguous:
-        findings.append(
+        messages.append(
             guessed(
                 "Every date could be day first or month first; they were read day first.",
                 where,
@@ -144,12 +152,12 @@ def _about_dates(read: Dated, where: str) -> list[Finding]:
             )
         )
     if read.n_serial:
-        findings.append(
+        messages.append(
             guessed(f"{read.n_serial} number(s) were read as days counted by Excel.", where)
         )
     if read.broken:
         shown = ", ".join(repr(cell) for cell in read.broken[:3])
-        findings.append(
+        messages.append(
             doubtful(
                 f"{read.n_broken} record(s) have a date that is none ({shown}); it is left open.",
                 where,
@@ -159,10 +167,10 @@ def _about_dates(read: Dated, where: str) -> list[Finding]:
     n_future = int((read.day > today).sum())
     if n_future:
         latest = np.nanmax(read.day)
-        findings.append(
+        messages.append(
             doubtful(f"{n_future} record(s) lie in the future, the last on {latest}.", where)
         )
-    return findings
+    return messages
 
 
 def _counts(table: _Table) -> _Counts:
@@ -176,7 +184,7 @@ def _counts(table: _Table) -> _Counts:
         counts = _with_presence(table, present_name, counts)
     if count_name is None and present_name is None:
         counts.present[:] = PRESENT
-        counts.findings.append(
+        counts.messages.append(
             guessed(
                 "No column says how many or whether: every record was taken as a find.",
                 remedy=_offer(table, "count", _are_numbers),
@@ -209,26 +217,26 @@ def _are_numbers(cells: list[str]) -> bool:
 
 def _numbers_of(table: _Table, name: str) -> _Counts:
     cells = table.cells(name)
-    mark, findings = _mark(table, name, cells)
+    mark, messages = _mark(table, name, cells)
     known = {cell: counted(cell, mark) for cell in set(cells)}
     count = np.array([known[cell].number for cell in cells])
     present = np.array([known[cell].present for cell in cells], dtype=np.int8)
-    findings.append(seen(f"Counts are in column {name!r}."))
+    messages.append(seen(f"Counts are in column {name!r}."))
     rough = [cell for cell in cells if known[cell].is_rough]
     if rough:
         shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(rough))[:3])
-        findings.append(
+        messages.append(
             doubtful(f"{len(rough)} count(s) are no plain number ({shown}); read roughly.", name)
         )
     n_missing = int(np.count_nonzero(present == UNKNOWN)) - sum(
         known[cell].present == UNKNOWN for cell in rough
     )
     if n_missing:
-        findings.append(seen(f"{n_missing} record(s) have no count: not known, not zero.", name))
-    return _Counts(count, present, findings)
+        messages.append(seen(f"{n_missing} record(s) have no count: not known, not zero.", name))
+    return _Counts(count, present, messages)
 
 
-def _mark(table: _Table, name: str, cells: list[str]) -> tuple[str, list[Finding]]:
+def _mark(table: _Table, name: str, cells: list[str]) -> tuple[str, list[ImportMessage]]:
     """Return the decimal mark of the counts: 1,234 alone is told by the rest of the table."""
     if table.options.decimal is not None:
         return table.options.decimal, []
@@ -247,20 +255,20 @@ def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
     known = {cell: presence(cell) for cell in set(cells)}
     stated = np.array([known[cell] for cell in cells], dtype=np.int8)
     at_odds = (stated != UNKNOWN) & (counts.present != UNKNOWN) & (stated != counts.present)
-    findings = [*counts.findings, seen(f"Presence is in column {name!r}.")]
+    messages = [*counts.messages, seen(f"Presence is in column {name!r}.")]
     if at_odds.any():
-        findings.append(
+        messages.append(
             doubtful(f"{int(at_odds.sum())} record(s) say another thing than their count.", name)
         )
     unread = {cell for cell in known if known[cell] == UNKNOWN and not is_missing(cell)}
     if unread:
         shown = ", ".join(repr(cell) for cell in sorted(unread)[:3])
-        findings.append(doubtful(f"These words say neither yes nor no: {shown}.", name))
+        messages.append(doubtful(f"These words say neither yes nor no: {shown}.", name))
     present = np.where(stated == UNKNOWN, counts.present, stated).astype(np.int8)
-    return _Counts(counts.number, present, findings)
+    return _Counts(counts.number, present, messages)
 
 
-def _species(table: _Table) -> list[Finding]:
+def _species(table: _Table) -> list[ImportMessage]:
     """Return what to say where a file mixes species."""
     name = table.named("species")
     if name is None:
@@ -274,7 +282,7 @@ def _species(table: _Table) -> list[Finding]:
     return [doubtful(f"{len(kinds)} species are mixed: {shown}.", name, remedy)]
 
 
-def _same_visit(observations: Observations) -> list[Finding]:
+def _same_visit(observations: Observations) -> list[ImportMessage]:
     """Return a doubt about records of one place and day that disagree."""
     if len(observations) < 2:
         return []

@@ -19,7 +19,7 @@ from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.open_layer import layers_of, open_layer
-from fieldmon.io.import_report import Finding, Imported, Remedy, doubtful, guessed, seen
+from fieldmon.io.import_report import Imported, ImportMessage, Remedy, doubtful, guessed, seen
 from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.parse.positions import located
@@ -231,8 +231,8 @@ def reported_of(source: Source, options: FindingsOptions, workroom: Workroom) ->
             continue  # this one has no columns for findings
         said = seen(f"Findings were read from layer {info.layer}.")
         if len(read.value):
-            return Imported(read.value, (said, *read.findings))
-        said_nothing.append(Imported(read.value, (said, *read.findings)))
+            return Imported(read.value, (said, *read.messages))
+        said_nothing.append(Imported(read.value, (said, *read.messages)))
     return (
         said_nothing[0]
         if said_nothing
@@ -268,7 +268,7 @@ class _Results(NamedTuple):
     how_many: NDArray[np.float64]
     doubt: NDArray[np.str_]
     said: NDArray[np.bool_]
-    findings: list[Finding]
+    findings: list[ImportMessage]
 
 
 def reported_in(layer: Layer, options: FindingsOptions) -> Imported[Reported]:
@@ -305,11 +305,11 @@ def reported_in(layer: Layer, options: FindingsOptions) -> Imported[Reported]:
         source_row=np.arange(1, len(layer) + 1),
     )
     kept = Reported(**{name: values[said] for name, values in vars(whole).items()})
-    every = (*layer.findings, *findings, *results.findings, *more, *times.findings)
+    every = (*layer.messages, *findings, *results.findings, *more, *times.findings)
     return Imported(kept, every)
 
 
-def _without_lines(layer: Layer) -> tuple[Layer, list[Finding]]:
+def _without_lines(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     """Return the layer without the driven line that files given out hold beside the stops."""
     if layer.geometry is None:
         return layer, []
@@ -408,7 +408,7 @@ def _results(layer: Layer, columns: _Columns, options: FindingsOptions) -> _Resu
         said = [_of_mark(text(v)) for v in layer.column(columns.marks)]
         return _put_together(said, [_SILENT] * len(said), [])
     by_result, by_count = [_SILENT] * len(layer), [_SILENT] * len(layer)
-    findings: list[Finding] = []
+    findings: list[ImportMessage] = []
     if columns.result is not None:
         cells = [text(v) for v in layer.column(columns.result)]
         signs = any(_PLUS.match(cell) for cell in cells)
@@ -429,7 +429,7 @@ def _results(layer: Layer, columns: _Columns, options: FindingsOptions) -> _Resu
 
 
 def _put_together(
-    by_result: list[_Said], by_count: list[_Said], findings: list[Finding]
+    by_result: list[_Said], by_count: list[_Said], findings: list[ImportMessage]
 ) -> _Results:
     """Return what result and count say together.
 
@@ -452,7 +452,7 @@ def _put_together(
     return _Results(result, how_many, doubt.astype(np.str_), spoken | counted_too, findings)
 
 
-def _unread(cells: list[str], known: dict[str, _Said]) -> list[Finding]:
+def _unread(cells: list[str], known: dict[str, _Said]) -> list[ImportMessage]:
     odd = [cell for cell in cells if not known[cell].is_read]
     if not odd:
         return []
@@ -557,7 +557,7 @@ def _whole(layer: Layer, name: str, otherwise: int) -> NDArray[np.int64]:
 
 def _positions(
     layer: Layer, columns: _Columns, options: FindingsOptions
-) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[Finding, ...]]:
+) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[ImportMessage, ...]]:
     """Return positions ``(n, 2)`` and their accuracy ``(n,)``, NaN where there is none."""
     lonlat, accuracy_m = np.full((len(layer), 2), np.nan), np.full(len(layer), np.nan)
     roles = {role for role in ("lon", "lat", "x", "y", "position") if _has(layer, role, options)}
@@ -576,7 +576,7 @@ def _positions(
     rows = np.empty(len(layer), dtype=object)
     rows[:] = range(len(layer))
     try:
-        found = located(replace(layer, columns={**layer.columns, _ROW: rows}, findings=()), options)
+        found = located(replace(layer, columns={**layer.columns, _ROW: rows}, messages=()), options)
     except (ChoiceNeeded, FileProblem):
         if not is_named:
             raise
@@ -586,7 +586,7 @@ def _positions(
     stated = numbers(found.layer.column(name)) if name else np.full(len(kept), np.nan)
     lonlat[kept] = found.lonlat
     accuracy_m[kept] = np.fmax(np.where(stated > 0, stated, np.nan), found.accuracy_m)
-    return lonlat, accuracy_m, found.findings
+    return lonlat, accuracy_m, found.messages
 
 
 def _has(layer: Layer, role: str, options: FindingsOptions) -> bool:
@@ -599,7 +599,7 @@ def _has(layer: Layer, role: str, options: FindingsOptions) -> bool:
 class _Times(NamedTuple):
     when: NDArray[np.datetime64]
     day: NDArray[np.datetime64]
-    findings: list[Finding]
+    findings: list[ImportMessage]
 
 
 def _times(layer: Layer, columns: _Columns, options: FindingsOptions) -> _Times:
@@ -632,7 +632,7 @@ def _about_times(
     broken: tuple[str, ...],
     is_ambiguous: bool,  # noqa: FBT001 - one caller
     n_utc: int,
-) -> list[Finding]:
+) -> list[ImportMessage]:
     findings = []
     if n_broken:
         shown = ", ".join(repr(cell) for cell in broken[:3])

@@ -1,1 +1,1 @@
-"""Foreign files are opened in a process of their own, within limits, and nothing gets out of it but values."""
+"""Foreign files are opened in a process of their own, within limits; only values come out."""

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.random_streams import Chance
-from fieldmon.infestation.belief import MeanField, Pairs
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.belief import IndependentPlants, Pairs
 from fieldmon.infestation.ensemble import Ensemble
-from fieldmon.infestation.plot_estimate import Outlook, outlook
+from fieldmon.infestation.plot_estimate import PlotEstimate, outlook
 from fieldmon.simulation.season import days
 from fieldmon.studies.charts import Line, line_chart
 from fieldmon.studies.samplers.report import STYLE
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     Believe = Callable[[PlantGrid, NDArray[np.float64]], Belief]
 
 BELIEFS: dict[str, Believe] = {
-    "independent plants": MeanField,
+    "independent plants": IndependentPlants,
     "pairs": Pairs.of,
     "pairs, clustering known": partial(Pairs.of, company=0.65),
     "ensemble": Ensemble.of,
@@ -83,7 +83,7 @@ class _Watched:
 
     def __init__(self, belief: Belief, mornings: list[Belief], seconds: list[float]) -> None:
         self._belief, self._mornings, self._seconds = belief, mornings, seconds
-        self.chance, self.both = belief.chance, belief.both
+        self.chance, self.pair_chance = belief.chance, belief.pair_chance
 
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
@@ -126,7 +126,7 @@ def calibration(
                 return _Watched(mornings[0], mornings, seconds)
 
             settings = replace(cell.settings, n_days=n_days, believe=watched)
-            start, chance = cell.begin(Chance(seed)), Chance(seed)
+            start, chance = cell.begin(RandomStreams(seed)), RandomStreams(seed)
             season = list(days(cell.aisles, cell.robot, sampler, start, settings, chance))
             # a blind sampler has not asked: all mornings are worked out now, for the last one
             season[-1].belief  # noqa: B018
@@ -139,11 +139,11 @@ def calibration(
     return _compared(chances, truths, (ahead, np.array(counts)), sum(seconds) / len(counts))
 
 
-def _outlook(belief: Belief, grid: PlantGrid) -> Outlook:
+def _outlook(belief: Belief, grid: PlantGrid) -> PlotEstimate:
     if isinstance(belief, Ensemble):
         return belief.outlook()
-    if belief.both is not None:
-        return outlook(grid, belief.chance, belief.both)
+    if belief.pair_chance is not None:
+        return outlook(grid, belief.chance, belief.pair_chance)
     start, other = grid.adjacent
     return outlook(
         grid, belief.chance, np.repeat(belief.chance, np.diff(start)) * belief.chance[other]
@@ -153,7 +153,7 @@ def _outlook(belief: Belief, grid: PlantGrid) -> Outlook:
 def _compared(
     chances: list[NDArray[np.float64]],
     truths: list[NDArray[np.bool_]],
-    plots: tuple[list[Outlook], NDArray[np.int64]],
+    plots: tuple[list[PlotEstimate], NDArray[np.int64]],
     seconds_a_day: float,
 ) -> Calibration:
     ahead, counts = plots

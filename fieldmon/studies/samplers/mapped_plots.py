@@ -107,7 +107,7 @@ def found_at(plant_map: PlantMap, sampler: Sampler) -> list[int]:
             at=int(order[-1]) if len(order) else -1,
             seconds_left=max(_DAY * n, 2.0) * robot.visit_s * _DRIVING,
             trail=order,
-            both=belief.both,
+            pair_chance=belief.pair_chance,
         )
         work = work_day(scene, sampler, plant_map.infested)
         if not len(work):

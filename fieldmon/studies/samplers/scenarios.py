@@ -20,7 +20,7 @@ from fieldmon.simulation.season import SeasonSettings, Start
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.compute.random_streams import Chance
+    from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.plot.grid import PlantGrid
 
 # the thesis's plots, plants a side: 1, 5 and 10 ha
@@ -99,7 +99,7 @@ class Cell:
         learning = Learning(detection=Robot().detects)
         return SeasonSettings(spread=self.spread, believed_spread=believed, learning=learning)
 
-    def begin(self, chance: Chance) -> Start:
+    def begin(self, chance: RandomStreams) -> Start:
         """Draw the first morning and what is known of it."""
         grid = self.aisles.grid
         infested = _infested(grid, self.start, chance.of("start"))

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.random_streams import Chance
-from fieldmon.infestation.belief import MeanField, Pairs
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.belief import IndependentPlants, Pairs
 from fieldmon.infestation.spread import night
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import Adaptive, Bouncy, Dynamic, Naive
@@ -35,7 +35,7 @@ _FAST = 1e6
 
 
 @dataclass(frozen=True)
-class Rival:
+class Contender:
     """Who takes part: a sampler with the belief it is given.
 
     Parameters
@@ -61,14 +61,14 @@ class Rival:
 
 # what `tuning.losses` came to; the map of pairs is the better one for Dynamic too
 RIVALS = (
-    Rival(ADAPTIVE, Adaptive()),
-    Rival(WORDED, Dynamic()),
-    Rival(TUNED, Dynamic(suspicious=0.06)),
-    Rival("dynamic, independent plants", Dynamic(), MeanField, every=SOME),
-    Rival("adaptive, independent plants", Adaptive(), MeanField, every=SOME),
-    Rival("naive", Naive(), MeanField),
-    Rival("bouncy", Bouncy(), MeanField),
-    Rival(NO_TRAVEL, Adaptive(), drives=False, every=SOME),
+    Contender(ADAPTIVE, Adaptive()),
+    Contender(WORDED, Dynamic()),
+    Contender(TUNED, Dynamic(suspicious=0.06)),
+    Contender("dynamic, independent plants", Dynamic(), IndependentPlants, every=SOME),
+    Contender("adaptive, independent plants", Adaptive(), IndependentPlants, every=SOME),
+    Contender("naive", Naive(), IndependentPlants),
+    Contender("bouncy", Bouncy(), IndependentPlants),
+    Contender(NO_TRAVEL, Adaptive(), drives=False, every=SOME),
 )
 NAMES = (*(rival.name for rival in RIVALS), CLAIRVOYANT)
 
@@ -91,7 +91,7 @@ class Outcome:
 MEASURES = ("infested_plant_days", "d50", "d80", "inspected", "found", "visited_pct")
 
 
-class _Seer:
+class _Oracle:
     """The clairvoyant: drives as Adaptive does, on the truth instead of a chance map."""
 
     def __init__(self, truth: NDArray[np.bool_]) -> None:
@@ -101,11 +101,11 @@ class _Seer:
         """Return the stops of the rest of the day, at infested plants first."""
         chance = np.where(self.truth, 1.0 - 1e-6, 1e-6)
         start, other = scene.grid.adjacent
-        both = np.repeat(chance, np.diff(start)) * chance[other]
-        return Adaptive().walk(replace(scene, chance=chance, both=both), would_find)
+        pair_chance = np.repeat(chance, np.diff(start)) * chance[other]
+        return Adaptive().walk(replace(scene, chance=chance, pair_chance=pair_chance), would_find)
 
 
-class _Deceived:
+class _Misinformed:
     """A sampler that takes the robot to detect what the thesis's does."""
 
     def __init__(self, sampler: Sampler) -> None:
@@ -139,7 +139,7 @@ def run(
 
 def outcomes(cell: Cell, seed: int) -> list[Outcome]:
     """Return what the season of one cell and seed comes to for every rival and the clairvoyant."""
-    chance = Chance(seed)
+    chance = RandomStreams(seed)
     start = cell.begin(chance)
     made = [
         _outcome(cell, seed, rival.name, figures(season(cell, rival, start, chance)))
@@ -152,18 +152,18 @@ def outcomes(cell: Cell, seed: int) -> list[Outcome]:
     return [*made, _outcome(cell, seed, CLAIRVOYANT, seen)]
 
 
-def season(cell: Cell, rival: Rival, start: Start, chance: Chance) -> Iterator[Day]:
+def season(cell: Cell, rival: Contender, start: Start, chance: RandomStreams) -> Iterator[Day]:
     """Return the days of a rival's season."""
     robot = cell.robot
     if not rival.drives:
         robot = replace(robot, speed_m_s=_FAST, row_change_s=0.0)
-    sampler = _Deceived(rival.sampler) if cell.flaw == "detection" else rival.sampler
+    sampler = _Misinformed(rival.sampler) if cell.flaw == "detection" else rival.sampler
     settings = replace(cell.settings, believe=rival.believe)
     return days(cell.aisles, robot, sampler, start, settings, chance)
 
 
-def _clairvoyant(cell: Cell, start: Start, chance: Chance) -> Iterator[Day]:
-    seer = _Seer(start.infested)
+def _clairvoyant(cell: Cell, start: Start, chance: RandomStreams) -> Iterator[Day]:
+    seer = _Oracle(start.infested)
     for day in days(cell.aisles, cell.robot, seer, start, cell.settings, chance):
         yield day
         evening = day.infested.copy()

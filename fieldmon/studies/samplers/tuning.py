@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread
 from fieldmon.samplers import Dynamic
 from fieldmon.simulation.metrics import figures
 from fieldmon.studies.samplers.scenarios import Cell
-from fieldmon.studies.samplers.seasons import Rival, season
+from fieldmon.studies.samplers.seasons import Contender, season
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -43,12 +43,12 @@ def losses(
     The loss is the geometric mean over cells of the mean over seeds of infested plant-days.
     """
     for choice in CHOICES:
-        rival = Rival("dynamic", Dynamic(*choice))
+        rival = Contender("dynamic", Dynamic(*choice))
         means = [np.mean([_plant_days(cell, rival, seed) for seed in seeds]) for cell in cells]
         yield choice, float(np.exp(np.mean(np.log(means))))
 
 
-def _plant_days(cell: Cell, rival: Rival, seed: int) -> float:
-    chance = Chance(seed)
+def _plant_days(cell: Cell, rival: Contender, seed: int) -> float:
+    chance = RandomStreams(seed)
     days = season(cell, rival, cell.begin(chance), chance)
     return float(figures(days).infested_plant_days)

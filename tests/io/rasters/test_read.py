@@ -51,7 +51,7 @@ def expected(lonlat):
 def said(imported, pattern, severity=None):
     return [
         f
-        for f in imported.findings
+        for f in imported.messages
         if re.search(pattern, f.sentence) and severity in {None, f.severity}
     ]
 

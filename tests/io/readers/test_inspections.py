@@ -61,7 +61,7 @@ def test_results_are_read_in_many_spellings(word, result):
 def test_what_is_not_filled_in_stays_unknown(blank):
     imported = read(f"plant,found,count\n7,{blank},\n8,no,\n")
     assert imported.value.plant.tolist() == [8]
-    assert any("1 of 2 record(s) are not filled in" in f.sentence for f in imported.findings)
+    assert any("1 of 2 record(s) are not filled in" in f.sentence for f in imported.messages)
 
 
 def test_a_minus_is_clean_only_beside_a_plus():
@@ -190,7 +190,7 @@ def test_both_faces_of_a_plant_are_told_apart_by_number_or_by_face():
     )
     first, second = sorted((3, twin))
     assert imported.value.plant.tolist() == [3, twin, first, second, first]
-    assert any("1 record(s) do not say which face" in f.sentence for f in imported.findings)
+    assert any("1 record(s) do not say which face" in f.sentence for f in imported.messages)
     lon, lat = grid.lonlat(np.array([twin]))[0]
     snapped = read(f"lon,lat,accuracy,found\n{lon:.9f},{lat:.9f},0.1,x\n", grid=grid)
     assert snapped.value.plant.tolist() == [first]
@@ -283,7 +283,7 @@ def test_any_other_finding_has_another_digest(other):
 def test_what_a_file_says_twice_is_taken_once():
     imported = read("plant,found\n7,x\n8,no\n7,yes\n")
     assert imported.value.plant.tolist() == [7, 8]
-    assert any("say again" in f.sentence for f in imported.findings)
+    assert any("say again" in f.sentence for f in imported.messages)
 
 
 # --- the formats -------------------------------------------------------------------------------
@@ -339,7 +339,7 @@ def test_an_edited_layer_is_found_among_the_others_of_a_project(tmp_path):
     named = FindingsOptions(layer="inspections")
     unknown = read_findings(path, GRID, named)
     assert len(unknown.value) == 0
-    assert any("2 record(s) have a note, but no result" in f.sentence for f in unknown.findings)
+    assert any("2 record(s) have a note, but no result" in f.sentence for f in unknown.messages)
 
 
 def test_a_season_file_edited_in_qfield_gives_what_was_added_and_not_what_was_undone(tmp_path):
@@ -399,7 +399,7 @@ def test_waypoints_are_read_by_their_names():
     ]
     np.testing.assert_array_equal(findings.count, [3, *[np.nan] * 5, 2, np.nan])
     assert set(findings.when.astype(str)) == {"2026-11-18T08:30:00"}
-    assert any("2 of 10 record(s) carry no finding" in f.sentence for f in imported.findings)
+    assert any("2 of 10 record(s) carry no finding" in f.sentence for f in imported.messages)
 
 
 def test_a_file_that_says_nothing_of_findings_asks_for_its_columns():

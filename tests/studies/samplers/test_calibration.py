@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.samplers import Naive
 from fieldmon.studies.samplers.calibration import BELIEFS, EDGES, calibration, report_html
 from fieldmon.studies.samplers.scenarios import Cell
@@ -39,7 +39,7 @@ def test_the_interval_for_the_number_infested_holds_it_mostly(made):
 def test_a_belief_that_never_learns_scores_as_the_share_it_says():
     class Stubborn:
         def __init__(self, chance):
-            self.chance, self.both = chance, None
+            self.chance, self.pair_chance = chance, None
 
         def learn(self, *_):
             return self
@@ -50,7 +50,7 @@ def test_a_belief_that_never_learns_scores_as_the_share_it_says():
     cell = Cell("B")
     blind = calibration([cell], Naive(), lambda _, chance: Stubborn(chance), seeds=1, n_days=2)
     assert blind.count.sum() == 2 * 4096
-    said = cell.begin(Chance(0)).chance[0]
+    said = cell.begin(RandomStreams(0)).chance[0]
     share = np.average(blind.was, weights=blind.count)
     assert blind.brier == pytest.approx(share * (1 - said) ** 2 + (1 - share) * said**2)
     assert blind.seconds_a_day < 0.01

@@ -5,7 +5,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fieldmon.cli import main
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.spread import Spread
 from fieldmon.studies.samplers.report import report_html
@@ -93,13 +93,13 @@ def test_the_report_names_every_rival(made):
 
 @pytest.mark.parametrize("start", STARTS)
 def test_a_season_starts_with_the_share_of_infested_plants_that_it_says(start):
-    shares = [Cell("B", start=start).begin(Chance(s)).infested.mean() for s in range(20)]
+    shares = [Cell("B", start=start).begin(RandomStreams(s)).infested.mean() for s in range(20)]
     assert np.mean(shares) == pytest.approx(0.015, rel=0.15)
 
 
 @pytest.mark.parametrize("prior", PRIORS)
 def test_a_prior_expects_about_as_many_as_there_are(prior):
-    start = Cell("B", prior=prior).begin(Chance(3))
+    start = Cell("B", prior=prior).begin(RandomStreams(3))
     assert start.chance.mean() == pytest.approx(0.015, rel=0.5)
     assert ((start.chance > 0) & (start.chance < 1)).all()
 

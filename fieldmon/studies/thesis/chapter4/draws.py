@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.compute.random_streams import Chance
+    from fieldmon.compute.random_streams import RandomStreams
 
 _MULTIPLIER, _MODULUS = 16807, 2**31 - 1
 
@@ -29,7 +29,7 @@ def portable(seed: int, stream: int, n: int) -> NDArray[np.float64]:
     return numbers[20:] / _MODULUS
 
 
-def keys(chance: Chance, replicates: int, days: int) -> NDArray[np.uint64]:
+def keys(chance: RandomStreams, replicates: int, days: int) -> NDArray[np.uint64]:
     """Return the names of each replicate's coin tables, ``(replicates, 2 + days)``.
 
     Columns: start, steps, then one a night. They hang on seed and replicate only, so every strategy

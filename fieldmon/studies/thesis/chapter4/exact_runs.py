@@ -12,7 +12,11 @@ import numpy as np
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.studies.thesis.chapter4 import listings, nights
 from fieldmon.studies.thesis.chapter4.draws import portable
-from fieldmon.studies.thesis.chapter4.listing_errors import AS_PUBLISHED, NIGHT_CORRECTED, Slips
+from fieldmon.studies.thesis.chapter4.listing_errors import (
+    AS_PUBLISHED,
+    NIGHT_CORRECTED,
+    ListingErrors,
+)
 from fieldmon.studies.thesis.chapter4.trial import Strategy, Trial, night_of, walk_of
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS, infest
 
@@ -131,7 +135,9 @@ def _read(text: str, name: str) -> list[tuple[int, dict[str, str]]]:
     return rows
 
 
-def _trial(row: dict[str, str], slips: Slips, where: str) -> tuple[Trial, Slips, int]:
+def _trial(
+    row: dict[str, str], slips: ListingErrors, where: str
+) -> tuple[Trial, ListingErrors, int]:
     """Return the trial, its slips and its seed that a row names."""
     function = row["func"].removesuffix(_ROW)
     by_pass = row["func"].endswith(_ROW)
@@ -160,7 +166,7 @@ def _trial(row: dict[str, str], slips: Slips, where: str) -> tuple[Trial, Slips,
     return trial, slips, seed
 
 
-def portable_run(trial: Trial, slips: Slips, seed: int) -> dict[str, float] | None:
+def portable_run(trial: Trial, slips: ListingErrors, seed: int) -> dict[str, float] | None:
     """Return a run on portable random numbers by the files' columns; None where it is aborted."""
     field, days = trial.vineyard, trial.hours.days
     walk, night = walk_of(trial, slips), night_of(trial, slips)
@@ -191,7 +197,9 @@ def portable_run(trial: Trial, slips: Slips, seed: int) -> dict[str, float] | No
     }
 
 
-def _difference(line: int, row: dict[str, str], slips: Slips, name: str) -> Difference | None:
+def _difference(
+    line: int, row: dict[str, str], slips: ListingErrors, name: str
+) -> Difference | None:
     """Return the first column in which our run differs from a row; None if it is equal."""
     trial, slips, seed = _trial(row, slips, f"line {line} of {name}")
     label = " ".join(row[key] for key in _KEY[:-1])

@@ -7,7 +7,7 @@ from fieldmon.studies.thesis.chapter4.listing_errors import (
     AS_PUBLISHED,
     NAMES,
     NIGHT_CORRECTED,
-    Slips,
+    ListingErrors,
 )
 from fieldmon.studies.thesis.chapter4.trial import (
     TABLE_ROWS,
@@ -109,7 +109,7 @@ def everywhere_trials() -> list[Trial]:
 
 def slip_trials() -> list[Trial]:
     """Return the rows of table 4 with each slip put right alone."""
-    variants: list[Slips] = [AS_PUBLISHED, *(AS_PUBLISHED.without(name) for name in NAMES)]
+    variants: list[ListingErrors] = [AS_PUBLISHED, *(AS_PUBLISHED.without(name) for name in NAMES)]
     return [
         Trial(SCENARIOS["C"], strategy, table_viewpoints(strategy, slips), rules=slips)
         for slips in (*variants, NIGHT_CORRECTED, ALL_PUT_RIGHT)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields, replace
 
 
 @dataclass(frozen=True)
-class Slips:
+class ListingErrors:
     """Where the listings of appendix A do something else than the prose says.
 
     True is as published. Every field can be switched off alone, so that its effect can be shown.
@@ -59,12 +59,12 @@ class Slips:
     draw_every_stop: bool = True
     draw_one_to_five: bool = True
 
-    def without(self, *names: str) -> Slips:
+    def without(self, *names: str) -> ListingErrors:
         """Return these slips with the named ones put right."""
         return replace(self, **dict.fromkeys(names, False))
 
 
-NAMES = tuple(field.name for field in fields(Slips))
-AS_PUBLISHED = Slips()
+NAMES = tuple(field.name for field in fields(ListingErrors))
+AS_PUBLISHED = ListingErrors()
 NIGHT_CORRECTED = AS_PUBLISHED.without("night_other_face", "night_row_index")
 ALL_PUT_RIGHT = AS_PUBLISHED.without(*(name for name in NAMES if name != "draw_every_stop"))

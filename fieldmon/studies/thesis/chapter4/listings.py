@@ -1,7 +1,7 @@
 """The thesis's simulator without prior information, as its listings A.5, A.6 and A.7 run.
 
 Kept apart from fieldmon's own samplers: this file repeats a published program, slips included, so
-that its tables can be made again. What each slip does is told in `Slips`.
+that its tables can be made again. What each slip does is told in `ListingErrors`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _POSITION, _FORWARD, _ROW, _SKIP, _DRAWN, _TRACED, _FOUND = range(7)
 
 
 class Walk(NamedTuple):
-    """How a listing walks (see `Slips` for the switches)."""
+    """How a listing walks (see `ListingErrors` for the switches)."""
 
     plants: int
     sides: int

@@ -15,7 +15,7 @@ from fieldmon.studies.thesis.chapter4.listing_errors import (
     ALL_PUT_RIGHT,
     AS_PUBLISHED,
     NIGHT_CORRECTED,
-    Slips,
+    ListingErrors,
 )
 from fieldmon.studies.thesis.chapter4.trial import Prose
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS
@@ -117,7 +117,7 @@ def rules_name(trial: Trial) -> str:
     return f"without {_changed(rules, AS_PUBLISHED)}"
 
 
-def _changed(rules: Slips | Prose, usual: Slips | Prose) -> str:
+def _changed(rules: ListingErrors | Prose, usual: ListingErrors | Prose) -> str:
     ours, theirs = asdict(rules), asdict(usual)
     return ", ".join(name for name in ours if ours[name] != theirs[name])
 

@@ -21,7 +21,7 @@ ABORTED = -1
 
 
 class Night(NamedTuple):
-    """What a night needs to know (see `Slips` for the switches)."""
+    """What a night needs to know (see `ListingErrors` for the switches)."""
 
     plants: int
     sides: int

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.random_streams import Chance, coin_table
+from fieldmon.compute.random_streams import RandomStreams, coin_table
 from fieldmon.errors import SettingError
 from fieldmon.studies.thesis.chapter4 import draws, listings, prose_model
-from fieldmon.studies.thesis.chapter4.listing_errors import Slips
+from fieldmon.studies.thesis.chapter4.listing_errors import ListingErrors
 from fieldmon.studies.thesis.chapter4.trial import Trial, night_of, walk_of, way_of
 from fieldmon.studies.thesis.chapter4.vineyard import infest
 
@@ -64,7 +64,7 @@ def run_trials(
     if not trials:
         return []
     most_days = max(trial.hours.days for trial in trials)
-    keys = draws.keys(Chance(seed), replicates, most_days)
+    keys = draws.keys(RandomStreams(seed), replicates, most_days)
     results: list[Runs | None] = [None] * len(trials)
     with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
         jobs = {pool.submit(_repeat, trial, keys): k for k, trial in enumerate(trials)}
@@ -76,7 +76,7 @@ def run_trials(
 
 
 def _repeat(trial: Trial, keys: NDArray[np.uint64]) -> Runs:
-    if isinstance(trial.rules, Slips):
+    if isinstance(trial.rules, ListingErrors):
         walk, night = walk_of(trial, trial.rules), night_of(trial, trial.rules)
         days, aborted = listings.repeat(walk, night, trial.START, listings.most_draws(walk), keys)
         return Runs(trial, days, aborted)
@@ -165,14 +165,14 @@ def detection_curve(
     As the listings draw it: of the insects known that day, with new ones as they are counted.
     """
     slips = trial.rules
-    if not isinstance(slips, Slips):
+    if not isinstance(slips, ListingErrors):
         raise SettingError("A detection curve is drawn by the listings: choose Slips, not Prose.")
     field, days = trial.vineyard, trial.hours.days
     walk, night = walk_of(trial, slips), night_of(trial, slips)
     at_days = np.arange(days * per_day + 1) / per_day
     trace = np.zeros((listings.most_points(walk), 2))
     total, n = np.zeros(at_days.size), 0
-    for row in draws.keys(Chance(seed), replicates, days):
+    for row in draws.keys(RandomStreams(seed), replicates, days):
         start = infest(field.plants, field.sides, coin_table(row[0], field.vines), trial.START)
         coins = np.stack([coin_table(key, field.faces) for key in row[2:]])
         steps = coin_table(row[1], listings.most_draws(walk))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from fieldmon.errors import SettingError
 from fieldmon.studies.thesis.chapter4 import listings, nights, prose_model
-from fieldmon.studies.thesis.chapter4.listing_errors import AS_PUBLISHED, Slips
+from fieldmon.studies.thesis.chapter4.listing_errors import AS_PUBLISHED, ListingErrors
 from fieldmon.studies.thesis.chapter4.vineyard import CHAPTER_4, VIEWPOINTS_S, Hours, Vineyard
 
 NAMES = {
@@ -118,14 +118,14 @@ class Trial:
     severity
         Chance that an infested face spreads in a night.
     rules
-        `Slips`: as the listings run. `Prose`: as the text describes.
+        `ListingErrors`: as the listings run. `Prose`: as the text describes.
     """
 
     vineyard: Vineyard
     strategy: Strategy
     viewpoints: int = 3
     severity: float = 0.3
-    rules: Slips | Prose = AS_PUBLISHED
+    rules: ListingErrors | Prose = AS_PUBLISHED
     hours: Hours = CHAPTER_4
 
     START = 0.3  # chance that a vine is infested on the first morning
@@ -140,7 +140,7 @@ class Trial:
                 f"N must be below the {self.vineyard.plants} vines of a row, but it is "
                 f"{self.strategy.every}."
             )
-        if self.strategy.algorithm == SCATTERED and isinstance(self.rules, Slips):
+        if self.strategy.algorithm == SCATTERED and isinstance(self.rules, ListingErrors):
             raise SettingError(
                 "Algorithm 7 has no listing in the thesis: run it as described (Prose)."
             )
@@ -156,7 +156,7 @@ class Trial:
         return VIEWPOINTS_S[self.viewpoints]
 
 
-def table_viewpoints(strategy: Strategy, slips: Slips) -> int:
+def table_viewpoints(strategy: Strategy, slips: ListingErrors) -> int:
     """Return how many viewpoints tables 2 to 5 gave a strategy."""
     return 1 if strategy.neighbor and slips.unequal_viewpoints else 3
 
@@ -167,7 +167,7 @@ def _listing(strategy: Strategy) -> int:
     return nights.RANDOM_SNAKE if strategy.online else nights.SNAKE
 
 
-def walk_of(trial: Trial, slips: Slips) -> listings.Walk:
+def walk_of(trial: Trial, slips: ListingErrors) -> listings.Walk:
     """Return what the kernel needs to walk as the listings do."""
     field, strategy, hours = trial.vineyard, trial.strategy, trial.hours
     online = listings.EACH_STOP if slips.draw_every_stop else listings.EACH_PASS
@@ -191,7 +191,7 @@ def walk_of(trial: Trial, slips: Slips) -> listings.Walk:
     )
 
 
-def night_of(trial: Trial, slips: Slips) -> nights.Night:
+def night_of(trial: Trial, slips: ListingErrors) -> nights.Night:
     """Return what the kernel needs to let insects spread as the listings do."""
     return nights.Night(
         plants=trial.vineyard.plants,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread
 from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
 from fieldmon.studies.thesis.chapter5.open_choices import OpenChoices, StartUp
@@ -158,7 +158,7 @@ class _Search:
 
     def __init__(self, effort: Effort, seed: int, progress: Progress | None) -> None:
         self.effort, self.seed, self.progress = effort, seed, progress
-        self.rng = Chance(seed).of("calibrate")
+        self.rng = RandomStreams(seed).of("calibrate")
         self.all_parts: list[Candidate] = []
         self.final: list[Candidate] = []
         self.done = 0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.random_streams import Chance, coin_table
+from fieldmon.compute.random_streams import RandomStreams, coin_table
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning, learn, overnight
 from fieldmon.infestation.prior import PriorSettings
@@ -132,7 +132,7 @@ def run_maps(
         aisles = each.aisles()
         for name in SAMPLERS:
             found = np.stack(
-                [inspect(each, aisles, name, rules, Chance(seed + k)) for k in range(seeds)]
+                [inspect(each, aisles, name, rules, RandomStreams(seed + k)) for k in range(seeds)]
             )
             table += _rows(each, name, found)
         if progress is not None:
@@ -140,7 +140,9 @@ def run_maps(
     return table
 
 
-def inspect(plants: PlantMap, aisles: Aisles, name: str, rules: MapRules, chance: Chance) -> Floats:
+def inspect(
+    plants: PlantMap, aisles: Aisles, name: str, rules: MapRules, chance: RandomStreams
+) -> Floats:
     """Return percent found after each of `SHARES_PCT` visited, ``(d, shares)``; NaN if not reached.
 
     Of the plants infested on a date and not found on earlier ones; 100 if there are none.
@@ -174,7 +176,7 @@ def inspect(plants: PlantMap, aisles: Aisles, name: str, rules: MapRules, chance
     return curves
 
 
-def _told(plants: PlantMap, aisles: Aisles, rules: MapRules, chance: Chance) -> Floats:
+def _told(plants: PlantMap, aisles: Aisles, rules: MapRules, chance: RandomStreams) -> Floats:
     """Return what records of some plants of the first date make believed, ``(n,)``."""
     first = plants.infested[0]
     told = first & (coin_table(chance.key("records"), len(first)) < rules.recorded_share)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.studies.thesis.chapter5.open_choices import N_DAYS
 from fieldmon.studies.thesis.chapter5.seasons import (
@@ -134,7 +134,7 @@ def lucks(seeds: int, seed: int = 1, n_days: int = N_DAYS) -> list[Luck]:
         raise SettingError(
             f"There must be at least 2 seeds for an interval, but there are {seeds}."
         )
-    return [Luck.of(Chance(seed + k), n_days) for k in range(seeds)]
+    return [Luck.of(RandomStreams(seed + k), n_days) for k in range(seeds)]
 
 
 def run_trials(

@@ -17,7 +17,7 @@ from fieldmon.studies.thesis.chapter5.sites import first_morning
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.compute.random_streams import Chance
+    from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.plot.robot import Robot
     from fieldmon.simulation.season import Start
     from fieldmon.studies.thesis.chapter5.sites import Site
@@ -71,12 +71,12 @@ class Trial:
 class Luck:
     """The keys of all coins of one seed, drawn once for all samplers."""
 
-    chance: Chance
+    chance: RandomStreams
     inspect: NDArray[np.uint64]
     spread: NDArray[np.uint64]
 
     @classmethod
-    def of(cls, chance: Chance, n_days: int = N_DAYS) -> Luck:
+    def of(cls, chance: RandomStreams, n_days: int = N_DAYS) -> Luck:
         """Return the keys of ``inspect/day`` and ``spread/day``."""
         keys = (
             np.array([chance.key(name, day) for day in range(n_days)], np.uint64)

@@ -20,7 +20,7 @@ from fieldmon.studies.thesis.chapter5.open_choices import side_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.compute.random_streams import Chance
+    from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import Csr, PlantGrid
     from fieldmon.studies.thesis.chapter5.open_choices import StartUp
@@ -84,7 +84,7 @@ def square(hectares: float) -> Site:
     return Site(f"{hectares:g} ha", Aisles.of(rectangle(side, side)))
 
 
-def first_morning(site: Site, start: StartUp, chance: Chance) -> Start:
+def first_morning(site: Site, start: StartUp, chance: RandomStreams) -> Start:
     """Draw who is infested and what is believed; streams ``start`` and ``records``.
 
     On a site with a chance map each plant is drawn by its own chance, with the mean that `start`

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.robot import Robot
@@ -32,14 +32,14 @@ def mapped(*infested, n_rows=10, n_plants=20):
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_a_day_for_all_finds_all_when_looking_is_sure(name):
     plants = mapped([0, 50, 199])
-    curve = inspect(plants, plants.aisles(), name, SURE, Chance(1))[0]
+    curve = inspect(plants, plants.aisles(), name, SURE, RandomStreams(1))[0]
     assert (curve[0], curve[-1]) == (0.0, 100.0)
     assert (np.diff(curve) >= 0).all()
 
 
 def test_naive_finds_in_the_order_of_its_rows():
     plants = mapped([9, 10, 180])
-    curve = inspect(plants, plants.aisles(), "naive", SURE, Chance(1))[0]
+    curve = inspect(plants, plants.aisles(), "naive", SURE, RandomStreams(1))[0]
     assert curve[SHARES_PCT == 5.0] == pytest.approx(100 / 3)
     assert curve[SHARES_PCT == 10.0] == pytest.approx(200 / 3)
     assert curve[SHARES_PCT == 95.0] == pytest.approx(200 / 3)
@@ -48,14 +48,14 @@ def test_naive_finds_in_the_order_of_its_rows():
 def test_dynamic_goes_to_the_records_first():
     plants = mapped([150, 151, 152, 170, 171])
     rules = replace(SURE, recorded_share=1.0)
-    curve = inspect(plants, plants.aisles(), "dynamic", rules, Chance(1))[0]
+    curve = inspect(plants, plants.aisles(), "dynamic", rules, RandomStreams(1))[0]
     assert curve[SHARES_PCT == 5.0] == 100.0
 
 
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_what_is_found_is_gone_on_later_dates(name):
     plants = mapped([3, 4], [3, 4, 5])
-    first, second = inspect(plants, plants.aisles(), name, SURE, Chance(1))
+    first, second = inspect(plants, plants.aisles(), name, SURE, RandomStreams(1))
     assert first[-1] == 100.0
     steps = np.unique(second)
     assert steps.tolist() == [0.0, 100.0]
@@ -64,7 +64,7 @@ def test_what_is_found_is_gone_on_later_dates(name):
 def test_a_short_day_has_no_figure_beyond_its_end():
     plants = mapped([3])
     rules = replace(SURE, robot=Robot(hours=1.0))
-    curve = inspect(plants, plants.aisles(), "naive", rules, Chance(1))[0]
+    curve = inspect(plants, plants.aisles(), "naive", rules, RandomStreams(1))[0]
     assert np.isnan(curve[-1])
     assert not np.isnan(curve[1])
 

@@ -7,9 +7,9 @@ import pytest
 from scipy import stats
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import MeanField
+from fieldmon.infestation.belief import IndependentPlants
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, lay
@@ -98,7 +98,9 @@ def test_seasons_agree_in_distribution_with_a_plain_simulation(ragged, to, sourc
     infested[[5, 20, 21, 75, 76, 77]] = True
     # Naive has time for the whole plot here: its round is the snake, every day from its start
     start = Start(infested, np.full(len(infested), 0.01))
-    ours = np.array([play_from(ragged, trial, start, Luck.of(Chance(s), 4)) for s in range(400)])
+    ours = np.array(
+        [play_from(ragged, trial, start, Luck.of(RandomStreams(s), 4)) for s in range(400)]
+    )
     assert (ours[..., VISITED] == len(ragged.grid)).all()
     rng = np.random.default_rng(8)
     plain = np.array(
@@ -113,10 +115,10 @@ def test_seasons_agree_in_distribution_with_a_plain_simulation(ragged, to, sourc
 
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_under_the_product_s_rules_a_season_is_the_product_s(name):
-    site, chance = square(1.0), Chance(7)
+    site, chance = square(1.0), RandomStreams(7)
     trial = Trial(name, PRODUCT)
     start = first_morning(site, PRODUCT.start, chance)
-    settings = SeasonSettings(n_days=6, spread=PRODUCT.spread, believe=MeanField)
+    settings = SeasonSettings(n_days=6, spread=PRODUCT.spread, believe=IndependentPlants)
     theirs = list(days(site.aisles, trial.robot, sampler(name), start, settings, chance))
     ours = play(site, trial, Luck.of(chance, 6))
     assert ours[:, VISITED].tolist() == [len(day.work) for day in theirs]
@@ -137,8 +139,10 @@ def test_the_published_frame():
 
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_looks_of_less_than_20_s_find_nothing_all_season(name):
-    short = play(square(1.0), Trial(name, OpenChoices(), look_s=19.9), Luck.of(Chance(1), 5))
-    longer = play(square(1.0), Trial(name, OpenChoices(), look_s=20.0), Luck.of(Chance(1), 5))
+    short = play(square(1.0), Trial(name, OpenChoices(), look_s=19.9), Luck.of(RandomStreams(1), 5))
+    longer = play(
+        square(1.0), Trial(name, OpenChoices(), look_s=20.0), Luck.of(RandomStreams(1), 5)
+    )
     assert short[:, VISITED].min() > 300
     assert short[:, FOUND].sum() == 0
     assert longer[:, FOUND].sum() > 0
@@ -147,7 +151,7 @@ def test_looks_of_less_than_20_s_find_nothing_all_season(name):
 @pytest.mark.parametrize("choices", [PRODUCT, OpenChoices(sources="missed", missed_known=True)])
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_the_columns_of_a_season_add_up(name, choices):
-    table = play(square(1.0), Trial(name, choices), Luck.of(Chance(3)))
+    table = play(square(1.0), Trial(name, choices), Luck.of(RandomStreams(3)))
     left = table[:, INFESTED] - table[:, FOUND]
     assert (left[:-1] + table[1:, NEW] == table[1:, INFESTED]).all()
     assert table[0, NEW] == table[0, INFESTED] == round(0.02 * 784)
@@ -160,7 +164,7 @@ def test_the_columns_of_a_season_add_up(name, choices):
 
 def test_all_samplers_meet_the_same_insects():
     seasons = [
-        play(square(1.0), Trial(name, PRODUCT, detection=0.0), Luck.of(Chance(5), 8))
+        play(square(1.0), Trial(name, PRODUCT, detection=0.0), Luck.of(RandomStreams(5), 8))
         for name in SAMPLERS
     ]
     assert all((season[:, INFESTED] == seasons[0][:, INFESTED]).all() for season in seasons)
@@ -169,8 +173,10 @@ def test_all_samplers_meet_the_same_insects():
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_work_ends_with_the_last_find(name):
     choices = replace(PRODUCT, ends="find", spread=Spread(0.3, "one"))
-    table = play(square(1.0), Trial(name, choices), Luck.of(Chance(2)))
-    whole = play(square(1.0), Trial(name, replace(choices, ends="season")), Luck.of(Chance(2)))
+    table = play(square(1.0), Trial(name, choices), Luck.of(RandomStreams(2)))
+    whole = play(
+        square(1.0), Trial(name, replace(choices, ends="season")), Luck.of(RandomStreams(2))
+    )
     last = int(np.flatnonzero(table[:, FOUND])[-1])
     assert table[last, INFESTED] == table[last, FOUND]
     assert table[last, VISITED] < whole[last, VISITED]
@@ -199,7 +205,9 @@ def test_the_last_find_of_a_cleared_field_is_when_all_are_found():
     infested[[0, 2, 4, 6]] = True
     choices = replace(PRODUCT, stop_s=0.0)
     start = Start(infested, np.full(784, 0.01))
-    table = play_from(site, Trial("naive", choices, detection=1.0), start, Luck.of(Chance(1), 1))
+    table = play_from(
+        site, Trial("naive", choices, detection=1.0), start, Luck.of(RandomStreams(1), 1)
+    )
     to_gate_s = site.aisles.distance_m(-1, 0) * 3.6 / 2.5
     step_s = 40.0 + 3.0 * 3.6 / 2.5
     at = [to_gate_s + 40.0 + k * step_s for k in (2, 6, 6)]
@@ -208,9 +216,9 @@ def test_the_last_find_of_a_cleared_field_is_when_all_are_found():
 
 def test_bouncy_rests_after_half_the_plants():
     rests = play(
-        square(1.0), Trial("bouncy", replace(PRODUCT, bouncy_rests=True)), Luck.of(Chance(2))
+        square(1.0), Trial("bouncy", replace(PRODUCT, bouncy_rests=True)), Luck.of(RandomStreams(2))
     )
-    goes_on = play(square(1.0), Trial("bouncy", PRODUCT), Luck.of(Chance(2)))
+    goes_on = play(square(1.0), Trial("bouncy", PRODUCT), Luck.of(RandomStreams(2)))
     assert (rests[:, VISITED] == 392).all()
     assert (goes_on[:, VISITED] > 392).all()
 
@@ -219,7 +227,9 @@ def test_knowing_what_was_missed_finds_it_sooner():
     def found(known):
         choices = replace(PRODUCT, missed_known=known, spread=Spread(0.0))
         seasons = [
-            play(square(5.0), Trial("dynamic", choices, detection=0.4), Luck.of(Chance(s), 3))
+            play(
+                square(5.0), Trial("dynamic", choices, detection=0.4), Luck.of(RandomStreams(s), 3)
+            )
             for s in range(8)
         ]
         return np.sum(seasons, axis=0)[:, FOUND].sum()

@@ -5,7 +5,7 @@ import pytest
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from fieldmon.compute.random_streams import Chance
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.plot.field import Field
@@ -18,7 +18,7 @@ SITE = square(5.0)
 
 
 def mornings(n=40, **settings):
-    starts = [first_morning(SITE, StartUp(**settings), Chance(seed)) for seed in range(n)]
+    starts = [first_morning(SITE, StartUp(**settings), RandomStreams(seed)) for seed in range(n)]
     return np.array([start.infested for start in starts]), starts
 
 
@@ -79,7 +79,7 @@ def test_without_records_only_the_margin_is_suspicious():
 
 def test_a_crowded_margin_does_not_hang():
     settings = StartUp(share=0.5, margin_share=1.0, depth_m=0.5, cluster_size=1.0)
-    assert first_morning(square(1.0), settings, Chance(1)).infested.sum() == 392
+    assert first_morning(square(1.0), settings, RandomStreams(1)).infested.sum() == 392
 
 
 def test_where_records_exist_they_seed_the_start():
@@ -91,7 +91,7 @@ def test_where_records_exist_they_seed_the_start():
     day = np.datetime64("2026-06-01", "D")
     chance = prior_chance(grid, field, records, day, PriorSettings())
     site = Site("plot", Aisles.of(grid), field, chance)
-    starts = [first_morning(site, StartUp(share=0.03), Chance(s)) for s in range(300)]
+    starts = [first_morning(site, StartUp(share=0.03), RandomStreams(s)) for s in range(300)]
     assert all(start.chance is chance for start in starts)
     often = np.mean([start.infested for start in starts], axis=0)
     assert often.mean() == pytest.approx(0.03, rel=0.05)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.io.readers.plant_maps import LAYOUTS, Layout, read_plant_map, read_plant_maps
+from fieldmon.studies.plant_maps import LAYOUTS, Layout, read_plant_map, read_plant_maps
 
 DATED = Layout("row", "plant", "state", 4.0, 3.0, date="year")
 

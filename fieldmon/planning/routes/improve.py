@@ -1,0 +1,235 @@
+"""Make stops in order fit the hours, and better: all by the plot's own seconds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.compute.jit import loop, part
+from fieldmon.plot.travel import GATE, travel_s
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.travel import Clock, TravelTable
+
+    Float = NDArray[np.float64]
+    Int = NDArray[np.int64]
+
+_NOWHERE = -1
+_NOTICEABLE_S = 1e-7
+
+
+class Tour(NamedTuple):
+    """Stops in order: ``plant[:size[0]]``; ``visited`` ``(n,)``; seconds in ``used[0]``.
+
+    ``more_s``, ``place`` ``(n,)``: what a further stop at each plant would cost, and where.
+    """
+
+    plant: Int
+    size: Int
+    visited: NDArray[np.bool_]
+    used: Float
+    more_s: Float
+    place: Int
+
+    @classmethod
+    def of(cls, stops: Int, n: int) -> Tour:
+        """Return a tour of the stops, with room for all n plants."""
+        plant, visited = np.empty(n + 1, np.int64), np.zeros(n, np.bool_)
+        plant[: len(stops)] = stops
+        visited[stops] = True
+        size = np.array([len(stops)])
+        return cls(plant, size, visited, np.zeros(1), np.empty(n), np.empty(n, np.int64))
+
+    @property
+    def stops(self) -> Int:
+        """Return the plants in order."""
+        return self.plant[: self.size[0]].copy()
+
+
+@loop
+def fit(ground: TravelTable, clock: Clock, tour: Tour, reward: Float, least: float) -> float:
+    """Shorten the drive, leave out stops until it fits, and fill what is left; return its reward.
+
+    Plants of at most the `least` reward are not considered.
+    """
+    _shorten(ground, clock, tour)
+    tour.used[0] = _seconds(ground, clock, tour)
+    _leave_out(ground, clock, tour, reward, clock.seconds_left)
+    _fill(ground, clock, tour, reward, least)
+    return _reward(tour, reward)
+
+
+@loop
+def ruin(
+    ground: TravelTable, clock: Clock, tour: Tour, reward: Float, seconds: float
+) -> None:
+    """Leave out the poorest stops until so many seconds are used at most."""
+    tour.used[0] = _seconds(ground, clock, tour)
+    _leave_out(ground, clock, tour, reward, seconds)
+
+
+@part
+def _reward(tour: Tour, reward: Float) -> float:
+    total = 0.0
+    for k in range(tour.size[0]):
+        total += reward[tour.plant[k]]
+    return total
+
+
+@part
+def _leg_s(ground: TravelTable, clock: Clock, tour: Tour, a: int, b: int) -> float:
+    """Return the seconds from the a-th to the b-th stop; -1 and one past the last: the gate."""
+    n = tour.size[0]
+    if b >= n:
+        if not clock.returns or a < 0:
+            return 0.0
+        return travel_s(ground, clock, tour.plant[a], GATE)
+    if a < 0:
+        return travel_s(ground, clock, GATE, tour.plant[b])
+    return travel_s(ground, clock, tour.plant[a], tour.plant[b])
+
+
+@part
+def _seconds(ground: TravelTable, clock: Clock, tour: Tour) -> float:
+    total = tour.size[0] * clock.visit_s
+    for k in range(tour.size[0] + 1):
+        total += _leg_s(ground, clock, tour, k - 1, k)
+    return total
+
+
+@part
+def _leave_out(
+    ground: TravelTable, clock: Clock, tour: Tour, reward: Float, seconds: float
+) -> None:
+    """Leave out stops with the least reward for their time until the rest fits."""
+    while tour.used[0] > seconds and tour.size[0] > 0:
+        worst, worst_rate, worst_s = 0, np.inf, 0.0
+        for k in range(tour.size[0]):
+            saved_s = clock.visit_s + _leg_s(ground, clock, tour, k - 1, k)
+            saved_s += _leg_s(ground, clock, tour, k, k + 1)
+            saved_s -= _leg_s(ground, clock, tour, k - 1, k + 1)
+            rate = reward[tour.plant[k]] / max(saved_s, 1e-9)
+            if rate < worst_rate:
+                worst, worst_rate, worst_s = k, rate, saved_s
+        tour.visited[tour.plant[worst]] = False
+        for k in range(worst, tour.size[0] - 1):
+            tour.plant[k] = tour.plant[k + 1]
+        tour.size[0] -= 1
+        tour.used[0] -= worst_s
+    tour.used[0] = _seconds(ground, clock, tour)
+
+
+@part
+def _detour_s(ground: TravelTable, clock: Clock, tour: Tour, plant: int, k: int) -> float:
+    """Return the seconds that a plant between the stops k - 1 and k adds, itself included."""
+    before = tour.plant[k - 1] if k > 0 else GATE
+    more_s = clock.visit_s + travel_s(ground, clock, before, plant)
+    if k < tour.size[0]:
+        more_s += travel_s(ground, clock, plant, tour.plant[k])
+    elif clock.returns:
+        more_s += travel_s(ground, clock, plant, GATE)
+    return more_s - _leg_s(ground, clock, tour, k - 1, k)
+
+
+@part
+def _find_place(ground: TravelTable, clock: Clock, tour: Tour, plant: int) -> None:
+    """Find where a plant costs least: first beside stops of its own aisle, then anywhere."""
+    tour.more_s[plant] = np.inf
+    n, aisle = tour.size[0], ground.corridor[ground.row[plant]]
+    # between two stops of another aisle it costs two changes of aisle at least
+    far_s = clock.visit_s + 2.0 * clock.row_change_s
+    for own in range(2):
+        if own == 1 and tour.more_s[plant] <= clock.visit_s:
+            return
+        for k in range(n + 1):
+            before = k > 0 and ground.corridor[ground.row[tour.plant[k - 1]]] == aisle
+            after = k < n and ground.corridor[ground.row[tour.plant[k]]] == aisle
+            if (before or after) == (own == 1):
+                continue
+            if own == 1 and 0 < k < n and tour.more_s[plant] <= far_s:
+                if _same_aisle(ground, tour, k - 1, k):
+                    continue
+            more_s = _detour_s(ground, clock, tour, plant, k)
+            if more_s < tour.more_s[plant]:
+                tour.more_s[plant], tour.place[plant] = more_s, k
+
+
+@part
+def _fill(ground: TravelTable, clock: Clock, tour: Tour, reward: Float, least: float) -> None:
+    """Put in the plants with the most reward for their time as long as they fit."""
+    n = reward.size
+    for i in range(n):
+        if not tour.visited[i] and reward[i] > least:
+            _find_place(ground, clock, tour, i)
+    while True:
+        best, best_rate = _NOWHERE, 0.0
+        for i in range(n):
+            if tour.visited[i] or reward[i] <= least:
+                continue
+            if tour.used[0] + tour.more_s[i] > clock.seconds_left:
+                continue
+            rate = reward[i] / max(tour.more_s[i], 1e-9)
+            if rate > best_rate:
+                best, best_rate = i, rate
+        if best < 0:
+            return
+        place = tour.place[best]
+        for k in range(tour.size[0], place, -1):
+            tour.plant[k] = tour.plant[k - 1]
+        tour.plant[place] = best
+        tour.size[0] += 1
+        tour.visited[best] = True
+        tour.used[0] = _seconds(ground, clock, tour)
+        for i in range(n):
+            if tour.visited[i] or reward[i] <= least:
+                continue
+            if tour.place[i] == place:
+                _find_place(ground, clock, tour, i)
+                continue
+            if tour.place[i] > place:
+                tour.place[i] += 1
+            for k in range(place, place + 2):
+                more_s = _detour_s(ground, clock, tour, i, k)
+                if more_s < tour.more_s[i]:
+                    tour.more_s[i], tour.place[i] = more_s, k
+
+
+@part
+def _shorten(ground: TravelTable, clock: Clock, tour: Tour) -> None:
+    """Turn round stretches between changes of aisle as long as that shortens the drive."""
+    n = tour.size[0]
+    shorter = True
+    rounds = 0
+    while shorter and rounds < 20:
+        shorter = False
+        rounds += 1
+        for a in range(n):
+            if a > 0 and _same_aisle(ground, tour, a - 1, a):
+                continue
+            for b in range(a, n):
+                if b + 1 < n and _same_aisle(ground, tour, b, b + 1):
+                    continue
+                old_s = _leg_s(ground, clock, tour, a - 1, a) + _leg_s(ground, clock, tour, b, b + 1)
+                before = tour.plant[a - 1] if a > 0 else GATE
+                new_s = travel_s(ground, clock, before, tour.plant[b])
+                if b + 1 < n:
+                    new_s += travel_s(ground, clock, tour.plant[a], tour.plant[b + 1])
+                elif clock.returns:
+                    new_s += travel_s(ground, clock, tour.plant[a], GATE)
+                if new_s < old_s - _NOTICEABLE_S:
+                    low, high = a, b
+                    while low < high:
+                        kept = tour.plant[low]
+                        tour.plant[low], tour.plant[high] = tour.plant[high], kept
+                        low += 1
+                        high -= 1
+                    shorter = True
+
+
+@part
+def _same_aisle(ground: TravelTable, tour: Tour, a: int, b: int) -> bool:
+    aisle_a = ground.corridor[ground.row[tour.plant[a]]]
+    return bool(aisle_a == ground.corridor[ground.row[tour.plant[b]]])

@@ -15,6 +15,7 @@ from fieldmon.planning.routes.relaxation import ladder_below
 from fieldmon.planning.routes.stops import stops_of
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock
+from fieldmon.samplers import NEVER, Adaptive, Scene
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -132,6 +133,7 @@ def best(
     bound = upper_bound(priced, time_s)
     starts = [np.asarray(other, np.int64) for other in others]
     starts += list(_starts(priced, bound, robot, time_s))
+    starts.append(_walked(aisles, values, robot, time_s))
     stops = _best_of(aisles, clock, values, starts, _CONSIDERED * bound.price * robot.visit_s)
     held = float(values[stops].sum())
     return BestRoute(
@@ -173,6 +175,18 @@ def _starts(priced: Priced, bound: _Bound, robot: Robot, seconds: float) -> Iter
         yield stops_of(priced, drawn, np.full(len(drawn.way), price), robot)
     for drawn, prices in proposals(priced, bound.price, seconds):
         yield stops_of(priced, drawn, prices, robot)
+
+
+def _walked(aisles: Aisles, reward: Float, robot: Robot, seconds: float) -> Int:
+    """Return the stops of Adaptive, to which holes and parts are nothing special."""
+    n = len(aisles.grid)
+    chance = 0.5 * reward / reward.max()
+    near = aisles.grid.adjacent
+    alone = np.repeat(chance, np.diff(near.start)) * chance[near.plant]
+    never = np.full(n, NEVER, np.int32)
+    scene = Scene(aisles, robot, chance, never, seconds_left=seconds, pair_chance=alone)
+    stops = Adaptive(spares=0.0).walk(scene, np.zeros(n, np.bool_))
+    return stops.plant[reward[stops.plant] > 0.0].astype(np.int64)
 
 
 def _best_of(

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 _NOWHERE = -1
 _NOTICEABLE_S = 1e-7
+_SHORTENED = 20
 
 
 class Tour(NamedTuple):
@@ -55,7 +56,10 @@ def fit(ground: TravelTable, clock: Clock, tour: Tour, reward: Float, least: flo
 
     Plants of at most the `least` reward are not considered.
     """
-    _shorten(ground, clock, tour)
+    for _ in range(_SHORTENED):
+        _shorten(ground, clock, tour)
+        if not _move(ground, clock, tour):
+            break
     tour.used[0] = _seconds(ground, clock, tour)
     _leave_out(ground, clock, tour, reward, clock.seconds_left)
     _fill(ground, clock, tour, reward, least)
@@ -220,13 +224,56 @@ def _shorten(ground: TravelTable, clock: Clock, tour: Tour) -> None:
                 elif clock.returns:
                     new_s += travel_s(ground, clock, tour.plant[a], GATE)
                 if new_s < old_s - _NOTICEABLE_S:
-                    low, high = a, b
-                    while low < high:
-                        kept = tour.plant[low]
-                        tour.plant[low], tour.plant[high] = tour.plant[high], kept
-                        low += 1
-                        high -= 1
+                    _turn(tour, a, b)
                     shorter = True
+
+
+@part
+def _move(ground: TravelTable, clock: Clock, tour: Tour) -> bool:
+    """Move the stops made in one aisle to wherever the drive is shortest; tell if any moved."""
+    n, moved, a = tour.size[0], False, 0
+    while a < n:
+        b = a
+        while b + 1 < n and _same_aisle(ground, tour, b, b + 1):
+            b += 1
+        best_s, place, turned = -_NOTICEABLE_S, _NOWHERE, False
+        saved_s = _leg_s(ground, clock, tour, a - 1, a) + _leg_s(ground, clock, tour, b, b + 1)
+        saved_s -= _leg_s(ground, clock, tour, a - 1, b + 1)
+        for k in range(n + 1):
+            if a <= k <= b + 1 or (0 < k < n and _same_aisle(ground, tour, k - 1, k)):
+                continue
+            for turn in range(2):
+                first, last = (tour.plant[b], tour.plant[a]) if turn else (tour.plant[a], tour.plant[b])
+                before = tour.plant[k - 1] if k > 0 else GATE
+                more_s = travel_s(ground, clock, before, first)
+                if k < n:
+                    more_s += travel_s(ground, clock, last, tour.plant[k])
+                elif clock.returns:
+                    more_s += travel_s(ground, clock, last, GATE)
+                more_s -= _leg_s(ground, clock, tour, k - 1, k) + saved_s
+                if more_s < best_s:
+                    best_s, place, turned = more_s, k, turn == 1
+        if place >= 0:
+            moved = True
+            if turned:
+                _turn(tour, a, b)
+            # a rotation by three turns
+            low, middle, high = (place, a, b) if place < a else (a, b + 1, place - 1)
+            _turn(tour, low, middle - 1)
+            _turn(tour, middle, high)
+            _turn(tour, low, high)
+        a = b + 1
+    return moved
+
+
+@part
+def _turn(tour: Tour, low: int, high: int) -> None:
+    """Turn a stretch of stops round."""
+    while low < high:
+        kept = tour.plant[low]
+        tour.plant[low], tour.plant[high] = tour.plant[high], kept
+        low += 1
+        high -= 1
 
 
 @part

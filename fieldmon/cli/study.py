@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli import study_run, study_samplers
+from fieldmon.cli import study_routes, study_run, study_samplers
 from fieldmon.cli.study_prior import register as register_prior
 from fieldmon.cli.waiting import progress
 from fieldmon.errors import FileProblem
@@ -21,6 +21,7 @@ app = typer.Typer(
 register_prior(app)
 app.command("samplers")(study_samplers.samplers)
 app.command("beliefs")(study_samplers.beliefs)
+app.command("routes")(study_routes.routes)
 study_run.register(app)
 
 

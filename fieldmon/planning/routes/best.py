@@ -189,9 +189,7 @@ def _walked(aisles: Aisles, reward: Float, robot: Robot, seconds: float) -> Int:
     return stops.plant[reward[stops.plant] > 0.0].astype(np.int64)
 
 
-def _best_of(
-    aisles: Aisles, clock: Clock, reward: Float, starts: list[Int], least: float
-) -> Int:
+def _best_of(aisles: Aisles, clock: Clock, reward: Float, starts: list[Int], least: float) -> Int:
     """Return the best stops that come of any start, and of ruining and mending the best."""
     found, most = np.empty(0, np.int64), -1.0
     for stops in starts:

@@ -1,4 +1,4 @@
-"""Good drives on a ladder that fill the hours: the sweep again, with time in steps of a minute or so.
+"""Good drives on a ladder that fill the hours: the sweep again, with time in steps.
 
 At one price the best drive may be far too short and, at the next lower price, far too long. Here
 the most reward is kept for each number of steps of time, each aisle being driven as one of a few
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.planning.routes.frontier import Tables
-    from fieldmon.planning.routes.priced import Priced
+    from fieldmon.planning.routes.priced import Offered, Priced
     from fieldmon.planning.routes.relaxation import Ladder
 
     Float = NDArray[np.float64]
@@ -41,9 +41,7 @@ class _Offers(NamedTuple):
     steps: Int
 
 
-def proposals(
-    priced: Priced, price: float, seconds: float
-) -> Iterator[tuple[Drawn, Float]]:
+def proposals(priced: Priced, price: float, seconds: float) -> Iterator[tuple[Drawn, Float]]:
     """Yield drives that take about so many seconds, with the price ``(e,)`` in each aisle."""
     ladder, tables = priced.ladder, priced.tables
     prices = price * np.array(_PRICES)
@@ -73,7 +71,7 @@ def proposals(
 
 def _traced(
     priced: Priced,
-    drawn: list[Drawn],
+    drawn: list[Offered],
     swept: tuple[NDArray[np.int32], Int, Int],
     last: int,
     prices: Float,
@@ -97,7 +95,7 @@ def _traced(
 
 
 @loop
-def _sweep(
+def _sweep(  # noqa: C901 - one loop over all
     ladder: Ladder,
     tables: Tables,
     offers: _Offers,

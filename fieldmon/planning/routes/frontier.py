@@ -131,9 +131,7 @@ def _fits(before: State, way: Way, on: tuple[int, int], stop: int) -> bool:
     return True
 
 
-def _after(
-    before: State, way: Way, on: tuple[int, int, bool], *, ended: bool
-) -> State | None:
+def _after(before: State, way: Way, on: tuple[int, int, bool], *, ended: bool) -> State | None:
     """Return the state after, None where a piece would be left behind."""
     left, right, joined = on
     there = before.left + way.left > 0, before.right + way.right > 0

@@ -67,9 +67,7 @@ def fit(ground: TravelTable, clock: Clock, tour: Tour, reward: Float, least: flo
 
 
 @loop
-def ruin(
-    ground: TravelTable, clock: Clock, tour: Tour, reward: Float, seconds: float
-) -> None:
+def ruin(ground: TravelTable, clock: Clock, tour: Tour, reward: Float, seconds: float) -> None:
     """Leave out the poorest stops until so many seconds are used at most."""
     tour.used[0] = _seconds(ground, clock, tour)
     _leave_out(ground, clock, tour, reward, seconds)
@@ -98,7 +96,7 @@ def _leg_s(ground: TravelTable, clock: Clock, tour: Tour, a: int, b: int) -> flo
 
 @part
 def _seconds(ground: TravelTable, clock: Clock, tour: Tour) -> float:
-    total = tour.size[0] * clock.visit_s
+    total: float = tour.size[0] * clock.visit_s
     for k in range(tour.size[0] + 1):
         total += _leg_s(ground, clock, tour, k - 1, k)
     return total
@@ -153,16 +151,18 @@ def _find_place(ground: TravelTable, clock: Clock, tour: Tour, plant: int) -> No
             after = k < n and ground.corridor[ground.row[tour.plant[k]]] == aisle
             if (before or after) == (own == 1):
                 continue
-            if own == 1 and 0 < k < n and tour.more_s[plant] <= far_s:
-                if _same_aisle(ground, tour, k - 1, k):
-                    continue
+            far = own == 1 and 0 < k < n and tour.more_s[plant] <= far_s
+            if far and _same_aisle(ground, tour, k - 1, k):
+                continue
             more_s = _detour_s(ground, clock, tour, plant, k)
             if more_s < tour.more_s[plant]:
                 tour.more_s[plant], tour.place[plant] = more_s, k
 
 
 @part
-def _fill(ground: TravelTable, clock: Clock, tour: Tour, reward: Float, least: float) -> None:
+def _fill(  # noqa: C901, PLR0912 - one loop over all
+    ground: TravelTable, clock: Clock, tour: Tour, reward: Float, least: float
+) -> None:
     """Put in the plants with the most reward for their time as long as they fit."""
     n = reward.size
     for i in range(n):
@@ -216,7 +216,9 @@ def _shorten(ground: TravelTable, clock: Clock, tour: Tour) -> None:
             for b in range(a, n):
                 if b + 1 < n and _same_aisle(ground, tour, b, b + 1):
                     continue
-                old_s = _leg_s(ground, clock, tour, a - 1, a) + _leg_s(ground, clock, tour, b, b + 1)
+                old_s = _leg_s(ground, clock, tour, a - 1, a) + _leg_s(
+                    ground, clock, tour, b, b + 1
+                )
                 before = tour.plant[a - 1] if a > 0 else GATE
                 new_s = travel_s(ground, clock, before, tour.plant[b])
                 if b + 1 < n:
@@ -229,7 +231,9 @@ def _shorten(ground: TravelTable, clock: Clock, tour: Tour) -> None:
 
 
 @part
-def _move(ground: TravelTable, clock: Clock, tour: Tour) -> bool:
+def _move(  # noqa: C901 - one loop over all
+    ground: TravelTable, clock: Clock, tour: Tour
+) -> bool:
     """Move the stops made in one aisle to wherever the drive is shortest; tell if any moved."""
     n, moved, a = tour.size[0], False, 0
     while a < n:
@@ -243,7 +247,9 @@ def _move(ground: TravelTable, clock: Clock, tour: Tour) -> bool:
             if a <= k <= b + 1 or (0 < k < n and _same_aisle(ground, tour, k - 1, k)):
                 continue
             for turn in range(2):
-                first, last = (tour.plant[b], tour.plant[a]) if turn else (tour.plant[a], tour.plant[b])
+                first, last = (
+                    (tour.plant[b], tour.plant[a]) if turn else (tour.plant[a], tour.plant[b])
+                )
                 before = tour.plant[k - 1] if k > 0 else GATE
                 more_s = travel_s(ground, clock, before, first)
                 if k < n:

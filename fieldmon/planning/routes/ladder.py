@@ -115,7 +115,7 @@ class Sweep:
             row, state, half, left, right = self._arrival(row - 1, before, half, value)
 
     def _at(self, half: int) -> int:
-        return half + self.reward.shape[1] + 1
+        return half + int(self.reward.shape[1]) + 1
 
     def _source(
         self, row: int, state: int, half: int, value: float
@@ -149,6 +149,8 @@ class Sweep:
 
     def _after(self, row: int, state: int, half: int) -> float:
         """Return the most reward once a row is done, in one state at one number of half steps."""
+        if half < 0:
+            return _NEVER
         tables, arrived = _tables(self.reward[row]), self.states[row]
         n = self.reward.shape[1]
         found = [_NEVER]
@@ -188,9 +190,9 @@ _COMES_FROM = {
 
 def full_budget(n_rows: int, n_plants: int) -> int:
     """Return the steps that suffice to pass every plant and come back."""
-    across = n_rows * (n_plants + 1) if n_rows % 2 == 0 else (n_rows - 1) * (n_plants + 1)
-    odd = 0 if n_rows % 2 == 0 else 2 * (n_plants + 1)
-    return across + odd + 2 * (n_rows - 1)
+    pairs = n_rows // 2 * 2
+    # an odd row is walked in and out
+    return pairs * (n_plants + 1) + (n_rows - pairs) * 2 * n_plants + 2 * (n_rows - 1)
 
 
 def sweep(reward: ArrayLike, budget: int) -> Sweep:
@@ -302,7 +304,7 @@ def _spread(
             for h in range(to.size):
                 low = max(a[h] + value[k], b[h] + value[k + 1])
                 high = max(c[h] + value[k + 2], d[h] + value[k + 3])
-                to[h] = max(to[h], max(low, high))
+                to[h] = max(to[h], low, high)
             k += _LANES
         while k < n:
             a = source[first - deep[k] : stop - deep[k]]
@@ -418,9 +420,7 @@ def _euler(drives: list[Drive], n: int) -> Int:
     return _spell_out(ends, deep, n)
 
 
-def _spell_out(
-    ends: list[tuple[int, int]], deep: dict[tuple[int, int], int], n: int
-) -> Int:
+def _spell_out(ends: list[tuple[int, int]], deep: dict[tuple[int, int], int], n: int) -> Int:
     """Return every place of a walk given by the row ends it comes by."""
     row: list[int] = []
     column: list[int] = []

@@ -56,6 +56,14 @@ class Costs(NamedTuple):
         return cls(1.0 / robot.speed_m_s, robot.visit_s, robot.row_change_s, robot.turn_180_s)
 
 
+class Offered(NamedTuple):
+    """What each way of driving each element comes to, ``(e, 10)``, see `Drawn`."""
+
+    worth: Float
+    reward: Float
+    cut: Int
+
+
 class Drawn(NamedTuple):
     """A drive on a ladder.
 
@@ -118,8 +126,9 @@ class Priced:
         _value(ladder, self.reward, self.costs, (price, False), room)
         self._value_gate(price)
         state = _sweep(ladder, tables, price * self.costs.metre_s, room)
-        way, passes = np.zeros(len(ladder.across_m), np.int64), np.zeros(
-            (len(ladder.across_m), 2), np.int64
+        way, passes = (
+            np.zeros(len(ladder.across_m), np.int64),
+            np.zeros((len(ladder.across_m), 2), np.int64),
         )
         for k in range(len(way) - 1, -1, -1):
             ways = tables.gate if k == ladder.gate else tables.aisle
@@ -131,13 +140,12 @@ class Priced:
             float(room.best[-1, 1]), float(room.reward[at].sum()), way, room.cut[at], passes
         )
 
-    def ways(self, price: float) -> Drawn:
-        """Return what each way of driving each element comes to, ``(e, 10)``, if driven just so."""
+    def ways(self, price: float) -> Offered:
+        """Return what each way of driving each element comes to, if driven just so."""
         _value(self.ladder, self.reward, self.costs, (price, True), self._room)
         self._value_gate(price)
         room = self._room
-        none = np.empty((0, 2), np.int64)
-        return Drawn(room.worth.copy(), room.reward.copy(), none, room.cut.copy(), none)
+        return Offered(room.worth.copy(), room.reward.copy(), room.cut.copy())
 
     def _value_gate(self, price: float) -> None:
         gate, metre = self.ladder.gate, price * self.costs.metre_s
@@ -252,7 +260,7 @@ def _once(
             continue
         after = thrice - 2.0 * metre * (here - at)
         free = max(free, thrice)
-        new_thrice = max(after, max(free, max(lower, upper)) - least) + below + above
+        new_thrice = max(after, max(free, lower, upper) - least) + below + above
         # the last stop here is on the lower side, or on the upper
         new_lower = max(max(lower, free) + below, upper + below - turn)
         new_lower = max(new_lower, max(upper, free) + above + below - turn)
@@ -260,11 +268,11 @@ def _once(
         new_upper = max(new_upper, max(lower, free) + below + above - turn)
         lower, upper = max(lower, new_lower), max(upper, new_upper)
         thrice, at = new_thrice, here
-    return max(max(lower, upper), max(free, thrice))
+    return max(lower, upper, free, thrice)
 
 
 @part
-def _value_in(
+def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its speed
     ladder: Ladder, reward: Float, costs: Costs, state: tuple[int, float], room: _Room
 ) -> None:
     """Value an aisle that is entered and left by the same end, or in which the day ends."""

@@ -92,13 +92,16 @@ def ladder_below(aisles: Aisles) -> Ladder:
 
 def _rungs(ground: TravelTable) -> _Rungs:
     """Join rows that are inspected from one aisle."""
-    n_rows, n_aisles = len(ground.end_x_m), int(ground.corridor.max()) + 1
+    n_aisles = int(ground.corridor.max()) + 1
     first, last = np.full(n_aisles, np.inf), np.full(n_aisles, -np.inf)
     np.minimum.at(first, ground.corridor, ground.end_x_m[:, 0])
     np.maximum.at(last, ground.corridor, ground.end_x_m[:, 1])
     # metres that a lane ends short of the longest lane of its aisle
     short = np.stack(
-        [first[ground.corridor] - ground.end_x_m[:, 0], ground.end_x_m[:, 1] - last[ground.corridor]]
+        [
+            first[ground.corridor] - ground.end_x_m[:, 0],
+            ground.end_x_m[:, 1] - last[ground.corridor],
+        ]
     )
     while True:
         apart_m = _between_aisles(ground, short)

@@ -68,7 +68,8 @@ class _Chosen:
         sides = int(cut[2 + side])
         good = self.priced.reward[place] > self.price[k] * self.priced.costs.stop_s
         good &= np.where(ladder.upper[place], sides & 2, sides & 1) > 0
-        return place[good]
+        chosen: Int = place[good]
+        return chosen
 
     def excursion(self, k: int, side: int) -> Int:
         """Return the plants of an aisle that is entered and left by one end."""

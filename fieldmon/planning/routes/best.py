@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 # a bound stays one however its sums are rounded
 _ROUNDED = 1e-9
+_LEG_M = 1e-6
 _BISECTIONS = 40
 _LEAST_PRICE = 1e-7
 # plants worth less than this share of their stop at the price are not considered
@@ -152,6 +153,8 @@ def upper_bound(priced: Priced, seconds: float) -> _Bound:
     low = high * _LEAST_PRICE
     most_stops = int(seconds // stop_s) if priced.costs.stop_s > 0 else len(reward)
     value = float(np.sort(reward)[::-1][:most_stops].sum())
+    # a leg on the ladder may be longer than the true one by less than a thousandth of a millimetre
+    seconds += (min(most_stops, len(reward)) + 1) * _LEG_M * priced.costs.metre_s
     price, drawn = low, []
     for k in range(_BISECTIONS):
         middle = low if k == 0 else float(np.sqrt(low * high))

@@ -35,7 +35,7 @@ _SHARES = (1.02, 1.0, 0.98)
 
 
 class _Offers(NamedTuple):
-    """What each way of driving each aisle holds and takes at each price, ``(e, 10, p)``."""
+    """What each way of driving each aisle holds and takes at each price, ``(e, 12, p)``."""
 
     reward: Float
     steps: Int

@@ -19,10 +19,11 @@ if TYPE_CHECKING:
 
 #: what may be driven in an aisle: nothing; in and out from the left, the right or both; through
 #: once or twice; in from the left or the right to where the day ends, with in and out from the
-#: other end or without
+#: other end or without; through from the left or the right, and later from the other end back in
+#: to where the day ends
 NOTHING, FROM_LEFT, FROM_RIGHT, FROM_BOTH, ONCE, TWICE = range(6)
-END_LEFT, END_RIGHT, END_LEFT_AND, END_RIGHT_AND = range(6, 10)
-N_WAYS = 10
+END_LEFT, END_RIGHT, END_LEFT_AND, END_RIGHT_AND, LEFT_BACK, RIGHT_BACK = range(6, 12)
+N_WAYS = 12
 
 
 class Way(NamedTuple):
@@ -45,6 +46,8 @@ WAYS = (
     Way(0, 1, False, True),
     Way(1, 2, False, True),
     Way(2, 1, False, True),
+    Way(1, 2, True, True),
+    Way(2, 1, True, True),
 )
 #: at the gate, passes of its stubs: closed days come back, one-way days do not
 GATE_CLOSED = ((2, 0), (0, 2), (1, 1), (2, 2))

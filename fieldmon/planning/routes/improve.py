@@ -138,25 +138,24 @@ def _detour_s(ground: TravelTable, clock: Clock, tour: Tour, plant: int, k: int)
 
 @part
 def _find_place(ground: TravelTable, clock: Clock, tour: Tour, plant: int) -> None:
-    """Find where a plant costs least: first beside stops of its own aisle, then anywhere."""
+    """Find where a plant costs least: beside stops of its aisle, or between two aisles."""
     tour.more_s[plant] = np.inf
-    n, aisle = tour.size[0], ground.corridor[ground.row[plant]]
-    # between two stops of another aisle it costs two changes of aisle at least
-    far_s = clock.visit_s + 2.0 * clock.row_change_s
-    for own in range(2):
-        if own == 1 and tour.more_s[plant] <= clock.visit_s:
+    for k in range(tour.size[0] + 1):
+        _try_place(ground, clock, tour, plant, k)
+
+
+@part
+def _try_place(ground: TravelTable, clock: Clock, tour: Tour, plant: int, k: int) -> None:
+    """Note a place for a plant if it costs less there; amid another aisle it hardly ever does."""
+    aisle = ground.corridor[ground.row[plant]]
+    if 0 < k < tour.size[0]:
+        before = ground.corridor[ground.row[tour.plant[k - 1]]]
+        after = ground.corridor[ground.row[tour.plant[k]]]
+        if before == after and before != aisle:
             return
-        for k in range(n + 1):
-            before = k > 0 and ground.corridor[ground.row[tour.plant[k - 1]]] == aisle
-            after = k < n and ground.corridor[ground.row[tour.plant[k]]] == aisle
-            if (before or after) == (own == 1):
-                continue
-            far = own == 1 and 0 < k < n and tour.more_s[plant] <= far_s
-            if far and _same_aisle(ground, tour, k - 1, k):
-                continue
-            more_s = _detour_s(ground, clock, tour, plant, k)
-            if more_s < tour.more_s[plant]:
-                tour.more_s[plant], tour.place[plant] = more_s, k
+    more_s = _detour_s(ground, clock, tour, plant, k)
+    if more_s < tour.more_s[plant]:
+        tour.more_s[plant], tour.place[plant] = more_s, k
 
 
 @part
@@ -196,9 +195,7 @@ def _fill(  # noqa: C901, PLR0912 - one loop over all
             if tour.place[i] > place:
                 tour.place[i] += 1
             for k in range(place, place + 2):
-                more_s = _detour_s(ground, clock, tour, i, k)
-                if more_s < tour.more_s[i]:
-                    tour.more_s[i], tour.place[i] = more_s, k
+                _try_place(ground, clock, tour, i, k)
 
 
 @part

@@ -21,9 +21,11 @@ from fieldmon.planning.routes.frontier import (
     FROM_RIGHT,
     GATE_CLOSED,
     GATE_OPEN,
+    LEFT_BACK,
     N_WAYS,
     NOTHING,
     ONCE,
+    RIGHT_BACK,
     TWICE,
     Tables,
     tables,
@@ -57,7 +59,7 @@ class Costs(NamedTuple):
 
 
 class Offered(NamedTuple):
-    """What each way of driving each element comes to, ``(e, 10)``, see `Drawn`."""
+    """What each way of driving each element comes to, ``(e, 12)``, see `Drawn`."""
 
     worth: Float
     reward: Float
@@ -90,7 +92,7 @@ class Drawn(NamedTuple):
 
 
 class _Room(NamedTuple):
-    """Room for a sweep: worth ``(e, 10)``, cuts, rewards, and the best way to every state."""
+    """Room for a sweep: worth ``(e, 12)``, cuts, rewards, and the best way to every state."""
 
     worth: Float
     reward: Float
@@ -229,6 +231,10 @@ def _value_through(
     else:
         worth = _once(ladder, reward, (k, stop, metre), (turn, min(turn, change)))
         _put(room, (k, ONCE), (worth - change - across, held), cut)
+        # one side on the way through, the other on the way back to where the day ends
+        worth = gains - across - min(turn, change)
+        _put(room, (k, LEFT_BACK), (worth, held), cut)
+        _put(room, (k, RIGHT_BACK), (worth, held), cut)
 
 
 @part

@@ -16,7 +16,9 @@ from fieldmon.planning.routes.frontier import (
     FROM_RIGHT,
     GATE_CLOSED,
     GATE_OPEN,
+    LEFT_BACK,
     ONCE,
+    RIGHT_BACK,
     TWICE,
 )
 
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
     Int = NDArray[np.int64]
 
 _HOME = (-1, 0)
+_THROUGH = (ONCE, TWICE, LEFT_BACK, RIGHT_BACK)
 _FROM_LEFT = (FROM_LEFT, FROM_BOTH, END_RIGHT_AND)
 _FROM_RIGHT = (FROM_RIGHT, FROM_BOTH, END_LEFT_AND)
 
@@ -85,7 +88,7 @@ class _Chosen:
 
     def through(self, k: int, *, up: bool) -> Int:
         """Return the plants of an aisle that is driven from end to end."""
-        if self.drawn.way[k] not in (ONCE, TWICE):
+        if self.drawn.way[k] not in _THROUGH:
             return np.empty(0, np.int64)
         return self._in_line(k, self._plants(k, 0), up=up)
 
@@ -105,7 +108,7 @@ class _Chosen:
         return ladder.plant[place]
 
 
-def _links(
+def _links(  # noqa: C901 - one case a way
     priced: Priced, drawn: Drawn, robot: Robot
 ) -> dict[tuple[int, int], list[tuple[tuple[int, int], list[bool]]]]:
     """Return the passes of a drive as edges between ladder nodes; (k, 2) is an end within k."""
@@ -124,8 +127,10 @@ def _links(
             stubs = (GATE_CLOSED if robot.returns else GATE_OPEN)[way]
             for side in range(2):
                 link(_HOME, (k, side), stubs[side])
-        elif way in (ONCE, TWICE):
-            link((k, 0), (k, 1), 1 if way == ONCE else 2)
+        elif way in _THROUGH:
+            link((k, 0), (k, 1), 2 if way == TWICE else 1)
+            if way in (LEFT_BACK, RIGHT_BACK):
+                link((k, 1 if way == LEFT_BACK else 0), (k, 2), 1)
         elif way in (END_LEFT, END_LEFT_AND):
             link((k, 0), (k, 2), 1)
         elif way in (END_RIGHT, END_RIGHT_AND):

@@ -7,15 +7,18 @@ its plan of the morning. The best route is followed whatever is found.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.planning.routes.best import best
+from fieldmon.plot.travel import travel_s
 from fieldmon.samplers import Adaptive, Scene, Stops
 from fieldmon.simulation.metrics import figures
-from fieldmon.studies.samplers.seasons import Contender, season
+from fieldmon.simulation.season import days
+from fieldmon.studies.samplers.seasons import Contender
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -68,8 +71,8 @@ def worth(scene: Scene) -> Float:
     return scene.chance * scene.robot.detects * (1.0 + spared)
 
 
-def seasons(cell: Cell, seeds: range) -> Iterator[Season]:
-    """Yield the seasons of all three for one seed after the other."""
+def seasons(cell: Cell, seeds: range, hours: float = 12.0) -> Iterator[Season]:
+    """Yield the seasons of all three for one seed after the other, on days of so many hours."""
     contenders = (
         Contender(AS_IT_IS, Adaptive(_SPARES)),
         Contender(MORNING, MorningAdaptive()),
@@ -79,7 +82,9 @@ def seasons(cell: Cell, seeds: range) -> Iterator[Season]:
         chance = RandomStreams(seed)
         start = cell.begin(chance)
         for who in contenders:
-            made = figures(season(cell, who, start, chance))
+            settings = replace(cell.settings, believe=who.believe)
+            robot = cell.robot.with_hours(hours)
+            made = figures(days(cell.aisles, robot, who.sampler, start, settings, chance))
             yield Season(who.name, seed, float(made.infested_plant_days), int(made.found.sum()))
 
 
@@ -102,8 +107,6 @@ def told(made: list[Season]) -> list[str]:
 
 def _arrivals(scene: Scene, plant: NDArray[np.int32], n: int) -> Float:
     """Return the seconds at arrival."""
-    from fieldmon.plot.travel import travel_s  # noqa: PLC0415
-
     arrive_s, now_s, at = np.empty(min(len(plant), n)), 0.0, scene.at
     for k, stop in enumerate(plant.tolist()):
         now_s += travel_s(scene.aisles.ground, scene.clock, at, stop)

@@ -4,7 +4,17 @@ Building asks nothing of the internet, and neither does reading: no script, font
 from elsewhere.
 """
 
+from __future__ import annotations
+
+import re
 from importlib.metadata import version as version_of
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sphinx.util import logging
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 project = "fieldmon"
 author = "the fieldmon founders"
@@ -19,7 +29,7 @@ extensions = [
     "sphinx_design",
 ]
 exclude_patterns = ["_build", "generated/.ipynb_checkpoints"]
-nitpicky = True
+templates_path = ["_templates"]
 
 myst_enable_extensions = ["colon_fence", "deflist", "attrs_inline"]
 myst_heading_anchors = 3
@@ -32,7 +42,8 @@ nb_execution_timeout = 240
 nb_ipywidgets_js = {}
 
 autodoc_member_order = "bysource"
-autodoc_typehints = "none"
+autodoc_typehints_format = "short"
+python_maximum_signature_line_length = 72
 autosummary_generate = True
 napoleon_google_docstring = False
 
@@ -49,5 +60,22 @@ html_theme_options = {
     "navigation_with_keys": False,
     "footer_start": ["copyright"],
     "footer_end": [],
-    "header_links_before_dropdown": 6,
 }
+
+_FROM_ELSEWHERE = re.compile(
+    r"""<(?:script|img|iframe|link(?![^>]*rel="canonical"))[^>]*(?:src|href)=["'](?:https?:)?//[^"']+"""
+)
+
+
+def setup(app: Sphinx) -> None:
+    """Look through the finished pages."""
+    app.connect("build-finished", _warn_of_what_comes_from_elsewhere)
+
+
+def _warn_of_what_comes_from_elsewhere(app: Sphinx, error: Exception | None) -> None:
+    """Warn of every script, picture or style that would be fetched to read a page."""
+    if error is not None or app.builder.format != "html":
+        return
+    for page in sorted(Path(app.outdir).rglob("*.html")):
+        for found in _FROM_ELSEWHERE.findall(page.read_text(encoding="utf-8")):
+            logging.getLogger(__name__).warning("%s fetches %s", page.name, found)

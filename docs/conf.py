@@ -7,11 +7,15 @@ from elsewhere.
 from __future__ import annotations
 
 import re
+import sys
 from importlib.metadata import version as version_of
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sphinx.util import logging
+
+sys.path.insert(0, str(Path(__file__).parent))
+import commands_page
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -68,7 +72,8 @@ _FROM_ELSEWHERE = re.compile(
 
 
 def setup(app: Sphinx) -> None:
-    """Look through the finished pages."""
+    """Write the page of commands first, and look through the finished pages."""
+    app.connect("builder-inited", commands_page.write)
     app.connect("build-finished", _warn_of_what_comes_from_elsewhere)
 
 

@@ -61,7 +61,7 @@ def _param(param: Any) -> str:  # noqa: ANN401 - as above
     named = [*param.opts, *param.secondary_opts] if param.param_type_name == "option" else []
     label = ", ".join(f"`{one}`" for one in named) or f"`{param.name.upper()}`"
     default = param.default
-    shown = isinstance(default, (int, float, str)) and default not in {"", True, False}
-    usual = f" Default: `{getattr(default, 'value', default)}`." if shown else ""
+    shown = isinstance(default, (int, float, str)) and not isinstance(default, bool)
+    usual = f" Default: `{getattr(default, 'value', default)}`." if shown and default != "" else ""
     said = " ".join((getattr(param, "help", None) or "").split()).replace("<", "\\<")
     return f"{label}\n: {said}{usual}\n"

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from fieldmon.io.html import page
 from fieldmon.studies.charts import Line, line_chart
 from fieldmon.studies.thesis.chapter4.measures import spread_of
-from fieldmon.studies.thesis.chapter4.verdicts import AGREES as EQUAL
 from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS, SCENARIOS
 from fieldmon.studies.thesis.chapter5.study import OWN, label_of
 from fieldmon.studies.thesis.chapter5.verdicts import AGREES, DIFFERS, FAILS, HOLDS, NEAR, OPEN
@@ -24,8 +23,15 @@ if TYPE_CHECKING:
     from fieldmon.studies.thesis.chapter5.replicates import Runs
     from fieldmon.studies.thesis.chapter5.study import Part, Study
 
-_CLASSES = {AGREES: EQUAL, HOLDS: EQUAL, NEAR: "near", OPEN: "near", DIFFERS: "differs"}
-_CLASSES[FAILS] = "differs"
+# how a verdict is coloured: as the one of three that it comes to
+_CLASSES = {
+    AGREES: AGREES,
+    HOLDS: AGREES,
+    NEAR: NEAR,
+    OPEN: NEAR,
+    DIFFERS: DIFFERS,
+    FAILS: DIFFERS,
+}
 _FIGURES = {"A": (20, 21), "B": (22, 23), "C": (24, 25)}
 _SWEEP_FIGURES = {"size": 26, "spread": 27, "time": 28, "detection": 29}
 _MEASURES = {

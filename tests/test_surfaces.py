@@ -6,8 +6,10 @@ that returns what it made, and a line in `SURFACES`: those of the app belong the
 """
 
 import csv
-from functools import partial
+from concurrent.futures import Future
+from contextlib import nullcontext
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -15,6 +17,7 @@ import pytest
 import shapely
 from shapely import MultiPolygon
 
+from fieldmon.cli import plan_all
 from fieldmon.cli.main import app
 from fieldmon.io.options import PlotOptions
 from fieldmon.io.parse.geometry import area_m2
@@ -23,7 +26,9 @@ from fieldmon.io.read import read_plots
 from fieldmon.monitoring import Season
 from fieldmon.plot.grid import plant_at
 from fieldmon.plot.projection import Frame
-from fieldmon.simulation import executor
+from fieldmon.simulation import executor, results
+from fieldmon.simulation.design import chunks
+from fieldmon.simulation.worker import run_chunk
 from tests.parcels import write_geojson
 
 FRAME = Frame(5.0, 45.0)
@@ -126,13 +131,40 @@ def _records(tmp_path, monkeypatch):
         Path(f"{name}.csv").write_text("\n".join([f"{columns},date,count", *lines, ""]))
 
 
+class AtOnce:
+    """Does what a pool of processes is handed here and now."""
+
+    def __init__(self, _workers, _context, _prepare, told):
+        plan_all._day[:] = told
+
+    def submit(self, work, *about):
+        done = Future()
+        done.set_result(work(*about))
+        return done
+
+    def shutdown(self, **_):
+        pass
+
+
+def run_at_once(_client, folder, sites, design, _progress):
+    """Simulate a study here and now."""
+    results.begin(folder, sites, design)
+    for chunk in chunks(sites, design):
+        results.keep(folder, chunk, run_chunk(chunk))
+    return {}
+
+
 @pytest.fixture
-def _near(monkeypatch):
-    """Let a study's workers be threads: they start at once."""
-    monkeypatch.setattr(executor, "LocalCluster", partial(executor.LocalCluster, processes=False))
+def _one_process(monkeypatch):
+    """Let all be done in this process; with others, these commands are tested by themselves."""
+    monkeypatch.setattr(plan_all, "ProcessPoolExecutor", AtOnce)
+    monkeypatch.setattr(
+        executor, "cluster", lambda *_: nullcontext(SimpleNamespace(dashboard_link=""))
+    )
+    monkeypatch.setattr(executor, "run", run_at_once)
 
 
-@pytest.mark.usefixtures("_records", "_near")
+@pytest.mark.usefixtures("_records", "_one_process")
 @pytest.mark.parametrize("surface", SURFACES)
 def test_records_that_name_places_say_what_positions_say(surface):
     made = SURFACES[surface]
@@ -145,10 +177,9 @@ def test_records_that_name_places_say_what_positions_say(surface):
 
 
 @pytest.mark.usefixtures("_records")
-@pytest.mark.parametrize("records", ["rows.csv", "plots.csv"])
-def test_a_plot_is_planned_the_same_alone_with_all_others_and_in_a_season(records):
-    alone = planned(records)
-    assert planned_with_all(records) == alone
-    command("init", "s.gpkg", "plots.geojson", *of_one(records), "--begins", DAY)
+def test_a_plot_is_planned_the_same_alone_with_all_others_and_in_a_season():
+    alone = planned("rows.csv")
+    assert planned_with_all("rows.csv") == alone
+    command("init", "s.gpkg", "plots.geojson", *of_one("rows.csv"), "--begins", DAY)
     command("plan", "s.gpkg", "--date", DAY, "-o", "of_season.geojson")
     assert Path("of_season.geojson").read_bytes() == alone

@@ -430,7 +430,7 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         at_risk = rasters.risk_of(laid, risk, risk_option, _tell)
     _hear(records, day)
     project = Season.create(season, laid, records, setup, season_cli.remarks(notes), at_risk)
-    ahead = project.status(setup.begins).outlook
+    ahead = project.status(setup.begins).estimate
     typer.echo(
         f"Season begun in {season}: {len(records)} records, about {ahead.expected:.0f} plants "
         f"believed infested ({ahead.low} to {ahead.high})."

@@ -13,7 +13,7 @@ from shapely import MultiPolygon
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
-from fieldmon.infestation.plot_estimate import outlook
+from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, insert, touch
 
@@ -40,12 +40,12 @@ def digest(chance: NDArray[np.float64]) -> str:
     return hashlib.sha256(plain).hexdigest()[:24]
 
 
-def outlook_of(history: History, morning: Belief, day: int) -> PlotEstimate:
+def evening_estimate(history: History, morning: Belief, day: int) -> PlotEstimate:
     """Return how many plants are infested and not found yet, after a day's work."""
     evening = history.evening(morning, day)
     if not history.beliefs.treated:  # what was found is known: it is not out there any more
         evening = evening.treated(np.where(history.states(day) == PRESENT, 0.0, 1.0))
-    return outlook(history.grid, evening.chance, evening.pair_chance)
+    return estimate_plot(history.grid, evening.chance, evening.pair_chance)
 
 
 def refresh(
@@ -73,11 +73,17 @@ def refresh(
 
 def _day_row(setup: SeasonSetup, history: History, morning: Belief, day: int) -> tuple[object, ...]:
     today = history.inspections.on(day).looked
-    ahead = outlook_of(history, morning, day)
+    estimate = evening_estimate(history, morning, day)
     found = int(np.count_nonzero(today.result == FOUND))
     return (
         *(day, str(setup.date(day)), len(today), found),
-        *(ahead.expected, ahead.low, ahead.high, ahead.chance_clean, digest(morning.chance)),
+        *(
+            estimate.expected,
+            estimate.low,
+            estimate.high,
+            estimate.chance_clean,
+            digest(morning.chance),
+        ),
     )
 
 

@@ -13,10 +13,10 @@ import shapely
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.belief import Pairs
 from fieldmon.infestation.hotspots import HotSpots, hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.monitoring import (
     batches,
@@ -89,7 +89,7 @@ class Status:
         Plants inspected so far at least once, and plants found infested so far.
     inspected_today, found_today
         Plants inspected and found infested on this day.
-    outlook
+    estimate
         How many are infested and not found yet, as believed.
     days_since
         ``(r,)`` days since any plant of each row was inspected; NaN: never.
@@ -104,14 +104,14 @@ class Status:
     found: int
     inspected_today: int
     found_today: int
-    outlook: PlotEstimate
+    estimate: PlotEstimate
     days_since: Floats
     hot_spots: HotSpots
 
     @property
     def detection_pct(self) -> float:
         """Return the finds in percent of finds and what is still expected out there."""
-        everything = self.found + self.outlook.expected
+        everything = self.found + self.estimate.expected
         return 100.0 * self.found / everything if everything else 100.0
 
 
@@ -366,7 +366,7 @@ class Season:
             found=int(np.count_nonzero(state == PRESENT)),
             inspected_today=len(today),
             found_today=int(np.count_nonzero(today.result == FOUND)),
-            outlook=derived_layers.outlook_of(history, morning, day),
+            estimate=derived_layers.evening_estimate(history, morning, day),
             days_since=np.where(last < 0, np.nan, day - last),
             hot_spots=hot_spots(grid, state),
         )
@@ -455,7 +455,7 @@ class Season:
 
 
 def _nothing_yet(plot: Plot, setup: SeasonSetup, prior: Floats) -> History:
-    belief = Pairs.of(plot.grid, prior)
+    belief = PairApproximation.of(plot.grid, prior)
     return History(plot.grid, belief, beliefs=setup.beliefs, detection=setup.robot.detects)
 
 

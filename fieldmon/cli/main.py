@@ -853,9 +853,9 @@ def _noting() -> Iterator[list[tuple[str, ImportMessage]]]:
 
 
 def _hear(records: Observations, day: Any) -> None:  # noqa: ANN401 - a numpy day
-    from fieldmon.infestation.prior import usable  # noqa: PLC0415
+    from fieldmon.infestation.observations import usable  # noqa: PLC0415
 
-    for remark in usable(records, day).remarks():
+    for remark in usable(records, day).messages():
         typer.echo(remark, err=True)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ import numpy as np
 import shapely
 from shapely import MultiPolygon
 
+from fieldmon.compute.digest import digest
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
@@ -34,10 +34,9 @@ STATES = {-1: "never inspected", 0: "looked clean", 1: "found infested"}
 _DIGITS = 9  # of a chance; a digest must not hang on the last bit of another processor
 
 
-def digest(chance: NDArray[np.float64]) -> str:
+def map_digest(chance: NDArray[np.float64]) -> str:
     """Return a short name for a chance map ``(n,)``: the same for the same map only."""
-    plain = np.round(chance, _DIGITS).astype("<f8").tobytes()
-    return hashlib.sha256(plain).hexdigest()[:24]
+    return digest(np.round(chance, _DIGITS).astype("<f8"), length=24, end=b"")
 
 
 def evening_estimate(history: History, morning: Belief, day: int) -> PlotEstimate:
@@ -82,7 +81,7 @@ def _day_row(setup: SeasonSetup, history: History, morning: Belief, day: int) ->
             estimate.low,
             estimate.high,
             estimate.chance_clean,
-            digest(morning.chance),
+            map_digest(morning.chance),
         ),
     )
 

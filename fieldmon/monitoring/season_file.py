@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import threading
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from fieldmon.compute.digest import digest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.hotspots import HotSpots, hot_spots
@@ -305,7 +305,7 @@ class Season:
             treatment = Treatment(day, plants, efficacy)  # or raise
             batch = batches.begin(db, "treatment", product, "")
             said = (day, str(on), treatment.efficacy, product, int(plants.sum()))
-            mark = hashlib.sha256(repr((said, blob(ground))).encode()).hexdigest()[:24]
+            mark = digest((said, blob(ground)), length=24, end=b"")
             names = schema.TREATMENTS.names
             cursor = db.execute(
                 f"INSERT OR IGNORE INTO treatments ({', '.join(names)}) "  # noqa: S608 - ours
@@ -396,8 +396,8 @@ class Season:
             return tuple(
                 f"The chance map of {on} comes out differently from the one used then: it was "
                 "made by another version of fieldmon, or the file was changed by other hands."
-                for day, on, digest in kept
-                if derived_layers.digest(snapshot.morning(day).chance) != digest
+                for day, on, then in kept
+                if derived_layers.map_digest(snapshot.morning(day).chance) != then
             )
 
     def rebuild(self) -> None:

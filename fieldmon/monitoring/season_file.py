@@ -14,12 +14,11 @@ from fieldmon.compute.digest import digest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.hotspots import HotSpots, hot_spots
-from fieldmon.infestation.inspections import FOUND
-from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.monitoring import (
     batches,
+    day_figures,
     derived_layers,
     inspection_table,
     routes,
@@ -27,6 +26,7 @@ from fieldmon.monitoring import (
     settings_log,
     tables,
 )
+from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.geopackage import blob, geometry, touch
 from fieldmon.monitoring.history import Crew, History, Treatment
 from fieldmon.monitoring.settings import SeasonSetup, as_json, from_json, seconds
@@ -187,6 +187,12 @@ class Season:
     def path(self) -> Path:
         """Return the file."""
         return self.store.path
+
+    @property
+    def revision(self) -> str:
+        """Return what changes when anything that counts does, whoever changed it."""
+        with self.store.reading() as db:
+            return _revision(db)
 
     @property
     def setup(self) -> SeasonSetup:
@@ -354,22 +360,40 @@ class Season:
             setup, history, grid = snapshot.setup, snapshot.history, self.plot.grid
             day = setup.day(on)
             morning = snapshot.morning(day)
-        done = history.inspections.before(day + 1).looked
-        today, state = done.on(day), history.states(day)
-        last = np.full(grid.n_rows, -1, np.int64)
-        np.maximum.at(last, grid.row[done.plant], done.day)
+        progress = Progress.of(history, day)
         return Status(
             day=day,
             on=on,
             plants=len(grid),
-            inspected=int(np.count_nonzero(state >= 0)),
-            found=int(np.count_nonzero(state == PRESENT)),
-            inspected_today=len(today),
-            found_today=int(np.count_nonzero(today.result == FOUND)),
+            inspected=progress.inspected,
+            found=progress.found,
+            inspected_today=progress.inspected_today,
+            found_today=progress.found_today,
             estimate=derived_layers.evening_estimate(history, morning, day),
-            days_since=np.where(last < 0, np.nan, day - last),
-            hot_spots=hot_spots(grid, state),
+            days_since=progress.days_since,
+            hot_spots=hot_spots(grid, history.states(day)),
         )
+
+    def progress(self, on: date) -> Progress:
+        """Return how far the inspections are after a day's work; nothing is estimated for it."""
+        now = self._now()
+        return Progress.of(now.history, now.setup.day(on))
+
+    def day_figures(self, on: date) -> DayFigures:
+        """Return a day in figures: those kept with it, or else worked out, which takes seconds."""
+        for kept in self.days():
+            if kept.on == on:
+                return kept
+        with self._lock:
+            now = self._now()
+            day = now.setup.day(on)
+            estimate = derived_layers.evening_estimate(now.history, now.morning(day), day)
+        return DayFigures.of(on, Progress.of(now.history, day), estimate)
+
+    def days(self) -> tuple[DayFigures, ...]:
+        """Return the figures of the days on which anything was planned or recorded, in order."""
+        with self.store.reading() as db:
+            return day_figures.kept(db)
 
     def batches(self) -> tuple[Batch, ...]:
         """Return everything recorded, the last one first."""

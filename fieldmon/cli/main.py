@@ -396,18 +396,18 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     """
     from dataclasses import replace  # noqa: PLC0415
 
-    from fieldmon.monitoring import Season, SeasonSetup  # noqa: PLC0415
-    from fieldmon.monitoring.history import Beliefs  # noqa: PLC0415
+    from fieldmon.monitoring import MonitoringSettings, Season  # noqa: PLC0415
+    from fieldmon.monitoring.history import BeliefSettings  # noqa: PLC0415
     from fieldmon.samplers import EVERY  # noqa: PLC0415
 
-    day, beliefs = _day(on), Beliefs(treated=not flag_only)
-    setup = SeasonSetup(
+    day, belief = _day(on), BeliefSettings(treated=not flag_only)
+    settings = MonitoringSettings(
         day.astype(date),
         _clock(start),
         _robot(scout, hours, look, speed, row_change, turn),
         sampler.value,
         {} if every is None or sampler.value not in EVERY else {"every": every},
-        beliefs=replace(beliefs, spread=replace(beliefs.spread, rate_per_day=spread)),
+        belief=replace(belief, spread=replace(belief.spread, rate_per_day=spread)),
         seed=seed,
     )
     given = {
@@ -429,8 +429,8 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         laid = rasters.without_missing(laid, canopy, canopy_below, canopy_option, _tell)
         at_risk = rasters.risk_of(laid, risk, risk_option, _tell)
     _hear(records, day)
-    project = Season.create(season, laid, records, setup, season_cli.remarks(notes), at_risk)
-    ahead = project.status(setup.begins).estimate
+    project = Season.create(season, laid, records, settings, season_cli.kept(notes), at_risk)
+    ahead = project.status(settings.begins).estimate
     typer.echo(
         f"Season begun in {season}: {len(records)} records, about {ahead.expected:.0f} plants "
         f"believed infested ({ahead.low} to {ahead.high})."

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from fieldmon.io.import_report import ImportMessage
-    from fieldmon.io.readers.reported import FindingsOptions
+    from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.writers.geojson import RouteNotes
-    from fieldmon.monitoring import Remark, Season, Status
+    from fieldmon.monitoring import KeptMessage, Season, Status
     from fieldmon.planning.route import Route
 
 SeasonFile = Annotated[Path, typer.Argument(help="The season's file, made by fieldmon init.")]
@@ -60,20 +60,11 @@ def is_season(path: Path) -> bool:
     return asked(path)
 
 
-def remarks(notes: Iterable[tuple[str, ImportMessage]]) -> list[Remark]:
+def kept(notes: Iterable[tuple[str, ImportMessage]]) -> list[KeptMessage]:
     """Return what imports had to say, as the season's file keeps it."""
-    from fieldmon.monitoring import Remark  # noqa: PLC0415
+    from fieldmon.monitoring import KeptMessage  # noqa: PLC0415
 
-    return [
-        Remark(
-            Path(source).name,
-            finding.severity.value,
-            finding.feature,
-            finding.sentence,
-            None if finding.remedy is None else finding.remedy.setting,
-        )
-        for source, finding in notes
-    ]
+    return [KeptMessage.of(Path(source).name, message) for source, message in notes]
 
 
 def hand_off(route: Route, notes: RouteNotes, outputs: list[Path] | None) -> None:
@@ -105,15 +96,15 @@ def plan_season(context: typer.Context, season: Path, outputs: list[Path] | None
     project = _open(season)
     on, now = _date(context.params["on"]), context.params["now"]
     today = project.plan(on, None if now is None else _time(now))
-    route, setup = today.route, project.setup
+    route, settings = today.route, project.settings
     if not len(route):
         left_h = today.scene.seconds_left / 3600
         raise SettingError(
             "The working day must be long enough to reach another plant and come back, but "
             f"{left_h:.1f} h are left of {on}. Plan another day with --date."
         )
-    notes = RouteNotes(project.plot.field.name, setup.sampler, begins(setup, today))
-    seen = project.history.inspections.on(today.scene.day)
+    notes = RouteNotes(project.plot.field.name, settings.sampler, begins(settings, today))
+    seen = project.history.on(today.scene.day)
     done = f"{len(seen)} done, " if len(seen) else ""
     typer.echo(
         f"{on}: {done}{len(route)} of {len(project.plot.grid)} plants in "
@@ -149,29 +140,29 @@ def record(
 
     Example: fieldmon record season.gpkg route.csv --date 2026-04-06 --who Ann
     """
-    from fieldmon.io.readers.inspections import read_findings  # noqa: PLC0415
-    from fieldmon.io.readers.reported import FindingsOptions  # noqa: PLC0415
-    from fieldmon.monitoring import counting_copy, results_from  # noqa: PLC0415
+    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
+    from fieldmon.io.readers.inspections import read_inspections  # noqa: PLC0415
+    from fieldmon.monitoring import counting_copy  # noqa: PLC0415
 
     project = _open(season)
-    options = FindingsOptions(take_doubtful=take_doubtful)
+    options = InspectionOptions(take_doubtful=take_doubtful)
     if on is not None:
         options = options.choose("day", str(_date(on)))
     options = _chosen(options, finding_option)
     # all are read before any is recorded: a file that cannot be used leaves nothing half-done
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
         sources = [counting_copy(f, Path(folder)) if is_season(f) else f for f in files]
-        heard = [read_findings(source, project.plot.grid, options) for source in sources]
-    read = list(zip(files, heard, strict=True))
+        imported = [read_inspections(source, project.plot.grid, options) for source in sources]
+    read = list(zip(files, imported, strict=True))
     for file, found in read:
         for finding in found.messages:
             typer.echo(f"{file.name}: {finding}", err=True)
     last = None
     for file, found in read:
-        results = results_from(found.value)
-        done = project.record(results, file.name, who)
-        if len(results):
-            last = max(last or results.day.max(), results.day.max())
+        inspections = found.value
+        done = project.record(inspections, file.name, who)
+        if len(inspections):
+            last = max(last or inspections.date.max(), inspections.date.max())
         batch = "" if done.batch is None else f" (batch {done.batch})"
         typer.echo(f"{file.name}: {done.new} new, {done.known} known already{batch}")
     if last is not None:
@@ -254,10 +245,10 @@ def undo(
     if (batch is not None) + (inspection is not None) + change > 1:
         raise SettingError("Give --batch, --inspection or --change, not two of them.")
     if change:
-        setup = _open(season).undo_change()
+        settings = _open(season).undo_change()
         typer.echo(
-            f"The last change was taken back: {setup.sampler}, {setup.robot.hours:g} h from "
-            f"{setup.starts:%H:%M}, {setup.robot.look_s:g} s at a plant."
+            f"The last change was taken back: {settings.sampler}, {settings.robot.hours:g} h from "
+            f"{settings.starts:%H:%M}, {settings.robot.look_s:g} s at a plant."
         )
         return
     typer.echo(_open(season).undo(batch, inspection))
@@ -321,7 +312,7 @@ def change(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     from dataclasses import replace  # noqa: PLC0415
 
     project = _open(season)
-    seen = project.setup
+    seen = project.settings
     robot: dict[str, Any] = {"hours": hours, "look_s": look}
     robot["speed_m_s"] = None if speed is None else speed / 3.6
     robot = {name: value for name, value in robot.items() if value is not None}
@@ -333,8 +324,8 @@ def change(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     if start is not None:
         new = replace(new, starts=_time(start, "--start"))
     if spread is not None:
-        rate = replace(seen.beliefs.spread, rate_per_day=spread)
-        new = replace(new, beliefs=replace(seen.beliefs, spread=rate))
+        rate = replace(seen.belief.spread, rate_per_day=spread)
+        new = replace(new, belief=replace(seen.belief, spread=rate))
     if new == seen:
         typer.echo("Nothing was changed.")
         return
@@ -371,7 +362,7 @@ def _open(season: Path) -> Season:
     return Season(season)
 
 
-def _chosen(options: FindingsOptions, more: list[str] | None) -> FindingsOptions:
+def _chosen(options: InspectionOptions, more: list[str] | None) -> InspectionOptions:
     for item in more or []:
         name, equals, value = item.partition("=")
         if not equals:

@@ -26,7 +26,7 @@ from fieldmon.infestation.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.io.writers.geojson import RouteNotes, write_route
-from fieldmon.monitoring import Season, SeasonSetup
+from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_day
@@ -116,7 +116,7 @@ def files_and_map(plot, chance, observations):
         took["writing the route"], _ = best_of(
             lambda: write_route(to / "route.geojson", today.route, notes)
         )
-        setup = SeasonSetup(date(2026, 5, 20))
+        setup = MonitoringSettings(date(2026, 5, 20))
         took["beginning a season's file"], _ = best_of(
             lambda: Season.create(to / "season.gpkg", plot, observations, setup), 1
         )

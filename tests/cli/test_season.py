@@ -10,8 +10,8 @@ import pyogrio
 import pytest
 import shapely
 
-from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring import Results, Season
+from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.monitoring import Season
 from tests.cli.test_main import run  # noqa: F401 - a fixture
 from tests.paths import SAMPLE_DATA
 
@@ -99,7 +99,7 @@ def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):
         tmp_path / "library.gpkg",
         Season(season).plot,
         Season(season).observations,
-        Season(season).setup,
+        Season(season).settings,
     )
     for day in range(10):
         on = date.fromisoformat(BEGINS) + timedelta(days=day)
@@ -110,7 +110,7 @@ def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):
         assert code == 0, err
         assert with_library.plan(on).route.plant[:12].tolist() == plants
         found = np.isin(np.arange(12), [day, day + 3])
-        with_library.record(Results.of(np.array(plants), found, np.datetime64(on)), "app")
+        with_library.record(Inspections.of(np.array(plants), found, np.datetime64(on)), "app")
         assert np.array_equal(with_library.evening(on), Season(season).evening(on))
     assert len(with_library.history.inspections) == 120
 
@@ -143,7 +143,7 @@ def test_what_qfield_adds_to_a_copy_comes_back_and_what_was_undone_does_not(
 def test_choices_can_be_changed(run, season):  # noqa: F811
     code, _, err, _ = run("change", season, "--sampler", "snake", "--every", 2, "--hours", "0.5")
     assert code == 0, err
-    setup = Season(season).setup
+    setup = Season(season).settings
     assert (setup.sampler, setup.sampler_settings, setup.robot.hours) == (
         "snake",
         {"every": 2},
@@ -153,7 +153,7 @@ def test_choices_can_be_changed(run, season):  # noqa: F811
     code, out, err, _ = run("undo", season, "--change")
     assert code == 0, err
     assert "adaptive, 1 h" in out
-    assert Season(season).setup.robot.hours == 1.0
+    assert Season(season).settings.robot.hours == 1.0
     code, _, err, _ = run("undo", season, "--change")
     assert (code, "there is none" in err) == (2, True)
 

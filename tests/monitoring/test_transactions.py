@@ -14,7 +14,8 @@ import pyogrio
 import pytest
 
 from fieldmon.errors import FieldmonError, FileProblem
-from fieldmon.monitoring import Results, Season, is_season, schema
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import Season, is_season, schema
 from fieldmon.monitoring.salvage import salvage
 from tests.monitoring.seasons import BEGINS, a_season, some_results
 from tests.monitoring.working import day_by_day, one_by_one
@@ -45,10 +46,10 @@ def working(task, *words):
 
 def state(path):
     """Return what counts of a season: it must hold together."""
-    project = Season(path)
-    project.store.check()
-    assert project.verify() == ()
-    with project.store.reading() as db:
+    season = Season(path)
+    season.store.check()
+    assert season.verify() == ()
+    with season.store.reading() as db:
         inspections = db.execute("SELECT digest FROM inspections ORDER BY fid").fetchall()
         batches = db.execute("SELECT rows FROM batches WHERE kind = 'findings'").fetchall()
         days = db.execute("SELECT sum(inspected) FROM days").fetchone()[0]
@@ -280,7 +281,7 @@ def test_a_file_that_cannot_be_written_is_a_sentence(path):
 
 def three_results():
     plants = np.arange(100, 103)
-    return Results.of(plants, np.zeros(3, np.int8), np.datetime64(BEGINS, "D"))
+    return Inspections.of(plants, np.zeros(3, np.int8), np.datetime64(BEGINS, "D"))
 
 
 def test_rows_that_another_program_adds_do_not_count_before_they_are_recorded(path):

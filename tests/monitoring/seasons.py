@@ -68,3 +68,20 @@ def some_results(season, n=5, day=0, found=()):
     plants = season.plan(on, keep=False).route.plant[:n]
     result = np.where(np.isin(np.arange(n), found), FOUND, CLEAN)
     return Inspections.of(plants, result, np.datetime64(on, "D"))
+
+
+def state(path):
+    """Return what counts of a season: it must hold together."""
+    season = Season(path)
+    season.store.check()
+    assert season.verify() == ()
+    with season.store.reading() as db:
+        inspections = db.execute("SELECT digest FROM inspections ORDER BY fid").fetchall()
+        batches = db.execute("SELECT rows FROM batches WHERE kind = 'findings'").fetchall()
+        days = db.execute("SELECT sum(inspected) FROM days").fetchone()[0]
+        routes = db.execute("SELECT fid, stops FROM routes").fetchall()
+        stops = dict(db.execute("SELECT route, count(*) FROM stops GROUP BY route").fetchall())
+    assert sum(n for (n,) in batches) == len(inspections)
+    assert days == len(inspections)
+    assert stops == {route: n for route, n in routes if n}
+    return len(inspections)

@@ -14,7 +14,7 @@ import pytest
 
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.options import Upload
-from fieldmon.io.readers.inspections import read_findings
+from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import write_handoff
 from fieldmon.plot.layout import rectangle
 from tests.io.writers.handed import DAYS, START, apart_m, crooked, day, usual
@@ -132,11 +132,11 @@ def test_the_csv_comes_back_filled_in(tmp_path, make):
     table.loc[0, ["found", "count"]] = "yes", 4
     table.loc[2, "found"] = "no"
     for data in (table.to_csv(index=False).encode(), table.to_csv(index=False, sep=";").encode()):
-        findings = read_findings(Upload("route.csv", data), plan.grid).value
+        findings = read_inspections(Upload("route.csv", data), plan.grid).value
         assert findings.plant.tolist() == plan.route.plant[[0, 2]].tolist()
         assert findings.result.tolist() == [FOUND, CLEAN]
-        assert findings.day.astype(str).tolist() == ["2026-11-18"] * 2
-        assert np.isnat(findings.when).all()
+        assert findings.date.astype(str).tolist() == ["2026-11-18"] * 2
+        assert np.isnan(findings.second).all()
 
 
 def test_the_geojson_comes_back_filled_in(tmp_path):
@@ -144,10 +144,10 @@ def test_the_geojson_comes_back_filled_in(tmp_path):
     root = geojson_of(plan, tmp_path)
     for feature, found in zip(root["features"][1:], [True, False, None, 3], strict=False):
         feature["properties"]["found"] = found
-    imported = read_findings(Upload("r.geojson", json.dumps(root).encode()), plan.grid)
+    imported = read_inspections(Upload("r.geojson", json.dumps(root).encode()), plan.grid)
     assert imported.value.plant.tolist() == plan.route.plant[[0, 1, 3]].tolist()
     assert imported.value.result.tolist() == [FOUND, CLEAN, FOUND]
-    assert imported.value.day.astype(str).tolist() == ["2026-11-18"] * 3
+    assert imported.value.date.astype(str).tolist() == ["2026-11-18"] * 3
 
 
 # --- GPX 1.1: the schema's rules ---------------------------------------------------------------
@@ -250,6 +250,6 @@ def test_waypoints_come_back_with_what_was_added_to_their_names(tmp_path):
     names = [w.find(f"{GPX}name") for w in tree.getroot().findall(f"{GPX}wpt")]
     for name, more in zip(names, [" +3", " -", "", " clean"], strict=False):
         name.text += more
-    findings = read_findings(Upload("r.gpx", ET.tostring(tree.getroot())), plan.grid).value
+    findings = read_inspections(Upload("r.gpx", ET.tostring(tree.getroot())), plan.grid).value
     assert findings.plant.tolist() == plan.route.plant[[0, 1, 3]].tolist()
     assert findings.result.tolist() == [FOUND, CLEAN, CLEAN]

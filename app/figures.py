@@ -63,7 +63,7 @@ def kept(project: Season) -> dict[str, DayFigures]:
 def of(project: Season, on: date) -> DayFigures:
     """Return the figures of any day."""
     now = project.status(on)
-    out = now.outlook
+    out = now.estimate
     return DayFigures(
         on, now.inspected_today, now.found_today, out.expected, out.low, out.high, out.chance_clean
     )

@@ -15,8 +15,7 @@ import streamlit as st
 
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.infestation.observations import ABSENT, PRESENT
-from fieldmon.infestation.prior import usable
+from fieldmon.infestation.observations import ABSENT, PRESENT, usable
 from fieldmon.io.writers import FORMATS
 from fieldmon.planning.explain import explain
 from fieldmon.plot.grid import plant_at, row_label
@@ -428,7 +427,7 @@ def _place(grid: PlantGrid, plants: cached.Array) -> str:
 
 def remarks_on_records(choices: Choices) -> list[str]:
     """Return what planning says about records it cannot use."""
-    return list(usable(choices.records, np.datetime64(choices.day)).remarks())
+    return list(usable(choices.records, np.datetime64(choices.day)).messages())
 
 
 def records_until(choices: Choices) -> tuple[Observations, str]:

@@ -430,7 +430,7 @@ def init(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         at_risk = rasters.risk_of(laid, risk, risk_option, _tell)
     _hear(records, day)
     project = Season.create(season, laid, records, setup, season_cli.remarks(notes), at_risk)
-    ahead = project.status(setup.begins).outlook
+    ahead = project.status(setup.begins).estimate
     typer.echo(
         f"Season begun in {season}: {len(records)} records, about {ahead.expected:.0f} plants "
         f"believed infested ({ahead.low} to {ahead.high})."
@@ -853,9 +853,9 @@ def _noting() -> Iterator[list[tuple[str, ImportMessage]]]:
 
 
 def _hear(records: Observations, day: Any) -> None:  # noqa: ANN401 - a numpy day
-    from fieldmon.infestation.prior import usable  # noqa: PLC0415
+    from fieldmon.infestation.observations import usable  # noqa: PLC0415
 
-    for remark in usable(records, day).remarks():
+    for remark in usable(records, day).messages():
         typer.echo(remark, err=True)
 
 

@@ -206,7 +206,7 @@ def status(
 
 
 def _lines(project: Season, now: Status) -> Iterable[str]:
-    ahead = now.outlook
+    ahead = now.estimate
     yield f"{project.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
     yield f"  inspected today        {now.inspected_today:6d}, {now.found_today} found infested"
     yield (
@@ -295,7 +295,7 @@ def treat(
     if not done.new:
         typer.echo("This treatment was noted already; nothing changed.")
         return
-    ahead = project.status(day).outlook
+    ahead = project.status(day).estimate
     typer.echo(
         f"Treatment noted as batch {done.batch}; about {ahead.expected:.1f} plants are believed "
         f"infested now ({ahead.low} to {ahead.high})."

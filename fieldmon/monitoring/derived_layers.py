@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
@@ -10,10 +9,11 @@ import numpy as np
 import shapely
 from shapely import MultiPolygon
 
+from fieldmon.compute.digest import digest
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
-from fieldmon.infestation.plot_estimate import outlook
+from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, insert, touch
 
@@ -34,18 +34,17 @@ STATES = {-1: "never inspected", 0: "looked clean", 1: "found infested"}
 _DIGITS = 9  # of a chance; a digest must not hang on the last bit of another processor
 
 
-def digest(chance: NDArray[np.float64]) -> str:
+def map_digest(chance: NDArray[np.float64]) -> str:
     """Return a short name for a chance map ``(n,)``: the same for the same map only."""
-    plain = np.round(chance, _DIGITS).astype("<f8").tobytes()
-    return hashlib.sha256(plain).hexdigest()[:24]
+    return digest(np.round(chance, _DIGITS).astype("<f8"), length=24, end=b"")
 
 
-def outlook_of(history: History, morning: Belief, day: int) -> PlotEstimate:
+def evening_estimate(history: History, morning: Belief, day: int) -> PlotEstimate:
     """Return how many plants are infested and not found yet, after a day's work."""
     evening = history.evening(morning, day)
     if not history.beliefs.treated:  # what was found is known: it is not out there any more
         evening = evening.treated(np.where(history.states(day) == PRESENT, 0.0, 1.0))
-    return outlook(history.grid, evening.chance, evening.pair_chance)
+    return estimate_plot(history.grid, evening.chance, evening.pair_chance)
 
 
 def refresh(
@@ -73,11 +72,17 @@ def refresh(
 
 def _day_row(setup: SeasonSetup, history: History, morning: Belief, day: int) -> tuple[object, ...]:
     today = history.inspections.on(day).looked
-    ahead = outlook_of(history, morning, day)
+    estimate = evening_estimate(history, morning, day)
     found = int(np.count_nonzero(today.result == FOUND))
     return (
         *(day, str(setup.date(day)), len(today), found),
-        *(ahead.expected, ahead.low, ahead.high, ahead.chance_clean, digest(morning.chance)),
+        *(
+            estimate.expected,
+            estimate.low,
+            estimate.high,
+            estimate.chance_clean,
+            map_digest(morning.chance),
+        ),
     )
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
 from shapely import LineString
 
+from fieldmon.compute.digest import digest
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, insert, point_blobs, touch
 
@@ -32,11 +32,11 @@ def begins(setup: SeasonSetup, today: DayPlan) -> datetime:
 def keep(db: sqlite3.Connection, setup: SeasonSetup, label: RowLabel, today: DayPlan) -> bool:
     """Keep a day's route, unless it is the one kept last; tell whether it was."""
     day, route = today.scene.day, today.route
-    digest = _digest(today)
+    mark = _digest(today)
     last = db.execute(
         "SELECT revision, digest FROM routes WHERE day = ? ORDER BY revision DESC LIMIT 1", (day,)
     ).fetchone()
-    if last is not None and last[1] == digest:
+    if last is not None and last[1] == mark:
         return False
     begin, line = begins(setup, today), route.line_lonlat()
     row = {
@@ -52,7 +52,7 @@ def keep(db: sqlite3.Connection, setup: SeasonSetup, label: RowLabel, today: Day
         "expected": route.expected_finds,
         "at_plant": today.scene.at,
         "seconds_left": today.scene.seconds_left,
-        "digest": digest,
+        "digest": mark,
     }
     cursor = db.execute(
         f"INSERT INTO routes ({', '.join(row)}) VALUES ({', '.join('?' * len(row))})",  # noqa: S608 - ours
@@ -89,7 +89,6 @@ def plants(db: sqlite3.Connection, day: int) -> NDArray[np.int32]:
 
 
 def _digest(today: DayPlan) -> str:
-    said = hashlib.sha256(today.route.plant.astype("<i4").tobytes())
-    said.update(np.round(today.route.arrive_s, 3).astype("<f8").tobytes())
-    said.update(repr((today.scene.at, round(today.scene.seconds_left, 3))).encode())
-    return said.hexdigest()[:24]
+    plant, arrive_s = today.route.plant, np.round(today.route.arrive_s, 3)
+    stands = today.scene.at, round(today.scene.seconds_left, 3)
+    return digest(plant.astype("<i4"), arrive_s.astype("<f8"), stands, length=24, end=b"")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import threading
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -11,15 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from fieldmon.compute.digest import digest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.belief import Pairs
 from fieldmon.infestation.hotspots import HotSpots, hot_spots
-from fieldmon.infestation.inspections import FOUND
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.monitoring import (
     batches,
+    day_figures,
     derived_layers,
     inspection_table,
     routes,
@@ -27,6 +26,7 @@ from fieldmon.monitoring import (
     settings_log,
     tables,
 )
+from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.geopackage import blob, geometry, touch
 from fieldmon.monitoring.history import Crew, History, Treatment
 from fieldmon.monitoring.settings import SeasonSetup, as_json, from_json, seconds
@@ -89,7 +89,7 @@ class Status:
         Plants inspected so far at least once, and plants found infested so far.
     inspected_today, found_today
         Plants inspected and found infested on this day.
-    outlook
+    estimate
         How many are infested and not found yet, as believed.
     days_since
         ``(r,)`` days since any plant of each row was inspected; NaN: never.
@@ -104,14 +104,14 @@ class Status:
     found: int
     inspected_today: int
     found_today: int
-    outlook: PlotEstimate
+    estimate: PlotEstimate
     days_since: Floats
     hot_spots: HotSpots
 
     @property
     def detection_pct(self) -> float:
         """Return the finds in percent of finds and what is still expected out there."""
-        everything = self.found + self.outlook.expected
+        everything = self.found + self.estimate.expected
         return 100.0 * self.found / everything if everything else 100.0
 
 
@@ -187,6 +187,12 @@ class Season:
     def path(self) -> Path:
         """Return the file."""
         return self.store.path
+
+    @property
+    def revision(self) -> str:
+        """Return what changes when anything that counts does, whoever changed it."""
+        with self.store.reading() as db:
+            return _revision(db)
 
     @property
     def setup(self) -> SeasonSetup:
@@ -305,7 +311,7 @@ class Season:
             treatment = Treatment(day, plants, efficacy)  # or raise
             batch = batches.begin(db, "treatment", product, "")
             said = (day, str(on), treatment.efficacy, product, int(plants.sum()))
-            mark = hashlib.sha256(repr((said, blob(ground))).encode()).hexdigest()[:24]
+            mark = digest((said, blob(ground)), length=24, end=b"")
             names = schema.TREATMENTS.names
             cursor = db.execute(
                 f"INSERT OR IGNORE INTO treatments ({', '.join(names)}) "  # noqa: S608 - ours
@@ -354,22 +360,40 @@ class Season:
             setup, history, grid = snapshot.setup, snapshot.history, self.plot.grid
             day = setup.day(on)
             morning = snapshot.morning(day)
-        done = history.inspections.before(day + 1).looked
-        today, state = done.on(day), history.states(day)
-        last = np.full(grid.n_rows, -1, np.int64)
-        np.maximum.at(last, grid.row[done.plant], done.day)
+        progress = Progress.of(history, day)
         return Status(
             day=day,
             on=on,
             plants=len(grid),
-            inspected=int(np.count_nonzero(state >= 0)),
-            found=int(np.count_nonzero(state == PRESENT)),
-            inspected_today=len(today),
-            found_today=int(np.count_nonzero(today.result == FOUND)),
-            outlook=derived_layers.outlook_of(history, morning, day),
-            days_since=np.where(last < 0, np.nan, day - last),
-            hot_spots=hot_spots(grid, state),
+            inspected=progress.inspected,
+            found=progress.found,
+            inspected_today=progress.inspected_today,
+            found_today=progress.found_today,
+            estimate=derived_layers.evening_estimate(history, morning, day),
+            days_since=progress.days_since,
+            hot_spots=hot_spots(grid, history.states(day)),
         )
+
+    def progress(self, on: date) -> Progress:
+        """Return how far the inspections are after a day's work; nothing is estimated for it."""
+        now = self._now()
+        return Progress.of(now.history, now.setup.day(on))
+
+    def day_figures(self, on: date) -> DayFigures:
+        """Return a day in figures: those kept with it, or else worked out, which takes seconds."""
+        for kept in self.days():
+            if kept.on == on:
+                return kept
+        with self._lock:
+            now = self._now()
+            day = now.setup.day(on)
+            estimate = derived_layers.evening_estimate(now.history, now.morning(day), day)
+        return DayFigures.of(on, Progress.of(now.history, day), estimate)
+
+    def days(self) -> tuple[DayFigures, ...]:
+        """Return the figures of the days on which anything was planned or recorded, in order."""
+        with self.store.reading() as db:
+            return day_figures.kept(db)
 
     def batches(self) -> tuple[Batch, ...]:
         """Return everything recorded, the last one first."""
@@ -396,8 +420,8 @@ class Season:
             return tuple(
                 f"The chance map of {on} comes out differently from the one used then: it was "
                 "made by another version of fieldmon, or the file was changed by other hands."
-                for day, on, digest in kept
-                if derived_layers.digest(snapshot.morning(day).chance) != digest
+                for day, on, then in kept
+                if derived_layers.map_digest(snapshot.morning(day).chance) != then
             )
 
     def rebuild(self) -> None:
@@ -455,7 +479,7 @@ class Season:
 
 
 def _nothing_yet(plot: Plot, setup: SeasonSetup, prior: Floats) -> History:
-    belief = Pairs.of(plot.grid, prior)
+    belief = PairApproximation.of(plot.grid, prior)
     return History(plot.grid, belief, beliefs=setup.beliefs, detection=setup.robot.detects)
 
 

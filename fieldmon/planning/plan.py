@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import pairs
 from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.pairs import pair_chances
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.planning.route import route_of
@@ -198,7 +198,7 @@ def plan_from(plot: Plot, chance: NDArray[np.float64], plans: PlanSettings) -> D
         last_inspected=np.full(len(plot.grid), NEVER, np.int32),
         seconds_left=plans.robot.day_s,
         # as a season believes: it goes the same way on its first day
-        pair_chance=pairs(chance, plot.grid),
+        pair_chance=pair_chances(chance, plot.grid),
     )
     work = plan_work(scene, plans.sampler)
     return DayPlan(scene, work, route_of(scene, work))

@@ -149,7 +149,7 @@ def test_plants_and_route_are_drawn_where_they_are(page, address):
 def test_nothing_is_asked_of_the_world(page, address):
     shown(page, address)
     for name in ("Map", "Scout", "Season", "Compare", "Plot & records", "Report", "Simulate",
-                 "Study", "DayPlan"):  # fmt: skip
+                 "Study", "Today"):  # fmt: skip
         page.get_by_role("link", name=name, exact=True).click()
         page.get_by_role("link", name=name, exact=True).and_(
             page.locator("[aria-current=page]")
@@ -262,7 +262,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     title = page.get_by_role("heading", name="מטע הדרים").bounding_box()
     assert title["width"] > 50
     gate, size = a_gate_and_an_area_are_drawn_by_clicks(page)
-    page.get_by_role("link", name="DayPlan").click()
+    page.get_by_role("link", name="Today").click()
     far = still(page)
     first = stops(page)
     assert len(first) > 10
@@ -284,7 +284,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     page.get_by_role("tabpanel").get_by_role("button", name="Record", exact=True).first.click()
     page.get_by_text("8 recorded").wait_for(timeout=60_000)
     page.reload()
-    page.get_by_role("link", name="DayPlan").click()
+    page.get_by_role("link", name="Today").click()
     page.get_by_text("8 plants inspected today so far").wait_for(timeout=60_000)
     rest = stops(page)
     assert len(first) - 20 < len(rest) < len(first)
@@ -310,7 +310,7 @@ def a_gate_and_an_area_are_drawn_by_clicks(page):
     assert plants.inner_text() == before
     size = still(page).shape
     with page.expect_download() as download:
-        page.get_by_role("link", name="DayPlan").click()
+        page.get_by_role("link", name="Today").click()
         page.get_by_role("button", name="Download the route").click()
     route = json.loads(download.value.path().read_text(encoding="utf-8"))
     return tuple(route["features"][0]["geometry"]["coordinates"][0]), size

@@ -253,7 +253,7 @@ def test_finds_that_are_only_flagged_stay_infested(tmp_path):
     assert season.evening(BEGINS)[results.plant[0]] > 0.99
     status = season.status(BEGINS)
     assert status.found == 1
-    assert status.outlook.expected < season.evening(BEGINS).sum() - 0.9  # found is not out there
+    assert status.estimate.expected < season.evening(BEGINS).sum() - 0.9  # found is not out there
 
 
 def test_the_status_counts(season):
@@ -263,8 +263,8 @@ def test_the_status_counts(season):
     assert (status.day, status.inspected_today, status.found_today) == (2, 4, 0)
     assert status.found == 2
     assert status.plants == len(season.plot.grid)
-    assert status.outlook.low <= status.outlook.expected <= status.outlook.high
-    assert status.detection_pct == pytest.approx(100 * 2 / (2 + status.outlook.expected))
+    assert status.estimate.low <= status.estimate.expected <= status.estimate.high
+    assert status.detection_pct == pytest.approx(100 * 2 / (2 + status.estimate.expected))
     rows = season.plot.grid.row
     done = season.history.inspections
     assert status.days_since[rows[done.plant[-1]]] == 0

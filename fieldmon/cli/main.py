@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers import Sampler
-    from fieldmon.simulation.season import Start
+    from fieldmon.simulation.start import Start
 
 #: a file, and what was chosen about how to read it
 _Asked: TypeAlias = tuple[Path | None, list[str] | None]
@@ -765,7 +765,7 @@ def _describe(plot: Plot) -> None:
 def _start(plot: Plot, chance: Any, infested: float, seed: int) -> Start:  # noqa: ANN401
     from fieldmon.compute.random_streams import RandomStreams  # noqa: PLC0415
     from fieldmon.infestation.prior import start_infested  # noqa: PLC0415
-    from fieldmon.simulation.season import Start  # noqa: PLC0415
+    from fieldmon.simulation.start import Start  # noqa: PLC0415
 
     if not 0.0 < infested < 1.0:
         raise SettingError(
@@ -784,13 +784,12 @@ def _season(
 ) -> list[str]:
     from fieldmon.compute.random_streams import RandomStreams  # noqa: PLC0415
     from fieldmon.infestation.spread import Spread  # noqa: PLC0415
-    from fieldmon.simulation.season import SeasonSettings  # noqa: PLC0415
-    from fieldmon.simulation.season import days as season_days  # noqa: PLC0415
+    from fieldmon.simulation.season import SeasonSettings, simulated_days  # noqa: PLC0415
 
     n_days, rate, seed = numbers
     settings = SeasonSettings(n_days=n_days, spread=Spread(rate))
     name, decides = sampler
-    walk = season_days(plot.aisles, robot, decides, begin, settings, RandomStreams(seed))
+    walk = simulated_days(plot.aisles, robot, decides, begin, settings, RandomStreams(seed))
     rows = []
     typer.echo(f"\n{name}\n day  detection %  visited %  found  infested left")
     for day in walk:

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from fieldmon.cli import study_run, study_samplers
 from fieldmon.cli.study_prior import register as register_prior
-from fieldmon.cli.waiting import progress
+from fieldmon.cli.waiting import progress, shown
 from fieldmon.errors import FileProblem
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 app = typer.Typer(
     no_args_is_help=True, help="Published experiments, made again, and studies of one's own."
@@ -60,14 +57,14 @@ def no_prior(
         _compare(golden, night)
         return
     from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter4.measures import csv_text  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter4.report import report_html  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter4.study import run_no_prior  # noqa: PLC0415
+    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
 
     if not output.is_dir():
         raise FileProblem(f"The folder {output} must exist, but it does not. Make it first.")
     with progress("Simulating") as bar:
-        made = run_no_prior(table, replicates, seed, _shown(bar))
+        made = run_no_prior(table, replicates, seed, shown(bar))
     for part in made.tables:
         typer.echo(f"\n{part.title}")
         for sentence in part.summary:
@@ -76,16 +73,6 @@ def no_prior(
         to = output / f"no_prior_{table}.{ending}"
         write_whole(to, text.encode())
         typer.echo(f"Written: {to}")
-
-
-def _shown(bar: object) -> Callable[[int, int], None]:
-    """Return what moves a progress bar."""
-
-    def progress(done: int, total: int) -> None:
-        bar.length = total  # type: ignore[attr-defined]
-        bar.update(done - bar.pos)  # type: ignore[attr-defined]
-
-    return progress
 
 
 def _compare(files: list[Path], night: str | None) -> None:

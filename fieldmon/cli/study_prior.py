@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.waiting import progress
+from fieldmon.cli.waiting import progress, shown
 from fieldmon.errors import ChoiceNeeded, FileProblem
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
 
     from fieldmon.io.import_report import ImportMessage
-    from fieldmon.studies.thesis.chapter5.calibrate import Calibration
+    from fieldmon.studies.thesis.chapter5.calibrate import FittedChoices
     from fieldmon.studies.thesis.chapter5.sites import Site
-    from fieldmon.studies.thesis.chapter5.study import Study
+    from fieldmon.studies.thesis.chapter5.study import PriorStudy
 
 _Folder = Annotated[Path, typer.Option("--output", "-o", help="Folder for tables and report.")]
 _Seed = Annotated[int, typer.Option(help="The same seed, the same figures.")]
@@ -60,7 +60,8 @@ def prior(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     """
     from fieldmon.studies.thesis.chapter5.published import PARTS  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.study import csv_text, rows, run_prior  # noqa: PLC0415
+    from fieldmon.studies.thesis.chapter5.study import rows, run_prior  # noqa: PLC0415
+    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
 
     _must_be_folder(output)
     if maps is not None:
@@ -71,7 +72,7 @@ def prior(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         return
     parts = (*(scenario or []), *(sweep or [])) or PARTS
     with progress("Simulating") as bar:
-        made = run_prior(parts, seeds, seed, progress=_shown(bar))
+        made = run_prior(parts, seeds, seed, progress=shown(bar))
     _tell(made)
     name = "prior" if parts == PARTS else "prior_" + "_".join(parts)
     _write(
@@ -103,7 +104,7 @@ def calibrate(
     _must_be_folder(output)
     effort = Effort(drawn=drawn, kept=kept, steps=steps, final_seeds=seeds)
     with progress("Searching") as bar:
-        found = search(effort, seed, _shown(bar))
+        found = search(effort, seed, shown(bar))
     _tell_fit(found)
     _write(output, {"prior_calibration.csv": candidates_csv(found.tried)})
 
@@ -114,12 +115,12 @@ def _on_maps(folder: Path, seeds: int, seed: int, output: Path) -> None:
     from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.mapped_plots import MapRules, run_maps  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.report import maps_html  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.study import csv_text  # noqa: PLC0415
+    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
 
     rules = MapRules(Robot(), CALIBRATED.spread)
     maps = read_plant_maps(folder)
     with progress("Inspecting") as bar:
-        table = run_maps(maps, rules, seeds, seed, _shown(bar))
+        table = run_maps(maps, rules, seeds, seed, shown(bar))
     for row in table:
         if row.visited_pct == 25.0 and row.seeds:
             typer.echo(
@@ -133,11 +134,12 @@ def _on_plot(
     files: tuple[Path, str | None, Path | None], seeds: int, seed: int, output: Path
 ) -> None:
     from fieldmon.studies.thesis.chapter5.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.study import csv_text, rows, run_site  # noqa: PLC0415
+    from fieldmon.studies.thesis.chapter5.study import rows, run_site  # noqa: PLC0415
+    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
 
     site = _site(*files)
     with progress("Simulating") as bar:
-        made = run_site(site, seeds, seed, progress=_shown(bar))
+        made = run_site(site, seeds, seed, progress=shown(bar))
     for part in made.parts:
         for runs in part.runs:
             typer.echo(
@@ -184,7 +186,7 @@ def _say(findings: Iterable[ImportMessage]) -> None:
         typer.echo(str(finding), err=True)
 
 
-def _tell(study: Study) -> None:
+def _tell(study: PriorStudy) -> None:
     if study.stopped:
         typer.echo("Stopped: these are the configurations that were done.")
     for part in study.parts:
@@ -196,7 +198,7 @@ def _tell(study: Study) -> None:
             )
 
 
-def _tell_fit(found: Calibration) -> None:
+def _tell_fit(found: FittedChoices) -> None:
     if found.stopped:
         typer.echo("Stopped: this is the best of what was tried.")
     off = ", ".join(f"{part} {steps:.2f}" for part, steps in found.best.off.items())
@@ -224,13 +226,3 @@ def _write(folder: Path, texts: dict[str, str]) -> None:
     for name, text in texts.items():
         write_whole(folder / name, text.encode())
         typer.echo(f"Written: {folder / name}")
-
-
-def _shown(bar: object) -> Callable[[int, int], None]:
-    """Return what moves a progress bar."""
-
-    def progress(done: int, total: int) -> None:
-        bar.length = total  # type: ignore[attr-defined]
-        bar.update(done - bar.pos)  # type: ignore[attr-defined]
-
-    return progress

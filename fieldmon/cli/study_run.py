@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fieldmon.cli.waiting import progress
+from fieldmon.cli.waiting import progress, shown
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-    from fieldmon.simulation.design import Design, Site
+    from fieldmon.simulation.design import StudyPlot
 
 
 def register(app: typer.Typer) -> None:
@@ -58,7 +58,8 @@ def study_run(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     Example: fieldmon study run vines.zip --feature 3 --hours 6 --hours 12 --seeds 200 -o study
     """
     from fieldmon.simulation import executor, results  # noqa: PLC0415
-    from fieldmon.simulation.design import Design  # noqa: PLC0415
+    from fieldmon.simulation.design import Design, study_of  # noqa: PLC0415
+    from fieldmon.simulation.experiment import run  # noqa: PLC0415
 
     values = {"hours": hours, "look_s": look, "infested": infested, "spread": spread}
     chosen: dict[str, Any] = {
@@ -67,32 +68,22 @@ def study_run(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
         if each is not None
     }
     design = Design(**chosen, n_days=days, n_seeds=seeds, first_seed=first_seed)
-    sites = _sites(plot, feature, observations, on)
-    with executor.cluster(scheduler, workers) as client:
-        typer.echo(f"Dashboard: {client.dashboard_link}", err=True)
-        refused = _run(client, output, sites, design)
-    for name, sentence in refused.items():
+    plots = _plots(plot, feature, observations, on)
+    with executor.cluster(scheduler, workers) as ready:
+        typer.echo(f"Dashboard: {ready.dashboard}", err=True)
+        folder = results.StudyFolder(output, plots, design)
+        with progress("Simulating") as bar:
+            run(study_of(plots, design), ready, folder, shown(bar))
+    for name, sentence in folder.refused.items():
         typer.echo(f"refused: {name}: {sentence}", err=True)
-    if len(refused) < len(sites):
+    if len(folder.refused) < len(plots):
         _tell(results.seasons(output))
         typer.echo(f"Seasons are in {output}")
 
 
-def _run(client: Any, output: Path, sites: tuple[Site, ...], design: Design) -> dict[str, str]:  # noqa: ANN401 - Dask's
-    from fieldmon.simulation import executor  # noqa: PLC0415
-
-    with progress("Simulating") as bar:
-
-        def shown(done: int, total: int) -> None:
-            bar.length = total
-            bar.update(done - bar.pos)
-
-        return executor.run(client, output, sites, design, shown)
-
-
-def _sites(
+def _plots(
     plot: Path, feature: str | None, observations: Path | None, on: str | None
-) -> tuple[Site, ...]:
+) -> tuple[StudyPlot, ...]:
     import numpy as np  # noqa: PLC0415
 
     from fieldmon.infestation.observations import Observations  # noqa: PLC0415
@@ -100,7 +91,7 @@ def _sites(
     from fieldmon.io.read import read_plots, read_records  # noqa: PLC0415
     from fieldmon.io.readers.nearby import apart  # noqa: PLC0415
     from fieldmon.plot.plot import planting_of  # noqa: PLC0415
-    from fieldmon.simulation.design import Site  # noqa: PLC0415
+    from fieldmon.simulation.design import StudyPlot  # noqa: PLC0415
 
     try:
         day = np.datetime64(date.fromisoformat(on) if on else date.today(), "D")  # noqa: DTZ011 - local day
@@ -109,7 +100,7 @@ def _sites(
     fields = read_plots(plot, PlotOptions(feature=feature)).value
     records = Observations.none() if observations is None else read_records(observations).value
     return tuple(
-        Site(field, planting_of(field), apart(records, field).inside, day) for field in fields
+        StudyPlot(field, planting_of(field), apart(records, field).inside, day) for field in fields
     )
 
 

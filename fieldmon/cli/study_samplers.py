@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.waiting import progress
+from fieldmon.cli.waiting import progress, shown
 from fieldmon.errors import FileProblem, SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-
-_SAVED_EVERY_S = 15.0
 
 
 def samplers(
@@ -48,14 +45,13 @@ def samplers(
     Example: fieldmon study samplers --cell "B, spread 30% to one" --seeds 20 -o study
     """
     from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
+    from fieldmon.simulation import executor  # noqa: PLC0415
+    from fieldmon.simulation.experiment import run  # noqa: PLC0415
+    from fieldmon.studies.samplers.outcome_table import OutcomeTable  # noqa: PLC0415
     from fieldmon.studies.samplers.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.samplers.scenarios import all_cells, usual_cells  # noqa: PLC0415
-    from fieldmon.studies.samplers.seasons import run  # noqa: PLC0415
-    from fieldmon.studies.samplers.summary import (  # noqa: PLC0415
-        csv_text,
-        outcomes_from,
-        sentences,
-    )
+    from fieldmon.studies.samplers.scenarios import all_scenarios, usual_scenarios  # noqa: PLC0415
+    from fieldmon.studies.samplers.seasons import study_of  # noqa: PLC0415
+    from fieldmon.studies.samplers.summary import sentences  # noqa: PLC0415
 
     if not output.is_dir():
         raise FileProblem(f"The folder {output} must exist, but it does not. Make it first.")
@@ -65,34 +61,20 @@ def samplers(
     if tune:
         _tune()
         return
-    cells = all_cells() if full else usual_cells()
+    scenarios = all_scenarios() if full else usual_scenarios()
     if cell:
-        cells = [each for each in cells if any(each.name.startswith(name) for name in cell)]
-    if not cells:
+        scenarios = [each for each in scenarios if any(map(each.name.startswith, cell))]
+    if not scenarios:
         raise SettingError(f"A cell must begin with {' or '.join(cell or [])}, but none does.")
-    table = output / "samplers.csv"
-    made = outcomes_from(table.read_text(encoding="utf-8"), table.name) if table.exists() else []
-    done = frozenset((outcome.cell, outcome.seed) for outcome in made)
-    ahead = [(each.name, seed) for each in cells for seed in range(seeds)]
-    with progress("Seasons", len(ahead)) as bar:
-        bar.update(len(done & set(ahead)))
-        saved = monotonic()
-        try:
-            for outcomes in run(cells, range(seeds), done):
-                made += outcomes
-                bar.update(1)
-                if monotonic() > saved + _SAVED_EVERY_S:
-                    write_whole(table, csv_text(made).encode())
-                    saved = monotonic()
-        finally:
-            write_whole(table, csv_text(made).encode())
-    wanted = set(ahead)
-    shown = [outcome for outcome in made if (outcome.cell, outcome.seed) in wanted]
-    for sentence in sentences(shown):
+    study, file = study_of(scenarios, range(seeds)), output / "samplers.csv"
+    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()])
+    with progress("Seasons") as bar, table, executor.threads() as workers:
+        run(study, workers, table, shown(bar))
+    for sentence in sentences(table.asked()):
         typer.echo(sentence)
     page = output / "samplers.html"
-    write_whole(page, report_html(shown).encode())
-    typer.echo(f"Written: {table}\nWritten: {page}")
+    write_whole(page, report_html(table.asked()).encode())
+    typer.echo(f"Written: {file}\nWritten: {page}")
 
 
 def beliefs(
@@ -116,11 +98,11 @@ def beliefs(
         calibration,
         report_html,
     )
-    from fieldmon.studies.samplers.scenarios import all_cells  # noqa: PLC0415
+    from fieldmon.studies.samplers.scenarios import all_scenarios  # noqa: PLC0415
 
     if not output.is_dir():
         raise FileProblem(f"The folder {output} must exist, but it does not. Make it first.")
-    chosen = next((each for each in all_cells() if each.name.startswith(cell)), None)
+    chosen = next((each for each in all_scenarios() if each.name.startswith(cell)), None)
     if chosen is None:
         raise SettingError(f"A cell must begin with {cell!r}, but none does.")
     made = {}
@@ -140,18 +122,14 @@ def beliefs(
 def _tune() -> None:
     """Print what each of Dynamic's open choices loses."""
     from fieldmon.studies.samplers.tuning import (  # noqa: PLC0415
-        CHOICES,
         SEEDS,
         losses,
-        tuning_cells,
+        tuning_scenarios,
     )
 
-    made = []
-    with progress("Choices", len(CHOICES)) as bar:
-        for choice, loss in losses(tuning_cells(), SEEDS):
-            made.append((loss, *choice))
-            bar.update(1)
-    for loss, suspicious, at_once in sorted(made):
+    with progress("Choices") as bar:
+        made = losses(tuning_scenarios(), SEEDS, shown(bar))
+    for loss, suspicious, at_once in sorted((loss, *choice) for choice, loss in made.items()):
         typer.echo(f"{loss:8.1f} infested plant-days: {suspicious = }, {at_once = }")
 
 
@@ -159,17 +137,13 @@ def _on_maps(folder: Path, output: Path) -> None:
     """Print and write how many infested plants a look finds on mapped plots."""
     from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
     from fieldmon.studies.samplers.mapped_plots import (  # noqa: PLC0415
-        LAYOUTS,
         SHARES,
-        maps_from,
+        plots_in,
         table,
         table_csv,
     )
 
-    files = [folder / name for name in LAYOUTS if (folder / name).is_file()]
-    if not files:
-        raise FileProblem(f"{folder} must hold one of {', '.join(LAYOUTS)}, but it does not.")
-    rows = table([m for file in files for m in maps_from(file.name, file.read_text("utf-8"))])
+    rows = table(plots_in(folder))
     typer.echo(f"{'Infested plants found per look, after':38} " + _columns(SHARES, "{:6.0%}"))
     for name, who, values in rows:
         typer.echo(f"{name:28} {who:9} " + _columns(values, "{:6.2f}"))

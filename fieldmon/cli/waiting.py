@@ -13,7 +13,7 @@ import typer
 from fieldmon.compute.jit_progress import FIRST_USE
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 # a command that answers sooner says nothing; what is said is shorter than any answer, which so
 # writes over it
@@ -99,3 +99,13 @@ def progress(label: str, length: int = 1) -> Iterator[Any]:
         ) as bar,
     ):
         yield bar
+
+
+def shown(bar: Any) -> Callable[[int, int], None]:  # noqa: ANN401 - typer's
+    """Return what moves a bar to so many done of so many."""
+
+    def move(done: int, total: int) -> None:
+        bar.length = total
+        bar.update(done - bar.pos)
+
+    return move

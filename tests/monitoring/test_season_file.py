@@ -13,7 +13,8 @@ from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.monitoring import Remark, Results, Season, SeasonSetup
 from fieldmon.monitoring.history import Beliefs
 from fieldmon.samplers import sampler
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 from tests.monitoring.seasons import (
     BEGINS,
     ROBOT,
@@ -79,7 +80,7 @@ def test_ten_days_on_disk_are_ten_days_of_the_simulator(tmp_path, name):
     truth = Insects(project)
     start = Start(truth.infested, project.morning(BEGINS))
     settings = SeasonSettings(n_days=10, spread=setup.beliefs.spread)
-    simulated = days(
+    simulated = simulated_days(
         plot.aisles, setup.robot, sampler(name), start, settings, RandomStreams(setup.seed)
     )
     for day in simulated:

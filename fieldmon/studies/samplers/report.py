@@ -6,13 +6,13 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from fieldmon.studies.charts import Range, range_chart
-from fieldmon.studies.samplers.seasons import ADAPTIVE, NAMES, TUNED, WORDED
-from fieldmon.studies.samplers.summary import by_cell, means, ratio, sentences
+from fieldmon.studies.samplers.contenders import ADAPTIVE, NAMES, TUNED, WORDED
+from fieldmon.studies.samplers.summary import by_scenario, means, ratio, sentences
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fieldmon.studies.samplers.seasons import Outcome
+    from fieldmon.studies.samplers.seasons import SeasonOutcome
 
 _WORDS = {
     "infested_plant_days": "Infested plant-days over the season",
@@ -41,7 +41,7 @@ svg text { font-size: 12px; fill: var(--ink); } .grid { stroke: var(--grid); }
 """
 
 
-def report_html(outcomes: Sequence[Outcome]) -> str:
+def report_html(outcomes: Sequence[SeasonOutcome]) -> str:
     """Return the whole report as one HTML document."""
     seeds = len({outcome.seed for outcome in outcomes})
     said = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences(outcomes))
@@ -60,9 +60,9 @@ def report_html(outcomes: Sequence[Outcome]) -> str:
     )
 
 
-def _chart(outcomes: Sequence[Outcome], other: str) -> str:
+def _chart(outcomes: Sequence[SeasonOutcome], other: str) -> str:
     rows = []
-    for cell, who in by_cell(outcomes, "infested_plant_days").items():
+    for cell, who in by_scenario(outcomes, "infested_plant_days").items():
         r = ratio(who[ADAPTIVE], who[other])
         rows.append(Range(cell, r.low, r.value, r.high))
     title = f"Infested plant-days: {ADAPTIVE} over {other} (mean and 95 % interval)"

@@ -12,8 +12,8 @@ from fieldmon.studies.thesis.chapter4.verdicts import AGREES, DIFFERS, EQUAL, MI
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from fieldmon.studies.thesis.chapter4.measures import Cell
-    from fieldmon.studies.thesis.chapter4.study import Study, Table
+    from fieldmon.studies.thesis.chapter4.measures import NoPriorMeasure
+    from fieldmon.studies.thesis.chapter4.study import NoPriorStudy, NoPriorTable
 
 _SIGNS = {EQUAL: "=", NEAR: "≈", DIFFERS: "≠", MISPRINT: "!"}
 _NEARNESS = (
@@ -74,7 +74,7 @@ svg text { font-size: 12px; fill: var(--ink); } .grid { stroke: var(--grid); }
 """
 
 
-def report_html(study: Study) -> str:
+def report_html(study: NoPriorStudy) -> str:
     """Return the whole report as one HTML document."""
     legend = "".join(f"<dt>{sign}</dt><dd>{escape(text)}</dd>" for sign, text in _MEANINGS)
     sections = "".join(_section(table) for table in study.tables)
@@ -92,7 +92,7 @@ def report_html(study: Study) -> str:
     )
 
 
-def _section(table: Table) -> str:
+def _section(table: NoPriorTable) -> str:
     said = "".join(f"<li>{escape(sentence)}</li>" for sentence in table.summary)
     names = _row_names(table.cells)
     notes = dict.fromkeys(
@@ -108,11 +108,11 @@ def _section(table: Table) -> str:
     )
 
 
-def _matrix(cells: Sequence[Cell]) -> str:
+def _matrix(cells: Sequence[NoPriorMeasure]) -> str:
     """Return the cells as a table: configurations down, measures across."""
     measures = list(dict.fromkeys(cell.measure for cell in cells))
     names = _row_names(cells)
-    rows: dict[str, dict[str, Cell]] = {}
+    rows: dict[str, dict[str, NoPriorMeasure]] = {}
     for cell in cells:
         rows.setdefault(names[cell], {})[cell.measure] = cell
     head = "".join(f'<th scope="col">{escape(_WORDS.get(m, m))}</th>' for m in measures)
@@ -131,7 +131,7 @@ def _matrix(cells: Sequence[Cell]) -> str:
     return f"<details><summary>All {len(rows)} configurations</summary>{whole}</details>"
 
 
-def _row_names(cells: Sequence[Cell]) -> dict[Cell, str]:
+def _row_names(cells: Sequence[NoPriorMeasure]) -> dict[NoPriorMeasure, str]:
     """Return what each cell's row is called: its strategy, and what differs within the table."""
     severities = {cell.severity for cell in cells}
     viewpoints = {cell.viewpoints for cell in cells}
@@ -152,11 +152,11 @@ def _row_names(cells: Sequence[Cell]) -> dict[Cell, str]:
     return names
 
 
-def _viewpoints(cell: Cell) -> str:
+def _viewpoints(cell: NoPriorMeasure) -> str:
     return f"{cell.viewpoints} viewpoint{'s' if cell.viewpoints > 1 else ''}"
 
 
-def _td(cell: Cell) -> str:
+def _td(cell: NoPriorMeasure) -> str:
     if cell.replicates == 0:
         ours = "-"
     elif math.isnan(cell.low) or cell.sd == 0:
@@ -180,7 +180,7 @@ def _short(value: float) -> str:
     return f"{value:.1f}" if abs(value) >= 10 else f"{value:.2f}"
 
 
-def _charts(table: Table) -> str:
+def _charts(table: NoPriorTable) -> str:
     parts = [
         range_chart(
             f"{_WORDS[measure]}: our mean, 5 to 95 % of runs, and the thesis's run (cross)",
@@ -209,11 +209,11 @@ def _charts(table: Table) -> str:
     return "".join(parts)
 
 
-def _rules(cells: Iterable[Cell]) -> list[str]:
+def _rules(cells: Iterable[NoPriorMeasure]) -> list[str]:
     return list(dict.fromkeys(cell.rules for cell in cells))
 
 
-def _by_strategy(cells: Iterable[Cell], across: str, axis: str) -> str:
+def _by_strategy(cells: Iterable[NoPriorMeasure], across: str, axis: str) -> str:
     """Return the share detected in three days over one property of the trials."""
     lines: dict[str, dict[float, list[float]]] = {}
     for cell in cells:
@@ -227,7 +227,7 @@ def _by_strategy(cells: Iterable[Cell], across: str, axis: str) -> str:
     return line_chart(f"Detected in three days, by {axis}", drawn, (axis, "%"))
 
 
-def _differences(cells: Iterable[Cell], rules: str) -> str:
+def _differences(cells: Iterable[NoPriorMeasure], rules: str) -> str:
     rows = [
         Range(
             f"{c.field}, N = {c.n}, {_viewpoints(c)}",
@@ -242,7 +242,7 @@ def _differences(cells: Iterable[Cell], rules: str) -> str:
     return range_chart(title, rows, "percentage points; right of 0 the snake is ahead")
 
 
-def _by_rules(table: Table) -> str:
+def _by_rules(table: NoPriorTable) -> str:
     rows = [
         Range(f"{c.field}, {c.rules}", c.q05, c.mean, c.q95)
         for c in table.cells

@@ -6,8 +6,8 @@ import math
 from html import escape
 from typing import TYPE_CHECKING
 
+from fieldmon.simulation.statistics import summary_statistics
 from fieldmon.studies.charts import Line, line_chart
-from fieldmon.studies.thesis.chapter4.measures import spread_of
 from fieldmon.studies.thesis.chapter4.report import STYLE
 from fieldmon.studies.thesis.chapter4.verdicts import AGREES as EQUAL
 from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS, SCENARIOS
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-    from fieldmon.studies.thesis.chapter5.mapped_plots import MapRow
-    from fieldmon.studies.thesis.chapter5.replicates import Runs
-    from fieldmon.studies.thesis.chapter5.study import Part, Study
+    from fieldmon.studies.thesis.chapter5.mapped_plots import MapMeasure
+    from fieldmon.studies.thesis.chapter5.replicates import PriorRuns
+    from fieldmon.studies.thesis.chapter5.study import PriorStudy, StudyPart
     from fieldmon.studies.thesis.chapter5.verdicts import Compared
 
 _CLASSES = {AGREES: EQUAL, HOLDS: EQUAL, NEAR: "near", OPEN: "near", DIFFERS: "differs"}
@@ -58,7 +58,7 @@ _MEASURES = {
 }
 
 
-def report_html(study: Study) -> str:
+def report_html(study: PriorStudy) -> str:
     """Return the whole report as one HTML document."""
     choices = "".join(f"<li>{escape(said)}</li>" for said in study.choices.sentences())
     stopped = "<p><strong>Stopped before the end: what was done by then.</strong></p>"
@@ -71,7 +71,7 @@ def report_html(study: Study) -> str:
     )
 
 
-def maps_html(table: Sequence[MapRow]) -> str:
+def maps_html(table: Sequence[MapMeasure]) -> str:
     """Return the samplers on real maps as one HTML document: a plot a map and date."""
     plots = dict.fromkeys((row.map, row.date, row.infested) for row in table)
     charts = "".join(
@@ -85,7 +85,7 @@ def maps_html(table: Sequence[MapRow]) -> str:
     return _page("The three samplers on real maps of plants", f"<p>{escape(_MAPS)}</p>{charts}")
 
 
-def _map_line(table: Sequence[MapRow], key: tuple[str, str, str]) -> Line:
+def _map_line(table: Sequence[MapMeasure], key: tuple[str, str, str]) -> Line:
     rows = [row for row in table if (row.map, row.date, row.sampler) == key]
     x, y, low, high = (
         [getattr(row, column) if row.seeds > 1 else math.nan for row in rows]
@@ -118,7 +118,7 @@ def _compared(table: Sequence[Compared]) -> str:
     return f"<section><h2>Published and ours</h2>{_table(heads, body)}</section>"
 
 
-def _part(part: Part) -> str:
+def _part(part: StudyPart) -> str:
     body = "".join(
         f'<tr><th scope="row">{escape(_name(part, runs))}</th>'
         + "".join(_td(values) for values in runs.measures().values())
@@ -129,7 +129,7 @@ def _part(part: Part) -> str:
     return f"<section><h2>{escape(part.title)}</h2>{''.join(charts(part))}{table}</section>"
 
 
-def charts(part: Part) -> list[str]:
+def charts(part: StudyPart) -> list[str]:
     """Return the plots of a part as ``<svg>`` figures."""
     if part.name in SCENARIOS or part.name == OWN:
         numbers = _FIGURES.get(part.name)
@@ -144,7 +144,7 @@ def charts(part: Part) -> list[str]:
     return [_by_day(part, "detection_pct", f"{head}detected so far")]
 
 
-def _by_day(part: Part, measure: str, title: str) -> str:
+def _by_day(part: StudyPart, measure: str, title: str) -> str:
     lines = [
         _line(
             label_of(part.name, runs.trial),
@@ -156,7 +156,7 @@ def _by_day(part: Part, measure: str, title: str) -> str:
     return line_chart(title, lines, ("day", "%"))
 
 
-def _by_size(part: Part, title: str) -> str:
+def _by_size(part: StudyPart, title: str) -> str:
     lines = []
     for name in SAMPLERS:
         runs = [each for each in part.runs if each.trial.sampler == name]
@@ -167,7 +167,7 @@ def _by_size(part: Part, title: str) -> str:
 
 def _line(label: str, x: list[float], values: Iterable[np.ndarray]) -> Line:
     """Return a line of means in their 95 % intervals; a day that few worked is left out."""
-    spreads = [spread_of(column) for column in values]
+    spreads = [summary_statistics(column) for column in values]
     few = [each.replicates < 2 for each in spreads]
     y, low, high = (
         [math.nan if less else getattr(each, name) for each, less in zip(spreads, few, strict=True)]
@@ -177,13 +177,13 @@ def _line(label: str, x: list[float], values: Iterable[np.ndarray]) -> Line:
     return Line(label, x, y, [max(each, 0.0) for each in low], [min(each, 100.0) for each in high])
 
 
-def _name(part: Part, runs: Runs) -> str:
+def _name(part: StudyPart, runs: PriorRuns) -> str:
     name = label_of(part.name, runs.trial)
     return f"{name}, {runs.trial.hectares:g} ha" if part.name == "size" else name
 
 
 def _td(values: np.ndarray) -> str:
-    ours = spread_of(values)
+    ours = summary_statistics(values)
     return f"<td>{_short(ours.mean)}<small>{_short(ours.low)} to {_short(ours.high)}</small></td>"
 
 

@@ -100,7 +100,7 @@ class Experiment(Generic[Setting, Result]):
             yield Chunk(setting, seeds, key)
 
 
-class Store(Protocol[Result_contra]):
+class ResultStore(Protocol[Result_contra]):
     """Where the results of chunks are kept, by their keys."""
 
     def holds(self, key: Hashable) -> bool:
@@ -127,7 +127,7 @@ class Memory(dict["Hashable", Result]):
 def run(
     experiment: Experiment[Setting, Result],
     workers: Workers,
-    store: Store[Result],
+    store: ResultStore[Result],
     progress: Progress | None = None,
     stop: Callable[[], bool] = lambda: False,
 ) -> None:

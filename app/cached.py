@@ -28,7 +28,7 @@ from fieldmon.plot.plot import Plot
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
 from fieldmon.simulation.season import SeasonSettings, SimulatedDay, simulated_days
-from fieldmon.simulation.start import draw_start
+from fieldmon.simulation.start import season_start
 
 from . import figures as day_figures
 from . import maps, texts
@@ -316,7 +316,7 @@ def season(
     """
     n_days, share, rate, seed = numbers
     streams = RandomStreams(seed)
-    start = draw_start(_plot.grid, _chance, share, streams)
+    start = season_start(_plot.grid, _chance, share, streams)
     settings = SeasonSettings(n_days=n_days, spread=Spread(rate))
     decides = sampler(sampler_name)
     walk = list(simulated_days(_plot.aisles, robot, decides, start, settings, streams))

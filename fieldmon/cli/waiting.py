@@ -101,11 +101,13 @@ def progress(label: str, length: int = 1) -> Iterator[Any]:
         yield bar
 
 
-def shown(bar: Any) -> Callable[[int, int], None]:  # noqa: ANN401 - typer's
-    """Return what moves a bar to so many done of so many."""
+@contextmanager
+def counting(label: str) -> Iterator[Callable[[int, int], None]]:
+    """Show a bar that is told how much is done, and of how much."""
+    with progress(label) as bar:
 
-    def move(done: int, total: int) -> None:
-        bar.length = total
-        bar.update(done - bar.pos)
+        def count(done: int, total: int) -> None:
+            bar.length = total
+            bar.update(done - bar.pos)
 
-    return move
+        yield count

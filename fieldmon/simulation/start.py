@@ -1,10 +1,11 @@
-"""The first morning of a season: who is infested, and what is believed about it."""
+"""The first morning of a simulated season: who is infested, and what is believed about it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fieldmon.errors import SettingError
 from fieldmon.infestation.prior import start_infested
 
 if TYPE_CHECKING:
@@ -31,21 +32,17 @@ class Start:
     chance: NDArray[np.float64]
 
 
-def draw_start(
-    grid: PlantGrid, chance: NDArray[np.float64], share: float | None, streams: RandomStreams
+def season_start(
+    grid: PlantGrid, chance: NDArray[np.float64], share: float, streams: RandomStreams
 ) -> Start:
-    """Draw who is infested on the first morning, each plant by its own chance.
+    """Draw a season's start from a chance map ``(n,)``: each plant by its own chance.
 
-    Parameters
-    ----------
-    grid
-        The plants; the two faces of one vine start alike.
-    chance
-        ``(n,)`` chance of infestation as believed, and drawn from.
-    share
-        Mean share of infested plants to which the chances are scaled; None: as they are.
-    streams
-        Of the season; the stream ``start`` is drawn from.
+    `share` of all plants are infested on average, 0 to 1. Both faces of a plant are infested
+    together. Streams of the same seed infest the same plants, whoever is to inspect them.
     """
-    drawn = start_infested(chance, share, streams.of("start"))
-    return Start(drawn[grid.vine], chance)
+    if not 0.0 < share < 1.0:
+        raise SettingError(
+            f"The share infested at the start must be between 0 and 1, but it is {share}."
+        )
+    infested = start_infested(chance, share, streams.of("start"))
+    return Start(infested[grid.vine], chance)

@@ -15,7 +15,7 @@ from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import DETECTION_LEVELS_PCT, season_metrics
 from fieldmon.simulation.season import SeasonSettings, simulated_days
-from fieldmon.simulation.start import draw_start
+from fieldmon.simulation.start import season_start
 
 if TYPE_CHECKING:
     import numpy as np
@@ -70,7 +70,7 @@ def simulated_season(
 ) -> SeasonMetrics:
     """Return what one season comes to, on a plot with its chances of infestation ``(n,)``."""
     (plot, chance), streams = prepared, RandomStreams(seed)
-    start = draw_start(plot.grid, chance, levels.infested, streams)
+    start = season_start(plot.grid, chance, levels.infested, streams)
     settings = SeasonSettings(n_days=n_days, spread=Spread(levels.spread))
     robot = replace(robot, hours=levels.hours, look_s=levels.look_s)
     decides = sampler(levels.sampler)

@@ -102,7 +102,7 @@ def test_a_killed_client_costs_only_unfinished_chunks(tmp_path):
     assert not alive, "workers outlive the client that started them"
     half = {path: path.stat().st_mtime_ns for path in tmp_path.glob("killed/*/*.parquet")}
     subprocess.run([*words, "-o", "killed"], cwd=tmp_path, check=True, capture_output=True)
-    plots = study_run._plots(tmp_path / "plot.geojson", None, None, "2026-11-02")
+    plots = study_run.StudyOptions(tmp_path / "plot.geojson", on="2026-11-02").plots()
     asked = Design(n_days=10, n_seeds=40)
     simulated(tmp_path / "whole", plots, asked, executor.here())
     assert 0 < len(half) < len(list(study_of(plots, asked).chunks()))

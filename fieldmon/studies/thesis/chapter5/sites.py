@@ -14,7 +14,7 @@ from fieldmon.infestation.belief import Learning, learn
 from fieldmon.infestation.prior import PriorSettings, edge_chance, path_chance
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.travel import Aisles
-from fieldmon.simulation.start import Start, draw_start
+from fieldmon.simulation.start import Start, season_start
 from fieldmon.studies.thesis.chapter5.open_choices import side_of
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def first_morning(site: Site, start: StartUp, streams: RandomStreams) -> Start:
     each plant's chance of being in one, and 0.95 at recorded plants, 0.3 and more beside them.
     """
     if site.chance is not None:
-        return draw_start(site.grid, site.chance, start.share, streams)
+        return season_start(site.grid, site.chance, start.share, streams)
     n = len(site.grid)
     infested = np.zeros(n, np.bool_)
     wanted = max(1, round(start.share * n))

@@ -5,7 +5,6 @@ import re
 
 import pytest
 
-from tests.cli.test_main import run  # noqa: F401 - a fixture
 from tests.paths import SHARED
 
 HEADS = {"golden.csv": 240, "golden_fix1.csv": 120, "golden_row.csv": 72}
@@ -20,7 +19,7 @@ def reference():
     return folder
 
 
-def test_a_table_is_made_again_with_a_report(run, tmp_path):  # noqa: F811
+def test_a_table_is_made_again_with_a_report(run, tmp_path):
     code, out, err, made = run("study", "no-prior", "--table", "2", "--replicates", 20)
     assert code == 0, err
     assert {path.name for path in made} == {"no_prior_2.csv", "no_prior_2.html"}
@@ -33,13 +32,13 @@ def test_a_table_is_made_again_with_a_report(run, tmp_path):  # noqa: F811
 
 
 @pytest.mark.parametrize("name", HEADS)
-def test_exact_runs_are_equal_row_for_row(run, reference, name):  # noqa: F811
+def test_exact_runs_are_equal_row_for_row(run, reference, name):
     code, out, _, _ = run("study", "no-prior", "--golden", reference / name)
     assert code == 0
     assert f"All {HEADS[name]} rows" in out
 
 
-def test_a_row_that_differs_is_shown_with_exit_code_1(run, reference, tmp_path):  # noqa: F811
+def test_a_row_that_differs_is_shown_with_exit_code_1(run, reference, tmp_path):
     head, first, *rest = (reference / "golden.csv").read_text(encoding="utf-8").splitlines()
     column = head.split(",").index("endPos1")
     cells = first.split(",")
@@ -59,7 +58,7 @@ def test_a_row_that_differs_is_shown_with_exit_code_1(run, reference, tmp_path):
         (["--golden", "none.csv"], "none.csv"),
     ],
 )
-def test_bad_words_are_a_sentence(run, words, says):  # noqa: F811
+def test_bad_words_are_a_sentence(run, words, says):
     code, _, err, made = run("study", "no-prior", *words)
     assert (code, made) == (2, set())
     assert says in err

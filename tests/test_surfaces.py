@@ -6,7 +6,6 @@ that returns what it made, and a line in `SURFACES`: those of the app belong the
 """
 
 import csv
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -129,7 +128,7 @@ def _records(tmp_path, monkeypatch):
 @pytest.fixture
 def _near(monkeypatch):
     """Let a study's workers be threads: they start at once."""
-    monkeypatch.setattr(executor, "LocalCluster", partial(executor.LocalCluster, processes=False))
+    monkeypatch.setattr(executor, "cluster", lambda *_: executor.threads())
 
 
 @pytest.mark.usefixtures("_records", "_near")

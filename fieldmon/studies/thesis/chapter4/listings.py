@@ -27,8 +27,11 @@ FIXED, EACH_STOP, EACH_PASS = range(3)
 _POSITION, _FORWARD, _ROW, _SKIP, _DRAWN, _TRACED, _FOUND = range(7)
 
 
-class Walk(NamedTuple):
-    """How a listing walks (see `ListingErrors` for the switches)."""
+class ListingWalk(NamedTuple):
+    """How a listing walks (see `ListingErrors` for the switches).
+
+    `skip` is N, `draws` says when it is drawn anew, from 1 to `most`.
+    """
 
     plants: int
     sides: int
@@ -67,7 +70,7 @@ class _Curve(NamedTuple):
 
 
 @nb.njit(cache=True, nogil=True)
-def _draw(walk: Walk, state: _WalkState) -> None:
+def _draw(walk: ListingWalk, state: _WalkState) -> None:
     """Draw the next N."""
     u = state.steps[state.at[_DRAWN]]
     state.at[_DRAWN] += 1
@@ -75,7 +78,7 @@ def _draw(walk: Walk, state: _WalkState) -> None:
 
 
 @nb.njit(cache=True, nogil=True)
-def _face(walk: Walk, q: int) -> int:
+def _face(walk: ListingWalk, q: int) -> int:
     """Return the face (from 0) that stands at number `q` of the walk."""
     side, j = divmod(q - 1, walk.plants)
     block = side // 2 if walk.listing == NEIGHBOR else side
@@ -85,7 +88,7 @@ def _face(walk: Walk, q: int) -> int:
 
 
 @nb.njit(cache=True, nogil=True)
-def _visit(walk: Walk, state: _WalkState, q: int) -> None:
+def _visit(walk: ListingWalk, state: _WalkState, q: int) -> None:
     """Look at number `q`; clean that face if it is infested."""
     face = _face(walk, q)
     state.visits[q - 1] += 1
@@ -96,7 +99,7 @@ def _visit(walk: Walk, state: _WalkState, q: int) -> None:
 
 
 @nb.njit(cache=True, nogil=True)
-def _note(walk: Walk, state: _WalkState, curve: _Curve, left_s: float) -> None:
+def _note(walk: ListingWalk, state: _WalkState, curve: _Curve, left_s: float) -> None:
     """Append a point to the detection curve: days worked, percent of the known insects found."""
     k = state.at[_TRACED]
     if k < curve.points.shape[0]:
@@ -128,7 +131,7 @@ def _nearest_new(visits: NDArray[np.int64], from_end: bool) -> int:  # noqa: FBT
 
 
 @nb.njit(cache=True, nogil=True)
-def _reenter(walk: Walk, state: _WalkState, at_end: bool) -> None:  # noqa: FBT001 - a kernel
+def _reenter(walk: ListingWalk, state: _WalkState, at_end: bool) -> None:  # noqa: FBT001 - a kernel
     """Turn round at one end of the field and choose where to go on."""
     at, n, last = state.at, state.at[_SKIP], state.visits.size
     if at_end or walk.listing == NEIGHBOR or not walk.reentry_by_index:
@@ -153,12 +156,12 @@ def _reenter(walk: Walk, state: _WalkState, at_end: bool) -> None:  # noqa: FBT0
 
 
 @nb.njit(cache=True, nogil=True)
-def _travel_s(walk: Walk, state: _WalkState) -> float:
+def _travel_s(walk: ListingWalk, state: _WalkState) -> float:
     return walk.travel_s if walk.travel_once else walk.travel_s * state.at[_SKIP]
 
 
 @nb.njit(cache=True, nogil=True)
-def _side_change_s(walk: Walk, before: int, after: int) -> float:
+def _side_change_s(walk: ListingWalk, before: int, after: int) -> float:
     """Return the seconds between two numbers for the sides and aisles that lie between."""
     side, other = (before - 1) // walk.plants, (after - 1) // walk.plants
     if side == other:
@@ -168,7 +171,7 @@ def _side_change_s(walk: Walk, before: int, after: int) -> float:
 
 @nb.njit(cache=True, nogil=True)
 def _snake_pass(
-    walk: Walk,
+    walk: ListingWalk,
     state: _WalkState,
     curve: _Curve,
     left_s: float,
@@ -201,7 +204,7 @@ def _snake_pass(
 
 
 @nb.njit(cache=True, nogil=True)
-def _snake_day(walk: Walk, state: _WalkState, curve: _Curve) -> float:
+def _snake_day(walk: ListingWalk, state: _WalkState, curve: _Curve) -> float:
     """Work one day of listing A.5 or A.7; return the seconds left."""
     at, last = state.at, state.visits.size
     left_s = walk.day_s
@@ -222,7 +225,7 @@ def _snake_day(walk: Walk, state: _WalkState, curve: _Curve) -> float:
 
 
 @nb.njit(cache=True, nogil=True)
-def _neighbor_step(walk: Walk, state: _WalkState, forward: bool) -> bool:  # noqa: FBT001 - a kernel
+def _neighbor_step(walk: ListingWalk, state: _WalkState, forward: bool) -> bool:  # noqa: FBT001 - a kernel
     """Move N on along the aisle, or into the next; return whether the aisle was left."""
     at, plants = state.at, walk.plants
     here, n, row = at[_POSITION], at[_SKIP], at[_ROW]
@@ -241,7 +244,7 @@ def _neighbor_step(walk: Walk, state: _WalkState, forward: bool) -> bool:  # noq
 
 
 @nb.njit(cache=True, nogil=True)
-def _neighbor_day(walk: Walk, state: _WalkState, curve: _Curve) -> float:
+def _neighbor_day(walk: ListingWalk, state: _WalkState, curve: _Curve) -> float:
     """Work one day of listing A.6; return the seconds left."""
     at, plants, last = state.at, walk.plants, state.visits.size
     left_s = walk.day_s
@@ -267,7 +270,7 @@ def _neighbor_day(walk: Walk, state: _WalkState, curve: _Curve) -> float:
 
 @nb.njit(cache=True, nogil=True)
 def run(
-    walk: Walk,
+    walk: ListingWalk,
     night: Night,
     infested: NDArray[np.bool_],
     coins: NDArray[np.float64],
@@ -330,7 +333,7 @@ def run(
     return days, state.at[_TRACED], 0
 
 
-def most_draws(walk: Walk) -> int:
+def most_draws(walk: ListingWalk) -> int:
     """Return how many numbers a run can draw at most.
 
     One before the first day; then at most three for a stop (the stop's own, and two passes that
@@ -342,14 +345,14 @@ def most_draws(walk: Walk) -> int:
     return 1 + walk.days * (3 * stops + walk.sides)
 
 
-def most_points(walk: Walk) -> int:
+def most_points(walk: ListingWalk) -> int:
     """Return how many points a run's detection curve can have at most."""
     return 1 + walk.days * (int(walk.day_s / (walk.travel_s + walk.look_s)) + 2)
 
 
 @nb.njit(cache=True, nogil=True)
 def repeat(
-    walk: Walk, night: Night, start: float, draws: int, keys: NDArray[np.uint64]
+    walk: ListingWalk, night: Night, start: float, draws: int, keys: NDArray[np.uint64]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Run a listing once for each row of `keys`, ``(replicates, 2 + days)`` (see `draws.keys`).
 

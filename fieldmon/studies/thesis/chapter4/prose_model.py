@@ -31,7 +31,11 @@ _STOP, _DIRECTION, _DRAWN = range(3)
 
 
 class ProseWalk(NamedTuple):
-    """How a strategy goes about the field."""
+    """How a strategy goes about the field.
+
+    `skip` is N; `stop_s` is all that a stop takes, `turn_s` and `change_s` what it takes to come to
+    the other side of an aisle and to the next one.
+    """
 
     plants: int
     sides: int

@@ -167,11 +167,11 @@ def _listing(strategy: ThesisStrategy) -> int:
     return nights.RANDOM_SNAKE if strategy.online else nights.SNAKE
 
 
-def walk_of(trial: NoPriorTrial, slips: ListingErrors) -> listings.Walk:
+def walk_of(trial: NoPriorTrial, slips: ListingErrors) -> listings.ListingWalk:
     """Return what the kernel needs to walk as the listings do."""
     field, strategy, hours = trial.vineyard, trial.strategy, trial.hours
     online = listings.EACH_STOP if slips.draw_every_stop else listings.EACH_PASS
-    return listings.Walk(
+    return listings.ListingWalk(
         plants=field.plants,
         sides=field.sides,
         listing=_listing(strategy),

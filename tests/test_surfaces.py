@@ -69,7 +69,7 @@ def begun(records):
     Path("s.gpkg").unlink(missing_ok=True)
     command("init", "s.gpkg", "plots.geojson", *of_one(records), "--begins", DAY)
     season = Season(Path("s.gpkg"))
-    first = season.setup.begins
+    first = season.settings.begins
     return season.morning(first).tolist(), season.plan(first, keep=False).route.plant.tolist()
 
 

@@ -18,12 +18,12 @@ def test_a_season_keeps_what_it_is_told_and_what_the_files_said(run, tmp_path):
     assert made == {tmp_path / "s.gpkg"}
     assert "Next: fieldmon plan s.gpkg -o route.geojson" in out
     season = Season(tmp_path / "s.gpkg")
-    setup = season.setup
-    assert (setup.begins, setup.starts) == (date.fromisoformat(BEGINS), time(5, 45))
-    assert (setup.sampler, setup.sampler_settings) == ("bouncy", {"every": 3})
-    assert (setup.robot.hours, setup.robot.look_s, setup.seed) == (2.0, 25.0, 9)
-    assert (setup.beliefs.treated, setup.beliefs.spread.rate_per_day) == (False, 0.03)
-    kept = [(remark.source, remark.sentence) for remark in season.remarks()]
+    settings = season.settings
+    assert (settings.begins, settings.starts) == (date.fromisoformat(BEGINS), time(5, 45))
+    assert (settings.sampler, settings.sampler_settings) == ("bouncy", {"every": 3})
+    assert (settings.robot.hours, settings.robot.look_s, settings.seed) == (2.0, 25.0, 9)
+    assert (settings.belief.treated, settings.belief.spread.rate_per_day) == (False, 0.03)
+    kept = [(message.source, message.sentence) for message in season.messages()]
     assert ("mite_records.csv", "Counts are in column 'count'.") in kept
     assert ("paran_estate.zip", "Plots are named by column 'name'.") in kept
     assert all(sentence in err for _, sentence in kept)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-from shapely import MultiPolygon
+from shapely import MultiPolygon, box
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import PRESENT, Observations
@@ -88,3 +88,17 @@ def test_a_task_is_told_from_any_other_and_known_again():
     assert len(digests) == 1 + len(others)
     again = Task(replace(FIELD), "robot", dict(HALF_AN_HOUR), replace(ORDERS))
     assert again.digest(RECORDS.take(np.array([True]))) == task.digest(RECORDS)
+
+
+def test_a_task_has_the_digest_that_folders_of_routes_hold():
+    field = Field("Gate", MultiPolygon([box(35.15, 30.36, 35.1508, 30.3607)]), gate=(35.15, 30.36))
+    records = Observations.of(
+        np.array([[35.1501, 30.3601], [35.1502, 30.3602]]),
+        np.array([1, 0], np.int8),
+        np.array(["2026-04-01", "NaT"], "datetime64[D]"),
+        count=np.array([3.0, np.nan]),
+    )
+    by_hand = {"robot": {"hours": 2.0}, "planting": {"row_spacing_m": 3.0}}
+    orders = Orders(np.datetime64("2026-04-06"), "bouncy", 3, **by_hand)
+    task = Task(field, "scout", {"look_s": 30.0, "hours": 4.0}, orders)
+    assert task.digest(records) == "7675b30d2cc3e467"

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.layout import Planting
     from fieldmon.simulation.worker import ChunkSeasons, Setting
 
-# a chunk takes about so long; what seasons cost was measured, see the README's section on speed
+# a chunk takes about so long; what seasons cost was measured, see docs/benchmarks
 _CHUNK_S = 4.0
 _S_PER_PLANT_DAY = {"dynamic": 4e-7, "adaptive": 2.5e-6}
 _S_PER_BLIND_PLANT_DAY = 2e-8

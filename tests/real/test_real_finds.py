@@ -11,7 +11,7 @@ def test_on_mapped_plots_forty_percent_looks_find_about_what_dynamics_do_or_more
     names = [each.name for each in plots]
     lead = np.array([at_40[name, "adaptive"] - at_40[name, "dynamic"] for name in names])
     assert len(names) == 9
-    # 216 trees of which a corner is infested: who begins there is ahead, see the README
+    # 216 trees of which a corner is infested: who begins there is ahead, see docs/strategies
     assert lead.min() > -0.05
     assert (lead > 0.01).sum() >= 4
     assert all(at_40[name, "adaptive"] > at_40[name, "random"] for name in names)

@@ -1,6 +1,6 @@
 """What chapter 5 concludes, over 100 paired seeds with 95 % intervals, under the calibrated rules.
 
-Where the thesis's conclusion does not hold with ours, the test says what does; the README gives
+Where the thesis's conclusion does not hold with ours, the test says what does; docs/chapter5 gives
 both numbers.
 """
 

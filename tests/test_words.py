@@ -10,7 +10,6 @@ from tests.paths import ROOT
 
 #: names that two rooms still share, and since when; the list only shrinks, and ends empty
 SHARED_SINCE = {
-    "Crew": date(2026, 11, 22),  # io.readers and monitoring: branch inspections
     "Places": date(2026, 11, 22),  # io.readers and the app's first screen: branch app
 }
 

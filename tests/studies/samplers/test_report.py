@@ -6,9 +6,10 @@ import pytest
 from fieldmon.studies.samplers.calibration import Calibration
 from fieldmon.studies.samplers.calibration import report_html as beliefs_html
 from fieldmon.studies.samplers.contenders import NAMES
+from fieldmon.studies.samplers.outcome_table import outcomes_from
 from fieldmon.studies.samplers.report import report_html
 from fieldmon.studies.samplers.seasons import MEASURES, SeasonOutcome
-from fieldmon.studies.samplers.summary import means, outcomes_from, sentences
+from fieldmon.studies.samplers.summary import means, sentences
 from tests.pages import HOSTILE, Page, held
 
 

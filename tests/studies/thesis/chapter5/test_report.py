@@ -9,7 +9,7 @@ from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
 from fieldmon.studies.thesis.chapter5.mapped_plots import MapMeasure
 from fieldmon.studies.thesis.chapter5.replicates import PriorRuns
 from fieldmon.studies.thesis.chapter5.report import charts, maps_html, report_html
-from fieldmon.studies.thesis.chapter5.seasons import Trial
+from fieldmon.studies.thesis.chapter5.seasons import PriorTrial
 from fieldmon.studies.thesis.chapter5.study import OWN, PriorStudy, StudyPart
 from fieldmon.studies.thesis.chapter5.verdicts import AGREES, DIFFERS, Compared
 from tests.pages import HOSTILE, Page, held
@@ -29,10 +29,12 @@ def runs_of(trial, seed=0, n=4, days=25):
 
 @pytest.fixture(scope="module")
 def study():
-    scenario = [Trial(name, CALIBRATED, 1.0) for name in ("dynamic", "naive", "bouncy")]
-    times = [Trial("dynamic", CALIBRATED, 6.0, look_s) for look_s in (20.0, 40.0)]
+    scenario = [PriorTrial(name, CALIBRATED, 1.0) for name in ("dynamic", "naive", "bouncy")]
+    times = [PriorTrial("dynamic", CALIBRATED, 6.0, look_s) for look_s in (20.0, 40.0)]
     sizes = [
-        Trial(name, CALIBRATED, ha) for ha in (1.0, 2.0) for name in ("dynamic", "naive", "bouncy")
+        PriorTrial(name, CALIBRATED, ha)
+        for ha in (1.0, 2.0)
+        for name in ("dynamic", "naive", "bouncy")
     ]
     parts = [
         StudyPart(
@@ -127,7 +129,7 @@ def test_a_study_that_was_stopped_says_so(study):
 
 def test_a_plot_s_own_name_is_text():
     text = " ".join(HOSTILE)
-    part = StudyPart(OWN, text, (runs_of(Trial("dynamic", CALIBRATED)),))
+    part = StudyPart(OWN, text, (runs_of(PriorTrial("dynamic", CALIBRATED)),))
     page = held(report_html(PriorStudy(CALIBRATED, 4, 1, (part,))))
     assert page.headings[-1] == text
 

@@ -15,7 +15,7 @@ import streamlit as st
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.hotspots import HotSpots, hot_spots, record_states
-from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
+from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.infestation.spread import Spread
 from fieldmon.io import read
 from fieldmon.io.import_report import ImportMessage, Severity
@@ -26,8 +26,9 @@ from fieldmon.monitoring.transactions import get_meta
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from
 from fieldmon.plot.plot import Plot
 from fieldmon.samplers import sampler
-from fieldmon.simulation.metrics import SeasonFigures, figures
-from fieldmon.simulation.season import Day, SeasonSettings, Start, days
+from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
+from fieldmon.simulation.season import SeasonSettings, SimulatedDay, simulated_days
+from fieldmon.simulation.start import season_start
 
 from . import figures as day_figures
 from . import maps, texts
@@ -46,7 +47,7 @@ if TYPE_CHECKING:
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
     from fieldmon.io.rasters.values import Backdrop, RasterOptions
-    from fieldmon.monitoring import Remark
+    from fieldmon.monitoring import KeptMessage
     from fieldmon.planning.route import Route
     from fieldmon.plot.field import Field
     from fieldmon.plot.layout import Planting
@@ -172,12 +173,12 @@ def revision(season: Season) -> str:
 
 
 @st.cache_resource(max_entries=_FEW)
-def remarks(path: str, _season: Season) -> tuple[Remark, ...]:  # noqa: ARG001
+def remarks(path: str, _season: Season) -> tuple[KeptMessage, ...]:  # noqa: ARG001
     """Return what the imports had to say when a season began."""
-    return _season.remarks()
+    return _season.messages()
 
 
-def finding_of(remark: Remark) -> ImportMessage:
+def finding_of(remark: KeptMessage) -> ImportMessage:
     """Return a kept remark as a finding, its remedy gone: the plants are laid."""
     return ImportMessage(Severity(remark.severity), remark.sentence, remark.feature)
 
@@ -226,7 +227,7 @@ def known(path: str, revision: str, day: str, _season: Season) -> Known:  # noqa
 @st.cache_resource(max_entries=_MAPS)
 def season_hot_spots(path: str, revision: str, day: str, _season: Season) -> HotSpots:  # noqa: ARG001
     """Return where finds cluster on a day of a season."""
-    number = _season.setup.day(np.datetime64(day).item())
+    number = _season.settings.day(np.datetime64(day).item())
     return hot_spots(_season.plot.grid, _season.history.states(number))
 
 
@@ -244,7 +245,7 @@ def morning(path: str, revision: str, day: str, _season: Season) -> Array:  # no
 
 def days_of(season: Season, until: date) -> list[str]:
     """Return the days of a season from the first up to one, ISO."""
-    first = np.datetime64(season.setup.begins, "D")
+    first = np.datetime64(season.settings.begins, "D")
     return [str(day) for day in np.arange(first, np.datetime64(until, "D") + 1)]
 
 
@@ -308,15 +309,15 @@ def season(
     robot: Robot,
     _plot: Plot,
     _chance: np.ndarray,
-) -> tuple[list[Day], SeasonFigures]:
+) -> tuple[list[SimulatedDay], SeasonMetrics]:
     """Return a simulated season and its figures; `key` stands for plot, records and day.
 
     `numbers` are days, share infested at the start, spread a night, and seed.
     """
     n_days, share, rate, seed = numbers
-    drawn = start_infested(_chance, share, RandomStreams(seed).of("start"))
-    begin = Start(drawn[_plot.grid.vine], _chance)
+    streams = RandomStreams(seed)
+    start = season_start(_plot.grid, _chance, share, streams)
     settings = SeasonSettings(n_days=n_days, spread=Spread(rate))
-    chance = RandomStreams(seed)
-    walk = list(days(_plot.aisles, robot, sampler(sampler_name), begin, settings, chance))
-    return walk, figures(walk)
+    decides = sampler(sampler_name)
+    walk = list(simulated_days(_plot.aisles, robot, decides, start, settings, streams))
+    return walk, season_metrics(walk)

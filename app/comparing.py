@@ -1,35 +1,33 @@
 """Samplers, hours and looking times against each other, in the background. No Streamlit in here.
 
-Every arm meets the same insects: a seed's start, its nights and its luck in looking are drawn from
-streams that know nothing of the arm. So differences are taken seed by seed (paired).
+Every arm meets the same insects: a seed's start, its nights and what an inspection would find are
+drawn from streams that know nothing of the arm. So differences are taken seed by seed (paired).
 """
 
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import stdtrit
 
-from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.prior import start_infested
-from fieldmon.infestation.spread import Spread
-from fieldmon.samplers import sampler
-from fieldmon.simulation.metrics import SeasonFigures, figures
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation import executor
+from fieldmon.simulation.design import Combination
+from fieldmon.simulation.experiment import Experiment, Memory, run
+from fieldmon.simulation.statistics import half_interval, summary_statistics
+from fieldmon.simulation.worker import simulated_season
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
+    from fieldmon.simulation.metrics import SeasonMetrics
+    from fieldmon.simulation.statistics import SummaryStatistics
 
     Floats = NDArray[np.float64]
-
-_SURE = 0.975
 
 
 @dataclass(frozen=True, order=True)
@@ -63,15 +61,6 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Estimate:
-    """A mean over seeds with its 95 % interval (Student's t)."""
-
-    mean: float
-    low: float
-    high: float
-
-
-@dataclass(frozen=True)
 class Outcome:
     """What an arm came to.
 
@@ -92,11 +81,11 @@ class Outcome:
     """
 
     arm: Arm
-    loss: Estimate
-    detection_pct: Estimate
+    loss: SummaryStatistics
+    detection_pct: SummaryStatistics
     visited_pct: float
     half_day: float | None
-    behind: Estimate | None
+    behind: SummaryStatistics | None
 
 
 class Comparison:
@@ -105,20 +94,27 @@ class Comparison:
     def __init__(self, asked: Asked, plot: Plot, chance: Floats, robot: Robot) -> None:
         self.asked = asked
         self.problem: FieldmonError | None = None
-        self._plot, self._chance, self._robot = plot, chance, robot
-        self._seasons: dict[Arm, list[SeasonFigures]] = {arm: [] for arm in asked.arms}
+        self._prepared, self._robot = (plot, chance), robot
+        self._experiment = Experiment(
+            settings=asked.arms,
+            seeds=range(1, asked.seeds + 1),
+            simulate=self._season,
+            chunk_size=lambda _: 1,
+            seed_by_seed=True,
+        )
+        self._made: Memory[SeasonMetrics] = Memory()
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
 
     @property
     def total(self) -> int:
         """Return the number of seasons to simulate."""
-        return len(self.asked.arms) * self.asked.seeds
+        return len(self._experiment)
 
     @property
     def done(self) -> int:
         """Return the number of seasons simulated."""
-        return sum(len(walked) for walked in list(self._seasons.values()))
+        return len(self._made)
 
     @property
     def running(self) -> bool:
@@ -141,75 +137,60 @@ class Comparison:
         if self._thread is not None:
             self._thread.join(timeout_s)
 
-    def seasons(self) -> dict[Arm, list[SeasonFigures]]:
+    def seasons(self) -> dict[Arm, list[SeasonMetrics]]:
         """Return the seasons of all seeds that every arm has been through."""
-        full = min(len(walked) for walked in self._seasons.values())
-        return {arm: walked[:full] for arm, walked in self._seasons.items()}
+        made: dict[Arm, list[SeasonMetrics]] = {arm: [] for arm in self.asked.arms}
+        for chunk in self._experiment.chunks():
+            if chunk.key in self._made:
+                made[chunk.setting].append(self._made[chunk.key])
+        full = min(len(seasons) for seasons in made.values())
+        return {arm: seasons[:full] for arm, seasons in made.items()}
 
     def _work(self) -> None:
         try:
-            for seed in range(1, self.asked.seeds + 1):
-                for arm, walked in self._seasons.items():
-                    if self._stop.is_set():
-                        return
-                    if len(walked) < seed:
-                        walked.append(self._season(arm, seed))
+            run(self._experiment, executor.here(), self._made, stop=self._stop.is_set)
         except FieldmonError as error:
             self.problem = error
 
-    def _season(self, arm: Arm, seed: int) -> SeasonFigures:
-        asked, chance = self.asked, RandomStreams(seed)
-        drawn = start_infested(self._chance, asked.share, chance.of("start"))
-        begin = Start(drawn[self._plot.grid.vine], self._chance)
-        settings = SeasonSettings(n_days=asked.n_days, spread=Spread(asked.rate))
-        robot = replace(self._robot, hours=arm.hours, look_s=arm.look_s)
-        walk = days(self._plot.aisles, robot, sampler(arm.sampler), begin, settings, chance)
-        return figures(walk)
+    def _season(self, arm: Arm, seeds: range) -> SeasonMetrics:
+        asked = self.asked
+        levels = Combination(arm.sampler, arm.hours, arm.look_s, asked.share, asked.rate)
+        return simulated_season(self._prepared, self._robot, levels, seeds.start, asked.n_days)
 
 
-def estimate(values: Floats) -> Estimate:
-    """Return the mean of values ``(s,)`` and its interval; one value has no interval (NaN)."""
-    mean, n = float(np.mean(values)), len(values)
-    if n < 2:
-        return Estimate(mean, np.nan, np.nan)
-    half = float(stdtrit(n - 1, _SURE) * np.std(values, ddof=1) / np.sqrt(n))
-    return Estimate(mean, mean - half, mean + half)
-
-
-def outcomes(seasons: dict[Arm, list[SeasonFigures]]) -> list[Outcome]:
+def outcomes(seasons: dict[Arm, list[SeasonMetrics]]) -> list[Outcome]:
     """Return what each arm came to, the best first; empty while no seed is complete."""
     if not all(seasons.values()):
         return []
     losses = {
-        arm: np.array([s.infested_plant_days for s in walked], float)
-        for arm, walked in seasons.items()
+        arm: np.array([s.infested_plant_days for s in made], float) for arm, made in seasons.items()
     }
     ranked = sorted(losses, key=lambda arm: losses[arm].mean())
     best = losses[ranked[0]]
     return [
         Outcome(
             arm,
-            estimate(losses[arm]),
-            estimate(np.array([s.detection_pct[-1] for s in seasons[arm]])),
+            summary_statistics(losses[arm]),
+            summary_statistics(np.array([s.detection_pct[-1] for s in seasons[arm]])),
             float(np.mean([s.visited_pct.mean() for s in seasons[arm]])),
             _half_day(seasons[arm]),
-            None if arm == ranked[0] else estimate(losses[arm] - best),
+            None if arm == ranked[0] else summary_statistics(losses[arm] - best),
         )
         for arm in ranked
     ]
 
 
-def curve(walked: list[SeasonFigures]) -> tuple[Floats, Floats, Floats]:
+def curve(made: list[SeasonMetrics]) -> tuple[Floats, Floats, Floats]:
     """Return detection by day over the seeds, ``(d,)`` each: mean, and ends of its interval."""
-    percent = np.stack([s.detection_pct for s in walked])
+    percent = np.stack([s.detection_pct for s in made])
     mean, n = percent.mean(axis=0), len(percent)
     if n < 2:
         return mean, mean, mean
-    half = stdtrit(n - 1, _SURE) * percent.std(axis=0, ddof=1) / np.sqrt(n)
+    half = half_interval(percent.std(axis=0, ddof=1), n)
     return mean, np.maximum(mean - half, 0.0), np.minimum(mean + half, 100.0)
 
 
-def _half_day(walked: list[SeasonFigures]) -> float | None:
-    reached = [np.inf if (day := s.first_day(50.0)) is None else day for s in walked]
+def _half_day(made: list[SeasonMetrics]) -> float | None:
+    reached = [np.inf if (day := s.first_day(50.0)) is None else day for s in made]
     middle = float(np.median(reached))
     return middle if np.isfinite(middle) else None

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import isnan
 from typing import TYPE_CHECKING
 
 import pandas as pd
 
 from . import texts
-from .comparing import Estimate
 
 if TYPE_CHECKING:
+    from fieldmon.simulation.statistics import SummaryStatistics
+
     from .comparing import Arm, Outcome
 
 
@@ -65,12 +67,12 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
     )
 
 
-def _share(e: Estimate) -> Estimate:
+def _share(e: SummaryStatistics) -> SummaryStatistics:
     """Return an estimate of a percentage within 0 to 100, which Student's t does not know of."""
-    return Estimate(e.mean, max(e.low, 0.0), min(e.high, 100.0))
+    return replace(e, low=max(e.low, 0.0), high=min(e.high, 100.0))
 
 
-def _interval(e: Estimate, form: str, unit: str = "") -> str:
+def _interval(e: SummaryStatistics, form: str, unit: str = "") -> str:
     mean = form.format(e.mean) + unit
     if isnan(e.low):
         return mean

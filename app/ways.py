@@ -15,7 +15,7 @@ from .verdicts import short
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.simulation.season import Day
+    from fieldmon.simulation.season import SimulatedDay
 
     from .choices import Choices
 
@@ -52,7 +52,7 @@ def season(columns: list) -> tuple[int, float, float]:
     return int(n_days), share / 100, rate / 100
 
 
-def seen_by(walk: list[Day], number: int) -> NDArray[np.int8]:
+def seen_by(walk: list[SimulatedDay], number: int) -> NDArray[np.int8]:
     """Return ``(n,)`` found (1), clean (0) or never inspected (-1) after a simulated day."""
     state = np.where(walk[number].last_inspected >= 0, 0, -1).astype(np.int8)
     for day in walk[: number + 1]:

@@ -30,10 +30,11 @@ if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.spread import Spread
     from fieldmon.io.library import read_inspections, read_plot, read_plots, read_records
-    from fieldmon.monitoring.history import Beliefs
+    from fieldmon.io.sources import PlantingChoices
+    from fieldmon.monitoring.history import BeliefSettings
     from fieldmon.monitoring.monitor import Monitor, MonitorDay, PlantToInspect
     from fieldmon.monitoring.season_file import Season
-    from fieldmon.monitoring.settings import SeasonSetup
+    from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.plan import DayPlan, plan_day
     from fieldmon.planning.route import Route
     from fieldmon.plot.field import Field
@@ -41,7 +42,10 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot, Viewpoints, scout
     from fieldmon.samplers import SAMPLERS
-    from fieldmon.simulation.library import simulate
+    from fieldmon.simulation.library import draw_start, simulate
+    from fieldmon.simulation.metrics import SeasonMetrics
+    from fieldmon.simulation.season import SeasonSettings
+    from fieldmon.simulation.start import Start
 
 _MODULES = {
     "errors": (
@@ -58,10 +62,10 @@ _MODULES = {
     "infestation.observations": ("Observations",),
     "infestation.spread": ("Spread",),
     "io.library": ("read_inspections", "read_plot", "read_plots", "read_records"),
-    "monitoring.history": ("Beliefs",),
+    "monitoring.history": ("BeliefSettings",),
     "monitoring.monitor": ("Monitor", "MonitorDay", "PlantToInspect"),
     "monitoring.season_file": ("Season",),
-    "monitoring.settings": ("SeasonSetup",),
+    "monitoring.settings": ("MonitoringSettings",),
     "planning.plan": ("DayPlan", "plan_day"),
     "planning.route": ("Route",),
     "plot.field": ("Field",),
@@ -69,13 +73,17 @@ _MODULES = {
     "plot.plot": ("Plot",),
     "plot.robot": ("Robot", "Viewpoints", "scout"),
     "samplers": ("SAMPLERS",),
-    "simulation.library": ("simulate",),
+    "simulation.library": ("draw_start", "simulate"),
+    "simulation.metrics": ("SeasonMetrics",),
+    "simulation.season": ("SeasonSettings",),
+    "simulation.start": ("Start",),
+    "io.sources": ("PlantingChoices",),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
 
 __all__ = [
     "SAMPLERS",
-    "Beliefs",
+    "BeliefSettings",
     "ChoiceNeeded",
     "DayPlan",
     "Field",
@@ -86,20 +94,25 @@ __all__ = [
     "Inspections",
     "Monitor",
     "MonitorDay",
+    "MonitoringSettings",
     "ObservationError",
     "Observations",
     "PlantToInspect",
     "Planting",
+    "PlantingChoices",
     "Plot",
     "PlotError",
     "Robot",
     "Route",
     "Season",
-    "SeasonSetup",
+    "SeasonMetrics",
+    "SeasonSettings",
     "SettingError",
     "Spread",
+    "Start",
     "Viewpoints",
     "__version__",
+    "draw_start",
     "hot_spots",
     "plan_day",
     "read_inspections",

@@ -16,17 +16,17 @@ from fieldmon.studies.thesis.chapter5.report import report_html
 from fieldmon.studies.thesis.chapter5.sites import Site
 from fieldmon.studies.thesis.chapter5.study import (
     TITLES,
-    csv_text,
     label_of,
     rows,
     run_prior,
     run_site,
 )
+from fieldmon.studies.tidy_csv import csv_text
 
 if TYPE_CHECKING:
     from app.choices import Choices
     from app.studying import Progress
-    from fieldmon.studies.thesis.chapter5.study import Part, Study
+    from fieldmon.studies.thesis.chapter5.study import PriorStudy, StudyPart
 
 
 def show(choices: Choices | None) -> None:
@@ -54,7 +54,7 @@ def show(choices: Choices | None) -> None:
         _result(*kept[1:])
 
 
-def _run(part: str, seeds: int, own: Choices | None, progress: Progress) -> Study:
+def _run(part: str, seeds: int, own: Choices | None, progress: Progress) -> PriorStudy:
     if own is not None:
         return run_site(_site(own), seeds, progress=progress)
     return run_prior((part,), seeds, progress=progress)
@@ -70,7 +70,7 @@ def _site(choices: Choices) -> Site:
     return Site(plot.field.name, plot.aisles, plot.field, chance)
 
 
-def _result(made: Study, table_csv: str, report: str) -> None:
+def _result(made: PriorStudy, table_csv: str, report: str) -> None:
     for part in made.parts:
         st.markdown(f"**{part.title}**")
         chart = charts.curves(_curves(part), (texts.DAY_AXIS, texts.DETECTION_AXIS))
@@ -83,7 +83,7 @@ def _result(made: Study, table_csv: str, report: str) -> None:
         st.download_button(texts.STUDY_CSV, table_csv, "prior.csv", "text/csv", on_click="ignore")
 
 
-def _curves(part: Part) -> pd.DataFrame:
+def _curves(part: StudyPart) -> pd.DataFrame:
     """Return the mean detection day by day, a column a configuration."""
     columns = {}
     for runs in part.runs:

@@ -15,7 +15,7 @@ from fieldmon.samplers import NEVER, Scene
 
 if TYPE_CHECKING:
     from app.choices import Choices
-    from fieldmon.simulation.season import Day
+    from fieldmon.simulation.season import SimulatedDay
 
 
 def show(choices: Choices) -> None:
@@ -55,7 +55,7 @@ def _names(choices: Choices) -> list[str]:
     return list(dict.fromkeys([choices.sampler, *chosen]))
 
 
-def _figures(day: Day) -> None:
+def _figures(day: SimulatedDay) -> None:
     with st.container(horizontal=True):
         st.metric(texts.FOUND_SO_FAR, f"{day.detection_pct:.0f} %", width="content")
         st.metric(texts.FOUND_TODAY, day.found, width="content")
@@ -63,7 +63,7 @@ def _figures(day: Day) -> None:
         st.metric(texts.VISITED_TODAY, f"{day.visited_pct:.0f} %", width="content")
 
 
-def _map(choices: Choices, season: list[Day], number: int) -> None:
+def _map(choices: Choices, season: list[SimulatedDay], number: int) -> None:
     grid, day = choices.plot.grid, season[number]
     state = ways.seen_by(season, number)
     scene = Scene(

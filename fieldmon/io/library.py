@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.errors import ImportDoubt
 from fieldmon.io.import_report import Severity
-from fieldmon.io.options import InspectionOptions, PlotOptions, RecordOptions
+from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.prepare import prepare, records_on
 from fieldmon.io.read import read_plots as read_fields
+from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import read_inspections as read_on_grid
 from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources, RecordSource
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from fieldmon.errors import ChoiceNeeded, PlotError, SettingError
 from fieldmon.infestation.observations import Observations
@@ -177,13 +177,13 @@ class Estate:
         return self.crews.get(field.name, Crew())
 
 
-class Listener:
+class Listener(Protocol):
     """Hears what there is to say while files are read, be a later one of no use or not."""
 
-    def message(self, said: SourceMessage) -> None:
+    def message(self, said: SourceMessage, /) -> None:
         """Hear what an import has to say."""
 
-    def laid(self, laid: Laid) -> None:
+    def laid(self, laid: Laid, /) -> None:
         """Hear of the plot, before its records are read."""
 
 
@@ -193,7 +193,7 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
     Raise `ChoiceNeeded` where a file leaves a choice; its ``role`` says which file. A file of
     several plots, of which none is chosen, asks for ``"feature"`` and is no file's question.
     """
-    hearing = _Hearing(listener or Listener())
+    hearing = _Hearing(listener)
     sources, measured = request.sources, None
     if sources.plot is None:
         measured = _measured(sources, hearing)
@@ -206,7 +206,8 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
         field = _with_paths((field,), sources, hearing)[0]
         gate = field.gate if sources.gate is None else sources.gate
         laid = lay(replace(field, gate=gate), request.planting)
-    hearing.listener.laid(laid)
+    if listener is not None:
+        listener.laid(laid)
     plot, records, risk = laid.plot, Observations.none(), None
     if (asked := request.records) is not None:
         named = partial(_every_field, sources)
@@ -227,7 +228,7 @@ def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Es
     plot, and there are several, ask for ``"plot"``. Plants, gate and rasters are of one plot only
     and left out of account.
     """
-    hearing = _Hearing(listener or Listener())
+    hearing = _Hearing(listener)
     sources, records = request.sources, EstateRecords()
     if (file := sources.plot) is None:
         raise SettingError("Give a file of plots.")
@@ -346,7 +347,7 @@ def risk_on(plot: Plot, source: RiskSource) -> Imported[NDArray[np.float64]]:
 class _Hearing:
     """Keeps what imports have to say, and tells it on; marks questions with the file's role."""
 
-    def __init__(self, listener: Listener) -> None:
+    def __init__(self, listener: Listener | None) -> None:
         self.listener = listener
         self.messages: list[SourceMessage] = []
 
@@ -358,7 +359,8 @@ class _Hearing:
         for message in imported.messages:
             said = SourceMessage(role, source_name(source), message)
             self.messages.append(said)
-            self.listener.message(said)
+            if self.listener is not None:
+                self.listener.message(said)
         return imported.value
 
 

@@ -12,10 +12,11 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.belief import Learning, Pairs
+from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import PriorSettings, prior_chance
-from fieldmon.monitoring.history import Beliefs
+from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import looks_of, plan_day
@@ -82,7 +83,7 @@ class Monitor:
     chance
         ``(n,)`` chance of infestation on the first morning; None: what is believed of a plot
         without records.
-    beliefs
+    belief_settings
         What the insects are taken to do at night, and whether finds are treated; None: the
         defaults of a monitored season.
     seed
@@ -114,16 +115,16 @@ class Monitor:
         sampler: str | Sampler = "adaptive",
         robot: Robot | None = None,
         chance: NDArray[np.float64] | None = None,
-        beliefs: Beliefs | None = None,
+        belief_settings: BeliefSettings | None = None,
         seed: int = 1,
     ) -> None:
         self.plot = plot
         self.robot = robot or Robot()
-        self.beliefs = beliefs or Beliefs()
+        self.belief_settings = belief_settings or BeliefSettings()
         self.day_number = 0
         self._sampler = sampler_of(sampler) if isinstance(sampler, str) else sampler
         self._streams = RandomStreams(seed)
-        self._belief: Belief = Pairs.of(plot.grid, _first_chance(plot, chance))
+        self._belief: Belief = PairApproximation.of(plot.grid, _first_chance(plot, chance))
         self._last_inspected = np.full(len(plot.grid), NEVER, np.int32)
         self._trail = np.empty(0, np.int32)
         self._day: MonitorDay | None = None
@@ -174,7 +175,7 @@ class Monitor:
         """
         if self._day is not None and not self._day.ended:
             raise SettingError("The day must end before the night. Leave its with statement first.")
-        self._belief = self._belief.overnight(self.beliefs.spread)
+        self._belief = self._belief.overnight(self.belief_settings.spread)
         self._day = None
         self.day_number += 1
 
@@ -202,7 +203,7 @@ class Monitor:
             self._trail = day.plants
 
     def _learning(self, detects: NDArray[np.float64]) -> Learning:
-        one = self.beliefs.learning(self.robot.detects)
+        one = self.belief_settings.learning(self.robot.detects)
         alike = (detects == self.robot.detects).all()
         return one if alike else replace(one, detection=detects)
 

@@ -17,19 +17,21 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.monitoring.settings import SeasonSetup
+    from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.grid import RowLabel
 
 
-def begins(setup: SeasonSetup, today: DayPlan) -> datetime:
+def begins(settings: MonitoringSettings, today: DayPlan) -> datetime:
     """Return the local time at which a route begins: the start of work, or half-way."""
-    gone_s = setup.robot.day_s - today.scene.seconds_left
-    start = datetime.combine(setup.date(today.scene.day), setup.starts)
+    gone_s = settings.robot.day_s - today.scene.seconds_left
+    start = datetime.combine(settings.date(today.scene.day), settings.starts)
     return start + timedelta(seconds=round(gone_s))
 
 
-def keep(db: sqlite3.Connection, setup: SeasonSetup, label: RowLabel, today: DayPlan) -> bool:
+def keep(
+    db: sqlite3.Connection, settings: MonitoringSettings, label: RowLabel, today: DayPlan
+) -> bool:
     """Keep a day's route, unless it is the one kept last; tell whether it was."""
     day, route = today.scene.day, today.route
     mark = _digest(today)
@@ -38,13 +40,13 @@ def keep(db: sqlite3.Connection, setup: SeasonSetup, label: RowLabel, today: Day
     ).fetchone()
     if last is not None and last[1] == mark:
         return False
-    begin, line = begins(setup, today), route.line_lonlat()
+    begin, line = begins(settings, today), route.line_lonlat()
     row = {
         "geom": blob(LineString(line)) if len(line) > 1 else None,
         "day": day,
-        "date": str(setup.date(day)),
+        "date": str(settings.date(day)),
         "revision": 1 if last is None else last[0] + 1,
-        "sampler": setup.sampler,
+        "sampler": settings.sampler,
         "starts": begin.isoformat(),
         "seconds": route.end_s,
         "drive_m": route.drive_m,

@@ -26,7 +26,7 @@ from fieldmon.infestation.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.io.writers.geojson import RouteNotes, write_route
-from fieldmon.monitoring import Season, SeasonSetup
+from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_day
@@ -35,7 +35,8 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 from tests.benchmarks.test_bench_grid import crooked_plot
 
 SIZES = (100, 1_000, 10_000, 100_000, 1_000_000)
@@ -102,7 +103,7 @@ def measure(n_plants):
 
 def season(aisles, name, start, believe=PairApproximation.of):
     settings = SeasonSettings(n_days=25, spread=Spread(0.1), believe=believe)
-    walk = days(aisles, Robot(), sampler(name), start, settings, RandomStreams(2))
+    walk = simulated_days(aisles, Robot(), sampler(name), start, settings, RandomStreams(2))
     return [day.detection_pct for day in walk]
 
 
@@ -116,7 +117,7 @@ def files_and_map(plot, chance, observations):
         took["writing the route"], _ = best_of(
             lambda: write_route(to / "route.geojson", today.route, notes)
         )
-        setup = SeasonSetup(date(2026, 5, 20))
+        setup = MonitoringSettings(date(2026, 5, 20))
         took["beginning a season's file"], _ = best_of(
             lambda: Season.create(to / "season.gpkg", plot, observations, setup), 1
         )

@@ -7,7 +7,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.spread import Spread
-from fieldmon.monitoring.history import Beliefs
+from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.monitor import Monitor
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle
@@ -15,7 +15,8 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import SAMPLERS, sampler
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 
 SEED = 5
 SPREAD = Spread(rate_per_day=0.2, arrivals_per_day=0.001)
@@ -36,14 +37,16 @@ def start(plot):
 
 def compiled(plot, name, robot, start):
     settings = SeasonSettings(n_days=4, spread=SPREAD, learning=None)
-    return list(days(plot.aisles, robot, sampler(name), start, settings, RandomStreams(SEED)))
+    return list(
+        simulated_days(plot.aisles, robot, sampler(name), start, settings, RandomStreams(SEED))
+    )
 
 
 @pytest.mark.parametrize("returns", [True, False])
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_a_season_asked_and_told_is_the_compiled_one_stop_for_stop(plot, start, name, returns):
     robot = Robot(hours=1.5, returns=returns)
-    monitor = Monitor(plot, name, robot, start.chance, Beliefs(spread=SPREAD), SEED)
+    monitor = Monitor(plot, name, robot, start.chance, BeliefSettings(spread=SPREAD), SEED)
     some_found = 0
     for simulated in compiled(plot, name, robot, start):
         assert np.array_equal(monitor.chance, simulated.chance)
@@ -138,7 +141,7 @@ def test_a_chance_map_that_does_not_fit_is_refused(plot, chance):
 
 
 def test_finds_that_are_only_flagged_stay_infested(plot):
-    monitor = Monitor(plot, robot=Robot(hours=1), beliefs=Beliefs(treated=False))
+    monitor = Monitor(plot, robot=Robot(hours=1), belief_settings=BeliefSettings(treated=False))
     with monitor.day() as day:
         plant = day.ask().plant
         day.tell(found=True)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.io.writers.day_file import DrivenRoute
+    from fieldmon.io.writers.day_file import DrivenRoute, HandoffPlan
 
 # RFC 7946 positions are degrees; 8 decimals are about a millimetre
 _DECIMALS = 8
@@ -70,6 +70,11 @@ def route_geojson(route: DrivenRoute, notes: RouteNotes) -> str:
     if len(everything):
         collection["bbox"] = [*everything.min(axis=0).tolist(), *everything.max(axis=0).tolist()]
     return json.dumps(collection, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def handed_geojson(plan: HandoffPlan) -> bytes:
+    """Return a day to hand off as GeoJSON; see `route_geojson`."""
+    return route_geojson(plan.route, plan.notes).encode()
 
 
 def write_route(path: str | Path, route: DrivenRoute, notes: RouteNotes) -> None:

@@ -12,7 +12,6 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import PriorSettings, prior_chance
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.belief import Belief, Learning
     from fieldmon.plot.plot import Plot
     from fieldmon.samplers import Sampler, Stops
 
@@ -103,7 +102,7 @@ class Monitor:
     ...     while (stop := day.ask()) is not None:
     ...         day.tell(found=stop.plant % 20 == 0)
     >>> len(day.plants), int(day.found.sum())
-    (71, 4)
+    (74, 4)
     >>> monitor.night()
     >>> monitor.chance.shape == (len(plot.grid),)
     True

@@ -149,7 +149,7 @@ def plan_day(
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> day = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=2), sampler="naive")
     >>> len(day.route)
-    149
+    160
     """
     starts = _starts(on)
     decides = sampler_of(sampler) if isinstance(sampler, str) else sampler

@@ -11,10 +11,10 @@ from rasterio.io import MemoryFile
 from rasterio.transform import from_bounds
 from streamlit.testing.v1 import AppTest
 
-from app import warming
+from app.startup import preload
 from fieldmon.compute.jit_progress import FIRST_USE
 from fieldmon.monitoring import Season
-from tests.app.app_driving import (
+from tests.app.driving import (
     PAGES,
     begun,
     go,
@@ -220,14 +220,14 @@ def test_a_picture_of_the_ground_lies_under_the_plants_where_it_is(app):
     data = geotiff(np.full((400, 400), 90, np.uint8))
     go(app, "map")
     app.pills(key="map_layers").set_value(["backdrop"]).run()
-    app.file_uploader(key="ground_file").upload("ground.tif", data).run()
+    app.file_uploader(key="backdrop_file").upload("ground.tif", data).run()
     assert not app.exception
     assert map_of(app)["layers"][1]["id"] == "backdrop"
     corners = np.array(layer(app, "backdrop")["bounds"])
     plants = np.array([p["p"] for p in layer(app, "plants")["data"]])
     assert (corners.min(axis=0) <= plants.min(axis=0)).all()
     assert (corners.max(axis=0) >= plants.max(axis=0)).all()
-    app.file_uploader(key="ground_file").upload("ground.tif", b"no picture").run()
+    app.file_uploader(key="backdrop_file").upload("ground.tif", b"no picture").run()
     assert not app.exception
     assert app.error
     assert layer(app, "backdrop") is None
@@ -257,7 +257,7 @@ def test_lengths_and_dates_are_written_as_the_person_wants(app):
     assert metric(app, "Rows / plants apart") == "13.1 ft / 9.8 ft"
 
 
-def test_ways_of_working_are_compared_and_the_best_is_put_to_use(app):
+def test_strategies_are_compared_and_the_best_is_put_to_use(app):
     go(app, "compare")
     app.number_input(key="seeds").set_value(3)
     app.number_input(key="n_days").set_value(4).run()
@@ -271,15 +271,15 @@ def test_ways_of_working_are_compared_and_the_best_is_put_to_use(app):
     table = app.dataframe[0].value
     assert len(table) == 3
     assert table["verdict"].iloc[0] == "★ best"
-    naive = next(b for b in app.selectbox if b.label == "Way of working")
+    naive = next(b for b in app.selectbox if b.label == "Strategy")
     naive.set_value(next(o for o in naive.options if o.startswith("Naive"))).run()
-    press(app, "Use this way of working")
+    press(app, "Use this strategy")
     assert app.selectbox(key="sampler").value == "naive"
 
 
 def test_comparing_nothing_is_said_in_a_sentence(app):
     go(app, "compare")
-    app.multiselect(key="arms").set_value([]).run()
+    app.multiselect(key="strategy_samplers").set_value([]).run()
     assert not app.exception
     assert "Choose fewer" in app.warning[0].value
 
@@ -403,7 +403,7 @@ def test_plants_that_a_raster_shows_to_be_missing_are_not_laid(app):
     # the middle half of the plot from west to east, and beyond it to the north and south
     quarter = (east - west) / 4
     data = geotiff(half, (west + quarter, low - 0.001, east - quarter, high + 0.001))
-    app.file_uploader(key="canopy_file").upload("canopy.tif", data).run()
+    app.file_uploader(key="missing_plants_file").upload("canopy.tif", data).run()
     left = np.array([p["p"] for p in layer(app, "plants")["data"]])
     gone = (every[:, 0] > west + 1.05 * quarter) & (every[:, 0] < west + 1.95 * quarter)
     assert gone.sum() > 500
@@ -412,7 +412,7 @@ def test_plants_that_a_raster_shows_to_be_missing_are_not_laid(app):
     assert set(map(tuple, every[stays])) <= set(map(tuple, left))
     assert f"{len(every) - len(left)} of {len(every)} plants are missing" in texts_of(app)
     assert "have no value on the raster and count as there" in texts_of(app)
-    app.number_input(key="canopy_below").set_value(2.0).run()
+    app.number_input(key="missing_below").set_value(2.0).run()
     assert len(layer(app, "plants")["data"]) < len(left)
     press(app, "Take it out")
     assert len(layer(app, "plants")["data"]) == len(every)
@@ -450,7 +450,7 @@ def test_while_loops_are_compiled_the_page_says_so_and_shows_the_outline(monkeyp
             return False
 
     waiting = SimpleNamespace(ready=Ready(), load=lambda **_: None)
-    monkeypatch.setattr(warming, "start", lambda: waiting)
+    monkeypatch.setattr(preload, "start", lambda: waiting)
     monkeypatch.setattr(FIRST_USE, "compiled", 7)
     app = opened()
     assert "7 parts" in app.info[0].value

@@ -17,12 +17,10 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.hotspots import HotSpots, hot_spots, record_states
 from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.infestation.spread import Spread
-from fieldmon.io import read
-from fieldmon.io.rasters.at_plants import read_missing, read_risk
+from fieldmon.io import prepare, read
 from fieldmon.io.rasters.read import read_backdrop
 from fieldmon.monitoring import Season, worked_route
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from
-from fieldmon.plot.plot import Plot
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import SeasonFigures, figures
 from fieldmon.simulation.season import Day, SeasonSettings, Start, days
@@ -39,14 +37,21 @@ if TYPE_CHECKING:
     from shapely import MultiLineString
 
     from fieldmon.infestation.observations import Observations
-    from fieldmon.infestation.raster_risk import RiskSettings
     from fieldmon.io.import_report import Imported
-    from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
+    from fieldmon.io.options import PlotOptions, ReadOptions, Source
     from fieldmon.io.rasters.values import Backdrop, RasterOptions
+    from fieldmon.io.readers.places import Plants
+    from fieldmon.io.sources import (
+        CanopySource,
+        PlantingChoices,
+        PlotSources,
+        RecordSource,
+        RiskSource,
+    )
     from fieldmon.monitoring import DayFigures, Progress, Remark
     from fieldmon.planning.route import Route
     from fieldmon.plot.field import Field
-    from fieldmon.plot.layout import Planting
+    from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
 
     from .comparison import ComparisonSettings
@@ -72,19 +77,22 @@ def plots(key: str, options: PlotOptions, _source: Source) -> Imported[tuple[Fie
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
 def records(
     key: str,  # noqa: ARG001
-    options: RecordOptions,
-    _source: Source,
-    _near: Field,
+    _source: RecordSource,
+    _plot: Plot,
+    _fields: tuple[Field, ...],
+    _measured: Plants | None,
 ) -> Imported[Observations]:
-    """Return the records on and near a plot; `key` stands for the file and the plot."""
-    return read.read_records(_source, options, near=_near)
+    """Return the records on and near a plot; `key` stands for the file and the plot.
+
+    They may name one of `_fields`, or rows and plants, the measured ones by their own labels.
+    """
+    return prepare.records_on(_plot, _source, lambda: _fields, _measured)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
-def measured_plants(key: str, options: ReadOptions, _source: Source) -> np.ndarray:  # noqa: ARG001
-    """Return positions of measured plants, ``(n, 2)`` degrees."""
-    lonlat: np.ndarray = read.read_plants(_source, options).value.lonlat
-    return lonlat
+def measured_plants(key: str, options: ReadOptions, _source: Source) -> Plants:  # noqa: ARG001
+    """Return measured plants: positions, and labels if the file has any."""
+    return read.read_plants(_source, options).value
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
@@ -94,15 +102,20 @@ def paths(source: Path) -> MultiLineString:
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
-def plot(key: str, planting: Planting, _field: Field) -> Plot:  # noqa: ARG001
-    """Return a field's plants and aisles."""
-    return Plot.of(_field, planting)
+def plot(key: str, choices: PlantingChoices, _field: Field) -> Plot:  # noqa: ARG001
+    """Return a field with its plants and aisles."""
+    return prepare.lay(_field, choices).plot
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
-def plot_around(key: str, planting: Planting | None, _plants: np.ndarray) -> Plot:  # noqa: ARG001
+def plot_around(
+    key: str,  # noqa: ARG001
+    choices: PlantingChoices,
+    _sources: PlotSources,
+    _measured: Plants,
+) -> Plot:
     """Return the plot of measured plants that have no drawn boundary."""
-    return Plot.around("plants", _plants, planting)
+    return prepare.lay_around(_sources, _measured, choices).plot
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
@@ -228,26 +241,21 @@ def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) ->
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
 def risk(
     key: str,  # noqa: ARG001
-    options: RasterOptions,
-    settings: RiskSettings,
-    _source: Source,
+    _source: RiskSource,
     _plot: Plot,
 ) -> Imported[Array]:
     """Return the risk of a plot's plants from a raster; `key` stands for raster and plot."""
-    return read_risk(_source, options, _plot, settings)
+    return prepare.risk_on(_plot, _source)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
 def without_missing(
     key: str,  # noqa: ARG001
-    options: RasterOptions,
-    below: float,
-    _source: Source,
+    _source: CanopySource,
     _plot: Plot,
 ) -> Imported[Plot]:
     """Return a plot without the plants that a raster shows to be missing; `key` as above."""
-    read = read_missing(_source, options, _plot, below)
-    return read.having(_plot.without(read.value))
+    return prepare.without_missing(_plot, _source)
 
 
 @st.cache_resource(max_entries=_MAPS)

@@ -1,4 +1,7 @@
-"""From a session's files to a plot with its plants, its records and its risk."""
+"""From a session's files to a plot with its plants, its records and its risk, step by step.
+
+The way is that of `fieldmon.io.prepare`; each step is kept, and what a person draws comes between.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,7 @@ import streamlit as st
 
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
-from fieldmon.plot.layout import Planting
-from fieldmon.plot.plot import Plot, planting_of
+from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
 
 from . import brought_files, cached, rasters, sample_estate
 from .brought_files import File, FileMessage, messages_of, settled
@@ -20,7 +22,9 @@ from .row_settings import row_settings
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from fieldmon.io.readers.places import Plants
     from fieldmon.plot.field import Field
+    from fieldmon.plot.plot import Plot
 
     #: asks which plot of a file is meant, by the file and the plots' names
     Which = Callable[[File, list[str]], int]
@@ -49,15 +53,18 @@ class Outline:
         Names it in cache keys.
     field
         Its boundary and what was drawn with it; None if there are measured plants only.
-    plants
-        ``(n, 2)`` measured plants, degrees; None if there are none.
+    fields
+        Every plot of its file, which records may name.
+    measured
+        Plants measured on it; None if there are none.
     messages
         What the import had to say.
     """
 
     key: str
     field: Field | None
-    plants: cached.Array | None
+    fields: tuple[Field, ...]
+    measured: Plants | None
     messages: tuple[FileMessage, ...]
 
 
@@ -103,23 +110,23 @@ def _sample(name: str) -> File:
 
 def outline(files: Files, which: Which) -> Outline:
     """Return the plot that `which` answers with, and its measured plants."""
-    plants, key = _plants(files.plants)
+    measured, key = _measured(files.plants)
     if files.plot is None:
-        return Outline(key, None, plants, ())
+        return Outline(key, None, (), measured, ())
     options = settled(files.plot, PlotOptions())
     read = cached.plots(files.plot.key, options, files.plot.source)
     number = which(files.plot, [field.name for field in read.value])
     field = read.value[number]
-    if plants is not None:
-        field = replace(field, plants=plants)
+    if measured is not None:
+        field = replace(field, plants=measured.lonlat)
     if files.plot.key.startswith(_SAMPLE):
         field = replace(field, paths=cached.paths(_sample(sample_estate.PATHS).source))
     said = messages_of(files.plot.key, read)
     own = tuple(one for one in said if one.message.feature in (None, field.name))
-    return Outline(f"{key}{files.plot.key}{options}{number}", field, plants, own)
+    return Outline(f"{key}{files.plot.key}{options}{number}", field, read.value, measured, own)
 
 
-def _plants(file: File | None) -> tuple[cached.Array | None, str]:
+def _measured(file: File | None) -> tuple[Plants | None, str]:
     if file is None:
         return None, ""
     options = settled(file, ReadOptions())
@@ -128,23 +135,24 @@ def _plants(file: File | None) -> tuple[cached.Array | None, str]:
 
 def prepared(files: Files, outline: Outline) -> Prepared:
     """Return the plot with its plants, records and risk."""
-    plot, key = _plot(outline)
+    plot, key = _plot(files, outline)
+    # records may name plants by numbers that count those missing too
+    records, read, key = _records(files.records, outline, plot, key)
     plot, missing, key = rasters.without_missing(plot, key)
-    records, read, key = _records(files.records, plot, key)
     risk, said, key = rasters.risk(plot, key)
     return Prepared(key, plot, records, risk, (*outline.messages, *missing, *read, *said))
 
 
-def _plot(outline: Outline) -> tuple[Plot, str]:
+def _plot(files: Files, outline: Outline) -> tuple[Plot, str]:
     """Return the plot with its plants, as the row settings and what was drawn say."""
     st.session_state[_LAYING] = outline.key
     edits, field = drawn(outline.key), outline.field
     if field is None:
-        given = row_settings(outline.key)
-        planting = Planting(**{name: v for name, v in given.items() if v is not None})
-        around = cached.plot_around(outline.key, planting, outline.plants)
+        choices = PlantingChoices(**row_settings(outline.key))
+        sources = PlotSources(plants=files.plants.source)
+        around = cached.plot_around(outline.key, choices, sources, outline.measured)
         if not edits:
-            return around, f"{outline.key}{planting}"
+            return around, f"{outline.key}{choices}"
         field = around.field
     return laid(outline.key, edits, field, edits)
 
@@ -159,9 +167,9 @@ def laid(
     plot_key: str, edits: tuple[Edit, ...], field: Field, new: tuple[Edit, ...]
 ) -> tuple[Plot, str]:
     """Return the plot on which all `edits` are drawn, the `new` ones of them not yet on `field`."""
-    planting = planting_of(field, **row_settings(plot_key))
+    choices = PlantingChoices(**row_settings(plot_key))
     key = f"{plot_key}{edits}"
-    return cached.plot(key, planting, edited(field, new)), f"{key}{planting}"
+    return cached.plot(key, choices, edited(field, new)), f"{key}{choices}"
 
 
 def drawn(plot_key: str) -> tuple[Edit, ...]:
@@ -176,11 +184,12 @@ def draw(plot_key: str, edits: tuple[Edit, ...]) -> None:
 
 
 def _records(
-    file: File | None, plot: Plot, key: str
+    file: File | None, outline: Outline, plot: Plot, key: str
 ) -> tuple[Observations, tuple[FileMessage, ...], str]:
     if file is None:
         return Observations.none(), (), key
     options = settled(file, RecordOptions())
     key = f"{key}{file.key}{options}"
-    read = cached.records(key, options, file.source, plot.field)
+    source = RecordSource(file.source, options)
+    read = cached.records(key, source, plot, outline.fields, outline.measured)
     return read.value, messages_of(file.key, read), key

@@ -9,6 +9,7 @@ import streamlit as st
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.raster_risk import RELATIVE, RiskSettings
 from fieldmon.io.rasters.values import RasterOptions
+from fieldmon.io.sources import CanopySource, RiskSource
 
 from . import cached, widget_memory
 from .brought_files import brought, messages_of, settled
@@ -17,14 +18,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fieldmon.io.import_report import Imported
-    from fieldmon.io.options import Source
     from fieldmon.io.rasters.values import Backdrop
     from fieldmon.plot.plot import Plot
 
-    from .brought_files import FileMessage
+    from .brought_files import File, FileMessage
     from .choices import Choices
 
-S = TypeVar("S")
+S = TypeVar("S", "CanopySource", "RiskSource")
 T = TypeVar("T")
 #: what the rasters are kept as
 MISSING, RISK, BACKDROP = "missing_plants", "risk", "backdrop"
@@ -35,13 +35,13 @@ RISK_SHARE, RISK_LOW = "risk_share", "risk_low"
 
 def without_missing(plot: Plot, key: str) -> tuple[Plot, tuple[FileMessage, ...], str]:
     """Return the plot without the plants that are not there, what was said, and the longer key."""
-    left, said, key = _read(MISSING, key, _below, cached.without_missing, plot)
+    left, said, key = _read(MISSING, key, _canopy, cached.without_missing, plot)
     return plot if left is None else left, said, key
 
 
 def risk(plot: Plot, key: str) -> tuple[cached.Array | None, tuple[FileMessage, ...], str]:
     """Return the risk of each plant ``(n,)`` or None, what the import said, and the longer key."""
-    return _read(RISK, key, _risk_settings, cached.risk, plot)
+    return _read(RISK, key, _risk, cached.risk, plot)
 
 
 def backdrop(choices: Choices) -> Backdrop | None:
@@ -63,8 +63,8 @@ def problem(kind: str) -> FieldmonError | None:
 def _read(
     kind: str,
     key: str,
-    settings: Callable[[], S],
-    read: Callable[[str, RasterOptions, S, Source, Plot], Imported[T]],
+    source: Callable[[File, RasterOptions], S],
+    read: Callable[[str, S, Plot], Imported[T]],
     plot: Plot,
 ) -> tuple[T | None, tuple[FileMessage, ...], str]:
     """Return what a raster says of a plot, what its import said, and the longer key.
@@ -76,9 +76,10 @@ def _read(
         return None, (), key
     st.session_state[_problem_key(kind)] = None
     try:
-        how, options = settings(), settled(file, RasterOptions())
-        longer = f"{key} {kind} {file.key} {how} {options}"
-        imported = read(longer, options, how, file.source, plot)
+        asked = source(file, settled(file, RasterOptions()))
+        how = {name: value for name, value in vars(asked).items() if name != "file"}
+        longer = f"{key} {kind} {file.key} {how}"
+        imported = read(longer, asked, plot)
     except FieldmonError as error:
         st.session_state[_problem_key(kind)] = error
         return None, (), key
@@ -89,8 +90,12 @@ def _problem_key(kind: str) -> str:
     return f"{kind} problem"
 
 
-def _below() -> float:
-    return float(widget_memory.value(MISSING_BELOW, 0.5))
+def _canopy(file: File, options: RasterOptions) -> CanopySource:
+    return CanopySource(file.source, float(widget_memory.value(MISSING_BELOW, 0.5)), options)
+
+
+def _risk(file: File, options: RasterOptions) -> RiskSource:
+    return RiskSource(file.source, _risk_settings(), options)
 
 
 def _risk_settings() -> RiskSettings:

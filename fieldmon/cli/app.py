@@ -55,7 +55,7 @@ def open_app(
 
 
 def _server() -> str:
-    """Return the module that serves the app: within fieldmon as installed, beside it in its tree."""
+    """Return the module that serves the app: in fieldmon as installed, beside it in its tree."""
     fieldmon = Path(__file__).resolve().parents[1]
     for package, folder in (("fieldmon._app", fieldmon / "_app"), ("app", fieldmon.parent / "app")):
         if (folder / "startup" / "serve.py").is_file():

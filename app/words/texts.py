@@ -55,7 +55,6 @@ FINDS_HELP = (
     "Infested plants on the route, by the chance map, times the chance that an inspection finds "
     "them."
 )
-OF = "of {n}"
 DOWNLOAD = "Download the route (GeoJSON)"
 NO_STOPS = (
     "The working day is too short to reach a plant and come back. Give more hours on the left."
@@ -108,7 +107,6 @@ BOTH_FACES = "Inspect both faces of each row"
 SHOW_SAMPLER, SHOW_DAY, SHOW_TRUTH = "On the map", "Day", "Show what is really infested"
 LEFT = "Infested left"
 FOUND_SO_FAR, FOUND_TODAY, VISITED_TODAY = "Found so far", "Found that day", "Inspected that day"
-HOT_SPOTS = "{n} hot spot(s)"
 WORKING = "Working ..."
 COMPILING = (
     "fieldmon is being compiled for this machine: {n} parts so far. This happens once and takes "

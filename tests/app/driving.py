@@ -6,6 +6,8 @@ import zipfile
 from io import BytesIO
 
 import geopandas as gpd
+from rasterio.io import MemoryFile
+from rasterio.transform import from_bounds
 from shapely import MultiPolygon, box
 from streamlit.testing.v1 import AppTest
 from streamlit.util import calc_hash
@@ -99,6 +101,24 @@ def zipped(folder, plots, name="plot", without=""):
             if part.suffix != without:
                 archive.write(part, part.name)
     return data.getvalue()
+
+
+def tap(app, key):
+    """Press the button with this key; it must work."""
+    app.button(key=key).click().run()
+    assert not app.exception
+    assert not app.error
+
+
+def geotiff(values, edges=(35.1, 30.3, 35.2, 30.4)):
+    """Return a raster ``(h, w)`` over the sample estate as the bytes of a GeoTIFF."""
+    high, wide = values.shape
+    with MemoryFile() as memory:
+        shape = {"width": wide, "height": high, "count": 1, "dtype": values.dtype}
+        place = from_bounds(*edges, wide, high)
+        with memory.open(**shape, driver="GTiff", crs="EPSG:4326", transform=place) as raster:
+            raster.write(values[None])
+        return memory.read()
 
 
 def square(size=0.001, name="square"):

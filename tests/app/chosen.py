@@ -1,6 +1,7 @@
 """Choices without a page: what the sidebar would hand to one."""
 
 from datetime import date
+from itertools import count
 
 import numpy as np
 from shapely import MultiPolygon, box
@@ -15,6 +16,8 @@ from fieldmon.plot.robot import Robot
 
 CORNER = (35.15, 30.36)
 DAY = date(2026, 11, 16)
+# a key stands for a plot and its records
+_KEYS = count()
 
 
 def a_plot(size=0.0006, **planting):
@@ -33,7 +36,7 @@ def records_at(plot, plants, present, day="2026-11-10"):
 def chosen(plot, records=None, season=None, **more):
     """Return choices of a plot, or of a season."""
     given = {"robot": Robot(hours=1.0), "sampler": "adaptive", "day": DAY.isoformat()} | more
-    key = f"test {id(plot)}" if season is None else str(season.path)
+    key = f"test {next(_KEYS)}" if season is None else str(season.path)
     records = Observations.none() if records is None else records
     return Choices(key, plot, records, (), units=Units(), season=season, plot_key=key, **given)
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.monitoring import Remark, Season, SeasonSetup
+from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 
 from ..state import chosen_day, notices, plot_source, seasons_folder
 from ..words import texts
@@ -28,10 +28,10 @@ def show(choices: Choices) -> None:
 @notices.reporting
 def _begin(choices: Choices) -> str:
     name = st.session_state["season_name"].strip()
-    setup = SeasonSetup(choices.on, chosen_day.STARTS, choices.robot, choices.sampler)
+    settings = MonitoringSettings(choices.on, chosen_day.STARTS, choices.robot, choices.sampler)
     said = [one.message for one in choices.messages]
-    remarks = [Remark("import", str(one.severity), one.feature, one.sentence) for one in said]
+    messages = [KeptMessage("import", str(m.severity), m.feature, m.sentence) for m in said]
     path = seasons_folder.new_path(name)
-    Season.create(path, choices.plot, choices.records, setup, remarks, choices.risk)
+    Season.create(path, choices.plot, choices.records, settings, messages, choices.risk)
     plot_source.open_season(name)
     return texts.BEGUN.format(name=texts.isolated(name), path=path)

@@ -12,7 +12,7 @@ from ..words import texts
 from ..words.strategies import sampler_does, sampler_name, strategy_name
 
 if TYPE_CHECKING:
-    from fieldmon.monitoring import Season, SeasonSetup
+    from fieldmon.monitoring import MonitoringSettings, Season
 
     from ..state.choices import Choices
     from ..state.comparison import Strategy
@@ -27,20 +27,20 @@ NAMED = {
 def show(name: str, season: Season) -> None:
     """Show who works in the season of this name, and change it on demand."""
     with st.expander(texts.WHO):
-        setup = season.setup
-        wanted = _wanted(name, setup)
-        if wanted != setup:
+        settings = season.settings
+        wanted = _wanted(name, settings)
+        if wanted != settings:
             st.caption(texts.CHANGE_NOTE)
             if st.button(texts.CHANGE, type="primary", key="change_setup"):
-                season.change(wanted, setup)
+                season.change(wanted, settings)
                 st.rerun()
         _offer_undo(season)
 
 
-def _wanted(name: str, setup: SeasonSetup) -> SeasonSetup:
+def _wanted(name: str, settings: MonitoringSettings) -> MonitoringSettings:
     """Show the boxes; return the settings that they say."""
-    robot = setup.robot
-    key = f"{name} {robot.hours} {robot.look_s} {setup.sampler}"
+    robot = settings.robot
+    key = f"{name} {robot.hours} {robot.look_s} {settings.sampler}"
     # a command, or "one hour more", may have set what is beyond the usual
     usual_s = robot.look_s
     hours = st.slider(texts.HOURS, min(0.5, robot.hours), max(16.0, robot.hours), robot.hours, 0.5,
@@ -49,11 +49,11 @@ def _wanted(name: str, setup: SeasonSetup) -> SeasonSetup:
                              5.0, format="%g", key=f"inspection_s {key}")  # fmt: skip
     names = list(texts.SAMPLERS)
     sampler = st.selectbox(
-        texts.SAMPLER, names, names.index(setup.sampler), key=f"sampler {key}", **NAMED
+        texts.SAMPLER, names, names.index(settings.sampler), key=f"sampler {key}", **NAMED
     )
     st.caption(sampler_does(sampler))
     robot = replace(robot, hours=float(hours), look_s=float(inspection_s))
-    return replace(setup, robot=robot, sampler=sampler)
+    return replace(settings, robot=robot, sampler=sampler)
 
 
 def _offer_undo(season: Season) -> None:
@@ -72,9 +72,9 @@ def use(choices: Choices, strategy: Strategy) -> str:
     """Work by this strategy from now on (for callbacks)."""
     sampler, hours, inspection_s = strategy.sampler, strategy.hours, strategy.inspection_s
     if choices.season is not None:
-        setup = choices.season.setup
-        robot = replace(setup.robot, hours=hours, look_s=inspection_s)
-        choices.season.change(replace(setup, robot=robot, sampler=sampler), setup)
+        settings = choices.season.settings
+        robot = replace(settings.robot, hours=hours, look_s=inspection_s)
+        choices.season.change(replace(settings, robot=robot, sampler=sampler), settings)
     else:
         who = st.session_state.get("who", texts.ROBOT)
         st.session_state["sampler"] = sampler

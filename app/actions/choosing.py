@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from datetime import date
 
-    from fieldmon.monitoring import Remark
+    from fieldmon.monitoring import KeptMessage
     from fieldmon.plot.field import Field
     from fieldmon.plot.robot import Robot
 
@@ -78,23 +78,23 @@ def _source() -> str:
 
 def _from_season(name: str) -> Choices:
     season = cached.season(seasons_folder.path_of(name))
-    setup, key, units = season.setup, str(season.path), chosen_units.units()
+    settings, key, units = season.settings, str(season.path), chosen_units.units()
     day = widget_memory.show(
-        st.date_input, texts.DATE, min_value=setup.begins, key=_DAY.format(source=name),
+        st.date_input, texts.DATE, min_value=settings.begins, key=_DAY.format(source=name),
         default=season.last_date(), format=units.date_format,
     )  # fmt: skip
-    said = tuple(FileMessage(key, _message(remark)) for remark in cached.remarks(key, season))
+    said = tuple(FileMessage(key, _message(kept)) for kept in cached.import_messages(key, season))
     choices = Choices(
-        key, season.plot, season.observations, said, setup.robot, setup.sampler, str(day),
+        key, season.plot, season.observations, said, settings.robot, settings.sampler, str(day),
         units, season, key,
     )  # fmt: skip
     changing.show(name, season)
     return choices
 
 
-def _message(remark: Remark) -> ImportMessage:
+def _message(kept: KeptMessage) -> ImportMessage:
     """Return what an import said when the season began; its remedy is gone: plants are laid."""
-    return ImportMessage(Severity(remark.severity), remark.sentence, remark.feature)
+    return ImportMessage(Severity(kept.severity), kept.sentence, kept.feature)
 
 
 # -- files: the sample estate's, or those brought

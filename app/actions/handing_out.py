@@ -16,7 +16,7 @@ from ..state import chosen_day
 from ..words import texts
 
 if TYPE_CHECKING:
-    from fieldmon.io.writers.handoff import Format
+    from fieldmon.io.writers.handoff import HandoffFormat
     from fieldmon.planning.plan import DayPlan
 
     from ..state.choices import Choices
@@ -54,7 +54,7 @@ def _other_formats(choices: Choices, plan: HandoffPlan) -> None:
     )  # fmt: skip
 
 
-def made(chosen: Format, plan: HandoffPlan) -> bytes:
+def made(chosen: HandoffFormat, plan: HandoffPlan) -> bytes:
     """Return a day in a format, several files as one zip; made when somebody wants it."""
     files = chosen.make(plan)
     if not chosen.several:

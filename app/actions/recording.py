@@ -9,9 +9,8 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
-from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.options import Upload
-from fieldmon.monitoring import Results, results_from
 from fieldmon.plot.grid import plant_at, row_label
 
 from ..state import browser, chosen_day, notices
@@ -62,7 +61,7 @@ def _record_one(choices: Choices) -> str:
     plant = plant_at(choices.plot.grid, int(state["one_row"]), int(state["one_plant"]))
     result, count = state["one_result"], state["one_count"]
     counted = np.array([np.nan if count is None or result != FOUND else float(count)])
-    results = Results.of(
+    results = Inspections.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day), count=counted
     )
     return _recorded(choices, results, texts.TYPED_IN)
@@ -103,7 +102,7 @@ def _record_stops(choices: Choices, plants: np.ndarray, found: list[int]) -> str
     """Record the first stops of the route: those marked as found, the others as clean."""
     done = plants[: int(st.session_state["stops_done"])]
     result = np.where(np.isin(np.arange(len(done)) + 1, found), FOUND, CLEAN)
-    results = Results.of(done, result, np.datetime64(choices.day))
+    results = Inspections.of(done, result, np.datetime64(choices.day))
     return _recorded(choices, results, texts.ROUTE_TABLE)
 
 
@@ -122,17 +121,17 @@ def _show_file(choices: Choices) -> None:
 def _record_file(choices: Choices, name: str, data: bytes) -> str:
     """Record findings from a file: a route given out and filled in, a table, positions."""
     # what reads files is half a second to import
-    from fieldmon.io.readers.inspections import read_findings  # noqa: PLC0415
-    from fieldmon.io.readers.reported import FindingsOptions  # noqa: PLC0415
+    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
+    from fieldmon.io.readers.inspections import read_inspections  # noqa: PLC0415
 
-    options = FindingsOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
+    options = InspectionOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
     options = options.choose("day", choices.day)
-    read = read_findings(Upload(name, data), choices.plot.grid, options)
-    remarks = "".join(f"\n- {message.sentence}" for message in read.messages)
-    return _recorded(choices, results_from(read.value), name) + remarks
+    read = read_inspections(Upload(name, data), choices.plot.grid, options)
+    messages = "".join(f"\n- {message.sentence}" for message in read.messages)
+    return _recorded(choices, read.value, name) + messages
 
 
-def _recorded(choices: Choices, results: Results, source: str) -> str:
+def _recorded(choices: Choices, results: Inspections, source: str) -> str:
     done = choices.season.record(results, source)
     return texts.RECORDED.format(new=done.new, known=done.known)
 

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring import Results
+from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring.settings import seconds
 from fieldmon.plot.grid import row_label
 
@@ -47,7 +46,7 @@ def _tap(choices: Choices, plant: int, result: int) -> str:
     count = st.session_state.get("scout_count")
     counted = float(count) if result == FOUND and count is not None else np.nan
     second = _second(choices, plant)
-    results = Results.of(
+    results = Inspections.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day),
         second=np.array([second]), count=np.array([counted]),
     )  # fmt: skip
@@ -69,7 +68,7 @@ def last_tap(choices: Choices) -> int | None:
 
 def last_said(choices: Choices) -> str:
     """Return what was recorded last on this day, in words."""
-    done = choices.season.history.inspections.on(choices.season.setup.day(choices.on))
+    done = choices.season.history.inspections.on(choices.on)
     if not len(done):
         return ""
     label = row_label(choices.plot.grid, done.plant[-1:])
@@ -86,29 +85,29 @@ def undo(choices: Choices, batch: int) -> str:
 @notices.reporting
 def longer(choices: Choices) -> str:
     """Make the working day an hour longer than it is, and than the work has taken so far."""
-    setup, history = choices.season.setup, choices.season.history
-    second = history.inspections.on(setup.day(choices.on)).second
+    settings, history = choices.season.settings, choices.season.history
+    second = history.inspections.on(choices.on).second
     # a scout who came in the evening is hours beyond the end
-    gone_s = np.nanmax(np.append(second, 0.0)) - seconds(setup.starts)
-    hours = max(setup.robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
-    robot = replace(setup.robot, hours=float(min(hours, 24.0)))
-    choices.season.change(replace(setup, robot=robot), setup)
+    gone_s = np.nanmax(np.append(second, 0.0)) - seconds(settings.starts)
+    hours = max(settings.robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
+    robot = replace(settings.robot, hours=float(min(hours, 24.0)))
+    choices.season.change(replace(settings, robot=robot), settings)
     return texts.NOW_USED.format(name=f"{robot.hours:g} h")
 
 
 def ask_start(choices: Choices) -> None:
     """Where the work begins later than planned, offer to begin now."""
-    setup, clock = choices.season.setup, browser.now()
-    begun = len(choices.season.history.inspections.on(setup.day(choices.on)))
-    late = clock.date() == choices.on and clock.time() > setup.starts
+    settings, clock = choices.season.settings, browser.now()
+    begun = len(choices.season.history.inspections.on(choices.on))
+    late = clock.date() == choices.on and clock.time() > settings.starts
     if not begun and late:
-        st.info(texts.SCOUT_START.format(start=f"{setup.starts:%H:%M}", now=f"{clock:%H:%M}"))
+        st.info(texts.SCOUT_START.format(start=f"{settings.starts:%H:%M}", now=f"{clock:%H:%M}"))
         st.button(texts.SCOUT_NOW, key="begin_now", on_click=_begin_now, args=(choices,))
 
 
 @notices.reporting
 def _begin_now(choices: Choices) -> str:
-    setup = choices.season.setup
+    settings = choices.season.settings
     starts = browser.now().replace(second=0, microsecond=0).time()
-    choices.season.change(replace(setup, starts=starts), setup)
+    choices.season.change(replace(settings, starts=starts), settings)
     return texts.NOW_USED.format(name=f"{starts:%H:%M}")

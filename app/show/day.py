@@ -64,7 +64,7 @@ def changes(choices: Choices) -> list[str]:
     """Return sentences on what changed since yesterday."""
     if choices.season is None:
         return []
-    if choices.on == choices.season.setup.begins:
+    if choices.on == choices.season.settings.begins:
         return [texts.CHANGED_FIRST]
     yesterday = str(choices.on - timedelta(days=1))
     before, now = (chosen_day.figures(choices, day) for day in (yesterday, choices.day))
@@ -110,9 +110,8 @@ def reasons(choices: Choices, plan: DayPlan) -> list[str]:
     season = choices.season
     if season is None or not len(plan.route):
         return []
-    setup, done = season.setup, season.history.inspections
-    now = setup.day(choices.on)
-    lately = (done.result == FOUND) & (done.day <= now) & (done.day > now - 7)
-    finds = dict(zip(done.plant[lately].tolist(), done.day[lately].tolist(), strict=True))
-    on = [texts.WHY_TODAY if d == now else f"{setup.date(d):%A}" for d in finds.values()]
+    done, now = season.history.inspections, np.datetime64(choices.on)
+    lately = (done.result == FOUND) & (done.date <= now) & (done.date > now - 7)
+    finds = dict(zip(done.plant[lately].tolist(), done.date[lately].tolist(), strict=True))
+    on = [texts.WHY_TODAY if day == choices.on else f"{day:%A}" for day in finds.values()]
     return explain(plan.scene, plan.work, np.array([*finds], np.int32), on)

@@ -51,7 +51,7 @@ def show(choices: Choices) -> None:
     plant = plant_at(choices.plot.grid, int(row), int(number))
     now = first = chosen_day.chance(choices)
     if choices.season is not None:
-        first = chosen_day.morning(choices, str(choices.season.setup.begins))
+        first = chosen_day.morning(choices, str(choices.season.settings.begins))
     st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
     for line in _inspections(choices, plant):
         st.markdown(line)
@@ -67,7 +67,7 @@ def _inspections(choices: Choices, plant: int) -> list[str]:
     for k in own.tolist():
         second = done.second[k]
         at = "" if np.isnan(second) else f" {int(second) // 3600:02d}:{int(second) // 60 % 60:02d}"
-        day = choices.units.day(season.setup.date(int(done.day[k])))
+        day = choices.units.day(done.date[k].item())
         result = texts.HISTORY_RESULTS[int(done.result[k])]
         lines.append(texts.HISTORY_LINE.format(day=day, time=at, result=result))
     return lines or [texts.HISTORY_NEVER]

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
         RecordSource,
         RiskSource,
     )
-    from fieldmon.monitoring import DayFigures, Progress, Remark
+    from fieldmon.monitoring import DayFigures, KeptMessage, Progress
     from fieldmon.planning.route import Route
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
@@ -172,9 +172,9 @@ def _season(path: Path, inode: int) -> Season:  # noqa: ARG001 - another file of
 
 
 @st.cache_resource(max_entries=_FEW)
-def remarks(path: str, _season: Season) -> tuple[Remark, ...]:  # noqa: ARG001
+def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:  # noqa: ARG001
     """Return what the imports had to say when a season began."""
-    return _season.remarks()
+    return _season.messages()
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
@@ -216,7 +216,7 @@ def progress(path: str, revision: str, day: str, _season: Season) -> Progress:  
 @st.cache_resource(max_entries=_MAPS)
 def season_hot_spots(path: str, revision: str, day: str, _season: Season) -> HotSpots:  # noqa: ARG001
     """Return where finds cluster on a day of a season."""
-    number = _season.setup.day(np.datetime64(day).item())
+    number = _season.settings.day(np.datetime64(day).item())
     return hot_spots(_season.plot.grid, _season.history.states(number))
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.infestation.prior import usable
+from fieldmon.infestation.observations import usable
 
 from . import cached
 
@@ -37,7 +37,7 @@ class DayRoute:
 
 def starts(choices: Choices, plan: DayPlan) -> datetime:
     """Return the local time at which the planned route, or what is left of it, starts."""
-    begins = STARTS if choices.season is None else choices.season.setup.starts
+    begins = STARTS if choices.season is None else choices.season.settings.starts
     gone = timedelta(seconds=plan.scene.robot.day_s - plan.scene.seconds_left)
     return datetime.combine(choices.on, begins) + gone
 
@@ -48,7 +48,7 @@ def route(choices: Choices) -> DayRoute:
     if season is not None and (not len(plan.route) or choices.on < season.last_date()):
         done = cached.worked(choices.key, choices.revision, choices.day, season)
         if len(done):
-            return DayRoute(done, datetime.combine(choices.on, season.setup.starts))
+            return DayRoute(done, datetime.combine(choices.on, season.settings.starts))
     return DayRoute(plan.route, starts(choices, plan))
 
 
@@ -73,7 +73,7 @@ def states(choices: Choices) -> cached.Array:
     """Return ``(n,)`` found (1), clean (0) or never inspected (-1); of records without a season."""
     if choices.season is None:
         return cached.recorded_states(*_recorded(choices))
-    return choices.season.history.states(choices.season.setup.day(choices.on))
+    return choices.season.history.states(choices.season.settings.day(choices.on))
 
 
 def hot_spots(choices: Choices) -> HotSpots:
@@ -92,7 +92,7 @@ def ages(choices: Choices) -> cached.Array:
     """Return ``(n,)`` days since each plant was inspected; -1: never."""
     if choices.season is None:
         return np.full(len(choices.plot.grid), -1)
-    day = choices.season.setup.day(choices.on)
+    day = choices.season.settings.day(choices.on)
     last = choices.season.history.last_inspected(day)
     return np.where(last < 0, -1, day - last)
 
@@ -117,7 +117,7 @@ def found(choices: Choices) -> cached.Array:
     """Return the plants found on the day, by number; none without a season."""
     if choices.season is None:
         return np.empty(0, np.int32)
-    done = choices.season.history.inspections.on(choices.season.setup.day(choices.on))
+    done = choices.season.history.inspections.on(choices.on)
     return np.unique(done.plant[done.result == FOUND])
 
 
@@ -125,13 +125,13 @@ def season_days(choices: Choices) -> list[str]:
     """Return the days (ISO) of a season from its first up to its last or the chosen one."""
     season = choices.season
     until: date = max(choices.on, season.last_date())
-    first = np.datetime64(season.setup.begins, "D")
+    first = np.datetime64(season.settings.begins, "D")
     return [str(day) for day in np.arange(first, np.datetime64(until, "D") + 1)]
 
 
-def remarks_on_records(choices: Choices) -> list[str]:
+def messages_on_records(choices: Choices) -> list[str]:
     """Return what planning says about records it cannot use."""
-    return list(usable(choices.records, np.datetime64(choices.day)).remarks())
+    return list(usable(choices.records, np.datetime64(choices.day)).messages())
 
 
 def _recorded(choices: Choices) -> tuple[str, Plot, Observations]:

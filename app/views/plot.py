@@ -54,8 +54,8 @@ def show(choices: Choices) -> None:
             st.info(texts.FIXED)
         with st.expander(texts.MESSAGES, expanded=True):
             bringing_files.show_messages(choices.messages)
-            for remark in chosen_day.remarks_on_records(choices):
-                st.markdown(f"- {remark}")
+            for message in chosen_day.messages_on_records(choices):
+                st.markdown(f"- {message}")
     with left:
         plot_figures.show(choices.plot, choices.units)
         _map(choices)

@@ -10,6 +10,7 @@ import numpy as np
 
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.samplers.base import NEVER
 
 if TYPE_CHECKING:
     import sqlite3
@@ -47,10 +48,10 @@ class DayFigures:
     chance_clean: float
 
     @classmethod
-    def of(cls, on: date, progress: Progress, ahead: PlotEstimate) -> DayFigures:
+    def of(cls, on: date, progress: Progress, estimate: PlotEstimate) -> DayFigures:
         """Return the figures of a day from what was done and what is believed."""
         done = progress.inspected_today, progress.found_today
-        return cls(on, *done, ahead.expected, ahead.low, ahead.high, ahead.chance_clean)
+        return cls(on, *done, estimate.expected, estimate.low, estimate.high, estimate.chance_clean)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,17 +77,16 @@ class Progress:
     @classmethod
     def of(cls, history: History, day: int) -> Progress:
         """Return the progress up to a day, given by its number."""
-        grid = history.grid
-        done, state = history.inspections.before(day + 1).looked, history.states(day)
-        today = done.on(day)
-        last = np.full(grid.n_rows, -1, np.int64)
-        np.maximum.at(last, grid.row[done.plant], done.day)
+        grid, state = history.grid, history.states(day)
+        today = history.on(day).inspected
+        last = np.full(grid.n_rows, NEVER, np.int64)
+        np.maximum.at(last, grid.row, history.last_inspected(day))
         return cls(
             inspected=int(np.count_nonzero(state >= 0)),
             found=int(np.count_nonzero(state == PRESENT)),
             inspected_today=len(today),
             found_today=int(np.count_nonzero(today.result == FOUND)),
-            days_since=np.where(last < 0, np.nan, day - last),
+            days_since=np.where(last == NEVER, np.nan, day - last),
         )
 
 

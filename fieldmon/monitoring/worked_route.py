@@ -29,15 +29,15 @@ def worked_route(season: Season, on: date) -> Route:
     Where a time is missing, all are those that driving and inspecting cost. Empty if nothing was
     recorded.
     """
-    setup, aisles = season.setup, season.plot.aisles
-    robot = setup.robot
-    done = _in_order(season.history.inspections.on(setup.day(on)))
+    settings, aisles = season.settings, season.plot.aisles
+    robot = settings.robot
+    done = _in_order(season.history.on(settings.day(on)))
     scene = Scene(
         aisles=aisles, robot=robot, chance=season.morning(on), seconds_left=robot.day_s,
         last_inspected=np.full(len(aisles.grid), NEVER, np.int32),
     )  # fmt: skip
     n, drive_s = len(done), _drive_s(scene, done.plant)
-    leave_s = np.maximum(done.second - seconds(setup.starts), 0.0)
+    leave_s = np.maximum(done.second - seconds(settings.starts), 0.0)
     if not np.isfinite(leave_s).all():
         leave_s = np.cumsum(drive_s[:n] + robot.visit_s)
     # a find is noted while standing there: the time of arrival is not known, and not needed
@@ -52,7 +52,7 @@ def worked_route(season: Season, on: date) -> Route:
 def _in_order(done: Inspections) -> Inspections:
     """Return a day's inspections by time, if all have one, else as they were recorded."""
     if np.isfinite(done.second).all():
-        return done.of(np.argsort(done.second, kind="stable"))
+        return done.take(np.argsort(done.second, kind="stable"))
     return done
 
 

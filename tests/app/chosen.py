@@ -43,6 +43,6 @@ def chosen(plot, records=None, season=None, **more):
 
 def in_season(season, day=DAY):
     """Return choices of a season on a day."""
-    setup = season.setup
-    return chosen(season.plot, season.observations, season, robot=setup.robot,
-                  sampler=setup.sampler, day=day.isoformat())  # fmt: skip
+    settings = season.settings
+    return chosen(season.plot, season.observations, season, robot=settings.robot,
+                  sampler=settings.sampler, day=day.isoformat())  # fmt: skip

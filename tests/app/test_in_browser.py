@@ -15,10 +15,11 @@ from PIL import Image
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
 from app.show.maps import colours, deck
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.read import read_lines, read_plots, read_records
-from fieldmon.monitoring import Results, Season, SeasonSetup
+from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.plot import Plot
 from tests.app.driving import zipped
@@ -177,9 +178,9 @@ def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address,
     project = season(served_seasons / "States.gpkg", plot)
     found, clean, never = (np.arange(k, len(plot.grid), 97) for k in (0, 31, 62))
     plants, result = np.concatenate([found, clean]), np.repeat([1, 0], [len(found), len(clean)])
-    project.record(Results.of(plants, result, np.datetime64("2026-11-16")), "test")
+    project.record(Inspections.of(plants, result, np.datetime64("2026-11-16")), "test")
     later = found[:30] + 80
-    project.record(Results.of(later, np.ones(30, int), np.datetime64("2026-11-17")), "test")
+    project.record(Inspections.of(later, np.ones(30, int), np.datetime64("2026-11-17")), "test")
     page.goto(f"{address}/map?season=States")
     page.wait_for_selector(f"{MAP} canvas", timeout=120_000)
     page.get_by_text("found, clean, never inspected", exact=True).click()
@@ -234,7 +235,7 @@ def scale_px_of_m(page):
 
 
 def season(path, plot):
-    return Season.create(path, plot, Observations.none(), SeasonSetup(date(2026, 11, 16)))
+    return Season.create(path, plot, Observations.none(), MonitoringSettings(date(2026, 11, 16)))
 
 
 def test_a_day_begins_with_files_and_ends_with_tomorrows_route(

@@ -32,37 +32,36 @@ def test_the_days_kept_are_those_on_which_something_happened(worked):
 def test_a_day_in_figures_is_what_its_status_says_kept_or_worked_out(worked, day):
     on = BEGINS + timedelta(days=day)
     now, figures = worked.status(on), worked.day_figures(on)
-    ahead = now.outlook
+    estimate = now.estimate
     assert figures == DayFigures(
-        on, now.inspected_today, now.found_today, pytest.approx(ahead.expected, rel=1e-12),
-        ahead.low, ahead.high, pytest.approx(ahead.chance_clean, rel=1e-12),
+        on, now.inspected_today, now.found_today, pytest.approx(estimate.expected, rel=1e-12),
+        estimate.low, estimate.high, pytest.approx(estimate.chance_clean, rel=1e-12),
     )  # fmt: skip
 
 
 def test_kept_figures_are_those_worked_out_anew_by_another_program(worked):
     again = Season(worked.path)
     for kept in worked.days():
-        day = again.setup.day(kept.on)
+        day = again.settings.day(kept.on)
         assert Progress.of(again.history, day).inspected_today == kept.inspected
         assert again.day_figures(kept.on) == kept
 
 
 def test_progress_counts_every_plant_once_and_finds_for_good(worked):
-    done = worked.history.inspections
     for day in range(6):
-        so_far = done.before(day + 1)
+        so_far, on_day = worked.history.until(day), worked.history.on(day)
         now = worked.progress(BEGINS + timedelta(days=day))
         assert now.inspected == len(set(so_far.plant.tolist()))
         assert now.found == len(set(so_far.plant[so_far.result == 1].tolist()))
-        assert now.inspected_today == len(done.on(day))
-        assert now.found_today == np.count_nonzero(done.on(day).result == 1)
+        assert now.inspected_today == len(on_day)
+        assert now.found_today == np.count_nonzero(on_day.result == 1)
 
 
 def test_days_since_a_row_was_inspected_are_counted_from_its_latest_plant(worked):
     done, row = worked.history.inspections, worked.plot.grid.row
     since = worked.progress(BEGINS + timedelta(days=6)).days_since
     for r, days in enumerate(since.tolist()):
-        own = done.day[row[done.plant] == r]
+        own = worked.history.days[row[done.plant] == r]
         assert (6 - own.max() == days) if own.size else np.isnan(days)
     assert np.isnan(worked.progress(BEGINS).days_since).any()
 

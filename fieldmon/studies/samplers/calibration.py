@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.belief import IndependentPlants, Pairs
 from fieldmon.infestation.ensemble import Ensemble
-from fieldmon.infestation.plot_estimate import PlotEstimate, outlook
+from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.plot_estimate import PlotEstimate, estimate_plot
 from fieldmon.io.html import page
 from fieldmon.simulation.season import days
 from fieldmon.studies.charts import Line, line_chart
@@ -32,8 +33,8 @@ if TYPE_CHECKING:
 
 BELIEFS: dict[str, Believe] = {
     "independent plants": IndependentPlants,
-    "pairs": Pairs.of,
-    "pairs, clustering known": partial(Pairs.of, company=0.65),
+    "pairs": PairApproximation.of,
+    "pairs, clustering known": partial(PairApproximation.of, clustering=0.65),
     "ensemble": Ensemble.of,
 }
 EDGES = (0.0, 0.001, 0.01, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0)
@@ -133,18 +134,18 @@ def calibration(
                 truth = day.infested
                 chances.append(belief.chance)
                 truths.append(truth)
-                ahead.append(_outlook(belief, cell.aisles.grid))
+                ahead.append(_estimate(belief, cell.aisles.grid))
                 counts.append(np.count_nonzero(truth))
     return _compared(chances, truths, (ahead, np.array(counts)), sum(seconds) / len(counts))
 
 
-def _outlook(belief: Belief, grid: PlantGrid) -> PlotEstimate:
+def _estimate(belief: Belief, grid: PlantGrid) -> PlotEstimate:
     if isinstance(belief, Ensemble):
-        return belief.outlook()
+        return belief.estimate()
     if belief.pair_chance is not None:
-        return outlook(grid, belief.chance, belief.pair_chance)
+        return estimate_plot(grid, belief.chance, belief.pair_chance)
     start, other = grid.adjacent
-    return outlook(
+    return estimate_plot(
         grid, belief.chance, np.repeat(belief.chance, np.diff(start)) * belief.chance[other]
     )
 

@@ -12,8 +12,8 @@ def test_a_season_begins_and_is_found_again_by_a_new_session(season):
     assert layer(app, "route")["data"] == route
     assert "has begun" in app.success[0].value
     assert app.selectbox(key="season").value == "Gate 2026"
-    assert season().setup.begins == date(2026, 11, 16)
-    assert season().remarks()
+    assert season().settings.begins == date(2026, 11, 16)
+    assert season().messages()
     again = opened("Gate 2026")
     assert heading(again) == "Gate · 2026-11-16"
     assert "first day of the season" in texts_of(again)

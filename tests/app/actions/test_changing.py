@@ -6,9 +6,9 @@ from tests.app.driving import go, metric, press, until
 
 
 def test_more_hours_than_the_slider_had_and_odd_seconds_leave_the_page_whole(season_app, season):
-    project, setup = season(), season().setup
-    robot = replace(setup.robot, hours=17.0, look_s=12.5)
-    project.change(replace(setup, robot=robot), setup)
+    project, settings = season(), season().settings
+    robot = replace(settings.robot, hours=17.0, look_s=12.5)
+    project.change(replace(settings, robot=robot), settings)
     go(season_app, "today")
     assert not season_app.exception
     assert next(one for one in season_app.slider if one.key.startswith("hours ")).value == 17.0
@@ -18,9 +18,9 @@ def test_more_hours_than_the_slider_had_and_odd_seconds_leave_the_page_whole(sea
 def test_other_hours_are_used_from_now_on_when_asked_for(season_app, season):
     hours = next(s for s in season_app.slider if s.label == "Working hours")
     hours.set_value(4.0).run()
-    assert season().setup.robot.hours == 12.0
+    assert season().settings.robot.hours == 12.0
     press(season_app, "Use from now on")
-    assert season().setup.robot.hours == 4.0
+    assert season().settings.robot.hours == 4.0
     assert int(metric(season_app, "Plants to inspect").split(" / ")[0]) < 300
 
 
@@ -31,14 +31,14 @@ def hours_box(app):
 def test_changes_of_settings_are_taken_back_one_by_one(season_app, season):
     go(season_app, "season")
     assert not [one for one in season_app.button if one.key == "undo_change"]
-    setup = season().setup
+    settings = season().settings
     for hours in (7.0, 16.0):
         hours_box(season_app).set_value(hours).run()
         press(season_app, "Use from now on")
     press(season_app, "Back to Adaptive · 7 h · 40 s, from 06:00")
-    assert season().setup.robot.hours == 7.0
+    assert season().settings.robot.hours == 7.0
     press(season_app, "Back to Adaptive · 12 h · 40 s, from 06:00")
-    assert season().setup == setup
+    assert season().settings == settings
     assert not [one for one in season_app.button if one.key == "undo_change"]
 
 
@@ -51,4 +51,4 @@ def test_a_strategy_in_use_is_that_of_the_season_and_says_so(season_app, season)
     until(lambda: len(season_app.run().dataframe))
     press(season_app, "Use this strategy")
     assert season_app.success[0].value == "Naive · 12 h · 40 s is in use now."
-    assert season().setup.sampler == "naive"
+    assert season().settings.sampler == "naive"

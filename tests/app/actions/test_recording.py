@@ -5,7 +5,8 @@ from datetime import date
 import numpy as np
 import pytest
 
-from fieldmon.monitoring import Results, Season
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import Season
 from tests.app.driving import go, metric, press, texts_of
 
 
@@ -73,7 +74,7 @@ def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(
     season_app, season, tmp_path
 ):
     mine = season()
-    twin = Season.create(tmp_path / "twin.gpkg", mine.plot, mine.observations, mine.setup)
+    twin = Season.create(tmp_path / "twin.gpkg", mine.plot, mine.observations, mine.settings)
     for day in range(16, 26):
         on = date(2026, 11, day)
         season_app.date_input(key="day Gate 2026").set_value(on).run()
@@ -96,4 +97,4 @@ def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(
 
 def record_clean(project, on, n):
     plants = project.plan(on, keep=False).route.plant[:n]
-    project.record(Results.of(plants, np.zeros(n, np.int8), np.datetime64(on)), "twin")
+    project.record(Inspections.of(plants, np.zeros(n, np.int8), np.datetime64(on)), "twin")

@@ -5,7 +5,7 @@ from datetime import date
 
 import numpy as np
 
-from fieldmon.monitoring import Results
+from fieldmon.infestation.inspections import Inspections
 from tests.app.driving import go, opened, tap, texts_of
 
 
@@ -45,14 +45,14 @@ def test_the_scout_takes_the_last_tap_back(season_app, season):
 
 
 def test_one_hour_more_is_one_however_late_it_is(season_app, season):
-    project, setup = season(), season().setup
-    project.change(replace(setup, robot=setup.robot.with_hours(2.0)), setup)
-    evening = Results.of(np.array([7]), np.array([0]), np.datetime64("2026-11-16"),
+    project, settings = season(), season().settings
+    project.change(replace(settings, robot=settings.robot.with_hours(2.0)), settings)
+    evening = Inspections.of(np.array([7]), np.array([0]), np.datetime64("2026-11-16"),
                          second=np.array([17 * 3600.0 + 1320.0]))  # fmt: skip
     project.record(evening, "scout mode")
     go(season_app, "scout")
     assert "Done for today" in texts_of(season_app)
     tap(season_app, "scout_hour")
     assert "Done for today" not in texts_of(season_app)
-    assert season().setup.robot.hours == 12.5
+    assert season().settings.robot.hours == 12.5
     tap(season_app, "scout_clean")

@@ -5,7 +5,8 @@ from datetime import date
 import numpy as np
 import pytest
 
-from fieldmon.monitoring import Results, worked_route
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import worked_route
 from tests.app.driving import go, layer
 
 
@@ -26,7 +27,8 @@ def test_a_day_that_was_worked_is_played_as_it_was_worked(season_app, season):
     plants = np.array([900, 5, 200])
     for on, at_s in (("2026-11-16", [25_200.0, 21_660.0, 28_800.0]), ("2026-11-17", [np.nan] * 3)):
         season().record(
-            Results.of(plants, np.zeros(3, np.int8), np.datetime64(on), second=np.array(at_s)), on
+            Inspections.of(plants, np.zeros(3, np.int8), np.datetime64(on), second=np.array(at_s)),
+            on,
         )
     noted, driven = (worked_route(season(), date(2026, 11, day)) for day in (16, 17))
     assert noted.plant.tolist() == [5, 900, 200], "in the order of the times noted"
@@ -34,7 +36,7 @@ def test_a_day_that_was_worked_is_played_as_it_was_worked(season_app, season):
     assert noted.line_m[noted.line_stop] == pytest.approx(noted.aisles.stop_m[noted.plant])
     assert driven.plant.tolist() == plants.tolist()
     gaps = np.diff(driven.leave_s, prepend=0.0)
-    assert (gaps > season().setup.robot.visit_s).all()
+    assert (gaps > season().settings.robot.visit_s).all()
     go(season_app, "map")
     season_app.select_slider[0].set_value("2026-11-16").run()
     path = layer(season_app, "route")["data"][0]["path"]

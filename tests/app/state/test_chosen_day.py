@@ -34,7 +34,7 @@ def on(season, day):
 
 def test_a_day_that_is_planned_starts_with_the_work_and_later_once_something_is_done(worked):
     morning, begun = on(worked, 1), on(worked, 2)
-    starts = worked.setup.starts
+    starts = worked.settings.starts
     assert chosen_day.starts(morning, morning.plan()) == datetime.combine(morning.on, starts)
     assert chosen_day.starts(begun, begun.plan()) > datetime.combine(begun.on, starts)
     plot = a_plot()
@@ -44,7 +44,7 @@ def test_a_day_that_is_planned_starts_with_the_work_and_later_once_something_is_
 
 def test_the_route_of_a_day_behind_is_as_it_was_worked_of_the_last_as_it_is_planned(worked):
     before, last = on(worked, 0), on(worked, 2)
-    done = worked.history.inspections.on(0).plant
+    done = worked.history.on(0).plant
     assert chosen_day.route(before).route.plant.tolist() == done.tolist()
     assert chosen_day.route(last).route.plant.tolist() == last.plan().route.plant.tolist()
     idle = on(worked, 1)
@@ -71,7 +71,7 @@ def test_ages_count_from_the_last_inspection(worked):
     ages = chosen_day.ages(choices)
     done = worked.history.inspections
     for plant in np.flatnonzero(ages >= 0):
-        assert ages[plant] == 5 - done.day[done.plant == plant].max()
+        assert ages[plant] == 5 - worked.settings.day(done.date[done.plant == plant].max().item())
 
 
 def test_figures_so_far_are_those_kept_up_to_the_day_and_that_day(worked):
@@ -95,7 +95,7 @@ def test_without_a_season_records_say_what_is_known():
     assert (state >= 0).sum() == 3
     assert set(chosen_day.ages(choices).tolist()) == {-1}
     assert len(chosen_day.found(choices)) == 0
-    assert chosen_day.remarks_on_records(choices) == []
+    assert chosen_day.messages_on_records(choices) == []
     early = chosen(plot, records_at(plot, [7], [1], day="2027-01-01"))
     assert set(chosen_day.states(early).tolist()) == {-1}
-    assert chosen_day.remarks_on_records(early) != []
+    assert chosen_day.messages_on_records(early) != []

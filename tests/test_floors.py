@@ -160,7 +160,7 @@ def test_no_module_needs_itself_round_a_circle():
 @pytest.mark.parametrize(
     ("here", "line"),
     [
-        ("fieldmon.plot.grid", "from fieldmon.simulation.season import days"),
+        ("fieldmon.plot.grid", "from fieldmon.simulation.season import simulated_days"),
         ("fieldmon.simulation.season", "from fieldmon.cli import main"),
         ("fieldmon.simulation.season", "from fieldmon.monitoring import Season"),
         ("fieldmon.samplers.base", "import geopandas"),

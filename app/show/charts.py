@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.monitoring import DayFigures
-    from fieldmon.simulation.metrics import SeasonFigures
+    from fieldmon.simulation.metrics import SeasonMetrics
 
 
 # Okabe & Ito's colours for the colour-blind
@@ -27,7 +27,7 @@ _LEGEND = alt.Legend(orient="top", title=None, columns=2, labelLimit=300, symbol
 _GREY = "#7F7F7F"
 
 
-def detection(seasons: dict[str, SeasonFigures], day: int, axes: tuple[str, str]) -> alt.LayerChart:
+def detection(seasons: dict[str, SeasonMetrics], day: int, axes: tuple[str, str]) -> alt.LayerChart:
     """Return detection per day, a line for each sampler, with a rule at the day shown."""
     table = pd.concat(
         pd.DataFrame({"strategy": name, "day": range(1, len(f.found) + 1), "mean": f.detection_pct})
@@ -79,7 +79,7 @@ def _dashes(names: list[str]) -> alt.Scale:
     return alt.Scale(domain=names, range=dashes)
 
 
-def found(figures: SeasonFigures, axes: tuple[str, str]) -> alt.Chart:
+def found(figures: SeasonMetrics, axes: tuple[str, str]) -> alt.Chart:
     """Return the plants found on each day."""
     table = pd.DataFrame({"day": range(1, len(figures.found) + 1), "found": figures.found})
     return (

@@ -17,12 +17,12 @@ from .maps import colours, marks, plant_layers, route_layers
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.simulation.season import Day
+    from fieldmon.simulation.season import SimulatedDay
 
     from ..state.choices import Choices
 
 
-def states(season: list[Day], number: int) -> NDArray[np.int8]:
+def states(season: list[SimulatedDay], number: int) -> NDArray[np.int8]:
     """Return ``(n,)`` found (1), clean (0) or never inspected (-1) after a day, from 0."""
     state = np.where(season[number].last_inspected >= 0, 0, -1).astype(np.int8)
     for day in season[: number + 1]:
@@ -30,7 +30,7 @@ def states(season: list[Day], number: int) -> NDArray[np.int8]:
     return state
 
 
-def layers(choices: Choices, season: list[Day], number: int, *, truth: bool) -> list:
+def layers(choices: Choices, season: list[SimulatedDay], number: int, *, truth: bool) -> list:
     """Return what is known after a day and the route driven; `truth`: what is infested, too."""
     grid, day = choices.plot.grid, season[number]
     state = states(season, number)
@@ -47,7 +47,7 @@ def layers(choices: Choices, season: list[Day], number: int, *, truth: bool) -> 
     return [*shown, *marks.truth(grid, _left(day), dark=choices.dark)] if truth else shown
 
 
-def _left(day: Day) -> NDArray[np.bool_]:
+def _left(day: SimulatedDay) -> NDArray[np.bool_]:
     """Return ``(n,)`` whether each plant is infested and not found yet."""
     left = day.infested.copy()
     left[day.work.plant[day.work.found]] = False

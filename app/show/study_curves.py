@@ -9,10 +9,10 @@ import pandas as pd
 from fieldmon.studies.thesis.chapter5.study import label_of
 
 if TYPE_CHECKING:
-    from fieldmon.studies.thesis.chapter5.study import Part
+    from fieldmon.studies.thesis.chapter5.study import StudyPart
 
 
-def curves(part: Part) -> pd.DataFrame:
+def curves(part: StudyPart) -> pd.DataFrame:
     """Return the mean detection day by day, a column a configuration."""
     columns = {}
     for runs in part.runs:

@@ -12,7 +12,9 @@ from ..words import texts
 from ..words.strategies import strategy_name
 
 if TYPE_CHECKING:
-    from ..state.comparison import Estimate, Outcome, Strategy
+    from fieldmon.simulation.statistics import SummaryStatistics
+
+    from ..state.comparison import Outcome, Strategy
 
 
 def name(strategy: Strategy) -> str:
@@ -51,12 +53,12 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
     )
 
 
-def _share(e: Estimate) -> Estimate:
+def _share(e: SummaryStatistics) -> SummaryStatistics:
     """Return an estimate of a percentage within 0 to 100, which Student's t does not know of."""
     return replace(e, low=max(e.low, 0.0), high=min(e.high, 100.0))
 
 
-def _interval(e: Estimate, form: str, unit: str = "") -> str:
+def _interval(e: SummaryStatistics, form: str, unit: str = "") -> str:
     mean = form.format(e.mean) + unit
     if isnan(e.low):
         return mean

@@ -15,7 +15,8 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 
 _CORNERS = [(35.15, 30.36), (35.1504, 30.3601), (35.1503, 30.3604), (35.15, 30.3603)]
 
@@ -33,4 +34,4 @@ def load_simulation() -> None:
     for name in ("adaptive", "dynamic", "naive"):
         start = Start(np.ones(9, np.bool_), np.full(9, 0.1))
         settings, aisles = SeasonSettings(n_days=2), Aisles.of(rectangle(3, 3))
-        list(days(aisles, Robot(), sampler(name), start, settings, RandomStreams(0)))
+        list(simulated_days(aisles, Robot(), sampler(name), start, settings, RandomStreams(0)))

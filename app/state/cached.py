@@ -15,15 +15,16 @@ import streamlit as st
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.hotspots import HotSpots, hot_spots, record_states
-from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
+from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.infestation.spread import Spread
 from fieldmon.io import prepare, read
 from fieldmon.io.rasters.read import read_backdrop
 from fieldmon.monitoring import Season, worked_route
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from
 from fieldmon.samplers import sampler
-from fieldmon.simulation.metrics import SeasonFigures, figures
-from fieldmon.simulation.season import Day, SeasonSettings, Start, days
+from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
+from fieldmon.simulation.season import SeasonSettings, SimulatedDay, simulated_days
+from fieldmon.simulation.start import season_start
 
 from ..words import texts
 from .comparison import Comparison
@@ -287,15 +288,15 @@ def simulated_season(
     robot: Robot,
     _plot: Plot,
     _chance: np.ndarray,
-) -> tuple[list[Day], SeasonFigures]:
+) -> tuple[list[SimulatedDay], SeasonMetrics]:
     """Return a simulated season and its figures; `key` stands for plot, records and day.
 
     `numbers` are days, share infested at the start, spread a night, and seed.
     """
     n_days, share, rate, seed = numbers
-    drawn = start_infested(_chance, share, RandomStreams(seed).of("start"))
-    begin = Start(drawn[_plot.grid.vine], _chance)
+    streams = RandomStreams(seed)
+    start = season_start(_plot.grid, _chance, share, streams)
     settings = SeasonSettings(n_days=n_days, spread=Spread(rate))
-    chance = RandomStreams(seed)
-    walk = list(days(_plot.aisles, robot, sampler(sampler_name), begin, settings, chance))
-    return walk, figures(walk)
+    decides = sampler(sampler_name)
+    walk = list(simulated_days(_plot.aisles, robot, decides, start, settings, streams))
+    return walk, season_metrics(walk)

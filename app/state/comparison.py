@@ -8,29 +8,27 @@ are drawn from streams that know nothing of the strategy. So differences are tak
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import stdtrit
 
-from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.prior import start_infested
-from fieldmon.infestation.spread import Spread
-from fieldmon.samplers import sampler
-from fieldmon.simulation.metrics import SeasonFigures, figures
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation import executor
+from fieldmon.simulation.design import Combination
+from fieldmon.simulation.experiment import Experiment, Memory, run
+from fieldmon.simulation.statistics import half_interval, summary_statistics
+from fieldmon.simulation.worker import simulated_season
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
+    from fieldmon.simulation.metrics import SeasonMetrics
+    from fieldmon.simulation.statistics import SummaryStatistics
 
     Floats = NDArray[np.float64]
-
-_SURE = 0.975
 
 
 @dataclass(frozen=True, order=True)
@@ -78,15 +76,6 @@ class ComparisonSettings:
 
 
 @dataclass(frozen=True)
-class Estimate:
-    """A mean over seeds with its 95 % interval (Student's t)."""
-
-    mean: float
-    low: float
-    high: float
-
-
-@dataclass(frozen=True)
 class Outcome:
     """What a strategy came to.
 
@@ -107,11 +96,11 @@ class Outcome:
     """
 
     strategy: Strategy
-    loss: Estimate
-    detection_pct: Estimate
+    loss: SummaryStatistics
+    detection_pct: SummaryStatistics
     visited_pct: float
     half_day: float | None
-    behind: Estimate | None
+    behind: SummaryStatistics | None
 
 
 class Comparison:
@@ -122,22 +111,27 @@ class Comparison:
     ) -> None:
         self.settings = settings
         self.problem: FieldmonError | None = None
-        self._plot, self._chance, self._robot = plot, chance, robot
-        self._seasons: dict[Strategy, list[SeasonFigures]] = {
-            strategy: [] for strategy in settings.strategies
-        }
+        self._prepared, self._robot = (plot, chance), robot
+        self._experiment = Experiment(
+            settings=settings.strategies,
+            seeds=range(1, settings.seeds + 1),
+            simulate=self._season,
+            chunk_size=lambda _: 1,
+            seed_by_seed=True,
+        )
+        self._made: Memory[SeasonMetrics] = Memory()
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
 
     @property
     def total(self) -> int:
         """Return the number of seasons to simulate."""
-        return len(self.settings.strategies) * self.settings.seeds
+        return len(self._experiment)
 
     @property
     def done(self) -> int:
         """Return the number of seasons simulated."""
-        return sum(len(walked) for walked in list(self._seasons.values()))
+        return len(self._made)
 
     @property
     def running(self) -> bool:
@@ -160,75 +154,63 @@ class Comparison:
         if self._thread is not None:
             self._thread.join(timeout_s)
 
-    def seasons(self) -> dict[Strategy, list[SeasonFigures]]:
+    def seasons(self) -> dict[Strategy, list[SeasonMetrics]]:
         """Return the seasons of all seeds that every strategy has been through."""
-        full = min(len(walked) for walked in self._seasons.values())
-        return {strategy: walked[:full] for strategy, walked in self._seasons.items()}
+        made: dict[Strategy, list[SeasonMetrics]] = {one: [] for one in self.settings.strategies}
+        for chunk in self._experiment.chunks():
+            if chunk.key in self._made:
+                made[chunk.setting].append(self._made[chunk.key])
+        full = min(len(seasons) for seasons in made.values())
+        return {strategy: seasons[:full] for strategy, seasons in made.items()}
 
     def _work(self) -> None:
         try:
-            for seed in range(1, self.settings.seeds + 1):
-                for strategy, walked in self._seasons.items():
-                    if self._stop.is_set():
-                        return
-                    if len(walked) < seed:
-                        walked.append(self._season(strategy, seed))
+            run(self._experiment, executor.here(), self._made, stop=self._stop.is_set)
         except FieldmonError as error:
             self.problem = error
 
-    def _season(self, strategy: Strategy, seed: int) -> SeasonFigures:
-        streams = RandomStreams(seed)
-        drawn = start_infested(self._chance, self.settings.share, streams.of("start"))
-        begin = Start(drawn[self._plot.grid.vine], self._chance)
-        settings = SeasonSettings(n_days=self.settings.n_days, spread=Spread(self.settings.rate))
-        robot = replace(self._robot, hours=strategy.hours, look_s=strategy.inspection_s)
-        decides = sampler(strategy.sampler)
-        return figures(days(self._plot.aisles, robot, decides, begin, settings, streams))
+    def _season(self, strategy: Strategy, seeds: range) -> SeasonMetrics:
+        settings = self.settings
+        levels = Combination(
+            strategy.sampler, strategy.hours, strategy.inspection_s, settings.share, settings.rate
+        )
+        return simulated_season(self._prepared, self._robot, levels, seeds.start, settings.n_days)
 
 
-def estimate(values: Floats) -> Estimate:
-    """Return the mean of values ``(s,)`` and its interval; one value has no interval (NaN)."""
-    mean, n = float(np.mean(values)), len(values)
-    if n < 2:
-        return Estimate(mean, np.nan, np.nan)
-    half = float(stdtrit(n - 1, _SURE) * np.std(values, ddof=1) / np.sqrt(n))
-    return Estimate(mean, mean - half, mean + half)
-
-
-def outcomes(seasons: dict[Strategy, list[SeasonFigures]]) -> list[Outcome]:
+def outcomes(seasons: dict[Strategy, list[SeasonMetrics]]) -> list[Outcome]:
     """Return what each strategy came to, the best first; empty while no seed is complete."""
     if not all(seasons.values()):
         return []
     losses = {
-        strategy: np.array([s.infested_plant_days for s in walked], float)
-        for strategy, walked in seasons.items()
+        strategy: np.array([s.infested_plant_days for s in made], float)
+        for strategy, made in seasons.items()
     }
     ranked = sorted(losses, key=lambda strategy: losses[strategy].mean())
     best = losses[ranked[0]]
     return [
         Outcome(
             strategy,
-            estimate(losses[strategy]),
-            estimate(np.array([s.detection_pct[-1] for s in seasons[strategy]])),
+            summary_statistics(losses[strategy]),
+            summary_statistics(np.array([s.detection_pct[-1] for s in seasons[strategy]])),
             float(np.mean([s.visited_pct.mean() for s in seasons[strategy]])),
             _half_day(seasons[strategy]),
-            None if strategy == ranked[0] else estimate(losses[strategy] - best),
+            None if strategy == ranked[0] else summary_statistics(losses[strategy] - best),
         )
         for strategy in ranked
     ]
 
 
-def curve(walked: list[SeasonFigures]) -> tuple[Floats, Floats, Floats]:
+def curve(made: list[SeasonMetrics]) -> tuple[Floats, Floats, Floats]:
     """Return detection by day over the seeds, ``(d,)`` each: mean, and ends of its interval."""
-    percent = np.stack([s.detection_pct for s in walked])
+    percent = np.stack([s.detection_pct for s in made])
     mean, n = percent.mean(axis=0), len(percent)
     if n < 2:
         return mean, mean, mean
-    half = stdtrit(n - 1, _SURE) * percent.std(axis=0, ddof=1) / np.sqrt(n)
+    half = half_interval(percent.std(axis=0, ddof=1), n)
     return mean, np.maximum(mean - half, 0.0), np.minimum(mean + half, 100.0)
 
 
-def _half_day(walked: list[SeasonFigures]) -> float | None:
-    reached = [np.inf if (day := s.first_day(50.0)) is None else day for s in walked]
+def _half_day(made: list[SeasonMetrics]) -> float | None:
+    reached = [np.inf if (day := s.first_day(50.0)) is None else day for s in made]
     middle = float(np.median(reached))
     return middle if np.isfinite(middle) else None

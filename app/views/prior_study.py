@@ -12,11 +12,11 @@ from fieldmon.studies.thesis.chapter5.published import PARTS
 from fieldmon.studies.thesis.chapter5.report import report_html
 from fieldmon.studies.thesis.chapter5.study import (
     TITLES,
-    csv_text,
     rows,
     run_prior,
     run_site,
 )
+from fieldmon.studies.tidy_csv import csv_text
 
 from ..actions import studying
 from ..show import charts
@@ -24,7 +24,7 @@ from ..show.study_curves import curves
 from ..words import texts
 
 if TYPE_CHECKING:
-    from fieldmon.studies.thesis.chapter5.study import Study
+    from fieldmon.studies.thesis.chapter5.study import PriorStudy
 
     from ..actions.studying import Progress
     from ..state.choices import Choices
@@ -55,13 +55,13 @@ def show(choices: Choices | None) -> None:
         _result(*kept[1:])
 
 
-def _run(part: str, seeds: int, own: Choices | None, progress: Progress) -> Study:
+def _run(part: str, seeds: int, own: Choices | None, progress: Progress) -> PriorStudy:
     if own is not None:
         return run_site(studying.site_of(own), seeds, progress=progress)
     return run_prior((part,), seeds, progress=progress)
 
 
-def _result(made: Study, table_csv: str, report: str) -> None:
+def _result(made: PriorStudy, table_csv: str, report: str) -> None:
     for part in made.parts:
         st.markdown(f"**{part.title}**")
         chart = charts.curves(curves(part), (texts.DAY_AXIS, texts.DETECTION_AXIS))

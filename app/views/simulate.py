@@ -13,7 +13,7 @@ from ..words import texts
 from ..words.strategies import sampler_name
 
 if TYPE_CHECKING:
-    from fieldmon.simulation.season import Day
+    from fieldmon.simulation.season import SimulatedDay
 
     from ..state.choices import Choices
 
@@ -57,7 +57,7 @@ def _names(choices: Choices) -> list[str]:
     return list(dict.fromkeys([choices.sampler, *chosen]))
 
 
-def _figures(day: Day) -> None:
+def _figures(day: SimulatedDay) -> None:
     with st.container(horizontal=True):
         st.metric(texts.FOUND_SO_FAR, f"{day.detection_pct:.0f} %", width="content")
         st.metric(texts.FOUND_TODAY, day.found, width="content")
@@ -65,7 +65,7 @@ def _figures(day: Day) -> None:
         st.metric(texts.VISITED_TODAY, f"{day.visited_pct:.0f} %", width="content")
 
 
-def _map(choices: Choices, season: list[Day], number: int) -> None:
+def _map(choices: Choices, season: list[SimulatedDay], number: int) -> None:
     truth = st.toggle(texts.SHOW_TRUTH, key="truth")
     layers = simulated_day.layers(choices, season, number, truth=truth)
     field_map.draw(choices, layers, "season_map")

@@ -35,7 +35,8 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 from tests.benchmarks.test_bench_grid import crooked_plot
 
 SIZES = (100, 1_000, 10_000, 100_000, 1_000_000)
@@ -102,7 +103,7 @@ def measure(n_plants):
 
 def season(aisles, name, start, believe=PairApproximation.of):
     settings = SeasonSettings(n_days=25, spread=Spread(0.1), believe=believe)
-    walk = days(aisles, Robot(), sampler(name), start, settings, RandomStreams(2))
+    walk = simulated_days(aisles, Robot(), sampler(name), start, settings, RandomStreams(2))
     return [day.detection_pct for day in walk]
 
 

@@ -7,9 +7,7 @@ that returns what it made, and a line in `SURFACES`: those of the app belong the
 
 import csv
 from concurrent.futures import Future
-from contextlib import nullcontext
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -26,9 +24,7 @@ from fieldmon.io.read import read_plots
 from fieldmon.monitoring import Season
 from fieldmon.plot.grid import plant_at
 from fieldmon.plot.projection import Frame
-from fieldmon.simulation import executor, results
-from fieldmon.simulation.design import chunks
-from fieldmon.simulation.worker import run_chunk
+from fieldmon.simulation import executor
 from tests.parcels import write_geojson
 
 FRAME = Frame(5.0, 45.0)
@@ -146,22 +142,11 @@ class AtOnce:
         pass
 
 
-def run_at_once(_client, folder, sites, design, _progress):
-    """Simulate a study here and now."""
-    results.begin(folder, sites, design)
-    for chunk in chunks(sites, design):
-        results.keep(folder, chunk, run_chunk(chunk))
-    return {}
-
-
 @pytest.fixture
 def _one_process(monkeypatch):
     """Let all be done in this process; with others, these commands are tested by themselves."""
     monkeypatch.setattr(plan_all, "ProcessPoolExecutor", AtOnce)
-    monkeypatch.setattr(
-        executor, "cluster", lambda *_: nullcontext(SimpleNamespace(dashboard_link=""))
-    )
-    monkeypatch.setattr(executor, "run", run_at_once)
+    monkeypatch.setattr(executor, "cluster", lambda *_: executor.threads())
 
 
 @pytest.mark.usefixtures("_records", "_one_process")

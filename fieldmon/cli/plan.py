@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -119,7 +119,7 @@ def _plan_one(options: PlanOptions) -> None:
         )
     typer.echo(day_in_words(today.route))
     notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
-    write_routes(today.route, notes, options.output)
+    write_routes(replace(today.route, notes=notes), options.output)
     write_chance_map(options.chance_map, known.plot, today.chance)
 
 

@@ -27,7 +27,7 @@ from fieldmon.cli.times import day
 if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
-    from fieldmon.simulation.season import Start
+    from fieldmon.simulation.start import Start
 
 _HEADER = "sampler,day,detection_pct,visited_pct,ever_visited_pct,found,infested_left"
 _USUAL = (SamplerName.NAIVE, SamplerName.BOUNCY, SamplerName.DYNAMIC)
@@ -96,11 +96,11 @@ def _season(
     """Print the days of a season with a sampler; return them as lines of the table."""
     from fieldmon.compute.random_streams import RandomStreams  # noqa: PLC0415
     from fieldmon.infestation.spread import Spread  # noqa: PLC0415
-    from fieldmon.simulation.season import SeasonSettings, days  # noqa: PLC0415
+    from fieldmon.simulation.season import SeasonSettings, simulated_days  # noqa: PLC0415
 
     settings = SeasonSettings(n_days=options.days, spread=Spread(options.spread))
     decides, streams = sampler_of(name, options.every), RandomStreams(options.seed)
-    walk = days(plot.aisles, robot, decides, begin, settings, streams)
+    walk = simulated_days(plot.aisles, robot, decides, begin, settings, streams)
     rows = []
     typer.echo(f"\n{name}\n day  detection %  visited %  found  infested left")
     for each in walk:

@@ -31,10 +31,10 @@ def beliefs(
         calibration,
         report_html,
     )
-    from fieldmon.studies.samplers.scenarios import all_cells  # noqa: PLC0415
+    from fieldmon.studies.samplers.scenarios import all_scenarios  # noqa: PLC0415
 
     must_be_folder(output)
-    chosen = next((each for each in all_cells() if each.name.startswith(cell)), None)
+    chosen = next((each for each in all_scenarios() if each.name.startswith(cell)), None)
     if chosen is None:
         raise SettingError(f"A cell must begin with {cell!r}, but none does.")
     made = {}

@@ -11,7 +11,7 @@ from fieldmon.cli.study_output import must_be_folder, write_all
 from fieldmon.cli.waiting import counting
 
 if TYPE_CHECKING:
-    from fieldmon.studies.thesis.chapter5.calibrate import Calibration
+    from fieldmon.studies.thesis.chapter5.calibrate import FittedChoices
 
 
 def calibrate(
@@ -40,7 +40,7 @@ def calibrate(
     write_all(output, {"prior_calibration.csv": candidates_csv(found.tried)})
 
 
-def _tell_fit(found: Calibration) -> None:
+def _tell_fit(found: FittedChoices) -> None:
     if found.stopped:
         typer.echo("Stopped: this is the best of what was tried.")
     off = ", ".join(f"{part} {steps:.2f}" for part, steps in found.best.off.items())

@@ -41,9 +41,9 @@ def no_prior(
     if golden:
         _compare(golden, night)
         return
-    from fieldmon.studies.thesis.chapter4.measures import csv_text  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter4.report import report_html  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter4.study import run_no_prior  # noqa: PLC0415
+    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
 
     must_be_folder(output)
     with counting("Simulating") as count:

@@ -16,7 +16,7 @@ from fieldmon.cli.waiting import counting
 
 if TYPE_CHECKING:
     from fieldmon.studies.thesis.chapter5.sites import Site
-    from fieldmon.studies.thesis.chapter5.study import Study
+    from fieldmon.studies.thesis.chapter5.study import PriorStudy
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,8 @@ def _as_published(options: PriorOptions) -> None:
     """Run what the thesis ran, and compare the figures."""
     from fieldmon.studies.thesis.chapter5.published import PARTS  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.study import csv_text, rows, run_prior  # noqa: PLC0415
+    from fieldmon.studies.thesis.chapter5.study import rows, run_prior  # noqa: PLC0415
+    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
 
     parts = (*(options.scenario or []), *(options.sweep or [])) or PARTS
     with counting("Simulating") as count:
@@ -94,7 +95,7 @@ def _on_maps(folder: Path, options: PriorOptions) -> None:
     from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.mapped_plots import MapRules, run_maps  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.report import maps_html  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.study import csv_text  # noqa: PLC0415
+    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
 
     rules = MapRules(Robot(), CALIBRATED.spread)
     maps = read_plant_maps(folder)
@@ -113,7 +114,8 @@ def _on_maps(folder: Path, options: PriorOptions) -> None:
 def _on_plot(plot: Path, options: PriorOptions) -> None:
     """Run the samplers on a plot of one's own."""
     from fieldmon.studies.thesis.chapter5.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.study import csv_text, rows, run_site  # noqa: PLC0415
+    from fieldmon.studies.thesis.chapter5.study import rows, run_site  # noqa: PLC0415
+    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
 
     site = site_of(plot, options.feature, options.observations)
     with counting("Simulating") as count:
@@ -148,7 +150,7 @@ def site_of(file: Path, feature: str | None, observations: Path | None) -> Site:
     return Site(plot.field.name, plot.aisles, plot.field, chance)
 
 
-def _tell(study: Study) -> None:
+def _tell(study: PriorStudy) -> None:
     if study.stopped:
         typer.echo("Stopped: these are the configurations that were done.")
     for part in study.parts:

@@ -17,7 +17,7 @@ from fieldmon.cli.waiting import counting
 if TYPE_CHECKING:
     import pyarrow as pa
 
-    from fieldmon.simulation.design import Design, Site
+    from fieldmon.simulation.design import Design, StudyPlot
 
 
 @dataclass(frozen=True)
@@ -64,21 +64,22 @@ class StudyOptions:
         chosen: dict[str, Any] = {name: tuple(values) for name, values in told.items() if values}
         return Design(**chosen, n_days=self.days, n_seeds=self.seeds, first_seed=self.first_seed)
 
-    def sites(self) -> tuple[Site, ...]:
+    def plots(self) -> tuple[StudyPlot, ...]:
         """Return the plots with their records."""
         import numpy as np  # noqa: PLC0415
 
         from fieldmon.io.options import PlotOptions  # noqa: PLC0415
         from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource  # noqa: PLC0415
         from fieldmon.plot.plot import planting_of  # noqa: PLC0415
-        from fieldmon.simulation.design import Site  # noqa: PLC0415
+        from fieldmon.simulation.design import StudyPlot  # noqa: PLC0415
 
         on = np.datetime64(day(self.on), "D")
         records = None if self.observations is None else RecordSource(self.observations)
         sources = PlotSources(self.plot, PlotOptions(feature=self.feature))
         known = estate(PlotRequest(sources, records=records), Terminal(flags={}))
         return tuple(
-            Site(field, planting_of(field), known.records.on(field), on) for field in known.fields
+            StudyPlot(field, planting_of(field), known.records.on(field), on)
+            for field in known.fields
         )
 
 
@@ -93,15 +94,18 @@ def study_run(options: StudyOptions) -> None:
     Example: fieldmon study run vines.zip --feature 3 --hours 6 --hours 12 --seeds 200 -o study
     """
     from fieldmon.simulation import executor, results  # noqa: PLC0415
+    from fieldmon.simulation.design import study_of  # noqa: PLC0415
+    from fieldmon.simulation.experiment import run  # noqa: PLC0415
 
-    design, sites, output = options.design(), options.sites(), options.output
-    with executor.cluster(options.scheduler, options.workers) as client:
-        typer.echo(f"Dashboard: {client.dashboard_link}", err=True)
+    design, plots, output = options.design(), options.plots(), options.output
+    with executor.cluster(options.scheduler, options.workers) as workers:
+        typer.echo(f"Dashboard: {workers.dashboard}", err=True)
+        folder = results.StudyFolder(output, plots, design)
         with counting("Simulating") as count:
-            refused = executor.run(client, output, sites, design, count)
-    for name, sentence in refused.items():
+            run(study_of(plots, design), workers, folder, count)
+    for name, sentence in folder.refused.items():
         typer.echo(f"refused: {name}: {sentence}", err=True)
-    if len(refused) < len(sites):
+    if len(folder.refused) < len(plots):
         _tell(results.seasons(output))
         typer.echo(f"Seasons are in {output}")
 

@@ -12,13 +12,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.simulation.season import Day
+    from fieldmon.simulation.season import SimulatedDay
 
-LEVELS_PCT = (30.0, 50.0, 80.0, 100.0)
+DETECTION_LEVELS_PCT = (30.0, 50.0, 80.0, 100.0)
 
 
 @dataclass(frozen=True, eq=False)
-class SeasonFigures:
+class SeasonMetrics:
     """The days of one season as columns, ``(d,)`` each, and what they add up to.
 
     Parameters
@@ -58,7 +58,7 @@ class SeasonFigures:
         return int(reached[0]) + 1 if reached.size else None
 
 
-def figures(season: Iterable[Day]) -> SeasonFigures:
+def season_metrics(days: Iterable[SimulatedDay]) -> SeasonMetrics:
     """Return the columns of a season from its days; nothing of a day is kept."""
     rows = [
         (
@@ -69,8 +69,8 @@ def figures(season: Iterable[Day]) -> SeasonFigures:
             day.ever_infested,
             day.left,
         )
-        for day in season
+        for day in days
     ]
     columns = np.array(rows, dtype=np.float64).reshape(-1, 6).T
     found, ever, left = columns[3:].astype(np.int64)
-    return SeasonFigures(columns[0], columns[1], columns[2], found, np.diff(ever, prepend=0), left)
+    return SeasonMetrics(columns[0], columns[1], columns[2], found, np.diff(ever, prepend=0), left)

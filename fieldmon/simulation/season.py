@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Sampler
+    from fieldmon.simulation.start import Start
 
 
 @dataclass(frozen=True)
@@ -59,24 +60,8 @@ class SeasonSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class Start:
-    """The first morning: who is infested, and what is believed about it.
-
-    Parameters
-    ----------
-    infested
-        ``(n,)`` the truth, which no sampler sees.
-    chance
-        ``(n,)`` chance of infestation as believed.
-    """
-
-    infested: NDArray[np.bool_]
-    chance: NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Day:
-    """One day of a season.
+class SimulatedDay:
+    """One day of a simulated season.
 
     Parameters
     ----------
@@ -99,7 +84,7 @@ class Day:
     number: int
     work: Workday
     infested: NDArray[np.bool_]
-    mornings: _Mornings
+    mornings: _MorningBeliefs
     last_inspected: NDArray[np.int32]
     ever_infested: int
     ever_found: int
@@ -140,16 +125,16 @@ class Day:
         return 100.0 * float(np.mean(self.last_inspected >= 0))
 
 
-class _Mornings:
+class _MorningBeliefs:
     """What is believed on every morning of a season, worked out when somebody asks.
 
     Most of a season's time goes into it, and half of the samplers do not read it.
     """
 
     def __init__(
-        self, first: Callable[[], Belief], taught: Callable[[Workday], Learning], spread: Spread
+        self, first: Callable[[], Belief], learning: Callable[[Workday], Learning], spread: Spread
     ) -> None:
-        self._first, self._taught, self._spread = first, taught, spread
+        self._first, self._learning, self._spread = first, learning, spread
         self._works: list[Workday] = []
         self._last: tuple[int, Belief] | None = None
 
@@ -163,25 +148,25 @@ class _Mornings:
         if day > number:
             day, belief = 0, self._first()
         for work in self._works[day:number]:
-            learnt = belief.learn(work.plant, work.found, self._taught(work))
-            belief = learnt.overnight(self._spread)
+            evening = belief.learn(work.plant, work.found, self._learning(work))
+            belief = evening.overnight(self._spread)
         self._last = number, belief
         return belief
 
 
-def days(
+def simulated_days(
     aisles: Aisles,
     robot: Robot,
     sampler: Sampler,
     start: Start,
     settings: SeasonSettings,
-    chance: RandomStreams,
-) -> Iterator[Day]:
+    streams: RandomStreams,
+) -> Iterator[SimulatedDay]:
     """Yield the days of a season, one by one, as they happen.
 
-    Found insects are destroyed at once; missed ones stay and spread at night. Chance streams:
+    Found insects are destroyed at once; missed ones stay and spread at night. Random streams:
     ``inspect/day``, ``spread/day`` and ``sampler/day``, so that every sampler meets the same
-    insects and the same luck in looking.
+    insects, and would find the same ones on a plant.
     """
     _check(aisles, start)
     learning = settings.learning or Learning(detection=robot.detects)
@@ -190,14 +175,16 @@ def days(
     choosing = len(looks.detects) > 1
     infested = start.infested.copy()
 
-    def taught(work: Workday) -> Learning:
+    def learning_from(work: Workday) -> Learning:
         return replace(learning, detection=work.detects) if choosing else learning
 
-    mornings = _Mornings(lambda: settings.believe(aisles.grid, start.chance), taught, believed)
+    mornings = _MorningBeliefs(
+        lambda: settings.believe(aisles.grid, start.chance), learning_from, believed
+    )
     last_inspected = np.full(len(infested), NEVER, np.int32)
     ever_infested, ever_found = int(np.count_nonzero(infested)), 0
     trail, at = np.empty(0, np.int32), GATE
-    keys = zip(*(chance.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
+    keys = zip(*(streams.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
     for number, (own_key, look_key, night_key) in zip(range(settings.n_days), keys, strict=False):
         belief = None if blind else mornings.on(number)
         scene = Scene(
@@ -219,7 +206,9 @@ def days(
         last_inspected = last_inspected.copy()
         last_inspected[work.plant] = number
         ever_found += int(np.count_nonzero(work.found))
-        yield Day(number, work, infested, mornings, last_inspected, ever_infested, ever_found)
+        yield SimulatedDay(
+            number, work, infested, mornings, last_inspected, ever_infested, ever_found
+        )
         mornings.add(work)
         evening = infested.copy()
         evening[work.plant[work.found]] = False

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.prior import start_infested
-from fieldmon.simulation.season import Start
 
 if TYPE_CHECKING:
     import numpy as np
@@ -14,6 +14,22 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.plot.grid import PlantGrid
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """The first morning.
+
+    Parameters
+    ----------
+    infested
+        ``(n,)`` the truth, which no sampler sees.
+    chance
+        ``(n,)`` chance of infestation as believed.
+    """
+
+    infested: NDArray[np.bool_]
+    chance: NDArray[np.float64]
 
 
 def season_start(

@@ -88,7 +88,7 @@ def serve():
     from streamlit.runtime.scriptrunner.script_runner import ScriptRunner
     from streamlit.runtime.scriptrunner_utils.script_run_context import ScriptRunContext
 
-    from app import serve as app_server
+    from app.startup import serve as app_server
     from fieldmon.infestation import prior
     from fieldmon.planning import plan as plan_module
 

@@ -24,7 +24,7 @@ from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
 from fieldmon.studies.thesis.chapter4 import draws, listings
 from fieldmon.studies.thesis.chapter4.listing_errors import AS_PUBLISHED
-from fieldmon.studies.thesis.chapter4.trial import Strategy, Trial, night_of, walk_of
+from fieldmon.studies.thesis.chapter4.trial import NoPriorTrial, ThesisStrategy, night_of, walk_of
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS
 from tests.benchmarks.scale import best_of, told
 
@@ -82,7 +82,7 @@ def nights():
 def published():
     """Run the published simulator, two of its slips put right, here and in Octave."""
     field, runs = SCENARIOS["C"], 200
-    trial = Trial(field, Strategy(1), 3, rules=AS_PUBLISHED)
+    trial = NoPriorTrial(field, ThesisStrategy(1), 3, rules=AS_PUBLISHED)
     slips = AS_PUBLISHED.without("night_other_face", "phantom_infections")
     walk, dark = walk_of(trial, slips), night_of(trial, slips)
     keys = draws.keys(RandomStreams(1), runs, trial.hours.days)

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app import maps
+from app.show.maps import colours, deck, plant_layers, route_layers
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.independent import IndependentPlants, overnight
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
@@ -35,7 +35,8 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 from tests.benchmarks.test_bench_grid import crooked_plot
 
 SIZES = (100, 1_000, 10_000, 100_000, 1_000_000)
@@ -102,7 +103,7 @@ def measure(n_plants):
 
 def season(aisles, name, start, believe=PairApproximation.of):
     settings = SeasonSettings(n_days=25, spread=Spread(0.1), believe=believe)
-    walk = days(aisles, Robot(), sampler(name), start, settings, RandomStreams(2))
+    walk = simulated_days(aisles, Robot(), sampler(name), start, settings, RandomStreams(2))
     return [day.detection_pct for day in walk]
 
 
@@ -123,9 +124,9 @@ def files_and_map(plot, chance, observations):
         took["opening a season's file"], _ = best_of(lambda: Season(to / "season.gpkg"))
 
     def first_map():
-        plants = maps.plants(plot.grid, maps.by_chance(chance), maps.unsaid)
-        layers = [plants, *maps.route(today.route)]
-        return maps.deck(plot.grid, layers).to_json()
+        plants = plant_layers.plants(plot.grid, colours.by_chance(chance), plant_layers.unsaid)
+        layers = [plants, *route_layers.route(today.route)]
+        return deck.deck(plot.grid, layers).to_json()
 
     took["the first map, as sent to the browser"], _ = best_of(first_map)
     return took

@@ -11,7 +11,8 @@ from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 
 AISLES = Aisles.of(rectangle(91, 91))
 N = len(AISLES.grid)
@@ -23,7 +24,7 @@ def test_season_of_scenario_c(benchmark, name):
     settings = SeasonSettings(n_days=25, spread=Spread(0.1))
 
     def season():
-        walk = days(AISLES, Robot(), sampler(name), start, settings, RandomStreams(2))
+        walk = simulated_days(AISLES, Robot(), sampler(name), start, settings, RandomStreams(2))
         return [day.detection_pct for day in walk]
 
     assert len(benchmark(season)) == 25

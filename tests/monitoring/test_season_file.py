@@ -13,7 +13,8 @@ from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.samplers import sampler
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 from tests.monitoring.seasons import (
     BEGINS,
     ROBOT,
@@ -81,7 +82,7 @@ def test_ten_days_on_disk_are_ten_days_of_the_simulator(tmp_path, name):
     truth = Insects(season)
     start = Start(truth.infested, season.morning(BEGINS))
     simulator = SeasonSettings(n_days=10, spread=settings.belief.spread)
-    simulated = days(
+    simulated = simulated_days(
         plot.aisles, settings.robot, sampler(name), start, simulator, RandomStreams(settings.seed)
     )
     for day in simulated:

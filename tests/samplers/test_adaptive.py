@@ -14,7 +14,8 @@ from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import Adaptive, Dynamic, Naive
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 from tests.scenes import GRIDS, scene_on
 
 GRID = rectangle(30, 30)
@@ -102,7 +103,7 @@ def test_a_season_learns_from_short_looks_less_than_from_long_ones():
     grid = rectangle(20, 20)
     start = Start(np.zeros(400, bool), np.full(400, 0.05))
     settings = SeasonSettings(n_days=2, spread=Spread(0.0, arrivals_per_day=0.0))
-    season = days(
+    season = simulated_days(
         Aisles.of(grid),
         Robot(hours=1.5),
         Adaptive(chooses_look=True),

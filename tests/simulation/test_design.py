@@ -1,67 +1,95 @@
-"""What a study compares, and the names of its chunks, which stand in folders of studies."""
+"""What a study compares, and its chunks: by name those of every version before."""
 
-from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
-from shapely import MultiPolygon, box
+import shapely
+from shapely import MultiPolygon
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting
-from fieldmon.simulation.design import Design, Site, chunks
+from fieldmon.plot.plot import Plot
+from fieldmon.simulation.design import Combination, Design, StudyPlot, study_of
+from tests.simulation.study_plots import DAY, SMALL, plot
 
-FIELD = Field("Gate", MultiPolygon([box(35.15, 30.36, 35.1508, 30.3607)]), gate=(35.15, 30.36))
-RECORDS = Observations.of(
-    np.array([[35.1501, 30.3601], [35.1502, 30.3602]]),
-    np.array([1, 0], np.int8),
-    np.array(["2026-04-01", "NaT"], "datetime64[D]"),
-    count=np.array([3.0, np.nan]),
+SQUARE = StudyPlot(
+    Field("square", MultiPolygon([shapely.box(35.15, 30.36, 35.1506, 30.3606)])),
+    Planting(),
+    Observations.none(),
+    DAY,
 )
-SITE = Site(FIELD, Planting(), RECORDS, np.datetime64("2026-04-06"))
 
 
-def test_a_plot_and_its_chunks_have_the_names_that_studies_on_disk_hold():
-    assert SITE.digest == "211317bf7704c67ac766"
-    assert [chunk.key for chunk in chunks((SITE,), Design(n_seeds=2, n_days=3))] == [
-        "a6777031b32fe8cebe0a",
-        "85078e867ce807682209",
-        "9e04711db44acbc5bfe3",
-    ]
+def test_every_level_meets_every_other():
+    asked = Design(("naive", "dynamic"), (1.0, 2.0), (20.0, 40.0), (0.1,), (0.2, 0.3))
+    levels = product(("naive", "dynamic"), (1.0, 2.0), (20.0, 40.0), (0.1,), (0.2, 0.3))
+    assert asked.combinations == tuple(Combination(*each) for each in levels)
 
 
-def test_any_other_plot_or_design_has_other_chunks():
-    design = Design(n_seeds=2, n_days=3)
-    keys = {chunk.key for chunk in chunks((SITE,), design)}
-    sites = [
-        replace(SITE, observations=RECORDS.take(np.array([0]))),
-        replace(SITE, day=SITE.day + 1),
-    ]
-    for site in sites:
-        assert keys.isdisjoint(chunk.key for chunk in chunks((site,), design))
-    for other in (replace(design, n_days=4), replace(design, first_seed=5)):
-        assert keys.isdisjoint(chunk.key for chunk in chunks((SITE,), other))
+def test_chunks_hold_every_season_once_whatever_the_size_of_the_plot():
+    for size_m in (10.0, 400.0):
+        study = study_of([plot(size_m)], SMALL)
+        seasons = [(chunk.setting[1], seed) for chunk in study.chunks() for seed in chunk.seeds]
+        assert len(seasons) == len(set(seasons)) == len(SMALL.combinations) * SMALL.n_seeds
 
 
-def test_chunks_hold_every_seed_of_every_case_once():
-    design = Design(hours=(4.0, 8.0), n_seeds=700, first_seed=3)
-    listed = list(chunks((SITE,), design))
-    for case in design.cases:
-        seeds = [s for c in listed if c.case == case for s in range(*c.seeds)]
-        assert seeds == list(range(3, 703))
+def test_a_bigger_plot_and_a_dearer_sampler_have_fewer_seasons_a_chunk():
+    def size(plot, sampler):
+        asked = Design((sampler,), n_seeds=10**6)
+        return len(next(iter(study_of([plot], asked).chunks())))
+
+    assert size(plot(10.0), "naive") > size(plot(400.0), "naive") > 1
+    assert size(plot(400.0), "naive") > size(plot(400.0), "dynamic") > size(plot(400.0), "adaptive")
+
+
+def test_a_study_begun_by_an_earlier_version_goes_on():
+    """Digest and keys as fieldmon 0.1 wrote them: its folders name their files so."""
+    assert SQUARE.digest == "ab915b8df166c3772975"
+    asked = Design(samplers=("naive", "adaptive"), hours=(1.0, 3.0), n_days=40, n_seeds=4000)
+    chunks = {chunk.key: chunk for chunk in study_of([SQUARE], asked).chunks()}
+    for sampler, hours, seeds, digest in (
+        ("naive", 1.0, range(1, 328), "27246bd7ff4a5641b25c"),
+        ("naive", 3.0, range(3925, 4001), "c745b94ce1e372e918c7"),
+        ("adaptive", 3.0, range(638, 729), "0c5335d71ff665c4cd80"),
+    ):
+        chunk = chunks[sampler, digest]
+        assert (chunk.setting[1].hours, chunk.seeds) == (hours, seeds)
+
+
+def test_another_plot_setting_or_seed_has_other_keys():
+    def keys(one, asked):
+        return {chunk.key for chunk in study_of([one], asked).chunks()}
+
+    base = keys(plot(), SMALL)
+    assert base == keys(plot(), SMALL)
+    record = Observations.of(np.array([(5.0, 45.0)]), np.array([PRESENT]))
+    heard = StudyPlot(plot().field, Planting(), record, DAY)
+    for other in (plot(41.0), plot(name="other"), heard):
+        assert not base & keys(other, SMALL)
+    assert not base & keys(plot(), Design(hours=(1.0, 3.0), n_days=5, n_seeds=60))
+
+
+def test_the_guess_of_plants_is_near_what_is_laid():
+    for one in (SQUARE, plot(40.0), plot(120.0)):
+        laid = len(Plot.of(one.field, one.planting).grid)
+        assert 0.7 * one.about_plants < laid < 1.3 * one.about_plants
 
 
 @pytest.mark.parametrize(
-    ("wrong", "says"),
+    "settings",
     [
-        ({"samplers": ("best",)}, "must be one of"),
-        ({"hours": ()}, "one value of hours"),
-        ({"look_s": (20.0, 20.0)}, "each once"),
-        ({"n_days": 0}, "1 day and 1 seed"),
-        ({"infested": (1.0,)}, "between 0 and 1"),
+        {"samplers": ("best",)},
+        {"hours": ()},
+        {"n_days": 0},
+        {"n_seeds": 0},
+        {"first_seed": -1},
+        {"infested": (0.0,)},
+        {"spread": (1, 1)},
     ],
 )
-def test_an_impossible_design_is_a_sentence(wrong, says):
-    with pytest.raises(SettingError, match=says):
-        Design(**wrong)
+def test_impossible_designs_are_refused(settings):
+    with pytest.raises(SettingError):
+        Design(**settings)

@@ -55,7 +55,7 @@ class Candidate(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Way:
+class Transformation:
     """How coordinates of one system become degrees WGS84.
 
     Parameters
@@ -67,7 +67,7 @@ class Way:
     transformer
         Always x, y in; longitude, latitude out. None: they are degrees WGS84 already.
     missing_grid
-        File that a better way would need and that is not on this machine.
+        File that a better one would need and that is not on this machine.
     """
 
     code: str
@@ -92,12 +92,12 @@ class Way:
             if self.accuracy_m is None
             else f"PROJ states {self.accuracy_m:g} m for this"
         )
-        way = f"Positions were transformed from {self.name} ({self.code}); {stated}."
+        how = f"Positions were transformed from {self.name} ({self.code}); {stated}."
         if self.missing_grid is None:
-            return [seen(way)]
+            return [seen(how)]
         return [
             doubtful(
-                f"{way} A better transformation needs the grid file {self.missing_grid}, which "
+                f"{how} A better transformation needs the grid file {self.missing_grid}, which "
                 "is not on this machine: add it to PROJ's data folder if that is too coarse."
             )
         ]
@@ -117,12 +117,12 @@ def system(text: str) -> pyproj.CRS:
         ) from None
 
 
-def way_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Way:
-    """Return the best way on this machine from a system to degrees, for data around a centre."""
+def transformation_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Transformation:
+    """Return the best transformation on this machine to degrees, for data around a centre."""
     flat = _horizontal(crs)
     code, name = code_of(flat), flat.name
     if flat.equals(pyproj.CRS(WGS84), ignore_axis_order=True):
-        return Way(code, name)
+        return Transformation(code, name)
     try:
         rough = pyproj.Transformer.from_crs(flat, WGS84, always_xy=True).transform(*centre)
         with warnings.catch_warnings():
@@ -140,7 +140,7 @@ def way_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Way:
         grids = group.unavailable_operations[0].grids
         missing = next((grid.short_name for grid in grids if not grid.available), None)
     accuracy = best.accuracy if best.accuracy >= 0 else None
-    return Way(code, name, accuracy, best, missing)
+    return Transformation(code, name, accuracy, best, missing)
 
 
 def code_of(crs: pyproj.CRS) -> str:

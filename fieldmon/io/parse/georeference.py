@@ -10,7 +10,7 @@ import shapely
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, repaired, seen
-from fieldmon.io.parse.crs import ask_for_crs, km_between, system, utm_zone, way_from
+from fieldmon.io.parse.crs import ask_for_crs, km_between, system, transformation_from, utm_zone
 
 if TYPE_CHECKING:
     import pyproj
@@ -70,11 +70,11 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
     crs = system(wanted)
     _check_range(xy, crs, options)
     xy, more = _without_zone(xy, crs)
-    way = way_from(crs, _middle(xy))
-    lonlat = way.lonlat(xy)
+    through = transformation_from(crs, _middle(xy))
+    lonlat = through.lonlat(xy)
     _check_landing(lonlat, crs)
     step_m = _step(xy) * (_DEGREE_M if crs.is_geographic else 1.0)
-    found = (*messages, *more, *way.messages(), *_distance(lonlat, options))
+    found = (*messages, *more, *through.messages(), *_distance(lonlat, options))
     return Placed(lonlat, step_m, found)
 
 

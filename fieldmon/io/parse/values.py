@@ -210,7 +210,7 @@ def hemispheres(cells: Iterable[str]) -> set[str]:
     return {(m.group(1) or m.group(4)).upper() for m in found if m}
 
 
-class Pairs(NamedTuple):
+class CoordinatePairs(NamedTuple):
     """Positions that stand in one cell: ``(n, 2)`` lon, lat; NaN for none; is their order sure."""
 
     values: NDArray[np.float64]
@@ -220,7 +220,7 @@ class Pairs(NamedTuple):
 _WKT_POINT = re.compile(r"^POINT\s*Z?M?\s*\(\s*(\S+)\s+([^\s)]+).*\)$", re.IGNORECASE)
 
 
-def pairs(cells: list[str]) -> Pairs:
+def pairs(cells: list[str]) -> CoordinatePairs:
     """Return positions from cells that hold both coordinates.
 
     WKT is longitude, latitude; letters say which is which; else latitude comes first, as people
@@ -234,7 +234,7 @@ def pairs(cells: list[str]) -> Pairs:
     if (np.abs(values[read & ~sure, 1]) > 90).any():
         values[~sure] = values[~sure][:, ::-1]
         sure[:] = True
-    return Pairs(values, bool(sure[read].all()))
+    return CoordinatePairs(values, bool(sure[read].all()))
 
 
 def _pair(cell: str) -> tuple[tuple[float, float], bool]:

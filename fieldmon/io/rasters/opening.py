@@ -20,7 +20,14 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.signatures import Kind
 from fieldmon.io.import_report import ImportMessage, Remedy, guessed, seen
 from fieldmon.io.options import source_name
-from fieldmon.io.parse.crs import Way, ask_for_crs, code_of, km_between, system, way_from
+from fieldmon.io.parse.crs import (
+    Transformation,
+    ask_for_crs,
+    code_of,
+    km_between,
+    system,
+    transformation_from,
+)
 from fieldmon.io.rasters.values import Affine, map_xy, pixel_xy, projected
 from fieldmon.io.sandbox import limits
 from fieldmon.io.sandbox.unpack import Workroom, choose_member, members
@@ -80,7 +87,7 @@ class Opened:
     name: str
     to_map: Affine
     crs: pyproj.CRS
-    way: Way
+    transformation: Transformation
     messages: tuple[ImportMessage, ...]
 
 
@@ -124,8 +131,8 @@ def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -
         raise ask_for_crs(
             middle[None], options, f"{name} says {crs.name}, in degrees, but it lies nowhere so."
         )
-    way = way_from(crs, (float(middle[0]), float(middle[1])))
-    if not np.isfinite(way.lonlat(middle[None])).all():
+    through = transformation_from(crs, (float(middle[0]), float(middle[1])))
+    if not np.isfinite(through.lonlat(middle[None])).all():
         raise FileProblem(
             f"{name} must lie where {crs.name} is defined, but it does not. Name the right "
             "coordinate system."
@@ -136,7 +143,7 @@ def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -
         messages.append(seen(f"The raster is turned by {turn:.4g} degrees; positions follow it."))
     elif e > 0:
         messages.append(seen("The raster's first line lies in the south; positions follow it."))
-    return Opened(tif, name, to_map, crs, way, (*messages, *way.messages()))
+    return Opened(tif, name, to_map, crs, through, (*messages, *through.messages()))
 
 
 def _check_shape(tif: DatasetReader, name: str) -> None:
@@ -254,14 +261,14 @@ def _window(opened: Opened, bounds: Bounds | None) -> Window:
     whole = Window(0, 0, opened.tif.width, opened.tif.height)
     if bounds is None:
         return whole
-    places = pixel_xy(opened.to_map, projected(opened.way, _around(bounds)))
+    places = pixel_xy(opened.to_map, projected(opened.transformation, _around(bounds)))
     places = places[np.isfinite(places).all(axis=1)]
     if len(places):
         low = np.clip(np.floor(places.min(axis=0)), 0, (whole.width, whole.height)).astype(int)
         high = np.clip(np.ceil(places.max(axis=0)), 0, (whole.width, whole.height)).astype(int)
         if (high > low).all():
             return Window(*(int(n) for n in (*low, *(high - low))))
-    middle = opened.way.lonlat(
+    middle = opened.transformation.lonlat(
         map_xy(opened.to_map, np.array([[whole.width / 2, whole.height / 2]]))
     )[0]
     plot = ((bounds[0] + bounds[2]) / 2, (bounds[1] + bounds[3]) / 2)
@@ -339,7 +346,9 @@ def what_was_read(opened: Opened, bands: tuple[int, ...], part: Part) -> ImportM
     tif = opened.tif
     window = part.window
     middle = np.array([window.col_off + window.width / 2, window.row_off + window.height / 2])
-    ends = opened.way.lonlat(map_xy(opened.to_map, middle + np.array([[0.0, 0.0], [1.0, 0.0]])))
+    ends = opened.transformation.lonlat(
+        map_xy(opened.to_map, middle + np.array([[0.0, 0.0], [1.0, 0.0]]))
+    )
     metres = 1000 * km_between(*((float(lon), float(lat)) for lon, lat in ends))
     listed = f"band{'s' if len(bands) > 1 else ''} {', '.join(map(str, bands))} of {tif.count}"
     shrunk = f"; read at every {part.step:.3g}th pixel" if part.step > 1.001 else ""

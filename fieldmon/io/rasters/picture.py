@@ -133,13 +133,13 @@ def _corners(opened: Opened, part: Part) -> tuple[Float, list[ImportMessage]]:
     """
     to_map = part.to_map(opened.to_map)
     size = np.array(part.shape[::-1])
-    corners = opened.way.lonlat(map_xy(to_map, _CORNERS * size))
+    corners = opened.transformation.lonlat(map_xy(to_map, _CORNERS * size))
     steps = np.linspace(0.0, 1.0, 9)
     u, v = (axis.ravel()[:, None] for axis in np.meshgrid(steps, steps))
     bottom_left, top_left, top_right, bottom_right = _mercator(corners)
     lower = top_left + u * (bottom_right - bottom_left) + v * (bottom_left - top_left)
     upper = top_right + (u - 1) * (top_right - top_left) + v * (bottom_right - top_right)
-    lonlat = opened.way.lonlat(map_xy(to_map, np.concatenate([u, v], axis=1) * size))
+    lonlat = opened.transformation.lonlat(map_xy(to_map, np.concatenate([u, v], axis=1) * size))
     if not (np.isfinite(lonlat).all() and (np.abs(lonlat[:, 1]) < 85.0).all()):
         raise FileProblem(
             f"{opened.name} must lie where a web map reaches, but it does not. Cut it to the plot."

@@ -5,7 +5,8 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from itertools import chain
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -15,7 +16,9 @@ from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import PlotEstimate, estimate_plot
 from fieldmon.io.html import page
-from fieldmon.simulation.season import days
+from fieldmon.simulation import executor
+from fieldmon.simulation.experiment import Experiment, Memory, run
+from fieldmon.simulation.season import simulated_days
 from fieldmon.studies.charts import Line, line_chart
 
 if TYPE_CHECKING:
@@ -27,7 +30,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.spread import Spread
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.samplers import Sampler
-    from fieldmon.studies.samplers.scenarios import Cell
+    from fieldmon.studies.samplers.scenarios import Scenario
 
     Believe = Callable[[PlantGrid, NDArray[np.float64]], Belief]
 
@@ -89,16 +92,16 @@ class _Watched:
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
     ) -> _Watched:
         """Learn, and note the time."""
-        began = time.process_time()
+        began = time.thread_time()
         after = self._belief.learn(plants, found, learning)
-        self._seconds.append(time.process_time() - began)
+        self._seconds.append(time.thread_time() - began)
         return _Watched(after, self._mornings, self._seconds)
 
     def overnight(self, spread: Spread) -> _Watched:
         """Pass a night, and note the morning and the time."""
-        began = time.process_time()
+        began = time.thread_time()
         after = self._belief.overnight(spread)
-        self._seconds.append(time.process_time() - began)
+        self._seconds.append(time.thread_time() - began)
         self._mornings.append(after)
         return _Watched(after, self._mornings, self._seconds)
 
@@ -107,36 +110,68 @@ class _Watched:
         return _Watched(self._belief.treated(left), self._mornings, self._seconds)
 
 
+class _Mornings(NamedTuple):
+    """What was believed on the mornings of seasons, and what was so.
+
+    Parameters
+    ----------
+    chances, truths
+        A map a morning, ``(n,)`` each: chance of infestation, and who was infested.
+    ahead
+        What was believed of the whole plot.
+    seconds
+        Spent by the belief.
+    """
+
+    chances: list[NDArray[np.float64]]
+    truths: list[NDArray[np.bool_]]
+    ahead: list[PlotEstimate]
+    seconds: list[float]
+
+
 def calibration(
-    cells: Sequence[Cell], sampler: Sampler, believe: Believe, seeds: int, n_days: int = 12
+    scenarios: Sequence[Scenario],
+    sampler: Sampler,
+    believe: Believe,
+    seeds: int,
+    n_days: int = 12,
 ) -> Calibration:
-    """Return how well a belief is calibrated over the mornings of the seasons of some cells."""
-    chances, truths, ahead, counts = [], [], [], []
+    """Return how well a belief is calibrated over the mornings of the seasons of some scenarios."""
+
+    def simulate(scenario: Scenario, seeds: range) -> _Mornings:
+        return _mornings(scenario, sampler, believe, seeds.start, n_days)
+
+    experiment = Experiment(scenarios, range(seeds), simulate, lambda _: 1)
+    made: Memory[_Mornings] = Memory()
+    with executor.threads() as workers:
+        run(experiment, workers, made)
+    parts = [made[chunk.key] for chunk in experiment.chunks()]
+    return _compared(_Mornings(*(list(chain(*each)) for each in zip(*parts, strict=True))))
+
+
+def _mornings(
+    scenario: Scenario, sampler: Sampler, believe: Believe, seed: int, n_days: int
+) -> _Mornings:
+    """Return the mornings of one season."""
+    believed: list[Belief] = []
     seconds: list[float] = []
-    for cell in cells:
-        for seed in range(seeds):
-            mornings: list[Belief] = []
 
-            def watched(
-                grid: PlantGrid,
-                chance: NDArray[np.float64],
-                mornings: list[Belief] = mornings,
-            ) -> Belief:
-                mornings.append(believe(grid, chance))
-                return _Watched(mornings[0], mornings, seconds)
+    def watched(grid: PlantGrid, chance: NDArray[np.float64]) -> Belief:
+        believed.append(believe(grid, chance))
+        return _Watched(believed[0], believed, seconds)
 
-            settings = replace(cell.settings, n_days=n_days, believe=watched)
-            start, chance = cell.begin(RandomStreams(seed)), RandomStreams(seed)
-            season = list(days(cell.aisles, cell.robot, sampler, start, settings, chance))
-            # a blind sampler has not asked: all mornings are worked out now, for the last one
-            season[-1].belief  # noqa: B018
-            for belief, day in zip(mornings, season, strict=True):
-                truth = day.infested
-                chances.append(belief.chance)
-                truths.append(truth)
-                ahead.append(_estimate(belief, cell.aisles.grid))
-                counts.append(np.count_nonzero(truth))
-    return _compared(chances, truths, (ahead, np.array(counts)), sum(seconds) / len(counts))
+    settings = replace(scenario.settings, n_days=n_days, believe=watched)
+    start, streams = scenario.draw_start(RandomStreams(seed)), RandomStreams(seed)
+    aisles = scenario.aisles
+    season = list(simulated_days(aisles, scenario.robot, sampler, start, settings, streams))
+    # a blind sampler has not asked: all mornings are worked out now, for the last one
+    season[-1].belief  # noqa: B018
+    return _Mornings(
+        [belief.chance for belief in believed],
+        [day.infested for day in season],
+        [_estimate(belief, aisles.grid) for belief in believed],
+        seconds,
+    )
 
 
 def _estimate(belief: Belief, grid: PlantGrid) -> PlotEstimate:
@@ -150,13 +185,9 @@ def _estimate(belief: Belief, grid: PlantGrid) -> PlotEstimate:
     )
 
 
-def _compared(
-    chances: list[NDArray[np.float64]],
-    truths: list[NDArray[np.bool_]],
-    plots: tuple[list[PlotEstimate], NDArray[np.int64]],
-    seconds_a_day: float,
-) -> Calibration:
-    ahead, counts = plots
+def _compared(mornings: _Mornings) -> Calibration:
+    chances, truths, ahead, seconds = mornings
+    counts = np.array([np.count_nonzero(truth) for truth in truths])
     p = np.clip(np.concatenate(chances), _LEAST, 1.0 - _LEAST)
     y = np.concatenate(truths)
     suspicious = np.concatenate([c >= _SUSPICIOUS * c.max() for c in chances])
@@ -170,7 +201,7 @@ def _compared(
         _log_score(np.clip(classes, _LEAST, 1.0 - _LEAST), y),
         float(np.mean(inside)),
         *_reliability(clean, counts == 0, CLEAN_EDGES),
-        seconds_a_day,
+        sum(seconds) / len(counts),
     )
 
 

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 from fieldmon.io.html import page
 from fieldmon.studies.charts import Range, range_chart
-from fieldmon.studies.samplers.seasons import ADAPTIVE, NAMES, TUNED, WORDED
-from fieldmon.studies.samplers.summary import by_cell, means, ratio, sentences
+from fieldmon.studies.samplers.contenders import ADAPTIVE, NAMES, TUNED, WORDED
+from fieldmon.studies.samplers.summary import by_scenario, means, ratio, sentences
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from markupsafe import Markup
 
-    from fieldmon.studies.samplers.seasons import Outcome
+    from fieldmon.studies.samplers.seasons import SeasonOutcome
 
 _WORDS = {
     "infested_plant_days": "Infested plant-days over the season",
@@ -26,7 +26,7 @@ _WORDS = {
 }
 
 
-def report_html(outcomes: Sequence[Outcome]) -> str:
+def report_html(outcomes: Sequence[SeasonOutcome]) -> str:
     """Return the whole report as one HTML document."""
     return page(
         "fieldmon/studies/samplers/report.html.j2",
@@ -38,9 +38,9 @@ def report_html(outcomes: Sequence[Outcome]) -> str:
     )
 
 
-def _chart(outcomes: Sequence[Outcome], other: str) -> Markup:
+def _chart(outcomes: Sequence[SeasonOutcome], other: str) -> Markup:
     rows = []
-    for cell, who in by_cell(outcomes, "infested_plant_days").items():
+    for cell, who in by_scenario(outcomes, "infested_plant_days").items():
         r = ratio(who[ADAPTIVE], who[other])
         rows.append(Range(cell, r.low, r.value, r.high))
     title = f"Infested plant-days: {ADAPTIVE} over {other} (mean and 95 % interval)"

@@ -5,9 +5,11 @@ import pytest
 
 from fieldmon.studies.samplers.calibration import Calibration
 from fieldmon.studies.samplers.calibration import report_html as beliefs_html
+from fieldmon.studies.samplers.contenders import NAMES
+from fieldmon.studies.samplers.outcome_table import outcomes_from
 from fieldmon.studies.samplers.report import report_html
-from fieldmon.studies.samplers.seasons import MEASURES, NAMES, Outcome
-from fieldmon.studies.samplers.summary import means, outcomes_from, sentences
+from fieldmon.studies.samplers.seasons import MEASURES, SeasonOutcome
+from fieldmon.studies.samplers.summary import means, sentences
 from tests.pages import HOSTILE, Page, held
 
 
@@ -15,7 +17,7 @@ def outcomes(cells, seeds=3):
     """Return outcomes of numbers that are all different."""
     values = iter(np.random.default_rng(5).uniform(1, 30_000, 10_000).round(3).tolist())
     return [
-        Outcome(cell, seed, who, *(next(values) for _ in MEASURES))
+        SeasonOutcome(cell, seed, who, *(next(values) for _ in MEASURES))
         for cell in cells
         for seed in range(seeds)
         for who in NAMES

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
     from markupsafe import Markup
 
-    from fieldmon.studies.thesis.chapter4.measures import Cell
-    from fieldmon.studies.thesis.chapter4.study import Study, Table
+    from fieldmon.studies.thesis.chapter4.measures import NoPriorMeasure
+    from fieldmon.studies.thesis.chapter4.study import NoPriorStudy, NoPriorTable
 
 _SIGNS = {EQUAL: "=", NEAR: "≈", DIFFERS: "≠", MISPRINT: "!"}
 _NEARNESS = (
@@ -64,7 +64,7 @@ class _Entry(NamedTuple):
 class _Section(NamedTuple):
     """A table as its section shows it: measures across, configurations down."""
 
-    table: Table
+    table: NoPriorTable
     charts: list[Markup]
     heads: list[str]
     rows: dict[str, list[_Entry | None]]
@@ -76,7 +76,7 @@ class _Section(NamedTuple):
         return len(self.rows) > _LONG
 
 
-def report_html(study: Study) -> str:
+def report_html(study: NoPriorStudy) -> str:
     """Return the whole report as one HTML document."""
     return page(
         "fieldmon/studies/thesis/chapter4/report.html.j2",
@@ -86,10 +86,10 @@ def report_html(study: Study) -> str:
     )
 
 
-def _section(table: Table) -> _Section:
+def _section(table: NoPriorTable) -> _Section:
     measures = list(dict.fromkeys(cell.measure for cell in table.cells))
     names = _row_names(table.cells)
-    rows: dict[str, dict[str, Cell]] = {}
+    rows: dict[str, dict[str, NoPriorMeasure]] = {}
     for cell in table.cells:
         rows.setdefault(names[cell], {})[cell.measure] = cell
     return _Section(
@@ -104,7 +104,7 @@ def _section(table: Table) -> _Section:
     )
 
 
-def _misprints(cells: Sequence[Cell], names: dict[Cell, str]) -> list[str]:
+def _misprints(cells: Sequence[NoPriorMeasure], names: dict[NoPriorMeasure, str]) -> list[str]:
     """Return a sentence for each cell that the thesis is known to print wrongly, each once."""
     said = dict.fromkeys(
         f"{names[cell]}, {_WORDS.get(cell.measure, cell.measure)}: {cell.note}."
@@ -114,7 +114,7 @@ def _misprints(cells: Sequence[Cell], names: dict[Cell, str]) -> list[str]:
     return list(said)
 
 
-def _row_names(cells: Sequence[Cell]) -> dict[Cell, str]:
+def _row_names(cells: Sequence[NoPriorMeasure]) -> dict[NoPriorMeasure, str]:
     """Return what each cell's row is called: its strategy, and what differs within the table."""
     severities = {cell.severity for cell in cells}
     viewpoints = {cell.viewpoints for cell in cells}
@@ -135,11 +135,11 @@ def _row_names(cells: Sequence[Cell]) -> dict[Cell, str]:
     return names
 
 
-def _viewpoints(cell: Cell) -> str:
+def _viewpoints(cell: NoPriorMeasure) -> str:
     return f"{cell.viewpoints} viewpoint{'s' if cell.viewpoints > 1 else ''}"
 
 
-def _entry(cell: Cell) -> _Entry:
+def _entry(cell: NoPriorMeasure) -> _Entry:
     interval, beside = "", []
     if cell.replicates and not math.isnan(cell.low) and cell.sd != 0:
         interval = f"{_short(cell.low)} to {_short(cell.high)}"
@@ -156,7 +156,7 @@ def _short(value: float) -> str:
     return f"{value:.1f}" if abs(value) >= 10 else f"{value:.2f}"
 
 
-def _charts(table: Table) -> list[Markup]:
+def _charts(table: NoPriorTable) -> list[Markup]:
     parts = [
         range_chart(
             f"{_WORDS[measure]}: our mean, 5 to 95 % of runs, and the thesis's run (cross)",
@@ -185,11 +185,11 @@ def _charts(table: Table) -> list[Markup]:
     return parts
 
 
-def _rules(cells: Iterable[Cell]) -> list[str]:
+def _rules(cells: Iterable[NoPriorMeasure]) -> list[str]:
     return list(dict.fromkeys(cell.rules for cell in cells))
 
 
-def _by_strategy(cells: Iterable[Cell], across: str, axis: str) -> Markup:
+def _by_strategy(cells: Iterable[NoPriorMeasure], across: str, axis: str) -> Markup:
     """Return the share detected in three days over one property of the trials."""
     lines: dict[str, dict[float, list[float]]] = {}
     for cell in cells:
@@ -203,7 +203,7 @@ def _by_strategy(cells: Iterable[Cell], across: str, axis: str) -> Markup:
     return line_chart(f"Detected in three days, by {axis}", drawn, (axis, "%"))
 
 
-def _differences(cells: Iterable[Cell], rules: str) -> Markup:
+def _differences(cells: Iterable[NoPriorMeasure], rules: str) -> Markup:
     rows = [
         Range(
             f"{c.field}, N = {c.n}, {_viewpoints(c)}",
@@ -218,7 +218,7 @@ def _differences(cells: Iterable[Cell], rules: str) -> Markup:
     return range_chart(title, rows, "percentage points; right of 0 the snake is ahead")
 
 
-def _by_rules(table: Table) -> Markup:
+def _by_rules(table: NoPriorTable) -> Markup:
     rows = [
         Range(f"{c.field}, {c.rules}", c.q05, c.mean, c.q95)
         for c in table.cells

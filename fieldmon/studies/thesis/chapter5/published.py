@@ -18,14 +18,14 @@ from fieldmon.studies.thesis.chapter5.open_choices import (
     TIME_HA,
     OpenChoices,
 )
-from fieldmon.studies.thesis.chapter5.seasons import Trial
+from fieldmon.studies.thesis.chapter5.seasons import PriorTrial
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from fieldmon.studies.thesis.chapter5.replicates import Runs
+    from fieldmon.studies.thesis.chapter5.replicates import PriorRuns
 
     Floats = NDArray[np.float64]
 
@@ -44,11 +44,11 @@ class Case(NamedTuple):
     detection: float | None = None
     rate: float | None = None
 
-    def trial(self, choices: OpenChoices) -> Trial:
+    def trial(self, choices: OpenChoices) -> PriorTrial:
         """Return the trial under given open choices."""
         if self.rate is not None:
             choices = replace(choices, spread=replace(choices.spread, rate_per_day=self.rate))
-        return Trial(self.sampler, choices, self.hectares, self.look_s, self.detection)
+        return PriorTrial(self.sampler, choices, self.hectares, self.look_s, self.detection)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,44 +101,44 @@ def cases_of(part: str) -> tuple[Case, ...]:
 PARTS = (*SCENARIOS, "size", "spread", "time", "detection")
 
 
-def _end(runs: Runs) -> Floats:
+def _end(runs: PriorRuns) -> Floats:
     return runs.end_pct
 
 
-def _day_1(runs: Runs) -> Floats:
+def _day_1(runs: PriorRuns) -> Floats:
     return runs.detection_pct[:, 0]
 
 
-def _less(measure: Callable[[Runs], Floats]) -> Callable[[Runs, Runs], Floats]:
+def _less(measure: Callable[[PriorRuns], Floats]) -> Callable[[PriorRuns, PriorRuns], Floats]:
     """Return the first's measure less the second's, seed by seed."""
     return lambda one, other: measure(one) - measure(other)
 
 
-def _sooner(level_pct: float) -> Callable[[Runs, Runs], Floats]:
+def _sooner(level_pct: float) -> Callable[[PriorRuns, PriorRuns], Floats]:
     """Return by how many days the first reaches a level before the second."""
     return lambda one, other: other.days_to(level_pct) - one.days_to(level_pct)
 
 
-def _early(one: Runs, other: Runs) -> Floats:
+def _early(one: PriorRuns, other: PriorRuns) -> Floats:
     gap: Floats = (one.detection_pct - other.detection_pct)[:, :3].mean(axis=1)
     return gap
 
 
-def _best_end(*runs: Runs) -> Floats:
+def _best_end(*runs: PriorRuns) -> Floats:
     return max((each.end_pct for each in runs), key=np.mean)
 
 
-def _worst_end(*runs: Runs) -> Floats:
+def _worst_end(*runs: PriorRuns) -> Floats:
     return min((each.end_pct for each in runs), key=np.mean)
 
 
-def _fall(small: Runs, middle: Runs, big: Runs, biggest: Runs) -> Floats:
+def _fall(small: PriorRuns, middle: PriorRuns, big: PriorRuns, biggest: PriorRuns) -> Floats:
     """Return how much steeper detection falls between two sizes than between two bigger ones."""
     first = (small.end_pct - middle.end_pct) / (_ha(middle) - _ha(small))
     return first - (big.end_pct - biggest.end_pct) / (_ha(biggest) - _ha(big))
 
 
-def _ha(runs: Runs) -> float:
+def _ha(runs: PriorRuns) -> float:
     return runs.trial.hectares or np.nan
 
 

@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 from fieldmon.io.html import page
+from fieldmon.simulation.statistics import summary_statistics
 from fieldmon.studies.charts import Line, line_chart
-from fieldmon.studies.thesis.chapter4.measures import spread_of
 from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS, SCENARIOS
 from fieldmon.studies.thesis.chapter5.study import OWN, label_of
 from fieldmon.studies.thesis.chapter5.verdicts import AGREES, DIFFERS, FAILS, HOLDS, NEAR, OPEN
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     import numpy as np
     from markupsafe import Markup
 
-    from fieldmon.studies.thesis.chapter4.measures import Spread
-    from fieldmon.studies.thesis.chapter5.mapped_plots import MapRow
-    from fieldmon.studies.thesis.chapter5.replicates import Runs
-    from fieldmon.studies.thesis.chapter5.study import Part, Study
+    from fieldmon.simulation.statistics import SummaryStatistics
+    from fieldmon.studies.thesis.chapter5.mapped_plots import MapMeasure
+    from fieldmon.studies.thesis.chapter5.replicates import PriorRuns
+    from fieldmon.studies.thesis.chapter5.study import PriorStudy, StudyPart
 
 # how a verdict is coloured: as the one of three that it comes to
 _CLASSES = {
@@ -49,7 +49,7 @@ _MEASURES = {
 }
 
 
-def report_html(study: Study) -> str:
+def report_html(study: PriorStudy) -> str:
     """Return the whole report as one HTML document."""
     return page(
         "fieldmon/studies/thesis/chapter5/report.html.j2",
@@ -61,7 +61,7 @@ def report_html(study: Study) -> str:
     )
 
 
-def maps_html(table: Sequence[MapRow]) -> str:
+def maps_html(table: Sequence[MapMeasure]) -> str:
     """Return the samplers on real maps as one HTML document: a plot a map and date."""
     plots = dict.fromkeys((row.map, row.date, row.infested) for row in table)
     drawn = [
@@ -75,7 +75,7 @@ def maps_html(table: Sequence[MapRow]) -> str:
     return page("fieldmon/studies/thesis/chapter5/mapped_plots.html.j2", charts=drawn)
 
 
-def _map_line(table: Sequence[MapRow], key: tuple[str, str, str]) -> Line:
+def _map_line(table: Sequence[MapMeasure], key: tuple[str, str, str]) -> Line:
     rows = [row for row in table if (row.map, row.date, row.sampler) == key]
     x, y, low, high = (
         [getattr(row, column) if row.seeds > 1 else math.nan for row in rows]
@@ -84,15 +84,15 @@ def _map_line(table: Sequence[MapRow], key: tuple[str, str, str]) -> Line:
     return Line(key[2].capitalize(), x, y, low, high)
 
 
-def _rows(part: Part) -> list[tuple[str, list[Spread]]]:
+def _rows(part: StudyPart) -> list[tuple[str, list[SummaryStatistics]]]:
     """Return what each configuration of a part is called, and the spread of its measures."""
     return [
-        (_name(part, runs), [spread_of(values) for values in runs.measures().values()])
+        (_name(part, runs), [summary_statistics(values) for values in runs.measures().values()])
         for runs in part.runs
     ]
 
 
-def charts(part: Part) -> list[Markup]:
+def charts(part: StudyPart) -> list[Markup]:
     """Return the plots of a part as ``<svg>`` figures."""
     if part.name in SCENARIOS or part.name == OWN:
         numbers = _FIGURES.get(part.name)
@@ -107,7 +107,7 @@ def charts(part: Part) -> list[Markup]:
     return [_by_day(part, "detection_pct", f"{head}detected so far")]
 
 
-def _by_day(part: Part, measure: str, title: str) -> Markup:
+def _by_day(part: StudyPart, measure: str, title: str) -> Markup:
     lines = [
         _line(
             label_of(part.name, runs.trial),
@@ -119,7 +119,7 @@ def _by_day(part: Part, measure: str, title: str) -> Markup:
     return line_chart(title, lines, ("day", "%"))
 
 
-def _by_size(part: Part, title: str) -> Markup:
+def _by_size(part: StudyPart, title: str) -> Markup:
     lines = []
     for name in SAMPLERS:
         runs = [each for each in part.runs if each.trial.sampler == name]
@@ -130,7 +130,7 @@ def _by_size(part: Part, title: str) -> Markup:
 
 def _line(label: str, x: list[float], values: Iterable[np.ndarray]) -> Line:
     """Return a line of means in their 95 % intervals; a day that few worked is left out."""
-    spreads = [spread_of(column) for column in values]
+    spreads = [summary_statistics(column) for column in values]
     few = [each.replicates < 2 for each in spreads]
     y, low, high = (
         [math.nan if less else getattr(each, name) for each, less in zip(spreads, few, strict=True)]
@@ -140,7 +140,7 @@ def _line(label: str, x: list[float], values: Iterable[np.ndarray]) -> Line:
     return Line(label, x, y, [max(each, 0.0) for each in low], [min(each, 100.0) for each in high])
 
 
-def _name(part: Part, runs: Runs) -> str:
+def _name(part: StudyPart, runs: PriorRuns) -> str:
     name = label_of(part.name, runs.trial)
     return f"{name}, {runs.trial.hectares:g} ha" if part.name == "size" else name
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.plot.robot import Robot
-    from fieldmon.simulation.season import Start
+    from fieldmon.simulation.start import Start
     from fieldmon.studies.thesis.chapter5.sites import Site
 
     Floats = NDArray[np.float64]
@@ -39,7 +39,7 @@ _MOST = 1.0 - 1e-6
 
 
 @dataclass(frozen=True)
-class Trial:
+class PriorTrial:
     """One configuration of chapter 5.
 
     Parameters
@@ -69,33 +69,41 @@ class Trial:
 
 
 @dataclass(frozen=True, eq=False)
-class Luck:
-    """The keys of all coins of one seed, drawn once for all samplers."""
+class SeedKeys:
+    """The keys of all coins of one seed, drawn once for all samplers.
 
-    chance: RandomStreams
+    Parameters
+    ----------
+    streams
+        All random streams of the seed.
+    inspect, spread
+        ``(days,)`` the key of each day's inspections, and of its night.
+    """
+
+    streams: RandomStreams
     inspect: NDArray[np.uint64]
     spread: NDArray[np.uint64]
 
     @classmethod
-    def of(cls, chance: RandomStreams, n_days: int = N_DAYS) -> Luck:
+    def of(cls, streams: RandomStreams, n_days: int = N_DAYS) -> SeedKeys:
         """Return the keys of ``inspect/day`` and ``spread/day``."""
         keys = (
-            np.array([chance.key(name, day) for day in range(n_days)], np.uint64)
+            np.array([streams.key(name, day) for day in range(n_days)], np.uint64)
             for name in ("inspect", "spread")
         )
-        return cls(chance, *keys)
+        return cls(streams, *keys)
 
 
-def play(site: Site, trial: Trial, luck: Luck) -> Floats:
+def play(site: Site, trial: PriorTrial, keys: SeedKeys) -> Floats:
     """Return a season as ``(days, 9)``, see `N_COLUMNS`; visited is NaN after the end of work."""
-    start = first_morning(site, trial.choices.start, luck.chance)
-    return play_from(site, trial, start, luck)
+    start = first_morning(site, trial.choices.start, keys.streams)
+    return play_from(site, trial, start, keys)
 
 
-def play_from(site: Site, trial: Trial, start: Start, luck: Luck) -> Floats:
+def play_from(site: Site, trial: PriorTrial, start: Start, keys: SeedKeys) -> Floats:
     """Return a season as :func:`play` does, from a given first morning."""
     choices, robot, count = trial.choices, trial.robot, np.count_nonzero
-    table = np.zeros((len(luck.inspect), N_COLUMNS))
+    table = np.zeros((len(keys.inspect), N_COLUMNS))
     table[:, AT_LEVEL:] = np.nan
     infested, belief = start.infested.copy(), start.chance.copy()
     ever, ever_found = infested.copy(), np.zeros(len(infested), np.bool_)
@@ -109,7 +117,7 @@ def play_from(site: Site, trial: Trial, start: Start, luck: Luck) -> Floats:
             table[day:, EVER], table[day:, EVER_FOUND] = count(ever), count(ever_found)
             break
         scene = Scene(site.aisles, robot, belief, last, day, GATE, robot.day_s, trail)
-        plants, found, at_s = _inspect(trial, scene, infested, luck.inspect[day])
+        plants, found, at_s = _inspect(trial, scene, infested, keys.inspect[day])
         finds = plants[found]
         again = ever_found[finds]
         missed = np.zeros(len(infested), np.bool_)
@@ -124,7 +132,7 @@ def play_from(site: Site, trial: Trial, start: Start, luck: Luck) -> Floats:
         if trial.sampler not in _BLIND:
             evening = learn(belief, site.grid, plants, found, Learning(detection=robot.detects))
             belief = _morning(site, choices, evening, (plants, found, missed))
-        after = _night(site, choices, infested, missed, luck.spread[day])
+        after = _night(site, choices, infested, missed, keys.spread[day])
         new = count(after) - count(infested)
         infested = after
         ever |= infested
@@ -133,7 +141,7 @@ def play_from(site: Site, trial: Trial, start: Start, luck: Luck) -> Floats:
 
 
 def _inspect(
-    trial: Trial, scene: Scene, infested: Flags, key: np.uint64
+    trial: PriorTrial, scene: Scene, infested: Flags, key: np.uint64
 ) -> tuple[NDArray[np.int32], Flags, Floats]:
     """Return the plants inspected on a day, which were found infested, and when it was done."""
     would_find = outcomes(infested, scene.robot.detects, key)

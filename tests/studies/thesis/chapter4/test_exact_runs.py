@@ -10,7 +10,7 @@ from fieldmon.errors import FileProblem, SettingError
 from fieldmon.studies.thesis.chapter4.draws import portable
 from fieldmon.studies.thesis.chapter4.exact_runs import compare_golden, golden_columns, portable_run
 from fieldmon.studies.thesis.chapter4.listing_errors import AS_PUBLISHED, NIGHT_CORRECTED
-from fieldmon.studies.thesis.chapter4.trial import Strategy, Trial
+from fieldmon.studies.thesis.chapter4.trial import NoPriorTrial, ThesisStrategy
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS
 
 FUNCTIONS = {"snake": 2, "neighbor": 4, "randomsnake": 3, "neighborrandom": 5}
@@ -20,10 +20,10 @@ def row(function="snake", seed=1, severity=0.3, slips=AS_PUBLISHED, **key):
     """Return a row of a file of exact runs, as our own run fills it."""
     key = {"func": function, "scenario": "A", "n": 1, "vp": 2} | key
     algorithm = FUNCTIONS[function.removesuffix("_row")]
-    strategy = Strategy(algorithm, key["n"] if algorithm in (2, 4) else 1)
+    strategy = ThesisStrategy(algorithm, key["n"] if algorithm in (2, 4) else 1)
     if function.endswith("_row"):
         slips = slips.without("draw_every_stop")
-    trial = Trial(SCENARIOS[key["scenario"]], strategy, key["vp"], severity)
+    trial = NoPriorTrial(SCENARIOS[key["scenario"]], strategy, key["vp"], severity)
     values = portable_run(trial, slips, seed)
     key |= {"severity": severity, "seed": seed, "crash": 0 if values else 1}
     return {column: key.get(column, (values or {}).get(column, "")) for column in golden_columns()}

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.studies.thesis.chapter4.measures import Cell
+from fieldmon.studies.thesis.chapter4.measures import NoPriorMeasure
 from fieldmon.studies.thesis.chapter4.report import report_html
-from fieldmon.studies.thesis.chapter4.study import Study, Table
+from fieldmon.studies.thesis.chapter4.study import NoPriorStudy, NoPriorTable
 from tests.pages import HOSTILE, Page, held
 
-CELL = Cell(
+CELL = NoPriorMeasure(
     table="2",
     field="A",
     faces=500,
@@ -40,8 +40,8 @@ def page(everything):
 
 def shown(*cells, **more):
     """Return the page of a study that has one table of these cells."""
-    table = Table("2", "Table 2", "About it.", cells, ("A sentence.",), **more)
-    return report_html(Study(400, 1, (table,)))
+    table = NoPriorTable("2", "Table 2", "About it.", cells, ("A sentence.",), **more)
+    return report_html(NoPriorStudy(400, 1, (table,)))
 
 
 def test_the_page_is_whole_and_has_plots_and_tables(page, everything):
@@ -158,7 +158,7 @@ def test_every_text_of_a_study_is_text():
         thesis_verdict="misprint",
     )  # fmt: skip
     hours = np.array([0.0, 1.0])
-    table = Table("x", text, text, (cell,), (text,), ((text, hours, hours),))
-    page = held(report_html(Study(2, 1, (table,))))
+    table = NoPriorTable("x", text, text, (cell,), (text,), ((text, hours, hours),))
+    page = held(report_html(NoPriorStudy(2, 1, (table,))))
     assert page.text.count(text) >= 7
     assert page.headings[1] == text

@@ -13,14 +13,15 @@ from fieldmon.studies.thesis.chapter5 import replicates, verdicts
 from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
 from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS, OpenChoices
 from fieldmon.studies.thesis.chapter5.published import FIGURES, PARTS, Case, Published, cases_of
-from fieldmon.studies.thesis.chapter5.replicates import lucks, run_trials
+from fieldmon.studies.thesis.chapter5.replicates import run_trials, seed_keys
 from fieldmon.studies.thesis.chapter5.report import charts, report_html
-from fieldmon.studies.thesis.chapter5.seasons import Trial
+from fieldmon.studies.thesis.chapter5.seasons import PriorTrial
 from fieldmon.studies.thesis.chapter5.sites import square
-from fieldmon.studies.thesis.chapter5.study import csv_text, rows, run_prior, run_site
+from fieldmon.studies.thesis.chapter5.study import rows, run_prior, run_site
 from fieldmon.studies.thesis.chapter5.verdicts import compare, misfit
+from fieldmon.studies.tidy_csv import csv_text
 
-TRIALS = [Trial(name, OpenChoices(), 1.0) for name in SAMPLERS]
+TRIALS = [PriorTrial(name, OpenChoices(), 1.0) for name in SAMPLERS]
 
 
 @pytest.fixture(scope="module")
@@ -35,18 +36,18 @@ def fake(detection, visited=()):
     tables[..., 1] = np.diff(detection, axis=1, prepend=0)
     tables[:, 0, 3] = 100
     tables[..., 0] = visited if len(visited) else 10
-    return replicates.Runs(TRIALS[0], 1000, tables)
+    return replicates.PriorRuns(TRIALS[0], 1000, tables)
 
 
 def test_the_answer_does_not_depend_on_threads():
-    coins = lucks(3)
+    coins = seed_keys(3)
     one, two = run_trials(TRIALS, coins, threads=1), run_trials(TRIALS, coins, threads=3)
     for trial in TRIALS:
         assert np.array_equal(one.runs[trial].tables, two.runs[trial].tables, equal_nan=True)
 
 
 def test_more_seeds_begin_with_the_same_seasons():
-    few, many = (run_trials(TRIALS[:1], lucks(n)).runs[TRIALS[0]].tables for n in (2, 4))
+    few, many = (run_trials(TRIALS[:1], seed_keys(n)).runs[TRIALS[0]].tables for n in (2, 4))
     assert np.array_equal(few, many[:2], equal_nan=True)
 
 
@@ -56,7 +57,7 @@ def test_stopping_keeps_what_is_done():
         if done == 2:
             raise KeyboardInterrupt
 
-    made = run_trials(TRIALS, lucks(2), stop)
+    made = run_trials(TRIALS, seed_keys(2), stop)
     assert made.stopped
     assert len(made.runs) == 2
 
@@ -71,7 +72,7 @@ def test_measures_are_read_off_the_curves():
 
 def test_one_seed_has_no_interval_and_is_refused():
     with pytest.raises(SettingError, match="2 seeds"):
-        lucks(1)
+        seed_keys(1)
 
 
 def test_every_part_has_figures_and_plays_what_they_need():

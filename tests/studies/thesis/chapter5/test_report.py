@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
-from fieldmon.studies.thesis.chapter5.mapped_plots import MapRow
-from fieldmon.studies.thesis.chapter5.replicates import Runs
+from fieldmon.studies.thesis.chapter5.mapped_plots import MapMeasure
+from fieldmon.studies.thesis.chapter5.replicates import PriorRuns
 from fieldmon.studies.thesis.chapter5.report import charts, maps_html, report_html
-from fieldmon.studies.thesis.chapter5.seasons import Trial
-from fieldmon.studies.thesis.chapter5.study import OWN, Part, Study
+from fieldmon.studies.thesis.chapter5.seasons import PriorTrial
+from fieldmon.studies.thesis.chapter5.study import OWN, PriorStudy, StudyPart
 from fieldmon.studies.thesis.chapter5.verdicts import AGREES, DIFFERS, Compared
 from tests.pages import HOSTILE, Page, held
 
@@ -24,23 +24,27 @@ def runs_of(trial, seed=0, n=4, days=25):
     tables[..., 0] = rng.integers(100, 400, (n, days))
     tables[..., 1] = rng.integers(0, 4, (n, days))
     tables[:, 0, 3] = 100
-    return Runs(trial, 1000, tables)
+    return PriorRuns(trial, 1000, tables)
 
 
 @pytest.fixture(scope="module")
 def study():
-    scenario = [Trial(name, CALIBRATED, 1.0) for name in ("dynamic", "naive", "bouncy")]
-    times = [Trial("dynamic", CALIBRATED, 6.0, look_s) for look_s in (20.0, 40.0)]
+    scenario = [PriorTrial(name, CALIBRATED, 1.0) for name in ("dynamic", "naive", "bouncy")]
+    times = [PriorTrial("dynamic", CALIBRATED, 6.0, look_s) for look_s in (20.0, 40.0)]
     sizes = [
-        Trial(name, CALIBRATED, ha) for ha in (1.0, 2.0) for name in ("dynamic", "naive", "bouncy")
+        PriorTrial(name, CALIBRATED, ha)
+        for ha in (1.0, 2.0)
+        for name in ("dynamic", "naive", "bouncy")
     ]
     parts = [
-        Part(name, f"Title of {name}", tuple(runs_of(trial, k) for k, trial in enumerate(trials)))
+        StudyPart(
+            name, f"Title of {name}", tuple(runs_of(trial, k) for k, trial in enumerate(trials))
+        )
         for name, trials in (("A", scenario), ("time", times), ("size", sizes))
     ]
     found = replace(COMPARED, verdict=AGREES, fitted=False, difference=0.25)
     parts[0] = replace(parts[0], compared=(COMPARED, found))
-    return Study(CALIBRATED, 4, 9, tuple(parts))
+    return PriorStudy(CALIBRATED, 4, 9, tuple(parts))
 
 
 @pytest.fixture(scope="module")
@@ -125,8 +129,8 @@ def test_a_study_that_was_stopped_says_so(study):
 
 def test_a_plot_s_own_name_is_text():
     text = " ".join(HOSTILE)
-    part = Part(OWN, text, (runs_of(Trial("dynamic", CALIBRATED)),))
-    page = held(report_html(Study(CALIBRATED, 4, 1, (part,))))
+    part = StudyPart(OWN, text, (runs_of(PriorTrial("dynamic", CALIBRATED)),))
+    page = held(report_html(PriorStudy(CALIBRATED, 4, 1, (part,))))
     assert page.headings[-1] == text
 
 
@@ -139,7 +143,7 @@ def test_what_is_compared_is_text(study):
 
 def map_rows(name="pepper", date="3 May", seeds=4):
     return [
-        MapRow(name, date, 40, sampler, pct, pct / 2, pct / 2 - 1, pct / 2 + 1, seeds)
+        MapMeasure(name, date, 40, sampler, pct, pct / 2, pct / 2 - 1, pct / 2 + 1, seeds)
         for sampler in ("dynamic", "naive", "bouncy")
         for pct in (0.0, 5.0, 10.0)
     ]

@@ -6,6 +6,8 @@ that returns what it made, and a line in `SURFACES`: those of the app belong the
 """
 
 import csv
+from concurrent.futures import Future
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +16,7 @@ import pytest
 import shapely
 from shapely import MultiPolygon
 
+from fieldmon.cli import plan_all
 from fieldmon.cli.main import app
 from fieldmon.io.options import PlotOptions
 from fieldmon.io.parse.geometry import area_m2
@@ -63,7 +66,7 @@ def begun(records):
     Path("s.gpkg").unlink(missing_ok=True)
     command("init", "s.gpkg", "plots.geojson", *of_one(records), "--begins", DAY)
     season = Season(Path("s.gpkg"))
-    first = season.setup.begins
+    first = season.settings.begins
     return season.morning(first).tolist(), season.plan(first, keep=False).route.plant.tolist()
 
 
@@ -125,13 +128,29 @@ def _records(tmp_path, monkeypatch):
         Path(f"{name}.csv").write_text("\n".join([f"{columns},date,count", *lines, ""]))
 
 
+class AtOnce:
+    """Does what a pool of processes is handed here and now."""
+
+    def __init__(self, _workers, _context, _prepare, told):
+        plan_all._day[:] = told
+
+    def submit(self, work, *about):
+        done = Future()
+        done.set_result(work(*about))
+        return done
+
+    def shutdown(self, **_):
+        pass
+
+
 @pytest.fixture
-def _near(monkeypatch):
-    """Let a study's workers be threads: they start at once."""
-    monkeypatch.setattr(executor, "cluster", lambda *_: executor.threads())
+def _one_process(monkeypatch):
+    """Let all be done in this process; with others, these commands are tested by themselves."""
+    monkeypatch.setattr(plan_all, "ProcessPoolExecutor", AtOnce)
+    monkeypatch.setattr(executor, "cluster", lambda *_: nullcontext(executor.here()))
 
 
-@pytest.mark.usefixtures("_records", "_near")
+@pytest.mark.usefixtures("_records", "_one_process")
 @pytest.mark.parametrize("surface", SURFACES)
 def test_records_that_name_places_say_what_positions_say(surface):
     made = SURFACES[surface]
@@ -144,10 +163,9 @@ def test_records_that_name_places_say_what_positions_say(surface):
 
 
 @pytest.mark.usefixtures("_records")
-@pytest.mark.parametrize("records", ["rows.csv", "plots.csv"])
-def test_a_plot_is_planned_the_same_alone_with_all_others_and_in_a_season(records):
-    alone = planned(records)
-    assert planned_with_all(records) == alone
-    command("init", "s.gpkg", "plots.geojson", *of_one(records), "--begins", DAY)
+def test_a_plot_is_planned_the_same_alone_with_all_others_and_in_a_season():
+    alone = planned("rows.csv")
+    assert planned_with_all("rows.csv") == alone
+    command("init", "s.gpkg", "plots.geojson", *of_one("rows.csv"), "--begins", DAY)
     command("plan", "s.gpkg", "--date", DAY, "-o", "of_season.geojson")
     assert Path("of_season.geojson").read_bytes() == alone

@@ -10,8 +10,8 @@ from tests.paths import ROOT
 
 #: names that two rooms still share, and since when; the list only shrinks, and ends empty
 SHARED_SINCE = {
-    "Crew": date(2026, 11, 22),  # io.readers and monitoring: branch inspections
-    "Places": date(2026, 11, 22),  # io.readers and the app's first screen: branch app
+    "DayFigures": date(2026, 11, 22),  # monitoring, and the app's older copy of it
+    "Places": date(2026, 11, 22),  # what records may name, and parts of the app's page
 }
 
 

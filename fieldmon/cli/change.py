@@ -12,7 +12,7 @@ from fieldmon.cli.options import Hours, Look, SeasonFile, Speed, WorkerOptions
 from fieldmon.cli.times import clock
 
 if TYPE_CHECKING:
-    from fieldmon.monitoring import SeasonSetup
+    from fieldmon.monitoring import MonitoringSettings
 
 
 @dataclass(frozen=True)
@@ -30,12 +30,12 @@ class ChangeOptions:
         float | None, typer.Option(help="Chance a night to infest a neighbour, as believed.")
     ] = None
 
-    def changed(self, setup: SeasonSetup) -> SeasonSetup:
+    def changed(self, settings: MonitoringSettings) -> MonitoringSettings:
         """Return a season's settings as they are to be."""
         from dataclasses import replace  # noqa: PLC0415
 
         robot = WorkerOptions(self.hours, self.look, self.speed).given()
-        new = replace(setup, robot=replace(setup.robot, **robot))  # type: ignore[arg-type]
+        new = replace(settings, robot=replace(settings.robot, **robot))  # type: ignore[arg-type]
         if self.sampler is not None:
             new = replace(new, sampler=self.sampler, sampler_settings={})
         if self.every is not None:
@@ -43,8 +43,8 @@ class ChangeOptions:
         if self.start is not None:
             new = replace(new, starts=clock(self.start))
         if self.spread is not None:
-            rate = replace(setup.beliefs.spread, rate_per_day=self.spread)
-            new = replace(new, beliefs=replace(setup.beliefs, spread=rate))
+            rate = replace(settings.belief.spread, rate_per_day=self.spread)
+            new = replace(new, belief=replace(settings.belief, spread=rate))
         return new
 
 
@@ -57,7 +57,7 @@ def change(options: ChangeOptions) -> None:
     from fieldmon.monitoring import Season  # noqa: PLC0415
 
     season = Season(options.season)
-    seen = season.setup
+    seen = season.settings
     new = options.changed(seen)
     if new == seen:
         typer.echo("Nothing was changed.")

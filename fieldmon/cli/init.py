@@ -26,10 +26,7 @@ from fieldmon.cli.sampler_names import SamplerName
 from fieldmon.cli.times import clock, day
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from fieldmon.io.prepare import SourceMessage
-    from fieldmon.monitoring import Remark, SeasonSetup
+    from fieldmon.monitoring import MonitoringSettings
 
 
 @dataclass(frozen=True)
@@ -59,21 +56,21 @@ class InitOptions:
     worker: WorkerOptions = field(default_factory=WorkerOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
 
-    def setup(self) -> SeasonSetup:
+    def settings(self) -> MonitoringSettings:
         """Return how the season is worked."""
         from dataclasses import replace  # noqa: PLC0415
 
-        from fieldmon.monitoring import SeasonSetup  # noqa: PLC0415
-        from fieldmon.monitoring.history import Beliefs  # noqa: PLC0415
+        from fieldmon.monitoring import MonitoringSettings  # noqa: PLC0415
+        from fieldmon.monitoring.history import BeliefSettings  # noqa: PLC0415
 
-        beliefs = Beliefs(treated=not self.flag_only)
-        return SeasonSetup(
+        belief = BeliefSettings(treated=not self.flag_only)
+        return MonitoringSettings(
             day(self.begins),
             clock(self.start),
             self.worker.robot(),
             self.sampler.value,
             sampler_settings(self.sampler, self.every),
-            beliefs=replace(beliefs, spread=replace(beliefs.spread, rate_per_day=self.spread)),
+            belief=replace(belief, spread=replace(belief.spread, rate_per_day=self.spread)),
             seed=self.seed,
         )
 
@@ -88,33 +85,17 @@ def init(options: InitOptions) -> None:
     """
     import numpy as np  # noqa: PLC0415
 
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.monitoring import KeptMessage, Season  # noqa: PLC0415
 
-    setup, path = options.setup(), options.season
+    settings, path = options.settings(), options.season
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
-    tell_unusable(known.records, np.datetime64(setup.begins, "D"))
-    remarks = _remarks(known.messages)
-    season = Season.create(path, known.plot, known.records, setup, remarks, known.risk)
-    ahead = season.status(setup.begins).outlook
+    tell_unusable(known.records, np.datetime64(settings.begins, "D"))
+    messages = [KeptMessage.of(said.source, said.message) for said in known.messages]
+    season = Season.create(path, known.plot, known.records, settings, messages, known.risk)
+    ahead = season.status(settings.begins).estimate
     typer.echo(
         f"Season begun in {path}: {len(known.records)} records, about {ahead.expected:.0f} plants "
         f"believed infested ({ahead.low} to {ahead.high})."
     )
     typer.echo(f"Next: fieldmon plan {path} -o route.geojson")
-
-
-def _remarks(messages: Iterable[SourceMessage]) -> list[Remark]:
-    """Return what imports had to say, as the season's file keeps it."""
-    from fieldmon.monitoring import Remark  # noqa: PLC0415
-
-    return [
-        Remark(
-            said.source,
-            said.message.severity.value,
-            said.message.feature,
-            said.message.sentence,
-            None if said.message.remedy is None else said.message.remedy.setting,
-        )
-        for said in messages
-    ]

@@ -101,7 +101,7 @@ def describe(plot: Plot) -> None:
 
 def tell_unusable(records: Observations, day: np.datetime64) -> None:
     """Print which records say nothing about a day."""
-    from fieldmon.infestation.prior import usable  # noqa: PLC0415
+    from fieldmon.infestation.observations import usable  # noqa: PLC0415
 
-    for remark in usable(records, day).remarks():
-        typer.echo(remark, err=True)
+    for sentence in usable(records, day).messages():
+        typer.echo(sentence, err=True)

@@ -19,6 +19,8 @@ import typer
 from fieldmon.cli.waiting import progress
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.atomic_write import write_whole
+from fieldmon.io.prepare import lay
+from fieldmon.io.sources import PlantingChoices
 from fieldmon.io.writers.geojson import RouteNotes, write_route
 from fieldmon.planning.batch import plan_task
 
@@ -198,7 +200,9 @@ def _work(name: str, task: Task) -> Row:
     (day,) = _day
     row = dict.fromkeys(_COLUMNS, "") | {"plot": task.plot.name, "file": name}
     try:
-        today = plan_task(task, day.records.on(task.plot))
+        choices = PlantingChoices(**task.orders.planting)  # type: ignore[arg-type]
+        plot = lay(task.plot, choices).plot
+        today = plan_task(task, plot, day.records.on(task.plot))
     except FieldmonError as error:
         (day.folder / name).unlink(missing_ok=True)
         return row | {"state": "refused", "sentence": str(error)}

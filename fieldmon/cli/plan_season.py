@@ -29,15 +29,15 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     season = Season(file)
     on, now = day(options.on), options.now
     today = season.plan(on, None if now is None else clock(now, "--now"))
-    route, setup = today.route, season.setup
+    route, settings = today.route, season.settings
     if not len(route):
         left_h = today.scene.seconds_left / 3600
         raise SettingError(
             "The working day must be long enough to reach another plant and come back, but "
             f"{left_h:.1f} h are left of {on}. Plan another day with --date."
         )
-    notes = RouteNotes(season.plot.field.name, setup.sampler, begins(setup, today))
-    seen = season.history.inspections.on(today.scene.day)
+    notes = RouteNotes(season.plot.field.name, settings.sampler, begins(settings, today))
+    seen = season.history.on(today.scene.day)
     done = f"{len(seen)} done, " if len(seen) else ""
     typer.echo(f"{on}: {done}{day_in_words(route)}")
     write_routes(route, notes, options.output)

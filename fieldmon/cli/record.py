@@ -14,8 +14,8 @@ from fieldmon.cli.status import lines
 from fieldmon.cli.times import day
 
 if TYPE_CHECKING:
-    from fieldmon.io.readers.inspections import Findings
-    from fieldmon.io.readers.reported import FindingsOptions
+    from fieldmon.infestation.inspections import Inspections
+    from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.monitoring import Season
 
 TakeDoubtful = Annotated[
@@ -55,35 +55,34 @@ def record(
 
     Example: fieldmon record season.gpkg route.csv --date 2026-04-06 --who Ann
     """
-    from fieldmon.io.readers.reported import FindingsOptions  # noqa: PLC0415
-    from fieldmon.monitoring import Season, results_from  # noqa: PLC0415
+    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
+    from fieldmon.monitoring import Season  # noqa: PLC0415
 
     kept = Season(season)
-    options = FindingsOptions(take_doubtful=take_doubtful)
+    options = InspectionOptions(take_doubtful=take_doubtful)
     if on is not None:
         options = options.choose("day", str(day(on)))
     options = chosen(options, finding_option)
     last = None
-    for file, found in zip(files, _read(kept, files, options), strict=True):
-        results = results_from(found)
-        done = kept.record(results, file.name, who)
-        if len(results):
-            last = max(last or results.day.max(), results.day.max())
+    for file, inspections in zip(files, _read(kept, files, options), strict=True):
+        done = kept.record(inspections, file.name, who)
+        if len(inspections):
+            last = max(last or inspections.date.max(), inspections.date.max())
         batch = "" if done.batch is None else f" (batch {done.batch})"
         typer.echo(f"{file.name}: {done.new} new, {done.known} known already{batch}")
     if last is not None:
         typer.echo("\n".join(lines(kept, kept.status(last.item()))))
 
 
-def _read(season: Season, files: list[Path], options: FindingsOptions) -> list[Findings]:
+def _read(season: Season, files: list[Path], options: InspectionOptions) -> list[Inspections]:
     """Return what is in files, all of them before any is recorded: nothing is left half-done."""
-    from fieldmon.io.readers.inspections import read_findings  # noqa: PLC0415
+    from fieldmon.io.readers.inspections import read_inspections  # noqa: PLC0415
     from fieldmon.monitoring import counting_copy  # noqa: PLC0415
     from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
 
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
         sources = [counting_copy(f, Path(folder)) if is_season(f) else f for f in files]
-        read = [read_findings(source, season.plot.grid, options) for source in sources]
+        read = [read_inspections(source, season.plot.grid, options) for source in sources]
     for file, found in zip(files, read, strict=True):
         for message in found.messages:
             typer.echo(f"{file.name}: {message}", err=True)

@@ -53,7 +53,7 @@ def status(
 
 def lines(season: Season, now: Status) -> Iterator[str]:
     """Yield where a season stands, line by line."""
-    ahead = now.outlook
+    ahead = now.estimate
     yield f"{season.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
     yield f"  inspected today        {now.inspected_today:6d}, {now.found_today} found infested"
     yield (

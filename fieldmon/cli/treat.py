@@ -38,7 +38,7 @@ def treat(
     if not done.new:
         typer.echo("This treatment was noted already; nothing changed.")
         return
-    ahead = kept.status(on_day).outlook
+    ahead = kept.status(on_day).estimate
     typer.echo(
         f"Treatment noted as batch {done.batch}; about {ahead.expected:.1f} plants are believed "
         f"infested now ({ahead.low} to {ahead.high})."

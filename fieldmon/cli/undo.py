@@ -33,10 +33,10 @@ def undo(
     from fieldmon.monitoring import Season  # noqa: PLC0415
 
     if change:
-        setup = Season(season).undo_change()
+        settings = Season(season).undo_change()
         typer.echo(
-            f"The last change was taken back: {setup.sampler}, {setup.robot.hours:g} h from "
-            f"{setup.starts:%H:%M}, {setup.robot.look_s:g} s at a plant."
+            f"The last change was taken back: {settings.sampler}, {settings.robot.hours:g} h from "
+            f"{settings.starts:%H:%M}, {settings.robot.look_s:g} s at a plant."
         )
         return
     typer.echo(Season(season).undo(batch, inspection))

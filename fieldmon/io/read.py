@@ -24,8 +24,9 @@ if TYPE_CHECKING:
     from fieldmon.io.formats.layer import LayerInfo
     from fieldmon.io.import_report import Imported
     from fieldmon.io.readers.crews import Crew
+    from fieldmon.io.readers.inspection_file.rows import InspectionRows
+    from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.places import Places, Plants
-    from fieldmon.io.readers.reported import FindingsOptions, Reported
     from fieldmon.plot.field import Field
 
 
@@ -116,7 +117,7 @@ def read_lines(source: Source, options: ReadOptions | None = None) -> Imported[M
     return lines
 
 
-def read_reported(source: Source, options: FindingsOptions) -> Imported[Reported]:
+def read_inspection_rows(source: Source, options: InspectionOptions) -> Imported[InspectionRows]:
     """Return what a file says of plants that were inspected, before they are looked up."""
-    reported: Imported[Reported] = _read("reported", source, options)
-    return reported
+    rows: Imported[InspectionRows] = _read("inspection_rows", source, options)
+    return rows

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from dataclasses import dataclass, fields
 from functools import cached_property, partial
 from itertools import product
 from typing import TYPE_CHECKING
 
-import numpy as np
-import shapely
-
+from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.samplers import SAMPLERS
 from fieldmon.simulation.experiment import Experiment
@@ -19,6 +16,8 @@ from fieldmon.simulation.worker import simulate_chunk
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    import numpy as np
 
     from fieldmon.infestation.observations import Observations
     from fieldmon.plot.field import Field
@@ -31,7 +30,7 @@ _S_PER_PLANT_DAY = {"dynamic": 4e-7, "adaptive": 2.5e-6}
 _S_PER_BLIND_PLANT_DAY = 2e-8
 _S_PER_DAY = 3e-4
 # changes when seasons come out differently, so that old chunks are not taken for new ones
-_VERSION = "1"
+_VERSION, _DIGITS = "1", 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +58,7 @@ class StudyPlot:
     def digest(self) -> str:
         """Return what tells this plot and its records from any others."""
         parts = (*vars(self.field).values(), *vars(self.observations).values())
-        return _digest(*parts, vars(self.planting), str(self.day))
+        return digest(*parts, _as_written(self.planting), str(self.day), length=_DIGITS)
 
     @cached_property
     def about_plants(self) -> int:
@@ -159,8 +158,8 @@ def study_of(plots: Sequence[StudyPlot], design: Design) -> Experiment[Setting, 
 
     def key(setting: Setting, seeds: range) -> tuple[str, str]:
         plot, levels = setting
-        parts = (plot.digest, vars(levels), (seeds.start, seeds.stop), n_days)
-        return levels.sampler, _digest(_VERSION, *parts)
+        parts = (plot.digest, _as_written(levels), (seeds.start, seeds.stop), n_days)
+        return levels.sampler, digest(_VERSION, *parts, length=_DIGITS)
 
     return Experiment(
         settings=list(product(plots, design.combinations)),
@@ -177,14 +176,6 @@ def _seasons(sampler: str, n_plants: int, n_days: int) -> int:
     return math.ceil(_CHUNK_S / (n_days * (_S_PER_DAY + n_plants * each_s)))
 
 
-def _digest(*parts: object) -> str:
-    everything = hashlib.sha256()
-    for part in parts:
-        if isinstance(part, shapely.Geometry):
-            everything.update(shapely.to_wkb(part))
-        elif isinstance(part, np.ndarray):
-            everything.update(part.tobytes())
-        else:
-            everything.update(repr(part).encode())
-        everything.update(b"\0")
-    return everything.hexdigest()[:20]
+def _as_written(settings: object) -> bytes:
+    """Return what stands for settings in digests: names and values in the order of the class."""
+    return repr(vars(settings)).encode()

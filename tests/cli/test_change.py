@@ -6,8 +6,8 @@ from fieldmon.monitoring import Season
 def test_choices_can_be_changed(run, season):
     code, _, err, _ = run("change", season, "--sampler", "snake", "--every", 2, "--hours", "0.5")
     assert code == 0, err
-    setup = Season(season).setup
-    assert (setup.sampler, setup.sampler_settings, setup.robot.hours) == (
+    settings = Season(season).settings
+    assert (settings.sampler, settings.sampler_settings, settings.robot.hours) == (
         "snake",
         {"every": 2},
         0.5,
@@ -16,6 +16,6 @@ def test_choices_can_be_changed(run, season):
     code, out, err, _ = run("undo", season, "--change")
     assert code == 0, err
     assert "adaptive, 1 h" in out
-    assert Season(season).setup.robot.hours == 1.0
+    assert Season(season).settings.robot.hours == 1.0
     code, _, err, _ = run("undo", season, "--change")
     assert (code, "there is none" in err) == (2, True)

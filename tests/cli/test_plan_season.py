@@ -5,8 +5,8 @@ from datetime import date, timedelta
 
 import numpy as np
 
-from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring import Results, Season
+from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS, filled_in
 
 
@@ -49,7 +49,7 @@ def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):
         tmp_path / "library.gpkg",
         Season(season).plot,
         Season(season).observations,
-        Season(season).setup,
+        Season(season).settings,
     )
     for day in range(10):
         on = date.fromisoformat(BEGINS) + timedelta(days=day)
@@ -60,6 +60,6 @@ def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):
         assert code == 0, err
         assert with_library.plan(on).route.plant[:12].tolist() == plants
         found = np.isin(np.arange(12), [day, day + 3])
-        with_library.record(Results.of(np.array(plants), found, np.datetime64(on)), "app")
+        with_library.record(Inspections.of(np.array(plants), found, np.datetime64(on)), "app")
         assert np.array_equal(with_library.evening(on), Season(season).evening(on))
     assert len(with_library.history.inspections) == 120

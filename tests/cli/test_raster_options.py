@@ -132,7 +132,7 @@ def test_a_season_begins_with_rasters_and_maps_its_days(run, tmp_path):
     assert east > plain_east + 0.2
     from fieldmon.monitoring import Season
 
-    said = [remark.sentence for remark in Season("season.gpkg").remarks()]
+    said = [remark.sentence for remark in Season("season.gpkg").messages()]
     assert any("Risk by chance" in sentence for sentence in said)
     code, _, err, _ = run("plan", "season.gpkg", *day, "--risk", risk)
     assert code == 2

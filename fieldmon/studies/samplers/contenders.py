@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.infestation.belief import IndependentPlants, Pairs
+from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import Adaptive, Bouncy, Dynamic, Naive
 
@@ -45,7 +46,7 @@ class Contender:
 
     name: str
     sampler: Sampler
-    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = Pairs.of
+    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = PairApproximation.of
     drives: bool = True
     every: int = 1
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.belief import Learning, Pairs
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.planning.workday import work_day
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import NEVER, Adaptive, Dynamic, Naive, Scene
@@ -72,7 +73,7 @@ def found_at(plot: DatedMap, sampler: Sampler) -> list[int]:
     """
     n = len(plot.infested)
     robot = Robot(detection=1.0, returns=False)
-    belief = Pairs.of(plot.aisles.grid, np.full(n, _FLAT))
+    belief = PairApproximation.of(plot.aisles.grid, np.full(n, _FLAT))
     seen = np.zeros(n, np.bool_)
     order = np.empty(0, np.int32)
     while len(order) < SHARES[-1] * n:

@@ -200,5 +200,5 @@ def _gone_s(crew: Crew, today: Inspections, resting: int, now_s: float | None) -
         return max(0.0, float(today.second[-1]) - crew.starts_s)
     robot = crew.robot
     clock = robot_clock(robot, robot.day_s)
-    drive_s = driven_s(crew.aisles.ground, clock, np.append(np.int64(resting), today.plant))
+    drive_s = driven_s(crew.aisles.travel, clock, np.append(np.int64(resting), today.plant))
     return drive_s + robot.visit_s * len(today)

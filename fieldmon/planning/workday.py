@@ -9,6 +9,7 @@ import numpy as np
 
 from fieldmon.compute.jit import loop
 from fieldmon.compute.random_streams import coin_bits, coin_limit
+from fieldmon.compute.wording import counted
 from fieldmon.plot.travel import GATE, travel_s
 from fieldmon.samplers.base import InspectionTimes
 
@@ -45,6 +46,11 @@ class Workday:
     stop_s: NDArray[np.float64]
     detects: NDArray[np.float64]
     end_s: float
+
+    def __repr__(self) -> str:
+        inspected = f"{counted(len(self), 'plant')} inspected"
+        finds = counted(int(np.count_nonzero(self.found)), "find")
+        return f"<Workday: {inspected}, {finds}, {self.end_s / 3600:.2f} h>"
 
     def __len__(self) -> int:
         """Return the number of plants inspected."""
@@ -121,5 +127,5 @@ def _look(
 def _end_s(scene: Scene, stops: Stops, last_stop_s: float) -> float:
     end_s = float(stops.arrive_s[-1]) + last_stop_s
     if scene.robot.returns:
-        end_s += travel_s(scene.aisles.ground, scene.clock, int(stops.plant[-1]), GATE)
+        end_s += travel_s(scene.aisles.travel, scene.clock, int(stops.plant[-1]), GATE)
     return end_s

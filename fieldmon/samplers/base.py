@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
+from fieldmon.compute.wording import counted
 from fieldmon.plot.travel import GATE, robot_clock
 
 if TYPE_CHECKING:
@@ -39,6 +40,9 @@ class Stops(NamedTuple):
     plant: NDArray[np.int32]
     arrive_s: NDArray[np.float64]
     look: NDArray[np.uint8] | None = None
+
+    def __repr__(self) -> str:
+        return f"<Stops: {counted(len(self.plant), 'plant')}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +85,10 @@ class Scene:
     trail: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
     key: np.uint64 = np.uint64(0)  # noqa: RUF009 - a number, not a call with effects
     pair_chance: NDArray[np.float64] | None = None
+
+    def __repr__(self) -> str:
+        hours = self.seconds_left / 3600
+        return f"<Scene of day {self.day}: {self.grid.counts}, {hours:.2f} h left>"
 
     @property
     def grid(self) -> PlantGrid:

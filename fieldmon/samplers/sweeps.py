@@ -61,7 +61,7 @@ class Bouncy:
 def _sweep(scene: Scene, every: int) -> Stops:
     stops = scene.blank()
     k = _walk(
-        scene.aisles.ground,
+        scene.aisles.travel,
         scene.clock,
         (scene.grid.snake, scene.last_inspected.copy()),
         (scene.at, scene.resume, scene.day, every),
@@ -72,7 +72,7 @@ def _sweep(scene: Scene, every: int) -> Stops:
 
 @loop
 def _walk(
-    ground: TravelTable,
+    travel: TravelTable,
     clock: Clock,
     plants: tuple[NDArray[np.int32], NDArray[np.int32]],
     start: tuple[int, int, int, int],
@@ -97,8 +97,8 @@ def _walk(
         position += every
         if last[plant] == today:
             continue
-        arrive_s = now_s + travel_s(ground, clock, at, plant)
-        if not in_time(ground, clock, plant, arrive_s):
+        arrive_s = now_s + travel_s(travel, clock, at, plant)
+        if not in_time(travel, clock, plant, arrive_s):
             break
         stops.plant[k], stops.arrive_s[k] = plant, arrive_s
         now_s = arrive_s + clock.visit_s

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import loop, part
 from fieldmon.compute.random_streams import coin, coin_table
 from fieldmon.errors import SettingError
@@ -167,9 +168,7 @@ def _face_to_face(grid: PlantGrid) -> Stations:
 
 def _stations(*arrays: NDArray[np.int32]) -> Stations:
     """Return stations that are only read, so that sweeps are compiled once for all of them."""
-    for array in arrays:
-        array.flags.writeable = False
-    return Stations(*arrays)
+    return Stations(*map(read_only, arrays))
 
 
 def _sweep(scene: Scene, stations: Stations, every: int) -> Stops:
@@ -192,7 +191,7 @@ def _walked(
 ) -> Stops:
     stops = scene.blank()
     k = _walk(
-        scene.aisles.ground,
+        scene.aisles.travel,
         scene.clock,
         stations,
         (wanted, scene.last_inspected.copy()),
@@ -204,7 +203,7 @@ def _walked(
 
 @loop
 def _walk(
-    ground: TravelTable,
+    travel: TravelTable,
     clock: Clock,
     stations: Stations,
     plants: tuple[NDArray[np.bool_], NDArray[np.int32]],
@@ -223,17 +222,17 @@ def _walk(
             position = _turned(stations, last, ahead, step)
             ahead = -ahead
         first = k
-        plant = _next_here(ground, stations, (wanted, last, today), position, at)
+        plant = _next_here(travel, stations, (wanted, last, today), position, at)
         while plant >= 0:
-            arrive_s = now_s + travel_s(ground, clock, at, plant)
-            if k == stops.plant.size or not in_time(ground, clock, plant, arrive_s):
+            arrive_s = now_s + travel_s(travel, clock, at, plant)
+            if k == stops.plant.size or not in_time(travel, clock, plant, arrive_s):
                 return k
             stops.plant[k], stops.arrive_s[k] = plant, arrive_s
             now_s = arrive_s + clock.visit_s
             last[plant] = today
             at = plant
             k += 1
-            plant = _next_here(ground, stations, (wanted, last, today), position, at)
+            plant = _next_here(travel, stations, (wanted, last, today), position, at)
         skipped = 0 if k > first else skipped + 1
         position += ahead * step
     return k
@@ -241,7 +240,7 @@ def _walk(
 
 @part
 def _next_here(
-    ground: TravelTable,
+    travel: TravelTable,
     stations: Stations,
     plants: tuple[NDArray[np.bool_], NDArray[np.int32], int],
     position: int,
@@ -254,7 +253,7 @@ def _next_here(
         plant = int(stations.plant[e])
         if not wanted[plant] or last[plant] == today:
             continue
-        if at >= 0 and ground.side[ground.row[plant]] == ground.side[ground.row[at]]:
+        if at >= 0 and travel.side[travel.row[plant]] == travel.side[travel.row[at]]:
             return plant
         if found < 0:
             found = plant

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
     from fieldmon.io.rasters.values import Backdrop, RasterOptions
-    from fieldmon.monitoring import Remark
+    from fieldmon.monitoring import KeptMessage
     from fieldmon.planning.route import Route
     from fieldmon.plot.field import Field
     from fieldmon.plot.layout import Planting
@@ -172,12 +172,12 @@ def revision(season: Season) -> str:
 
 
 @st.cache_resource(max_entries=_FEW)
-def remarks(path: str, _season: Season) -> tuple[Remark, ...]:  # noqa: ARG001
+def remarks(path: str, _season: Season) -> tuple[KeptMessage, ...]:  # noqa: ARG001
     """Return what the imports had to say when a season began."""
-    return _season.remarks()
+    return _season.messages()
 
 
-def finding_of(remark: Remark) -> ImportMessage:
+def finding_of(remark: KeptMessage) -> ImportMessage:
     """Return a kept remark as a finding, its remedy gone: the plants are laid."""
     return ImportMessage(Severity(remark.severity), remark.sentence, remark.feature)
 
@@ -226,7 +226,7 @@ def known(path: str, revision: str, day: str, _season: Season) -> Known:  # noqa
 @st.cache_resource(max_entries=_MAPS)
 def season_hot_spots(path: str, revision: str, day: str, _season: Season) -> HotSpots:  # noqa: ARG001
     """Return where finds cluster on a day of a season."""
-    number = _season.setup.day(np.datetime64(day).item())
+    number = _season.settings.day(np.datetime64(day).item())
     return hot_spots(_season.plot.grid, _season.history.states(number))
 
 
@@ -244,7 +244,7 @@ def morning(path: str, revision: str, day: str, _season: Season) -> Array:  # no
 
 def days_of(season: Season, until: date) -> list[str]:
     """Return the days of a season from the first up to one, ISO."""
-    first = np.datetime64(season.setup.begins, "D")
+    first = np.datetime64(season.settings.begins, "D")
     return [str(day) for day in np.arange(first, np.datetime64(until, "D") + 1)]
 
 

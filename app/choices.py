@@ -193,7 +193,7 @@ def open_season(name: str) -> None:
 
 def _open(name: str) -> Choices:
     project = cached.project(seasons.path_of(name))
-    setup, key = project.setup, str(project.path)
+    setup, key = project.settings, str(project.path)
     day = remembered.show(
         st.date_input, texts.DATE, min_value=setup.begins, key=_DAY.format(season=name),
         default=project.last_date(), format=read_units().date_format,
@@ -211,7 +211,7 @@ def _change(name: str, choices: Choices) -> None:
     """Show who works in the season that is open, and change it on demand."""
     project = choices.project
     with st.expander(texts.WHO):
-        setup, before = project.setup, project.before_change()
+        setup, before = project.settings, project.before_change()
         key = f"{name} {setup.robot.hours} {setup.robot.look_s} {setup.sampler}"
         # a command, or "one hour more", may have set what is beyond the usual
         usual_s = setup.robot.look_s

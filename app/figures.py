@@ -63,7 +63,7 @@ def kept(project: Season) -> dict[str, DayFigures]:
 def of(project: Season, on: date) -> DayFigures:
     """Return the figures of any day."""
     now = project.status(on)
-    out = now.outlook
+    out = now.estimate
     return DayFigures(
         on, now.inspected_today, now.found_today, out.expected, out.low, out.high, out.chance_clean
     )
@@ -74,11 +74,11 @@ def done(project: Season, on: date) -> Route:
 
     Where a time is missing, all are those that driving and looking cost.
     """
-    setup, aisles = project.setup, project.plot.aisles
-    today = project.history.inspections.on(setup.day(on))
+    setup, aisles = project.settings, project.plot.aisles
+    today = project.history.inspections.on(on)
     robot, n = setup.robot, len(today)
     if np.isfinite(today.second).all():
-        today = today.of(np.argsort(today.second, kind="stable"))
+        today = today.take(np.argsort(today.second, kind="stable"))
     scene = Scene(
         aisles=aisles, robot=robot, chance=project.morning(on), seconds_left=robot.day_s,
         last_inspected=np.full(len(aisles.grid), NEVER, np.int32),
@@ -101,11 +101,10 @@ def done(project: Season, on: date) -> Route:
 
 def known(project: Season, on: date) -> Known:
     """Return what is known up to a day."""
-    day, grid, history = project.setup.day(on), project.plot.grid, project.history
-    done = history.inspections.before(day + 1).looked
-    today, state = done.on(day), history.states(day)
+    day, grid, history = project.settings.day(on), project.plot.grid, project.history
+    today, state = history.on(day).inspected, history.states(day)
     last = np.full(grid.n_rows, -1, np.int64)
-    np.maximum.at(last, grid.row[done.plant], done.day)
+    np.maximum.at(last, grid.row, history.last_inspected(day))
     return Known(
         inspected=int(np.count_nonzero(state >= 0)),
         found=int(np.count_nonzero(state == 1)),

@@ -10,8 +10,9 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.options import Upload
-from fieldmon.monitoring import Remark, Results, Season, SeasonSetup, results_from
+from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from fieldmon.plot.grid import plant_at
 
 from . import cached, panels, seasons, texts, verdicts
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
     from .choices import Choices
 
-CLEAN, FOUND, SKIPPED = 0, 1, 2
+__all__ = ["CLEAN", "FOUND", "SKIPPED"]
 
 
 def note(kind: str, sentence: str) -> None:
@@ -49,14 +50,14 @@ def begin(choices: Choices) -> None:
 
 def _create(choices: Choices) -> None:
     name = st.session_state["season_name"].strip()
-    setup = SeasonSetup(choices.on, panels.STARTS, choices.robot, choices.sampler)
-    remarks = [
-        Remark("import", str(h.finding.severity), h.finding.feature, h.finding.sentence)
+    settings = MonitoringSettings(choices.on, panels.STARTS, choices.robot, choices.sampler)
+    messages = [
+        KeptMessage("import", str(h.finding.severity), h.finding.feature, h.finding.sentence)
         for h in choices.heard
     ]
     try:
         path = seasons.new_path(name)
-        Season.create(path, choices.plot, choices.records, setup, remarks, choices.risk)
+        Season.create(path, choices.plot, choices.records, settings, messages, choices.risk)
     except FieldmonError as error:
         note("error", str(error))
         return
@@ -83,7 +84,7 @@ def record_one(choices: Choices) -> str:
     plant = plant_at(choices.plot.grid, int(state["one_row"]), int(state["one_plant"]))
     result, count = state["one_result"], state["one_count"]
     counted = np.array([np.nan if count is None or result != FOUND else float(count)])
-    results = Results.of(
+    results = Inspections.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day), count=counted
     )
     return _recorded(choices, results, texts.TYPED_IN)
@@ -94,7 +95,7 @@ def record_stops(choices: Choices, plants: np.ndarray, found: list[int]) -> str:
     """Record the first stops of the route: those marked as found, the others as clean."""
     done = plants[: int(st.session_state["stops_done"])]
     result = np.where(np.isin(np.arange(len(done)) + 1, found), FOUND, CLEAN)
-    results = Results.of(done, result, np.datetime64(choices.day))
+    results = Inspections.of(done, result, np.datetime64(choices.day))
     return _recorded(choices, results, texts.ROUTE_TABLE)
 
 
@@ -102,17 +103,17 @@ def record_stops(choices: Choices, plants: np.ndarray, found: list[int]) -> str:
 def record_file(choices: Choices, name: str, data: bytes) -> str:
     """Record findings from a file: a route given out and filled in, a table, positions."""
     # what reads files is half a second to import
-    from fieldmon.io.readers.inspections import read_findings  # noqa: PLC0415
-    from fieldmon.io.readers.reported import FindingsOptions  # noqa: PLC0415
+    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
+    from fieldmon.io.readers.inspections import read_inspections  # noqa: PLC0415
 
-    options = FindingsOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
+    options = InspectionOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
     options = options.choose("day", choices.day)
-    read = read_findings(Upload(name, data), choices.plot.grid, options)
+    read = read_inspections(Upload(name, data), choices.plot.grid, options)
     remarks = "".join(f"\n- {finding.sentence}" for finding in read.messages)
-    return _recorded(choices, results_from(read.value), name) + remarks
+    return _recorded(choices, read.value, name) + remarks
 
 
-def _recorded(choices: Choices, results: Results, source: str) -> str:
+def _recorded(choices: Choices, results: Inspections, source: str) -> str:
     done = choices.project.record(results, source)
     return texts.RECORDED.format(new=done.new, known=done.known)
 
@@ -136,7 +137,7 @@ def treat(choices: Choices) -> str:
 def use(choices: Choices, sampler: str, hours: float, look_s: float) -> str:
     """Work with this sampler, these hours and this time at a plant from now on."""
     if choices.project is not None:
-        setup = choices.project.setup
+        setup = choices.project.settings
         robot = replace(setup.robot, hours=hours, look_s=look_s)
         choices.project.change(replace(setup, robot=robot, sampler=sampler), setup)
     else:

@@ -15,8 +15,7 @@ import streamlit as st
 
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.infestation.observations import ABSENT, PRESENT
-from fieldmon.infestation.prior import usable
+from fieldmon.infestation.observations import ABSENT, PRESENT, usable
 from fieldmon.io.writers import FORMATS
 from fieldmon.planning.explain import explain
 from fieldmon.plot.grid import plant_at, row_label
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.writers import HandoffPlan
-    from fieldmon.io.writers.handoff import Format
+    from fieldmon.io.writers.handoff import HandoffFormat
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantGrid
@@ -51,7 +50,7 @@ _ROW, _PLANT = "history row", "history plant"
 
 def starts(choices: Choices, today: DayPlan) -> datetime:
     """Return the local time at which the planned route, or what is left of it, starts."""
-    begins = STARTS if choices.project is None else choices.project.setup.starts
+    begins = STARTS if choices.project is None else choices.project.settings.starts
     gone = timedelta(seconds=today.scene.robot.day_s - today.scene.seconds_left)
     return datetime.combine(choices.on, begins) + gone
 
@@ -81,7 +80,7 @@ def other_formats(choices: Choices, plan: HandoffPlan) -> None:
     )  # fmt: skip
 
 
-def _handed_off(chosen: Format, plan: HandoffPlan) -> bytes:
+def _handed_off(chosen: HandoffFormat, plan: HandoffPlan) -> bytes:
     """Return a day in a format, several files as one zip; made when somebody wants it."""
     made = chosen.make(plan)
     if not chosen.several:
@@ -110,7 +109,7 @@ def states_of(choices: Choices) -> cached.Array:
     """Return ``(n,)`` found (1), clean (0) or never inspected (-1); of records without a season."""
     if choices.project is None:
         return cached.recorded_states(*_recorded(choices))
-    return choices.project.history.states(choices.project.setup.day(choices.on))
+    return choices.project.history.states(choices.project.settings.day(choices.on))
 
 
 def spots_of(choices: Choices) -> HotSpots:
@@ -124,7 +123,7 @@ def ages_of(choices: Choices) -> cached.Array:
     """Return ``(n,)`` days since each plant was inspected; -1: never."""
     if choices.project is None:
         return np.full(len(choices.plot.grid), -1)
-    day = choices.project.setup.day(choices.on)
+    day = choices.project.settings.day(choices.on)
     last = choices.project.history.last_inspected(day)
     return np.where(last < 0, -1, day - last)
 
@@ -181,7 +180,7 @@ def route_of_day(choices: Choices) -> Way:
     if project is not None and (not len(today.route) or choices.on < project.last_date()):
         done = cached.season_done(choices.key, choices.revision, choices.day, project)
         if len(done):
-            return Way(done, datetime.combine(choices.on, project.setup.starts))
+            return Way(done, datetime.combine(choices.on, project.settings.starts))
     return Way(today.route, starts(choices, today))
 
 
@@ -283,7 +282,7 @@ def changes(choices: Choices) -> list[str]:
     project, revision = choices.project, choices.revision
     if project is None:
         return []
-    day = project.setup.day(choices.on)
+    day = project.settings.day(choices.on)
     if day == 0:
         return [texts.CHANGED_FIRST]
     yesterday = choices.on - timedelta(days=1)
@@ -313,7 +312,7 @@ def found_on_day(choices: Choices) -> dict[str, str]:
     project = choices.project
     if project is None:
         return {}
-    done = project.history.inspections.on(project.setup.day(choices.on))
+    done = project.history.inspections.on(choices.on)
     label = row_label(choices.plot.grid, np.unique(done.plant[done.result == FOUND]))
     rows: dict[str, list[str]] = {}
     for line, number in zip(label.line.tolist(), label.number.tolist(), strict=True):
@@ -326,11 +325,10 @@ def reasons(choices: Choices, today: DayPlan) -> list[str]:
     project = choices.project
     if project is None or not len(today.route):
         return []
-    setup, done = project.setup, project.history.inspections
-    now = setup.day(choices.on)
-    lately = (done.result == FOUND) & (done.day <= now) & (done.day > now - 7)
-    finds = dict(zip(done.plant[lately].tolist(), done.day[lately].tolist(), strict=True))
-    on = [texts.WHY_TODAY if d == now else f"{setup.date(d):%A}" for d in finds.values()]
+    done, now = project.history.inspections, np.datetime64(choices.on)
+    lately = (done.result == FOUND) & (done.date <= now) & (done.date > now - 7)
+    finds = dict(zip(done.plant[lately].tolist(), done.date[lately].tolist(), strict=True))
+    on = [texts.WHY_TODAY if d == choices.on else f"{d:%A}" for d in finds.values()]
     return explain(today.scene, today.work, np.array([*finds], np.int32), on)
 
 
@@ -375,7 +373,7 @@ def history(choices: Choices) -> None:
     plant = plant_at(choices.plot.grid, int(row), int(number))
     now = first = chance_of(choices)
     if choices.project is not None:
-        begins = str(choices.project.setup.begins)
+        begins = str(choices.project.settings.begins)
         first = cached.morning(choices.key, choices.revision, begins, choices.project)
     st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
     for line in _looks(choices, plant):
@@ -392,7 +390,7 @@ def _looks(choices: Choices, plant: int) -> list[str]:
     for k in own.tolist():
         second = done.second[k]
         at = "" if np.isnan(second) else f" {int(second) // 3600:02d}:{int(second) // 60 % 60:02d}"
-        day = choices.units.day(project.setup.date(int(done.day[k])))
+        day = choices.units.day(done.date[k].item())
         result = texts.HISTORY_RESULTS[int(done.result[k])]
         lines.append(texts.HISTORY_LINE.format(day=day, time=at, result=result))
     return lines or [texts.HISTORY_NEVER]
@@ -428,7 +426,7 @@ def _place(grid: PlantGrid, plants: cached.Array) -> str:
 
 def remarks_on_records(choices: Choices) -> list[str]:
     """Return what planning says about records it cannot use."""
-    return list(usable(choices.records, np.datetime64(choices.day)).remarks())
+    return list(usable(choices.records, np.datetime64(choices.day)).messages())
 
 
 def records_until(choices: Choices) -> tuple[Observations, str]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.monitoring import Results
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.settings import seconds
 from fieldmon.plot.grid import row_label
 
@@ -103,7 +103,7 @@ def _tap(choices: Choices, plant: int, result: int) -> str:
     count = st.session_state.get("scout_count")
     counted = float(count) if result == FOUND and count is not None else np.nan
     second = _second(choices, plant)
-    results = Results.of(
+    results = Inspections.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day),
         second=np.array([second]), count=np.array([counted]),
     )  # fmt: skip
@@ -127,7 +127,7 @@ def last_tap(choices: Choices) -> int | None:
 
 def last_said(choices: Choices) -> str:
     """Return what was recorded last on this day, in words."""
-    done = choices.project.history.inspections.on(choices.project.setup.day(choices.on))
+    done = choices.project.history.inspections.on(choices.on)
     if not len(done):
         return ""
     label = row_label(choices.plot.grid, done.plant[-1:])
@@ -144,8 +144,8 @@ def undo(choices: Choices, batch: int) -> str:
 @keeping.saying
 def longer(choices: Choices) -> str:
     """Make the working day an hour longer than it is, and than the work has taken so far."""
-    setup, history = choices.project.setup, choices.project.history
-    second = history.inspections.on(setup.day(choices.on)).second
+    setup, history = choices.project.settings, choices.project.history
+    second = history.inspections.on(choices.on).second
     # a scout who came in the evening is hours beyond the end
     gone_s = np.nanmax(np.append(second, 0.0)) - seconds(setup.starts)
     hours = max(setup.robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
@@ -156,8 +156,8 @@ def longer(choices: Choices) -> str:
 
 def ask_start(choices: Choices) -> None:
     """Where the work begins later than planned, offer to begin now."""
-    setup, clock = choices.project.setup, now()
-    begun = len(choices.project.history.inspections.on(setup.day(choices.on)))
+    setup, clock = choices.project.settings, now()
+    begun = len(choices.project.history.inspections.on(choices.on))
     late = clock.date() == choices.on and clock.time() > setup.starts
     if not begun and late:
         st.info(texts.SCOUT_START.format(start=f"{setup.starts:%H:%M}", now=f"{clock:%H:%M}"))
@@ -166,7 +166,7 @@ def ask_start(choices: Choices) -> None:
 
 @keeping.saying
 def _begin_now(choices: Choices) -> str:
-    setup = choices.project.setup
+    setup = choices.project.settings
     starts = now().replace(second=0, microsecond=0).time()
     choices.project.change(replace(setup, starts=starts), setup)
     return texts.NOW_USED.format(name=f"{starts:%H:%M}")

@@ -7,7 +7,7 @@ def isolated(name: str) -> str:
 
 
 TITLE = "fieldmon"
-TODAY, MAP, SEASON, SCOUTING, COMPARE = "DayPlan", "Map", "Season", "Scout", "Compare"
+TODAY, MAP, SEASON, SCOUTING, COMPARE = "Today", "Map", "Season", "Scout", "Compare"
 PLOT, REPORT, SIMULATE, STUDY = "Plot & records", "Report", "Simulate", "Study"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
 SAMPLE_NOTE = "A made-up estate near Paran, to try things out. Nothing of it exists."

@@ -21,8 +21,8 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
-from fieldmon.infestation.prior import outside_m
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

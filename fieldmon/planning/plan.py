@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.infestation.belief import pairs
+from fieldmon.infestation.pairs import pair_chances
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_day
@@ -77,7 +77,7 @@ def plan_from(plot: Plot, chance: NDArray[np.float64], plans: PlanSettings) -> D
         last_inspected=np.full(len(plot.grid), NEVER, np.int32),
         seconds_left=plans.robot.day_s,
         # as a season believes: it goes the same way on its first day
-        pair_chance=pairs(chance, plot.grid),
+        pair_chance=pair_chances(chance, plot.grid),
     )
     work = plan_day(scene, plans.sampler)
     return DayPlan(scene, work, route_of(scene, work))

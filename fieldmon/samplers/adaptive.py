@@ -16,16 +16,13 @@ import numpy as np
 
 from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import (
+from fieldmon.infestation.clustering import (
     ClusterEstimate,
-    Near,
-    closeness,
-    look,
-    near,
-    pairs,
-    regroup,
+    clustering_scale,
+    scale_clustering,
     update_clusters,
 )
+from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
 from fieldmon.plot.travel import Clock, travel_s
 from fieldmon.samplers.base import InspectionTimes, Scene, Stops
 
@@ -67,7 +64,7 @@ class _BeliefArrays(NamedTuple):
     chance: Float
     pair_chance: Float
     worth: Float
-    near: Near
+    near: Neighbourhood
     behind: Int
     dawn_chance: Float
     dawn_both: Float
@@ -212,13 +209,13 @@ class Adaptive:
         taken = np.zeros(len(stops.plant), np.uint8)
         pair_chance = scene.pair_chance
         if pair_chance is None:
-            pair_chance = pairs(scene.chance, scene.grid, self.beside_find)
+            pair_chance = pair_chances(scene.chance, scene.grid, self.beside_find)
         n, n_rows = len(scene.chance), scene.grid.n_rows
         mind = _BeliefArrays(
             np.maximum(scene.chance, _LEAST),
             pair_chance.copy(),
             np.zeros(n),
-            near(n),
+            Neighbourhood.of(n),
             np.full(n, _NOWHERE),
             np.maximum(scene.chance, _LEAST),
             pair_chance.copy(),
@@ -371,7 +368,7 @@ def _look(
     """Close a plant and let what was seen teach about those near it."""
     i, found, detects = result
     believed = mind.chance, mind.pair_chance
-    n = look(believed, linked, (i, found), (detects, True), mind.near)
+    n = update_neighbourhood(believed, linked, (i, found), (detects, True), mind.near)
     update_clusters((mind.dawn_chance, mind.dawn_both), linked, (i, found, detects), mind.company)
     mind.worth[i] = 0.0
     for t in range(n):
@@ -382,10 +379,10 @@ def _look(
 @part
 def _regroup(linked: Linked, mind: _BeliefArrays, rows: _Rows) -> None:
     """Take to heart how much infested plants stand together, once it differs enough."""
-    scale = closeness(mind.company)
+    scale = clustering_scale(mind.company)
     if abs(scale - mind.scale[0]) < _NOTABLE * mind.scale[0]:
         return
-    regroup((mind.chance, mind.pair_chance), linked, scale / max(mind.scale[0], _LEAST))
+    scale_clustering((mind.chance, mind.pair_chance), linked, scale / max(mind.scale[0], _LEAST))
     mind.scale[0] = scale
     rows.stale[:] = True
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from dataclasses import dataclass, field, fields
 from itertools import product
 from typing import TYPE_CHECKING
 
-import numpy as np
-import shapely
-
+from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.samplers import SAMPLERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    import numpy as np
 
     from fieldmon.infestation.observations import Observations
     from fieldmon.plot.field import Field
@@ -27,7 +26,7 @@ _S_PER_PLANT_DAY = {"dynamic": 4e-7, "adaptive": 2.5e-6}
 _S_PER_BLIND_PLANT_DAY = 2e-8
 _S_PER_DAY = 3e-4
 # changes when seasons come out differently, so that old chunks are not taken for new ones
-_VERSION = "1"
+_VERSION, _DIGITS = "1", 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +54,7 @@ class Site:
     def digest(self) -> str:
         """Return what tells this plot and its records from any others."""
         parts = (*vars(self.field).values(), *vars(self.observations).values())
-        return _digest(*parts, vars(self.planting), str(self.day))
+        return digest(*parts, _as_written(self.planting), str(self.day), length=_DIGITS)
 
     @property
     def about_plants(self) -> int:
@@ -179,12 +178,13 @@ def chunks(sites: tuple[Site, ...], design: Design) -> Iterator[Chunk]:
     """Yield the chunks of a study: the same ones, whoever simulates them."""
     end = design.first_seed + design.n_seeds
     for site in sites:
-        digest, n_plants = site.digest, site.about_plants
+        of_site, n_plants = site.digest, site.about_plants
         for case in design.cases:
             size = _seasons(case.sampler, n_plants, design.n_days)
             for first in range(design.first_seed, end, size):
                 seeds = (first, min(first + size, end))
-                key = _digest(_VERSION, digest, vars(case), seeds, design.n_days)
+                parts = (_VERSION, of_site, _as_written(case), seeds, design.n_days)
+                key = digest(*parts, length=_DIGITS)
                 yield Chunk(site, case, seeds, design.n_days, key)
 
 
@@ -194,14 +194,6 @@ def _seasons(sampler: str, n_plants: int, n_days: int) -> int:
     return math.ceil(_CHUNK_S / (n_days * (_S_PER_DAY + n_plants * each_s)))
 
 
-def _digest(*parts: object) -> str:
-    everything = hashlib.sha256()
-    for part in parts:
-        if isinstance(part, shapely.Geometry):
-            everything.update(shapely.to_wkb(part))
-        elif isinstance(part, np.ndarray):
-            everything.update(part.tobytes())
-        else:
-            everything.update(repr(part).encode())
-        everything.update(b"\0")
-    return everything.hexdigest()[:20]
+def _as_written(settings: object) -> bytes:
+    """Return what stands for settings in digests: names and values in the order of the class."""
+    return repr(vars(settings)).encode()

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.infestation.belief import Learning, Pairs
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.planning.workday import looks_of, luck, outcomes, work_day
 from fieldmon.plot.travel import GATE
@@ -50,7 +51,7 @@ class SeasonSettings:
     spread: Spread = field(default_factory=Spread)
     believed_spread: Spread | None = None
     learning: Learning | None = None
-    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = Pairs.of
+    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = PairApproximation.of
 
     def __post_init__(self) -> None:
         if self.n_days < 1:

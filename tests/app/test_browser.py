@@ -15,10 +15,11 @@ from PIL import Image
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
 from app import maps
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.read import read_lines, read_plots, read_records
-from fieldmon.monitoring import Results, Season, SeasonSetup
+from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.plot import Plot
 from tests.app.app_driving import zipped
@@ -149,7 +150,7 @@ def test_plants_and_route_are_drawn_where_they_are(page, address):
 def test_nothing_is_asked_of_the_world(page, address):
     shown(page, address)
     for name in ("Map", "Scout", "Season", "Compare", "Plot & records", "Report", "Simulate",
-                 "Study", "DayPlan"):  # fmt: skip
+                 "Study", "Today"):  # fmt: skip
         page.get_by_role("link", name=name, exact=True).click()
         page.get_by_role("link", name=name, exact=True).and_(
             page.locator("[aria-current=page]")
@@ -177,9 +178,9 @@ def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address,
     project = season(served_seasons / "States.gpkg", plot)
     found, clean, never = (np.arange(k, len(plot.grid), 97) for k in (0, 31, 62))
     plants, result = np.concatenate([found, clean]), np.repeat([1, 0], [len(found), len(clean)])
-    project.record(Results.of(plants, result, np.datetime64("2026-11-16")), "test")
+    project.record(Inspections.of(plants, result, np.datetime64("2026-11-16")), "test")
     later = found[:30] + 80
-    project.record(Results.of(later, np.ones(30, int), np.datetime64("2026-11-17")), "test")
+    project.record(Inspections.of(later, np.ones(30, int), np.datetime64("2026-11-17")), "test")
     page.goto(f"{address}/map?season=States")
     page.wait_for_selector(f"{MAP} canvas", timeout=120_000)
     page.get_by_text("found, clean, never inspected", exact=True).click()
@@ -234,7 +235,7 @@ def scale_px_of_m(page):
 
 
 def season(path, plot):
-    return Season.create(path, plot, Observations.none(), SeasonSetup(date(2026, 11, 16)))
+    return Season.create(path, plot, Observations.none(), MonitoringSettings(date(2026, 11, 16)))
 
 
 def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
@@ -262,7 +263,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     title = page.get_by_role("heading", name="מטע הדרים").bounding_box()
     assert title["width"] > 50
     gate, size = a_gate_and_an_area_are_drawn_by_clicks(page)
-    page.get_by_role("link", name="DayPlan").click()
+    page.get_by_role("link", name="Today").click()
     far = still(page)
     first = stops(page)
     assert len(first) > 10
@@ -284,7 +285,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     page.get_by_role("tabpanel").get_by_role("button", name="Record", exact=True).first.click()
     page.get_by_text("8 recorded").wait_for(timeout=60_000)
     page.reload()
-    page.get_by_role("link", name="DayPlan").click()
+    page.get_by_role("link", name="Today").click()
     page.get_by_text("8 plants inspected today so far").wait_for(timeout=60_000)
     rest = stops(page)
     assert len(first) - 20 < len(rest) < len(first)
@@ -310,7 +311,7 @@ def a_gate_and_an_area_are_drawn_by_clicks(page):
     assert plants.inner_text() == before
     size = still(page).shape
     with page.expect_download() as download:
-        page.get_by_role("link", name="DayPlan").click()
+        page.get_by_role("link", name="Today").click()
         page.get_by_role("button", name="Download the route").click()
     route = json.loads(download.value.path().read_text(encoding="utf-8"))
     return tuple(route["features"][0]["geometry"]["coordinates"][0]), size

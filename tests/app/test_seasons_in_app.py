@@ -10,7 +10,8 @@ import pytest
 
 from app import figures
 from fieldmon.errors import SettingError
-from fieldmon.monitoring import Results, Season
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import Season
 from tests.app.app_driving import begun, go, heading, layer, metric, opened, press, texts_of
 
 
@@ -48,8 +49,8 @@ def test_a_season_begins_and_is_found_again_by_a_new_session(season):
     assert layer(app, "route")["data"] == route
     assert "has begun" in app.success[0].value
     assert app.selectbox(key="season").value == "Gate 2026"
-    assert season().setup.begins == date(2026, 11, 16)
-    assert season().remarks()
+    assert season().settings.begins == date(2026, 11, 16)
+    assert season().messages()
     again = opened("Gate 2026")
     assert heading(again) == "Gate · 2026-11-16"
     assert "first day of the season" in texts_of(again)
@@ -134,7 +135,8 @@ def test_a_day_that_was_worked_is_played_as_it_was_worked(app, season):
     plants = np.array([900, 5, 200])
     for on, at_s in (("2026-11-16", [25_200.0, 21_660.0, 28_800.0]), ("2026-11-17", [np.nan] * 3)):
         season().record(
-            Results.of(plants, np.zeros(3, np.int8), np.datetime64(on), second=np.array(at_s)), on
+            Inspections.of(plants, np.zeros(3, np.int8), np.datetime64(on), second=np.array(at_s)),
+            on,
         )
     noted, driven = (figures.done(season(), date(2026, 11, day)) for day in (16, 17))
     assert noted.plant.tolist() == [5, 900, 200], "in the order of the times noted"
@@ -142,7 +144,7 @@ def test_a_day_that_was_worked_is_played_as_it_was_worked(app, season):
     assert noted.line_m[noted.line_stop] == pytest.approx(noted.aisles.stop_m[noted.plant])
     assert driven.plant.tolist() == plants.tolist()
     gaps = np.diff(driven.leave_s, prepend=0.0)
-    assert (gaps > season().setup.robot.visit_s).all()
+    assert (gaps > season().settings.robot.visit_s).all()
     go(app, "map")
     app.select_slider[0].set_value("2026-11-16").run()
     path = layer(app, "route")["data"][0]["path"]
@@ -178,16 +180,16 @@ def test_one_plant_is_recorded_and_undone_on_the_season_page(app, season):
 
 
 def test_one_hour_more_is_one_however_late_it_is(app, season):
-    project, setup = season(), season().setup
+    project, setup = season(), season().settings
     project.change(replace(setup, robot=setup.robot.with_hours(2.0)), setup)
-    evening = Results.of(np.array([7]), np.array([0]), np.datetime64("2026-11-16"),
+    evening = Inspections.of(np.array([7]), np.array([0]), np.datetime64("2026-11-16"),
                          second=np.array([17 * 3600.0 + 1320.0]))  # fmt: skip
     project.record(evening, "scout mode")
     go(app, "scout")
     assert "Done for today" in texts_of(app)
     tap(app, "scout_hour")
     assert "Done for today" not in texts_of(app)
-    assert season().setup.robot.hours == 12.5
+    assert season().settings.robot.hours == 12.5
     tap(app, "scout_clean")
 
 
@@ -201,19 +203,19 @@ def test_a_treatment_and_changes_of_settings_are_taken_back(app, season):
     assert metric(app, "Still infested") == before
     assert "undone" in texts_of(app)
     assert not [one for one in app.button if one.key == "undo_change"]
-    setup = season().setup
+    setup = season().settings
     for hours in (7.0, 16.0):
         next(one for one in app.slider if one.key.startswith("hours ")).set_value(hours).run()
         press(app, "Use from now on")
     press(app, "Back to Adaptive · 7 h · 40 s, from 06:00")
-    assert season().setup.robot.hours == 7.0
+    assert season().settings.robot.hours == 7.0
     press(app, "Back to Adaptive · 12 h · 40 s, from 06:00")
-    assert season().setup == setup
+    assert season().settings == setup
     assert not [one for one in app.button if one.key == "undo_change"]
 
 
 def test_more_hours_than_the_slider_had_and_odd_seconds_leave_the_page_whole(app, season):
-    project, setup = season(), season().setup
+    project, setup = season(), season().settings
     robot = replace(setup.robot, hours=17.0, look_s=12.5)
     project.change(replace(setup, robot=robot), setup)
     go(app, "today")
@@ -245,7 +247,7 @@ def test_a_file_that_does_not_fit_is_a_sentence(app, season, data):
 
 def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(app, season, tmp_path):
     mine = season()
-    twin = Season.create(tmp_path / "twin.gpkg", mine.plot, mine.observations, mine.setup)
+    twin = Season.create(tmp_path / "twin.gpkg", mine.plot, mine.observations, mine.settings)
     for day in range(16, 26):
         on = date(2026, 11, day)
         app.date_input(key="day Gate 2026").set_value(on).run()
@@ -265,18 +267,18 @@ def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(app, se
 
 
 def record_clean(project, on, n):
-    from fieldmon.monitoring import Results
+    from fieldmon.infestation.inspections import Inspections
 
     plants = project.plan(on, keep=False).route.plant[:n]
-    project.record(Results.of(plants, np.zeros(n, np.int8), np.datetime64(on)), "twin")
+    project.record(Inspections.of(plants, np.zeros(n, np.int8), np.datetime64(on)), "twin")
 
 
 def test_other_hours_are_used_from_now_on_when_asked_for(app, season):
     hours = next(s for s in app.slider if s.label == "Working hours")
     hours.set_value(4.0).run()
-    assert season().setup.robot.hours == 12.0
+    assert season().settings.robot.hours == 12.0
     press(app, "Use from now on")
-    assert season().setup.robot.hours == 4.0
+    assert season().settings.robot.hours == 4.0
     assert int(metric(app, "Plants to inspect").split(" / ")[0]) < 300
 
 

@@ -246,7 +246,7 @@ def acts(page):
         page.keyboard.press("ArrowDown")
 
     close = functools.partial(page.keyboard.press, "Escape")
-    link = page.get_by_role("link", name="DayPlan", exact=True)
+    link = page.get_by_role("link", name="Today", exact=True)
     return [
         Act("opening Today", link.hover, link.click),
         *map(picked, SAMPLERS),

@@ -20,12 +20,13 @@ import numpy as np
 
 from app import maps
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.belief import IndependentPlants, Pairs, overnight, pairs
+from fieldmon.infestation.independent import IndependentPlants, overnight
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
+from fieldmon.infestation.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.io.writers.geojson import RouteNotes, write_route
-from fieldmon.monitoring import Season, SeasonSetup
+from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_day
@@ -80,7 +81,9 @@ def measure(n_plants):
     took["a night of the chance map"], _ = best_of(lambda: overnight(chance, grid, spread))
     last = np.full(n, NEVER, np.int32)
     # as the app, the commands and a season plan: with what is believed of plants side by side
-    took["what is believed of neighbours"], pair_chance = best_of(lambda: pairs(chance, grid))
+    took["what is believed of neighbours"], pair_chance = best_of(
+        lambda: pair_chances(chance, grid)
+    )
     scene = Scene(
         aisles, Robot(), chance, last, seconds_left=Robot().day_s, pair_chance=pair_chance
     )
@@ -97,7 +100,7 @@ def measure(n_plants):
     return {"plants": n, "took": took, "memory_mb": memory_mb()}
 
 
-def season(aisles, name, start, believe=Pairs.of):
+def season(aisles, name, start, believe=PairApproximation.of):
     settings = SeasonSettings(n_days=25, spread=Spread(0.1), believe=believe)
     walk = days(aisles, Robot(), sampler(name), start, settings, RandomStreams(2))
     return [day.detection_pct for day in walk]
@@ -113,7 +116,7 @@ def files_and_map(plot, chance, observations):
         took["writing the route"], _ = best_of(
             lambda: write_route(to / "route.geojson", today.route, notes)
         )
-        setup = SeasonSetup(date(2026, 5, 20))
+        setup = MonitoringSettings(date(2026, 5, 20))
         took["beginning a season's file"], _ = best_of(
             lambda: Season.create(to / "season.gpkg", plot, observations, setup), 1
         )
@@ -172,7 +175,7 @@ def seasons():
     start = Start(start_infested(chance, 0.02, RandomStreams(1).of("start")), chance)
     took = {}
     for name in (*THESIS, "adaptive"):
-        for how, believe in (("pairs", Pairs.of), ("one by one", IndependentPlants)):
+        for how, believe in (("pairs", PairApproximation.of), ("one by one", IndependentPlants)):
             took[f"a season on 91 x 91 plants: {name}, {how}"], _ = best_of(
                 lambda name=name, believe=believe: season(aisles, name, start, believe), 50
             )

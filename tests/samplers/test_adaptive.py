@@ -7,7 +7,7 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import Pairs
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread
 from fieldmon.planning.workday import looks_of, luck, plan_day, work_day
 from fieldmon.plot.layout import rectangle
@@ -23,7 +23,7 @@ N = len(GRID)
 
 def scene_with(chance, hours=2.0, company=0.0):
     plain = scene_on(GRID, hours=hours)
-    belief = Pairs.of(GRID, chance, company)
+    belief = PairApproximation.of(GRID, chance, company)
     return replace(plain, chance=belief.chance, pair_chance=belief.pair_chance)
 
 

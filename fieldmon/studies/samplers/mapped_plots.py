@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.belief import Learning, Pairs
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.planning.workday import work_day
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.robot import Robot
@@ -95,7 +96,7 @@ def found_at(plant_map: PlantMap, sampler: Sampler) -> list[int]:
     """
     n = len(plant_map.infested)
     robot = Robot(detection=1.0, returns=False)
-    belief = Pairs.of(plant_map.aisles.grid, np.full(n, _FLAT))
+    belief = PairApproximation.of(plant_map.aisles.grid, np.full(n, _FLAT))
     seen = np.zeros(n, np.bool_)
     order = np.empty(0, np.int32)
     while len(order) < SHARES[-1] * n:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import Learning, Pairs
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import PriorSettings, edge_chance, scaled, start_infested
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.layout import rectangle
@@ -188,4 +189,4 @@ def _known(
         at = np.array([int(np.argmin(((grid.xy_m - xy) ** 2).sum(axis=1))) for xy in away])
     plants = at.astype(np.int32)
     learning = Learning(detection=Robot().detects, treated=False)
-    return Pairs.of(grid, flat).learn(plants, found, learning).chance
+    return PairApproximation.of(grid, flat).learn(plants, found, learning).chance

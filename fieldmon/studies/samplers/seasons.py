@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.belief import IndependentPlants, Pairs
+from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import night
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import Adaptive, Bouncy, Dynamic, Naive
@@ -54,7 +55,7 @@ class Contender:
 
     name: str
     sampler: Sampler
-    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = Pairs.of
+    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = PairApproximation.of
     drives: bool = True
     every: int = 1
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams, coin_table
 from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.belief import Learning, learn, overnight
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.independent import learn, overnight
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.planning.workday import outcomes
 from fieldmon.plot.layout import Planting, rectangle

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.infestation.belief import Learning, learn, overnight
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.independent import learn, overnight
 from fieldmon.infestation.spread import night
 from fieldmon.planning.workday import outcomes
 from fieldmon.samplers import GATE, NEVER, Scene, sampler

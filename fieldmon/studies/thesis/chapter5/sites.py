@@ -10,7 +10,8 @@ import numba as nb
 import numpy as np
 
 from fieldmon.compute.random_streams import coin, coin_table
-from fieldmon.infestation.belief import Learning, learn
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.independent import learn
 from fieldmon.infestation.prior import PriorSettings, edge_chance, path_chance, start_infested
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.travel import Aisles

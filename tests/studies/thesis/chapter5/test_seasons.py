@@ -9,7 +9,7 @@ from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import IndependentPlants
+from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, lay

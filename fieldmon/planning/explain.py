@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import counted
 from fieldmon.plot.grid import row_label
-from fieldmon.samplers import NEVER
+from fieldmon.samplers.base import NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.planning.workday import Workday
-    from fieldmon.samplers import Scene
+    from fieldmon.samplers.base import Scene
 
 # an infestation is followed so far from a find: three plants or rows, whichever is more
 _AROUND = 3.0

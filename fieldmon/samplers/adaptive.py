@@ -24,7 +24,7 @@ from fieldmon.infestation.clustering import (
 )
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
 from fieldmon.plot.travel import Clock, travel_s
-from fieldmon.samplers.base import InspectionTimes, Scene, Stops
+from fieldmon.samplers.base import InspectionTimes, Sampler, Scene, Stops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import Linked
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import TravelTable
+    from fieldmon.samplers.base import WouldFind
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
@@ -159,7 +160,7 @@ _Work: TypeAlias = tuple[_BeliefArrays, _Rows, _BestTours, InspectionTimes, _Eit
 
 
 @dataclass(frozen=True)
-class Adaptive:
+class Adaptive(Sampler):
     """Take the drive through the rows with the most expected finds for its time.
 
     A plant is worth its chance of infestation times the chance of detection, and more where a
@@ -173,14 +174,14 @@ class Adaptive:
         How much more than itself a find is worth where all plants beside it are clean.
     beside_find
         Chance that a plant next to a find is infested, where the belief says nothing of pairs.
-    chooses_look
+    chooses_time
         Whether it decides at each plant how long to look, by the robot's table of viewpoints;
         if not, it looks as long as the robot is set to.
     """
 
     spares: float = 0.5
     beside_find: float = 0.5
-    chooses_look: bool = False
+    chooses_time: bool = False
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.spares < np.inf:
@@ -190,10 +191,10 @@ class Adaptive:
                 f"Adaptive's beside_find must be a chance in 0..1, but it is {self.beside_find}."
             )
 
-    def looks(self, robot: Robot) -> InspectionTimes:
-        """Return the looks to choose from; raise `SettingError` if the robot's table is unknown."""
-        if not self.chooses_look:
-            return InspectionTimes(np.array([robot.visit_s]), np.array([robot.detects]))
+    def inspection_times(self, robot: Robot) -> InspectionTimes:
+        """Return the times to choose from; raise `SettingError` if the robot's table is unknown."""
+        if not self.chooses_time:
+            return super().inspection_times(robot)
         if robot.detection is not None:
             raise SettingError(
                 "A robot must state what each time of looking detects (viewpoints) if the sampler "
@@ -202,9 +203,9 @@ class Adaptive:
         seconds, detects = np.array(robot.viewpoints.steps).T
         return InspectionTimes(robot.stop_s + seconds, detects)
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_] | NDArray[np.uint8]) -> Stops:
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day."""
-        looks = self.looks(scene.robot)
+        looks = self.inspection_times(scene.robot)
         stops = scene.room(float(looks.stop_s[0]))
         taken = np.zeros(len(stops.plant), np.uint8)
         pair_chance = scene.pair_chance

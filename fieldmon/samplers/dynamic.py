@@ -11,13 +11,14 @@ import numpy as np
 from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.errors import SettingError
 from fieldmon.plot.travel import Clock, in_time, travel_s
-from fieldmon.samplers.base import Scene, Stops
+from fieldmon.samplers.base import Sampler, Scene, Stops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import Csr, PlantGrid
     from fieldmon.plot.travel import TravelTable
+    from fieldmon.samplers.base import WouldFind
 
 # the upper bits of a positive float64 rise with it, in 8 steps an octave: 7 to 13 % each
 _LEVEL_BITS = 49
@@ -54,7 +55,7 @@ class _Open(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Dynamic:
+class Dynamic(Sampler):
     """Drive to the nearest plant of an open list until the day is over.
 
     The open list starts with the suspicious plants. An inspected plant moves to the closed list;
@@ -86,15 +87,16 @@ class Dynamic:
                     f"but it is {getattr(self, name)}."
                 )
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day."""
         stops = scene.blank()
         steps = round(-_OCTAVE * math.log2(self.suspicious))
+        grid, chance_bits = scene.grid, scene.chance.view(np.int64)
         k = _walk(
             scene.aisles.travel,
             scene.clock,
-            (scene.grid.adjacent, scene.grid.lane_y_m, scene.chance.view(np.int64), would_find),
-            (scene.last_inspected == scene.day, _Open.on(scene.grid, steps)),
+            (grid.adjacent, grid.lane_y_m, chance_bits, would_find.view(np.uint8)),
+            (scene.last_inspected == scene.day, _Open.on(grid, steps)),
             (scene.at, steps, self.at_once),
             stops,
         )
@@ -105,7 +107,7 @@ class Dynamic:
 def _walk(
     travel: TravelTable,
     clock: Clock,
-    plants: tuple[Csr, NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]],
+    plants: tuple[Csr, NDArray[np.float64], NDArray[np.int64], NDArray[np.uint8]],
     lists: tuple[NDArray[np.bool_], _Open],
     start: tuple[int, int, float],
     stops: Stops,

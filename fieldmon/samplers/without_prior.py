@@ -18,13 +18,14 @@ from fieldmon.compute.jit import loop, part
 from fieldmon.compute.random_streams import coin, coin_table
 from fieldmon.errors import SettingError
 from fieldmon.plot.travel import Clock, in_time, travel_s
-from fieldmon.samplers.base import Scene, Stops
+from fieldmon.samplers.base import Sampler, Scene, Stops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.travel import TravelTable
+    from fieldmon.samplers.base import WouldFind
 
 _ONLINE = 0
 # a sweep over a plot of which all was visited today ends after so many times round
@@ -40,7 +41,7 @@ class Stations(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Snake:
+class Snake(Sampler):
     """Up one side of an aisle, down the other, then the next aisle; every N-th plant.
 
     At the end of the plot it turns round, starting at the nearest of the last N plants that was
@@ -52,30 +53,30 @@ class Snake:
         N; 1 inspects every plant.
     """
 
-    blind: ClassVar[bool] = True
+    reads_chance: ClassVar[bool] = False
     every: int = 1
 
     def __post_init__(self) -> None:
         _check_every(self.every)
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
         return _sweep(scene, _one_by_one(scene.grid), self.every)
 
 
 @dataclass(frozen=True)
-class SnakeRandom:
+class SnakeRandom(Sampler):
     """The snake with N drawn anew, 1 to 4, at every stop: algorithm 3 of the thesis."""
 
-    blind: ClassVar[bool] = True
+    reads_chance: ClassVar[bool] = False
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
         return _sweep(scene, _one_by_one(scene.grid), _ONLINE)
 
 
 @dataclass(frozen=True)
-class Neighbor:
+class Neighbor(Sampler):
     """Along the aisles, alternately up and down, looking at the plants on both sides of a stop.
 
     Where rows are inspected on one face only, every aisle has plants on one side. Algorithms 6
@@ -87,30 +88,30 @@ class Neighbor:
         Every N-th stop.
     """
 
-    blind: ClassVar[bool] = True
+    reads_chance: ClassVar[bool] = False
     every: int = 1
 
     def __post_init__(self) -> None:
         _check_every(self.every)
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
         return _sweep(scene, _face_to_face(scene.grid), self.every)
 
 
 @dataclass(frozen=True)
-class NeighborRandom:
+class NeighborRandom(Sampler):
     """The neighbor sampler with N drawn anew, 1 to 4, at every stop: algorithm 5 of the thesis."""
 
-    blind: ClassVar[bool] = True
+    reads_chance: ClassVar[bool] = False
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
         return _sweep(scene, _face_to_face(scene.grid), _ONLINE)
 
 
 @dataclass(frozen=True)
-class RandomShare:
+class RandomShare(Sampler):
     """One N-th of the plot, drawn anew every day, in the order of the snake: algorithm 7.
 
     Parameters
@@ -119,13 +120,13 @@ class RandomShare:
         N; the share is 1/N, rounded down, but one plant at least.
     """
 
-    blind: ClassVar[bool] = True
+    reads_chance: ClassVar[bool] = False
     every: int = 3
 
     def __post_init__(self) -> None:
         _check_every(self.every)
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the day's draw from the start of the plot."""
         n = len(scene.grid)
         drawn = np.argsort(coin_table(scene.key, n))[: max(n // self.every, 1)]

@@ -11,7 +11,7 @@ from fieldmon.errors import PlotError, SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread, night
-from fieldmon.planning.workday import looks_of, luck, outcomes, work_day
+from fieldmon.planning.workday import draw_detections, work_day
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers.base import NEVER, Scene
 
@@ -186,8 +186,8 @@ def days(
     _check(aisles, start)
     learning = settings.learning or Learning(detection=robot.detects)
     believed = settings.believed_spread or settings.spread
-    looks, blind = looks_of(robot, sampler), getattr(sampler, "blind", False)
-    choosing = len(looks.detects) > 1
+    times = sampler.inspection_times(robot)
+    choosing = len(times.detects) > 1
     infested = start.infested.copy()
 
     def taught(work: Workday) -> Learning:
@@ -198,8 +198,10 @@ def days(
     ever_infested, ever_found = int(np.count_nonzero(infested)), 0
     trail, at = np.empty(0, np.int32), GATE
     keys = zip(*(chance.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
-    for number, (own_key, look_key, night_key) in zip(range(settings.n_days), keys, strict=False):
-        belief = None if blind else mornings.on(number)
+    for number, (own_key, inspect_key, night_key) in zip(
+        range(settings.n_days), keys, strict=False
+    ):
+        belief = mornings.on(number) if sampler.reads_chance else None
         scene = Scene(
             aisles=aisles,
             robot=robot,
@@ -212,10 +214,7 @@ def days(
             trail=trail,
             key=own_key,
         )
-        if choosing:
-            work = work_day(scene, sampler, luck(infested, looks, look_key))
-        else:
-            work = work_day(scene, sampler, outcomes(infested, float(looks.detects[0]), look_key))
+        work = work_day(scene, sampler, draw_detections(infested, times.detects, inspect_key))
         last_inspected = last_inspected.copy()
         last_inspected[work.plant] = number
         ever_found += int(np.count_nonzero(work.found))

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.belief import Belief, Learning
     from fieldmon.infestation.spread import Spread
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.samplers import Sampler
+    from fieldmon.samplers.base import Sampler
     from fieldmon.studies.samplers.scenarios import Cell
 
     Believe = Callable[[PlantGrid, NDArray[np.float64]], Belief]

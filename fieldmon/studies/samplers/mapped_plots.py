@@ -16,12 +16,15 @@ from fieldmon.planning.workday import work_day
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import NEVER, Adaptive, Dynamic, Naive, Scene
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.samplers.dynamic import Dynamic
+from fieldmon.samplers.sweeps import Naive
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.samplers import Sampler
+    from fieldmon.samplers.base import Sampler
 
 SHARES = (0.05, 0.10, 0.20, 0.40)
 # what is believed before the first look, of every map (our choice; nothing is known of it)

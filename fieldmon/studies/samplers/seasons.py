@@ -14,7 +14,10 @@ from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import night
 from fieldmon.plot.robot import Robot
-from fieldmon.samplers import Adaptive, Bouncy, Dynamic, Naive
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import Sampler
+from fieldmon.samplers.dynamic import Dynamic
+from fieldmon.samplers.sweeps import Bouncy, Naive
 from fieldmon.simulation.metrics import SeasonFigures, figures
 from fieldmon.simulation.season import days
 
@@ -25,7 +28,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.samplers import Sampler, Scene, Stops
+    from fieldmon.samplers.base import Scene, Stops, WouldFind
     from fieldmon.simulation.season import Day, Start
     from fieldmon.studies.samplers.scenarios import Cell
 
@@ -92,13 +95,13 @@ class Outcome:
 MEASURES = ("infested_plant_days", "d50", "d80", "inspected", "found", "visited_pct")
 
 
-class _Oracle:
+class _Oracle(Sampler):
     """The clairvoyant: drives as Adaptive does, on the truth instead of a chance map."""
 
     def __init__(self, truth: NDArray[np.bool_]) -> None:
         self.truth = truth
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day, at infested plants first."""
         chance = np.where(self.truth, 1.0 - 1e-6, 1e-6)
         start, other = scene.grid.adjacent
@@ -106,13 +109,13 @@ class _Oracle:
         return Adaptive().walk(replace(scene, chance=chance, pair_chance=pair_chance), would_find)
 
 
-class _Misinformed:
+class _Misinformed(Sampler):
     """A sampler that takes the robot to detect what the thesis's does."""
 
     def __init__(self, sampler: Sampler) -> None:
         self.sampler = sampler
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day."""
         robot = replace(scene.robot, detection=Robot().detects)
         return self.sampler.walk(replace(scene, robot=robot), would_find)

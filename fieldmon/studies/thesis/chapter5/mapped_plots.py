@@ -12,10 +12,11 @@ from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.independent import learn, overnight
 from fieldmon.infestation.prior import PriorSettings
-from fieldmon.planning.workday import outcomes
+from fieldmon.planning.workday import draw_detections
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import NEVER, Scene, sampler
+from fieldmon.samplers import sampler
+from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.studies.thesis.chapter4.measures import spread_of
 from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS
 
@@ -156,7 +157,8 @@ def inspect(
     trail = np.empty(0, np.int32)
     for day in range(len(plants.dates)):
         truth = plants.infested[day] & ~gone
-        would_find = outcomes(truth, robot.detects, chance.key("inspect", day))
+        key = chance.key("inspect", day)
+        would_find = draw_detections(truth, np.array([robot.detects]), key) > 0
         scene = Scene(
             aisles=aisles,
             robot=robot,

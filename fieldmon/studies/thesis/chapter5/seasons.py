@@ -10,8 +10,10 @@ import numpy as np
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.independent import learn, overnight
 from fieldmon.infestation.spread import night
-from fieldmon.planning.workday import outcomes
-from fieldmon.samplers import GATE, NEVER, Scene, sampler
+from fieldmon.planning.workday import draw_detections
+from fieldmon.plot.travel import GATE
+from fieldmon.samplers import sampler
+from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.studies.thesis.chapter5.open_choices import N_DAYS, OpenChoices
 from fieldmon.studies.thesis.chapter5.sites import first_morning
 
@@ -136,7 +138,7 @@ def _inspect(
     trial: Trial, scene: Scene, infested: Flags, key: np.uint64
 ) -> tuple[NDArray[np.int32], Flags, Floats]:
     """Return the plants inspected on a day, which were found infested, and when it was done."""
-    would_find = outcomes(infested, scene.robot.detects, key)
+    would_find = draw_detections(infested, np.array([scene.robot.detects]), key) > 0
     plants, arrive_s, _ = sampler(trial.sampler).walk(scene, would_find)
     end = len(plants)
     if trial.sampler == "bouncy" and trial.choices.bouncy_rests:

@@ -85,7 +85,7 @@ def done(project: Season, on: date) -> Route:
     )  # fmt: skip
     places = np.concatenate([[GATE], today.plant, [GATE] if robot.returns else []]).astype(np.int64)
     drive_s = np.array([
-        driven_s(aisles.ground, scene.clock, places[k : k + 2]) for k in range(len(places) - 1)
+        driven_s(aisles.travel, scene.clock, places[k : k + 2]) for k in range(len(places) - 1)
     ])  # fmt: skip
     leave_s = np.maximum(today.second - seconds(setup.starts), 0.0)
     if not np.isfinite(leave_s).all():

@@ -11,7 +11,8 @@ import streamlit as st
 from app import cached, charts, maps, panels, texts, verdicts, ways
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.planning.route import route_of
-from fieldmon.samplers import NEVER, Scene
+from fieldmon.samplers import COMPARED
+from fieldmon.samplers.base import NEVER, Scene
 
 if TYPE_CHECKING:
     from app.choices import Choices
@@ -49,7 +50,7 @@ def show(choices: Choices) -> None:
 
 
 def _names(choices: Choices) -> list[str]:
-    usual = dict.fromkeys([choices.sampler, "naive", "bouncy", "dynamic"])
+    usual = dict.fromkeys([choices.sampler, *COMPARED])
     chosen = st.multiselect(texts.COMPARED, list(texts.SAMPLERS), list(usual), key="compared",
                             max_selections=6, format_func=verdicts.short)  # fmt: skip
     return list(dict.fromkeys([choices.sampler, *chosen]))

@@ -12,7 +12,8 @@ from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_day
 from fieldmon.plot.robot import Robot
-from fieldmon.samplers import NEVER, Adaptive, Sampler, Scene
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import NEVER, Sampler, Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

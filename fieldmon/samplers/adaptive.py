@@ -24,7 +24,7 @@ from fieldmon.infestation.clustering import (
 )
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
 from fieldmon.plot.travel import Clock, travel_s
-from fieldmon.samplers.base import InspectionTimes, Scene, Stops
+from fieldmon.samplers.base import InspectionTimes, Sampler, Scene, Stops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import Linked
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import TravelTable
+    from fieldmon.samplers.base import WouldFind
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
@@ -159,7 +160,7 @@ _Work: TypeAlias = tuple[_BeliefArrays, _Rows, _BestTours, InspectionTimes, _Eit
 
 
 @dataclass(frozen=True)
-class Adaptive:
+class Adaptive(Sampler):
     """Take the drive through the rows with the most expected finds for its time.
 
     A plant is worth its chance of infestation times the chance of detection, and more where a
@@ -173,14 +174,14 @@ class Adaptive:
         How much more than itself a find is worth where all plants beside it are clean.
     beside_find
         Chance that a plant next to a find is infested, where the belief says nothing of pairs.
-    chooses_look
+    chooses_time
         Whether it decides at each plant how long to look, by the robot's table of viewpoints;
         if not, it looks as long as the robot is set to.
     """
 
     spares: float = 0.5
     beside_find: float = 0.5
-    chooses_look: bool = False
+    chooses_time: bool = False
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.spares < np.inf:
@@ -190,10 +191,10 @@ class Adaptive:
                 f"Adaptive's beside_find must be a chance in 0..1, but it is {self.beside_find}."
             )
 
-    def looks(self, robot: Robot) -> InspectionTimes:
-        """Return the looks to choose from; raise `SettingError` if the robot's table is unknown."""
-        if not self.chooses_look:
-            return InspectionTimes(np.array([robot.visit_s]), np.array([robot.detects]))
+    def inspection_times(self, robot: Robot) -> InspectionTimes:
+        """Return the times to choose from; raise `SettingError` if the robot's table is unknown."""
+        if not self.chooses_time:
+            return super().inspection_times(robot)
         if robot.detection is not None:
             raise SettingError(
                 "A robot must state what each time of looking detects (viewpoints) if the sampler "
@@ -202,9 +203,9 @@ class Adaptive:
         seconds, detects = np.array(robot.viewpoints.steps).T
         return InspectionTimes(robot.stop_s + seconds, detects)
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_] | NDArray[np.uint8]) -> Stops:
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day."""
-        looks = self.looks(scene.robot)
+        looks = self.inspection_times(scene.robot)
         stops = scene.room(float(looks.stop_s[0]))
         taken = np.zeros(len(stops.plant), np.uint8)
         pair_chance = scene.pair_chance
@@ -223,9 +224,9 @@ class Adaptive:
             np.ones(1),
         )
         onward = _BestTours.of(n_rows)
-        _measure(scene.aisles.ground, scene.clock, onward.next_s, onward.home_s)
+        _measure(scene.aisles.travel, scene.clock, onward.next_s, onward.home_s)
         k = _walk(
-            scene.aisles.ground,
+            scene.aisles.travel,
             scene.clock,
             (scene.grid.linked, mind, would_find.view(np.uint8)),
             (_Rows.of(n, n_rows), onward, looks, _Either.blank()),
@@ -237,7 +238,7 @@ class Adaptive:
 
 @loop
 def _walk(
-    ground: TravelTable,
+    travel: TravelTable,
     clock: Clock,
     plants: tuple[Linked, _BeliefArrays, NDArray[np.uint8]],
     room: tuple[_Rows, _BestTours, InspectionTimes, _Either],
@@ -251,36 +252,36 @@ def _walk(
     _worths(linked, mind, closed, spares)
     work = mind, rows, onward, looks, either
     now_s, k = 0.0, 0
-    price = _first_price(ground, clock, work, at)
+    price = _first_price(travel, clock, work, at)
     while k < plant_at.size:
         _regroup(linked, mind, rows)
         here = (at, price, clock.seconds_left - now_s)
-        price, piece = _plan_on(ground, clock, work, here)
+        price, piece = _plan_on(travel, clock, work, here)
         before = k
         while piece.row >= 0 and k < plant_at.size:
-            plant, look = _next_in(ground, (mind, looks), piece, (at, price))
-            if plant < 0 or not _fits(ground, clock, (at, plant), looks.stop_s[look], now_s):
+            plant, look = _next_in(travel, (mind, looks), piece, (at, price))
+            if plant < 0 or not _fits(travel, clock, (at, plant), looks.stop_s[look], now_s):
                 break
-            now_s = _visit(ground, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
+            now_s = _visit(travel, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
             look_at[k], at, k = look, plant, k + 1
             found = 0 < would_find[plant] <= look + 1
-            _look(ground, linked, mind, rows, (plant, found, looks.detects[look]))
+            _look(travel, linked, mind, rows, (plant, found, looks.detects[look]))
             if found or plant == piece.last:
                 break
         if k == before:
-            plant, look = _best_left(ground, clock, work, at, now_s)
+            plant, look = _best_left(travel, clock, work, at, now_s)
             if plant < 0:
                 break
-            now_s = _visit(ground, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
+            now_s = _visit(travel, clock, stops, (at, plant, k), (now_s, looks.stop_s[look]))
             look_at[k], at, k = look, plant, k + 1
             found = 0 < would_find[plant] <= look + 1
-            _look(ground, linked, mind, rows, (plant, found, looks.detects[look]))
+            _look(travel, linked, mind, rows, (plant, found, looks.detects[look]))
     return k
 
 
 @part
 def _visit(
-    ground: TravelTable,
+    travel: TravelTable,
     clock: Clock,
     stops: tuple[NDArray[np.int32], Float, NDArray[np.uint8]],
     move: tuple[int, int, int],
@@ -289,20 +290,20 @@ def _visit(
     """Write down a stop; return the time after it."""
     at, plant, k = move
     now_s, stop_s = times
-    arrive_s = now_s + travel_s(ground, clock, at, plant)
+    arrive_s = now_s + travel_s(travel, clock, at, plant)
     stops[0][k], stops[1][k] = plant, arrive_s
     return arrive_s + stop_s
 
 
 @part
 def _fits(
-    ground: TravelTable, clock: Clock, move: tuple[int, int], stop_s: float, now_s: float
+    travel: TravelTable, clock: Clock, move: tuple[int, int], stop_s: float, now_s: float
 ) -> bool:
     """Tell whether a stop of so long fits into the day, way back to the gate included."""
     at, plant = move
-    end_s = now_s + travel_s(ground, clock, at, plant) + stop_s
+    end_s = now_s + travel_s(travel, clock, at, plant) + stop_s
     if clock.returns:
-        end_s += travel_s(ground, clock, plant, -1)
+        end_s += travel_s(travel, clock, plant, -1)
     return bool(end_s <= clock.seconds_left)
 
 
@@ -335,16 +336,16 @@ def _worths(linked: Linked, mind: _BeliefArrays, closed: NDArray[np.bool_], spar
 
 
 @loop
-def _measure(ground: TravelTable, clock: Clock, next_s: Float, home_s: Float) -> None:
+def _measure(travel: TravelTable, clock: Clock, next_s: Float, home_s: Float) -> None:
     """Find the seconds from every lane end to the next lanes in line, and to the gate.
 
     In the table of all ways each of them stands far from the last: it is read once a day.
     """
-    n_rows, gate = home_s.shape[0], ground.between_m.shape[0] - 1
+    n_rows, gate = home_s.shape[0], travel.between_m.shape[0] - 1
     for row in range(n_rows):
         for end in range(2):
             here = 2 * row + end
-            home_m = ground.between_m[here, gate]
+            home_m = travel.between_m[here, gate]
             home_s[row, end] = home_m / clock.speed_m_s if clock.returns else 0.0
             for k in range(2 * _REACH):
                 other = row + k - _REACH if k < _REACH else row + k - _REACH + 1
@@ -353,13 +354,13 @@ def _measure(ground: TravelTable, clock: Clock, next_s: Float, home_s: Float) ->
                 # from _REACH rows before to _REACH rows after, this one left out
                 down, step = (1, row - other - 1) if k < _REACH else (0, other - row - 1)
                 for other_end in range(2):
-                    way_m = ground.between_m[here, 2 * other + other_end]
+                    way_m = travel.between_m[here, 2 * other + other_end]
                     next_s[down, row, end, step, other_end] = way_m / clock.speed_m_s
 
 
 @part
 def _look(
-    ground: TravelTable,
+    travel: TravelTable,
     linked: Linked,
     mind: _BeliefArrays,
     rows: _Rows,
@@ -373,7 +374,7 @@ def _look(
     mind.worth[i] = 0.0
     for t in range(n):
         near_it = mind.near.plant[t]
-        rows.stale[ground.row[near_it]], rows.most[near_it // _BLOCK] = True, -1.0
+        rows.stale[travel.row[near_it]], rows.most[near_it // _BLOCK] = True, -1.0
 
 
 @part
@@ -389,7 +390,7 @@ def _regroup(linked: Linked, mind: _BeliefArrays, rows: _Rows) -> None:
 
 @part
 def _next_in(
-    ground: TravelTable,
+    travel: TravelTable,
     work: tuple[_BeliefArrays, InspectionTimes],
     piece: _Piece,
     state: tuple[int, float],
@@ -398,12 +399,12 @@ def _next_in(
     mind, looks = work
     at, price = state
     up = piece.first_end == 0
-    if at >= 0 and ground.row[at] == piece.row:
+    if at >= 0 and travel.row[at] == piece.row:
         i = at + 1 if up else at - 1
     elif up:
-        i = ground.row_start[piece.row]
+        i = travel.row_start[piece.row]
     else:
-        i = ground.row_start[piece.row + 1] - 1
+        i = travel.row_start[piece.row + 1] - 1
     step = 1 if up else -1
     while (i <= piece.last) if up else (i >= piece.last):
         gain, taken = _best_look(looks, mind.worth[i], mind.chance[i], price)
@@ -415,7 +416,7 @@ def _next_in(
 
 @part
 def _best_left(
-    ground: TravelTable, clock: Clock, work: _Work, at: int, now_s: float
+    travel: TravelTable, clock: Clock, work: _Work, at: int, now_s: float
 ) -> tuple[int, int]:
     """Return the plant with the most worth for its time that still fits into the day, or -1.
 
@@ -425,42 +426,42 @@ def _best_left(
     quick_s, sharp = looks.stop_s[0], looks.detects[-1]
     best, best_rate, taken = _NOWHERE, 0.0, 0
     for row in range(rows.stale.size):
-        least_s = _least_s(ground, clock, at, row)
+        least_s = _least_s(travel, clock, at, row)
         home_s = min(onward.home_s[row, 0], onward.home_s[row, 1])
         if now_s + least_s + quick_s + home_s > clock.seconds_left:
             continue
-        first, end = ground.row_start[row], ground.row_start[row + 1]
+        first, end = travel.row_start[row], travel.row_start[row + 1]
         for block in range(first // _BLOCK, (end - 1) // _BLOCK + 1):
             if sharp * _most_in(mind, rows, block) <= best_rate * (least_s + quick_s):
                 continue
             for i in range(max(first, block * _BLOCK), min(end, (block + 1) * _BLOCK)):
                 if sharp * mind.worth[i] * mind.chance[i] <= best_rate * quick_s:
                     continue
-                way_s = travel_s(ground, clock, at, i)
+                way_s = travel_s(travel, clock, at, i)
                 for k in range(looks.stop_s.size):
                     stop_s = looks.stop_s[k]
                     rate = looks.detects[k] * mind.worth[i] * mind.chance[i] / (way_s + stop_s)
-                    if rate > best_rate and _fits(ground, clock, (at, i), stop_s, now_s):
+                    if rate > best_rate and _fits(travel, clock, (at, i), stop_s, now_s):
                         best, best_rate, taken = i, rate, k
     return best, taken
 
 
 @part
-def _least_s(ground: TravelTable, clock: Clock, at: int, row: int) -> float:
+def _least_s(travel: TravelTable, clock: Clock, at: int, row: int) -> float:
     """Return seconds that it takes at least from a place to any plant of a row."""
-    own = _row_of(ground, at)
-    if own < 0 or ground.corridor[own] == ground.corridor[row]:
+    own = _row_of(travel, at)
+    if own < 0 or travel.corridor[own] == travel.corridor[row]:
         return 0.0
     least_m = np.inf
     for end in range(2):
         for other_end in range(2):
-            least_m = min(least_m, ground.between_m[2 * own + end, 2 * row + other_end])
+            least_m = min(least_m, travel.between_m[2 * own + end, 2 * row + other_end])
     return float((least_m / clock.speed_m_s + clock.row_change_s) * _NEARLY)
 
 
 @part
 def _first_price(
-    ground: TravelTable,
+    travel: TravelTable,
     clock: Clock,
     work: _Work,
     at: int,
@@ -474,11 +475,11 @@ def _first_price(
             most = max(most, looks.detects[k] * mind.worth[i] * mind.chance[i])
         high = max(high, most / looks.stop_s[k])
     low = high * 1e-7
-    if _plan_at(ground, clock, work, (at, low)).seconds <= clock.seconds_left:
+    if _plan_at(travel, clock, work, (at, low)).seconds <= clock.seconds_left:
         return low
     for _ in range(_BISECTIONS):
         middle = np.sqrt(low * high)
-        if _plan_at(ground, clock, work, (at, middle)).seconds > clock.seconds_left:
+        if _plan_at(travel, clock, work, (at, middle)).seconds > clock.seconds_left:
             low = middle
         else:
             high = middle
@@ -489,7 +490,7 @@ def _first_price(
 
 @part
 def _plan_on(
-    ground: TravelTable,
+    travel: TravelTable,
     clock: Clock,
     work: _Work,
     state: tuple[int, float, float],
@@ -498,7 +499,7 @@ def _plan_on(
     at, price, left_s = state
     rows = work[1]
     trend = 0
-    piece = _replan(ground, clock, work, (at, price))
+    piece = _replan(travel, clock, work, (at, price))
     for _ in range(_TRIES):
         if piece.seconds > left_s and trend >= 0:
             trend, price = 1, price * _STEP
@@ -507,30 +508,30 @@ def _plan_on(
         else:
             break
         rows.stale[:] = True
-        piece = _replan(ground, clock, work, (at, price))
+        piece = _replan(travel, clock, work, (at, price))
     return price, piece
 
 
 @part
-def _row_of(ground: TravelTable, at: int) -> int:
+def _row_of(travel: TravelTable, at: int) -> int:
     """Return the row of a plant, -1 for the gate; of one integer type, as numba wants it."""
-    return 0 + ground.row[at] if at >= 0 else _NOWHERE
+    return 0 + travel.row[at] if at >= 0 else _NOWHERE
 
 
 @part
 def _plan_at(
-    ground: TravelTable,
+    travel: TravelTable,
     clock: Clock,
     work: _Work,
     state: tuple[int, float],
 ) -> _Piece:
     work[1].stale[:] = True
-    return _replan(ground, clock, work, state)
+    return _replan(travel, clock, work, state)
 
 
 @part
 def _replan(
-    ground: TravelTable,
+    travel: TravelTable,
     clock: Clock,
     work: _Work,
     state: tuple[int, float],
@@ -538,22 +539,22 @@ def _replan(
     """Return the first piece of the best plan at a price."""
     mind, rows, onward, looks, _ = work
     at, price = state
-    own = _row_of(ground, at)
+    own = _row_of(travel, at)
     for row in range(rows.stale.size):
         if rows.stale[row]:
-            _value_row(ground, clock, (mind, rows, looks), (row, price))
+            _value_row(travel, clock, (mind, rows, looks), (row, price))
             rows.stale[row] = False
     for down in range(2):
         _extend(clock, rows, onward, (down, own, price))
     if at < 0:
-        _, seconds, onto = _leave(ground, clock, onward, 2 * (rows.stale.size), price)
+        _, seconds, onto = _leave(travel, clock, onward, 2 * (rows.stale.size), price)
         return _first_piece(rows, onward, onto, seconds)
-    return _from_row(ground, clock, work, at, price)
+    return _from_row(travel, clock, work, at, price)
 
 
 @part
 def _value_row(
-    ground: TravelTable,
+    travel: TravelTable,
     clock: Clock,
     work: tuple[_BeliefArrays, _Rows, InspectionTimes],
     state: tuple[int, float],
@@ -564,7 +565,7 @@ def _value_row(
     """
     mind, rows, looks = work
     row, price = state
-    first, end = ground.row_start[row], ground.row_start[row + 1]
+    first, end = travel.row_start[row], travel.row_start[row + 1]
     rows.last[row] = _NOWHERE
     pays = _pays_from(looks, price)
     previous, before, n = _NOWHERE, 0, 0
@@ -587,8 +588,8 @@ def _value_row(
     if n == 0:
         return
     for way in range(2, _WAYS):
-        _in_and_out(ground, clock, rows, (row, way), price)
-    _through(ground, clock, rows, row, price)
+        _in_and_out(travel, clock, rows, (row, way), price)
+    _through(travel, clock, rows, row, price)
 
 
 @inlined
@@ -626,12 +627,12 @@ def _after_clean(mind: _BeliefArrays, i: int, detects: float) -> float:
 
 @part
 def _in_and_out(
-    ground: TravelTable, clock: Clock, rows: _Rows, state: tuple[int, int], price: float
+    travel: TravelTable, clock: Clock, rows: _Rows, state: tuple[int, int], price: float
 ) -> None:
     """Value a row that is left by the end it was entered by, as far in as pays best."""
     row, way = state
-    entry_m = ground.end_x_m[row, way - 2]
-    first, n = ground.row_start[row], rows.n_pays[row]
+    entry_m = travel.end_x_m[row, way - 2]
+    first, n = travel.row_start[row], rows.n_pays[row]
     best, best_s, last = -np.inf, 0.0, _NOWHERE
     gains, looking_s = 0.0, 0.0
     for k in range(n):
@@ -639,7 +640,7 @@ def _in_and_out(
         i = rows.pays[place]
         gains += rows.gain[place]
         looking_s += rows.stop_s[place]
-        drive_s = 2.0 * abs(ground.x_m[i] - entry_m) / clock.speed_m_s
+        drive_s = 2.0 * abs(travel.x_m[i] - entry_m) / clock.speed_m_s
         net = gains - price * drive_s
         if net > best:
             best, best_s, last = net, drive_s + looking_s, i
@@ -647,14 +648,14 @@ def _in_and_out(
 
 
 @part
-def _through(ground: TravelTable, clock: Clock, rows: _Rows, row: int, price: float) -> None:
+def _through(travel: TravelTable, clock: Clock, rows: _Rows, row: int, price: float) -> None:
     """Value a row that is driven from end to end, either way."""
-    first, n = ground.row_start[row], rows.n_pays[row]
+    first, n = travel.row_start[row], rows.n_pays[row]
     gains, looking_s = 0.0, 0.0
     for place in range(first, first + n):
         gains += rows.gain[place]
         looking_s += rows.stop_s[place]
-    drive_s = (ground.end_x_m[row, 1] - ground.end_x_m[row, 0]) / clock.speed_m_s
+    drive_s = (travel.end_x_m[row, 1] - travel.end_x_m[row, 0]) / clock.speed_m_s
     for way in range(2):
         rows.net[row, way] = gains - price * drive_s
         rows.seconds[row, way] = drive_s + looking_s
@@ -720,17 +721,17 @@ def _after(onward: _BestTours, place: tuple[int, int, int], price: float) -> Non
 
 @part
 def _leave(
-    ground: TravelTable, clock: Clock, onward: _BestTours, here: int, price: float
+    travel: TravelTable, clock: Clock, onward: _BestTours, here: int, price: float
 ) -> tuple[float, float, tuple[int, int, int]]:
     """Return the best way on from a lane end or the gate: its net, seconds, and where to."""
-    gate = ground.between_m.shape[0] - 1
-    best_s = ground.between_m[here, gate] / clock.speed_m_s if clock.returns else 0.0
+    gate = travel.between_m.shape[0] - 1
+    best_s = travel.between_m[here, gate] / clock.speed_m_s if clock.returns else 0.0
     best, onto = -price * best_s, (0, _NOWHERE, 0)
     for row in range(onward.net.shape[1]):
         for end in range(2):
             if onward.way[0, row, end] < 0 and onward.way[1, row, end] < 0:
                 continue
-            way_s = ground.between_m[here, 2 * row + end] / clock.speed_m_s
+            way_s = travel.between_m[here, 2 * row + end] / clock.speed_m_s
             for down in range(2):
                 if onward.way[down, row, end] < 0:
                     continue
@@ -753,20 +754,20 @@ def _first_piece(
 
 
 @part
-def _from_row(ground: TravelTable, clock: Clock, work: _Work, at: int, price: float) -> _Piece:
+def _from_row(travel: TravelTable, clock: Clock, work: _Work, at: int, price: float) -> _Piece:
     """Return the first piece of the best plan from the middle of a row.
 
     The row is left by either end, with the plants that way; before that, plants the other way
     are fetched as far as they pay.
     """
     _, rows, onward, _, either = work
-    row = _row_of(ground, at)
+    row = _row_of(travel, at)
     for end in range(2):
-        _along(ground, clock, rows, either, (at, end, price))
+        _along(travel, clock, rows, either, (at, end, price))
     best = -np.inf
     piece = _Piece(_NOWHERE, 0, _NOWHERE, 0.0)
     for end in range(2):
-        net, seconds, onto = _leave(ground, clock, onward, 2 * row + end, price)
+        net, seconds, onto = _leave(travel, clock, onward, 2 * row + end, price)
         net += either.ahead[end] + either.fetch[1 - end]
         seconds += either.ahead_s[end] + either.fetch_s[1 - end]
         if net <= best:
@@ -783,12 +784,12 @@ def _from_row(ground: TravelTable, clock: Clock, work: _Work, at: int, price: fl
 
 @part
 def _along(
-    ground: TravelTable, clock: Clock, rows: _Rows, either: _Either, state: tuple[int, int, float]
+    travel: TravelTable, clock: Clock, rows: _Rows, either: _Either, state: tuple[int, int, float]
 ) -> None:
     """Value one direction along a row: all the way out, and there and back as far as it pays."""
     at, end, price = state
-    row = _row_of(ground, at)
-    first, n = ground.row_start[row], rows.n_pays[row]
+    row = _row_of(travel, at)
+    first, n = travel.row_start[row], rows.n_pays[row]
     gains, looking_s, farthest = 0.0, 0.0, _NOWHERE
     either.fetch[end], either.fetch_s[end], either.turn[end] = 0.0, 0.0, _NOWHERE
     step = -1 if end == 0 else 1
@@ -800,11 +801,11 @@ def _along(
         gains += rows.gain[place]
         looking_s += rows.stop_s[place]
         farthest = i
-        way_s = 2.0 * abs(ground.x_m[i] - ground.x_m[at]) / clock.speed_m_s
+        way_s = 2.0 * abs(travel.x_m[i] - travel.x_m[at]) / clock.speed_m_s
         if gains - price * way_s > either.fetch[end]:
             either.fetch[end], either.turn[end] = gains - price * way_s, i
             either.fetch_s[end] = way_s + looking_s
         place += step
-    out_s = abs(ground.end_x_m[row, end] - ground.x_m[at]) / clock.speed_m_s
+    out_s = abs(travel.end_x_m[row, end] - travel.x_m[at]) / clock.speed_m_s
     either.ahead[end], either.ahead_s[end] = gains - price * out_s, out_s + looking_s
     either.last[end] = farthest

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.writers import HandoffPlan
-    from fieldmon.io.writers.handoff import Format
+    from fieldmon.io.writers.handoff import HandoffFormat
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantGrid
@@ -80,7 +80,7 @@ def other_formats(choices: Choices, plan: HandoffPlan) -> None:
     )  # fmt: skip
 
 
-def _handed_off(chosen: Format, plan: HandoffPlan) -> bytes:
+def _handed_off(chosen: HandoffFormat, plan: HandoffPlan) -> bytes:
     """Return a day in a format, several files as one zip; made when somebody wants it."""
     made = chosen.make(plan)
     if not chosen.several:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
+from markupsafe import Markup
+
+from fieldmon.io.html import page
 
 from . import maps, texts
 
@@ -24,21 +26,14 @@ if TYPE_CHECKING:
 
 _WIDE = 900.0
 _STOPS_A_TABLE = 60
-_STYLE = """
-.fm-report{font-family:system-ui,sans-serif;color:#111;background:#fff;max-width:1000px;
-padding:12px}
-.fm-report h1{font-size:1.5rem}.fm-report h2{font-size:1.1rem;margin-top:1.2em}
-.fm-report table{border-collapse:collapse;font-size:.85rem}
-.fm-report td,.fm-report th{border:1px solid #999;padding:2px 8px;text-align:right}
-.fm-report svg.map{max-width:100%;height:auto;border:1px solid #ccc;margin:10px 0}
-.fm-report .stops{display:flex;flex-wrap:wrap;gap:12px;align-items:flex-start}
-.fm-report .stops table{font-size:.62rem}.fm-report .stops td,.fm-report .stops th{padding:0 2px}
-@page{size:A4;margin:12mm}
-@media print{.fm-report{padding:0}.fm-report svg.map{max-height:165mm}
-.fm-report .stops{display:block}.fm-report h2{break-after:avoid}
-.fm-report .stops table{display:inline-table;vertical-align:top;margin:0 3px 6px 0}
-.fm-report table,.fm-report tr{break-inside:avoid}}
-"""
+_WORDS = {
+    "chance": texts.LEGEND_CHANCE,
+    "found": texts.REPORT_FOUND,
+    "season": texts.REPORT_SEASON,
+    "settings": texts.REPORT_SETTINGS,
+    "route": texts.REPORT_ROUTE,
+    "columns": (texts.DATE, texts.VISITED_TODAY, texts.FOUND_TODAY, texts.EXPECTED_LEFT),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,45 +53,30 @@ class Facts:
 
 def html(facts: Facts, today: DayPlan, stops: pd.DataFrame, days: list[DayFigures]) -> str:
     """Return the whole page."""
-    title = escape(texts.REPORT_TITLE.format(name=texts.isolated(facts.name), day=facts.day))
-    parts = [
-        f"<h1>{title}</h1>",
-        _pairs(_figures(facts, today)),
-        drawing(facts),
-        f"<strong>{texts.LEGEND_CHANCE}</strong>",
-        maps.chance_legend(),
-        maps.legend(
-            [(maps.FOUND, texts.LEGEND_STATES["found"]), (maps.ROUTE, texts.MAP_LAYERS["route"]),
-             (maps.GATE, texts.DRAW_KINDS["gate"])],
-            signs=("find", "line", "ring"),
-        ),
-    ]  # fmt: skip
-    if facts.results:
-        parts += [f"<h2>{texts.REPORT_FOUND}</h2>", _pairs(facts.results)]
-    if days:
-        parts += [f"<h2>{texts.REPORT_SEASON}</h2>", _season(facts, days)]
-    parts += [f"<h2>{texts.REPORT_SETTINGS}</h2>", _pairs(_settings(facts))]
-    if len(stops):
-        parts += [f"<h2>{texts.REPORT_ROUTE}</h2>", _stops(stops)]
-    body = f'<style>{_STYLE}</style><div class="fm-report">{"".join(parts)}</div>'
-    return (
-        f'<!DOCTYPE html><html><head><meta charset="utf-8"><title>{title}</title></head>'
-        f"<body>{body}</body></html>"
-    )
-
-
-def _stops(stops: pd.DataFrame) -> str:
-    """Return the stops as tables side by side: a day's route is many pages long otherwise."""
+    signs = [(maps.FOUND, texts.LEGEND_STATES["found"]), (maps.ROUTE, texts.MAP_LAYERS["route"]),
+             (maps.GATE, texts.DRAW_KINDS["gate"])]  # fmt: skip
     table = stops.assign(**{texts.REPORT_TICK: "☐"}).reset_index()
-    parts = [table.iloc[k : k + _STOPS_A_TABLE] for k in range(0, len(table), _STOPS_A_TABLE)]
-    return (
-        '<div class="stops">'
-        + "".join(part.to_html(border=0, index=False) for part in parts)
-        + "</div>"
+    return page(
+        "app/show/report.html.j2",
+        title=texts.REPORT_TITLE.format(name=texts.isolated(facts.name), day=facts.day),
+        words=_WORDS,
+        figures=_figures(facts, today),
+        drawing=drawing(facts),
+        legends=[maps.chance_legend(), maps.legend(signs, signs=("find", "line", "ring"))],
+        found=facts.results,
+        days=[_day(facts, one) for one in days],
+        settings=_settings(facts),
+        stops=_parts(list(table.itertuples(index=False, name=None))),
+        stop_columns=list(table.columns),
     )
 
 
-def drawing(facts: Facts) -> str:
+def _parts(stops: list[tuple[Any, ...]]) -> list[list[tuple[Any, ...]]]:
+    """Return the stops in tables to stand side by side: a route is many pages long otherwise."""
+    return [stops[k : k + _STOPS_A_TABLE] for k in range(0, len(stops), _STOPS_A_TABLE)]
+
+
+def drawing(facts: Facts) -> Markup:
     """Return the plot as an SVG picture, north up: chance by colour, finds as rings, the route."""
     grid, route = facts.way.aisles.grid, facts.way
     lonlat = grid.lonlat()
@@ -116,24 +96,24 @@ def drawing(facts: Facts) -> str:
     parts += [_line(at(shapely.get_coordinates(ring)), "#46504a", 1.5) for ring in outline]
     if len(route):
         parts.append(_line(at(route.line_lonlat()), "#1450c8", 1.4))
-    parts += [
-        f'<circle cx="{x}" cy="{y}" r="{size:.1f}" fill="rgb{maps.FOUND}" stroke="#140000" '
-        'stroke-width="1.5"/>'
-        for x, y in at(lonlat[facts.state == 1]).tolist()
-    ]
+    find = Markup('<circle cx="{}" cy="{}" r="{:.1f}" fill="rgb{}" stroke="#140000" '
+                  'stroke-width="1.5"/>')  # fmt: skip
+    parts += [find.format(x, y, size, maps.FOUND) for x, y in at(lonlat[facts.state == 1]).tolist()]
     gate = at(grid.frame.lonlat(route.aisles.gate_m))[0]
-    parts.append(f'<circle cx="{gate[0]}" cy="{gate[1]}" r="8" fill="none" '
-                 f'stroke="rgb{maps.GATE}" stroke-width="4"/>')  # fmt: skip
+    parts.append(
+        Markup('<circle cx="{}" cy="{}" r="8" fill="none" stroke="rgb{}" stroke-width="4"/>')
+        .format(*gate, maps.GATE)
+    )  # fmt: skip
     parts.append(_scale(facts.units, per_deg / 111_320.0, (wide, tall)))
-    label = escape(texts.MAP_ALT.format(name=facts.name, plants=len(grid), stops=len(route),
-                                        finds=int((facts.state == 1).sum())))  # fmt: skip
-    return (
-        f'<svg class="map" xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{label}" '
-        f'viewBox="0 0 {wide:.0f} {tall:.0f}" width="{wide:.0f}">{"".join(parts)}</svg>'
-    )
+    label = texts.MAP_ALT.format(name=facts.name, plants=len(grid), stops=len(route),
+                                 finds=int((facts.state == 1).sum()))  # fmt: skip
+    return Markup(
+        '<svg class="map" xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{}" '
+        'viewBox="0 0 {:.0f} {:.0f}" width="{:.0f}">{}</svg>'
+    ).format(label, wide, tall, wide, Markup().join(parts))
 
 
-def _dots(places: NDArray[np.float64], shade: maps.Shade, size: float) -> str:
+def _dots(places: NDArray[np.float64], shade: maps.Shade, size: float) -> Markup:
     """Return one path of little squares for each class: a few strokes instead of many dots."""
     parts = []
     for rank in np.unique(shade.rank):
@@ -141,26 +121,28 @@ def _dots(places: NDArray[np.float64], shade: maps.Shade, size: float) -> str:
         colour = tuple(maps.CHANCE_COLOURS[rank])
         # lines as long as they are wide: dots of no length are missing in a PDF
         dots = "".join(f"M{x - size:.1f} {y}h{2 * size:.1f}" for x, y in own.tolist())
-        parts.append(f'<path d="{dots}" stroke="rgb{colour}" stroke-width="{2 * size:.1f}"/>')
-    return "".join(parts)
+        path = Markup('<path d="{}" stroke="rgb{}" stroke-width="{:.1f}"/>')
+        parts.append(path.format(dots, colour, 2 * size))
+    return Markup().join(parts)
 
 
-def _scale(units: Units, per_m: float, corner: tuple[float, float]) -> str:
+def _scale(units: Units, per_m: float, corner: tuple[float, float]) -> Markup:
     """Return a bar of a round length in the lower left corner and an arrow to the north."""
     (wide, tall), ink = corner, "#222"
     bar_m, text = units.bar_m((wide - 20) / per_m / 4)
     end, y = 10 + bar_m * per_m, tall - 24
-    return (
-        _line(np.array([[10.0, y], [round(end, 1), y]]), ink, 4)
-        + f'<text x="10" y="{y + 18:.0f}" font-size="16" fill="{ink}">{escape(text)}</text>'
-        f'<path d="M{wide - 22:.0f} {tall - 10:.0f}l8 -26l8 26l-8 -7z" fill="{ink}"/>'
-        f'<text x="{wide - 20:.0f}" y="{tall - 40:.0f}" font-size="16" fill="{ink}">N</text>'
-    )
+    return _line(np.array([[10.0, y], [round(end, 1), y]]), ink, 4) + Markup(
+        '<text x="10" y="{:.0f}" font-size="16" fill="{ink}">{}</text>'
+        '<path d="M{:.0f} {:.0f}l8 -26l8 26l-8 -7z" fill="{ink}"/>'
+        '<text x="{:.0f}" y="{:.0f}" font-size="16" fill="{ink}">N</text>'
+    ).format(y + 18, text, wide - 22, tall - 10, wide - 20, tall - 40, ink=ink)
 
 
-def _line(places: NDArray[np.float64], colour: str, wide: float) -> str:
+def _line(places: NDArray[np.float64], colour: str, wide: float) -> Markup:
     points = " ".join(f"{x},{y}" for x, y in places.tolist())
-    return f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{wide}"/>'
+    return Markup('<polyline points="{}" fill="none" stroke="{}" stroke-width="{}"/>').format(
+        points, colour, wide
+    )
 
 
 def _figures(facts: Facts, today: DayPlan) -> dict[str, str]:
@@ -184,21 +166,6 @@ def _settings(facts: Facts) -> dict[str, str]:
     }
 
 
-def _season(facts: Facts, days: list[DayFigures]) -> str:
-    heads = (texts.DATE, texts.VISITED_TODAY, texts.FOUND_TODAY, texts.EXPECTED_LEFT)
-    rows = "".join(
-        f"<tr><td>{facts.units.day(s.on)}</td><td>{s.inspected}</td>"
-        f"<td>{s.found}</td><td>{s.expected:.1f} "
-        f"({s.low}-{s.high})</td></tr>"
-        for s in days
-    )
-    head = "".join(f"<th>{escape(name)}</th>" for name in heads)
-    return f"<table><tr>{head}</tr>{rows}</table>"
-
-
-def _pairs(values: dict[str, str]) -> str:
-    rows = "".join(
-        f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>"
-        for name, value in values.items()
-    )
-    return f"<table>{rows}</table>"
+def _day(facts: Facts, one: DayFigures) -> tuple[object, ...]:
+    left = f"{one.expected:.1f} ({one.low}-{one.high})"
+    return facts.units.day(one.on), one.inspected, one.found, left

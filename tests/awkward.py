@@ -928,7 +928,7 @@ def rows_and_plants_by_number():
     return table(f"row,plant,date,count\n2,1,{DAY},4\n1,2,{DAY},0\n7,7,{DAY},1\n")
 
 
-@case("records", asks="places", refuses="name plants instead of positions")
+@case("records", asks="plants", refuses="name plants instead of positions")
 def rows_and_plants_without_any_plants():
     return rows_and_plants_by_number()
 
@@ -949,7 +949,7 @@ def plots_by_name_with_some_unknown():
     return table("field,date,count\n" + "".join(f"{name},{DAY},{n}\n" for name, n in rows))
 
 
-@case("records", asks="places", refuses="name plots instead of positions")
+@case("records", asks="plots", refuses="name plots instead of positions")
 def plots_by_name_without_any_plots():
     return plots_by_name_with_some_unknown()
 

@@ -32,6 +32,8 @@ ALONE = {
     "rasterio": {"io", "monitoring"},
     "pyarrow": {"io", "simulation", "cli"},
     "distributed": {"simulation"},
+    "jinja2": {"io"},
+    "markupsafe": {"io", "studies", "app"},
     "typer": {"cli"},
     "rich": {"cli"},
     "pydeck": {"planning", "app"},

@@ -8,11 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.study_output import must_be_folder, write_all
 from fieldmon.cli.waiting import progress
 from fieldmon.errors import FileProblem, SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    from fieldmon.studies.samplers.scenarios import Cell
+    from fieldmon.studies.samplers.seasons import Outcome
 
 _SAVED_EVERY_S = 15.0
 
@@ -47,35 +51,48 @@ def samplers(
 
     Example: fieldmon study samplers --cell "B, spread 30% to one" --seeds 20 -o study
     """
-    from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
     from fieldmon.studies.samplers.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.samplers.scenarios import all_cells, usual_cells  # noqa: PLC0415
-    from fieldmon.studies.samplers.seasons import run  # noqa: PLC0415
-    from fieldmon.studies.samplers.summary import (  # noqa: PLC0415
-        csv_text,
-        outcomes_from,
-        sentences,
-    )
+    from fieldmon.studies.samplers.summary import sentences  # noqa: PLC0415
 
-    if not output.is_dir():
-        raise FileProblem(f"The folder {output} must exist, but it does not. Make it first.")
+    must_be_folder(output)
     if maps is not None:
         _on_maps(maps, output)
         return
     if tune:
         _tune()
         return
-    cells = all_cells() if full else usual_cells()
-    if cell:
-        cells = [each for each in cells if any(each.name.startswith(name) for name in cell)]
-    if not cells:
-        raise SettingError(f"A cell must begin with {' or '.join(cell or [])}, but none does.")
     table = output / "samplers.csv"
+    shown = _seasons(_cells(cell, full=full), seeds, table)
+    for sentence in sentences(shown):
+        typer.echo(sentence)
+    typer.echo(f"Written: {table}")
+    write_all(output, {"samplers.html": report_html(shown)})
+
+
+def _cells(beginnings: list[str] | None, *, full: bool) -> list[Cell]:
+    """Return the cells that are meant."""
+    from fieldmon.studies.samplers.scenarios import all_cells, usual_cells  # noqa: PLC0415
+
+    cells = all_cells() if full else usual_cells()
+    if not beginnings:
+        return cells
+    meant = [each for each in cells if each.name.startswith(tuple(beginnings))]
+    if not meant:
+        raise SettingError(f"A cell must begin with {' or '.join(beginnings)}, but none does.")
+    return meant
+
+
+def _seasons(cells: list[Cell], seeds: int, table: Path) -> list[Outcome]:
+    """Simulate what the table lacks, and keep it there; return the outcomes of cells and seeds."""
+    from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
+    from fieldmon.studies.samplers.seasons import run  # noqa: PLC0415
+    from fieldmon.studies.samplers.summary import csv_text, outcomes_from  # noqa: PLC0415
+
     made = outcomes_from(table.read_text(encoding="utf-8"), table.name) if table.exists() else []
     done = frozenset((outcome.cell, outcome.seed) for outcome in made)
-    ahead = [(each.name, seed) for each in cells for seed in range(seeds)]
-    with progress("Seasons", len(ahead)) as bar:
-        bar.update(len(done & set(ahead)))
+    wanted = {(each.name, seed) for each in cells for seed in range(seeds)}
+    with progress("Seasons", len(wanted)) as bar:
+        bar.update(len(done & wanted))
         saved = monotonic()
         try:
             for outcomes in run(cells, range(seeds), done):
@@ -86,55 +103,7 @@ def samplers(
                     saved = monotonic()
         finally:
             write_whole(table, csv_text(made).encode())
-    wanted = set(ahead)
-    shown = [outcome for outcome in made if (outcome.cell, outcome.seed) in wanted]
-    for sentence in sentences(shown):
-        typer.echo(sentence)
-    page = output / "samplers.html"
-    write_whole(page, report_html(shown).encode())
-    typer.echo(f"Written: {table}\nWritten: {page}")
-
-
-def beliefs(
-    seeds: Annotated[int, typer.Option(min=1, help="Simulated seasons a belief.")] = 10,
-    cell: Annotated[
-        str, typer.Option(help="How the name of the situation begins (see `study samplers`).")
-    ] = "B, spread 30% to one, clusters, prior none",
-    sampler: Annotated[str, typer.Option(help="Who inspects meanwhile.")] = "adaptive",
-    output: Annotated[
-        Path, typer.Option("--output", "-o", help="Folder for the report (HTML).")
-    ] = Path(),
-) -> None:
-    """Compare chance maps by what came true: reliability, scores, intervals, cost.
-
-    Example: fieldmon study beliefs --seeds 20 --sampler naive -o study
-    """
-    from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
-    from fieldmon.samplers import sampler as named  # noqa: PLC0415
-    from fieldmon.studies.samplers.calibration import (  # noqa: PLC0415
-        BELIEFS,
-        calibration,
-        report_html,
-    )
-    from fieldmon.studies.samplers.scenarios import all_cells  # noqa: PLC0415
-
-    if not output.is_dir():
-        raise FileProblem(f"The folder {output} must exist, but it does not. Make it first.")
-    chosen = next((each for each in all_cells() if each.name.startswith(cell)), None)
-    if chosen is None:
-        raise SettingError(f"A cell must begin with {cell!r}, but none does.")
-    made = {}
-    for name, believe in BELIEFS.items():
-        made[name] = c = calibration([chosen], named(sampler), believe, seeds)
-        typer.echo(
-            f"{name:24} Brier {c.brier:.5f}, log score {c.log_score:.4f} "
-            f"(as suspicious or not {c.suspicious_log_score:.4f}), 90 % interval holds "
-            f"{c.covered:.0%}, {1000 * c.seconds_a_day:.0f} ms a day"
-        )
-    about = f"{chosen.name}; {seeds} seasons of 12 days inspected by {sampler}."
-    page = output / "beliefs.html"
-    write_whole(page, report_html(made, about).encode())
-    typer.echo(f"Written: {page}")
+    return [outcome for outcome in made if (outcome.cell, outcome.seed) in wanted]
 
 
 def _tune() -> None:
@@ -157,7 +126,6 @@ def _tune() -> None:
 
 def _on_maps(folder: Path, output: Path) -> None:
     """Print and write how many infested plants a look finds on mapped plots."""
-    from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
     from fieldmon.studies.samplers.mapped_plots import (  # noqa: PLC0415
         LAYOUTS,
         SHARES,
@@ -173,8 +141,7 @@ def _on_maps(folder: Path, output: Path) -> None:
     typer.echo(f"{'Infested plants found per look, after':38} " + _columns(SHARES, "{:6.0%}"))
     for name, who, values in rows:
         typer.echo(f"{name:28} {who:9} " + _columns(values, "{:6.2f}"))
-    write_whole(output / "maps.csv", table_csv(rows).encode())
-    typer.echo(f"Written: {output / 'maps.csv'}")
+    write_all(output, {"maps.csv": table_csv(rows)})
 
 
 def _columns(values: Iterable[float], form: str) -> str:

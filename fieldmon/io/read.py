@@ -97,6 +97,14 @@ def read_records(
     return records.having(kept, more)
 
 
+def read_records_by_plot(
+    source: Source, options: RecordOptions, places: Places
+) -> Imported[dict[str, Observations]]:
+    """Return the records of a source that name a plot, a row and a plant, by the plots' names."""
+    records: Imported[dict[str, Observations]] = _read("plot_records", source, options, places)
+    return records
+
+
 def read_plants(source: Source, options: ReadOptions | None = None) -> Imported[Plants]:
     """Return measured positions of plants, with their labels if the file has any."""
     plants: Imported[Plants] = _read("plants", source, options or ReadOptions())

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.planning.plan import PlanSettings, first_day
-from fieldmon.plot.plot import Plot, planting_of
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.samplers import sampler
 
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.field import Field
+    from fieldmon.plot.plot import Plot
 
 
 @dataclass(frozen=True)
@@ -75,12 +75,11 @@ class Task:
         return digest(*parts, *vars(observations).values(), length=16)
 
 
-def plan_task(task: Task, observations: Observations) -> DayPlan:
-    """Plan the day on one plot; raise a `FieldmonError` where it cannot be done."""
+def plan_task(task: Task, plot: Plot, observations: Observations) -> DayPlan:
+    """Plan the day on a task's plot; raise a `FieldmonError` where it cannot be done."""
     orders = task.orders
     robot = _robot(task)
     settings = {} if orders.every is None else {"every": orders.every}
-    plot = Plot.of(task.plot, planting_of(task.plot, **orders.planting))
     today = first_day(
         plot, observations, orders.day, PlanSettings(robot, sampler(orders.sampler, **settings))
     )

@@ -9,13 +9,14 @@ import pyarrow as pa
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
+from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import LEVELS_PCT, figures
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, days
+from fieldmon.simulation.start import season_start
 
 if TYPE_CHECKING:
     import numpy as np
@@ -77,12 +78,11 @@ def _laid(digest: str, held: _Held) -> tuple[Plot, NDArray[np.float64]]:  # noqa
 
 
 def _row(chunk: Chunk, plot: Plot, chance: NDArray[np.float64], seed: int) -> dict[str, Any]:
-    case, luck = chunk.case, RandomStreams(seed)
-    infested = start_infested(chance, case.infested, luck.of("start"))
+    case, streams = chunk.case, RandomStreams(seed)
     settings = SeasonSettings(n_days=chunk.n_days, spread=Spread(case.spread))
     robot = Robot(hours=case.hours, look_s=case.look_s)
-    start = Start(infested[plot.grid.vine], chance)
-    season = figures(days(plot.aisles, robot, sampler(case.sampler), start, settings, luck))
+    start = season_start(plot.grid, chance, case.infested, streams)
+    season = figures(days(plot.aisles, robot, sampler(case.sampler), start, settings, streams))
     return {
         "plot": plot.field.name,
         **vars(case),

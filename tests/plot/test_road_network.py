@@ -3,15 +3,18 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from shapely import MultiPolygon, Polygon, box
 
 from fieldmon.errors import PlotError
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.road_network import Obstacles, Where, row_lines, ways
-from tests.crooked import crooked_grids
+from tests.crooked import crooked_fields, crooked_grids, plantings
 
 FRAME = Frame(35.15, 30.36)
 EASTWARD = Planting(row_bearing_deg=90.0, row_spacing_m=4.0, plant_spacing_m=2.0)
@@ -65,6 +68,28 @@ def test_ways_stay_on_the_plot_unless_parts_must_be_joined(grid):
     net = ways(grid)
     if len(shapely.get_parts(grid.drivable_m)) == 1:
         assert outside_m(grid, lines(net)).max() < 0.02
+
+
+@given(field=crooked_fields(max_radius_m=50), planting=plantings())
+@settings(max_examples=40)
+def test_the_plot_is_left_only_for_what_cannot_be_reached_on_it(field, planting):
+    try:
+        plot = Plot.of(field, planting)
+    except PlotError:
+        assume(False)
+    net = plot.aisles.ways
+    start = np.repeat(np.arange(len(net.xy_m)), np.diff(net.start))
+    leaves = outside_m(plot.grid, lines(net)) > 0.02
+    stays = np.stack([start, net.to])[:, ~leaves]
+    on_it = coo_array((np.ones(stays.shape[1]), stays), shape=(len(net.xy_m),) * 2)
+    part = connected_components(on_it, directed=False)[1]
+    assert (part[start[leaves]] != part[net.to[leaves]]).all()
+    # a corner off the plot is on one way only, which does not lead back to where it came from
+    stops = np.isin(part, part[np.append(net.end.ravel(), net.gate)])
+    for corner in np.setdiff1d(part, part[stops]):
+        there = part[net.to[part[start] == corner]]
+        there = there[there != corner]
+        assert len(there) == len(set(there.tolist())) <= 2
 
 
 @given(crooked_grids(max_radius_m=50))
@@ -144,6 +169,20 @@ def test_parts_are_not_joined_over_a_no_go_area():
     steps = lines(ways(grid, no_go_m=ditch))
     assert not shapely.intersects(shapely.buffer(ditch, -0.02), steps).any()
     assert shapely.intersects(ditch, lines(ways(grid))).any()
+
+
+def test_parts_behind_a_no_go_area_are_joined_round_its_end():
+    grid = laid(box(-60, -40, -4, 40), box(4, -40, 60, 40))
+    ditch = in_grid(grid, MultiPolygon([box(-1, -900, 1, 300)]))
+    net = ways(grid, no_go_m=ditch)
+    steps = lines(net)
+    assert not shapely.intersects(shapely.buffer(ditch, -0.02), steps).any()
+    (left,), (right,) = (
+        np.flatnonzero((net.xy_m[:, 1] > 299) & (np.abs(net.xy_m[:, 0] - x) < 0.1)) for x in (-1, 1)
+    )
+    round_it = net.to[net.start[left] : net.start[left + 1]]
+    assert len(round_it) == 2
+    assert right in round_it
 
 
 def test_a_part_within_the_hole_of_another_is_reached_through_the_hole():

@@ -114,7 +114,8 @@ def test_a_killed_client_costs_only_unfinished_chunks(tmp_path):
     half = {path: path.stat().st_mtime_ns for path in tmp_path.glob("killed/*/*.parquet")}
     subprocess.run([*words, "-o", "killed"], cwd=tmp_path, check=True, capture_output=True)
     (tmp_path / "whole").mkdir()
-    sites = study_run._sites(tmp_path / "plot.geojson", None, None, "2026-11-02")
+    options = study_run.StudyOptions(tmp_path / "plot.geojson", on="2026-11-02")
+    sites = options.sites()
     whole = list(chunks(sites, Design(n_days=10, n_seeds=40)))
     for chunk in whole:
         results.keep(tmp_path / "whole", chunk, study_chunks.run_chunk(chunk))

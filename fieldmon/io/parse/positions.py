@@ -22,6 +22,7 @@ from fieldmon.io.import_report import (
     repaired,
     seen,
 )
+from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import sort_out
 from fieldmon.io.parse.georeference import place
@@ -33,7 +34,14 @@ from fieldmon.io.parse.values import (
     pairs,
     plain_numbers,
 )
-from fieldmon.io.readers.places import Named, Places, by_plant, by_plot
+from fieldmon.io.readers.places import (
+    Named,
+    Places,
+    by_plant,
+    by_plot,
+    by_plot_and_plant,
+    plots_called,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -58,14 +66,17 @@ class Located:
         ``(n, 2)`` degrees.
     accuracy_m
         ``(n,)`` what the way of writing positions leaves open; NaN where that is nothing.
-    findings
+    messages
         What was found on the way.
+    plot
+        ``(n,)`` name of the plot that each is on by its own words; None where they name none.
     """
 
     layer: Layer
     lonlat: NDArray[np.float64]
     accuracy_m: NDArray[np.float64]
     messages: tuple[ImportMessage, ...]
+    plot: NDArray[np.str_] | None = None
 
 
 def located(layer: Layer, options: ReadOptions, places: Places | None = None) -> Located:
@@ -247,12 +258,12 @@ def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
     plant = options.column("plant") or find("plant", layer.columns, taken)
     told = options.column("plot")  # "" says that no column names a plot
     plot = find("plot", layer.columns) if told is None else told
-    if plant and (row or not plot) and (places.plants or not plot):
-        rows = None if row is None else layer.column(row)
-        _check_one_plot(layer, plot)
-        named = by_plant(rows, layer.column(plant), places)
+    # where plots are known but no plants, a record is somewhere on the plot that it names
+    no_plants = places.plants is None and not places.plants_of
+    if plant and (row or not plot) and not (plot and places.plots and no_plants):
+        named = _by_plant(layer, (plot, row, plant), options, places)
     elif plot and places.plants is not None and not places.plots:
-        named = by_plant(None, layer.column(plot), places)
+        named = by_plant(None, layer.column(plot), places.plants)
     elif plot:
         named = by_plot(layer.column(plot), places)
     else:
@@ -264,6 +275,41 @@ def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
             tuple(layer.columns),
         )
     return _kept(layer, named)
+
+
+def _by_plant(
+    layer: Layer, names: tuple[str | None, str | None, str], options: ReadOptions, places: Places
+) -> Named:
+    """Return where records lie that name plants, on the plot that they name or on the only one.
+
+    `names` are those of the columns of plots, rows and plants.
+    """
+    if places.plants is None and not places.plants_of:
+        raise _plants_needed(layer, names[0])
+    row, plant = None if names[1] is None else layer.column(names[1]), layer.column(names[2])
+    by_hand = options.plot if isinstance(options, RecordOptions) else None
+    if names[0]:
+        plot = layer.column(names[0])
+        if places.plants is None or plots_called({text(v) for v in plot}, places.plots):
+            return by_plot_and_plant(plot, row, plant, places)
+    elif by_hand is not None:
+        plot = np.full(len(layer), by_hand, dtype=object)
+        return by_plot_and_plant(plot, row, plant, places)
+    if places.plants is None:
+        raise _plants_needed(layer, names[0])
+    _check_one_plot(layer, names[0])
+    return by_plant(row, plant, places.plants)
+
+
+def _plants_needed(layer: Layer, plot: str | None) -> ChoiceNeeded:
+    """Return the question for the plants that records name, with the plots they name."""
+    plots = sorted({text(v) for v in layer.column(plot)} - {""}) if plot else []
+    return ChoiceNeeded(
+        "The records name plants instead of positions. Give the plants they name: the plot's "
+        "own rows and numbers, or a file with their positions.",
+        "plants",
+        tuple(plots),
+    )
 
 
 def _check_one_plot(layer: Layer, plot: str | None) -> None:
@@ -293,6 +339,7 @@ def _kept(layer: Layer, named: Named) -> Located:
         named.lonlat[there],
         named.accuracy_m[there],
         named.messages,
+        None if named.plot is None else named.plot[there],
     )
 
 

@@ -49,6 +49,22 @@ def records_of(
     layer: Layer, options: RecordOptions, places: Places | None = None
 ) -> Imported[Observations]:
     """Return the records of a layer, each with a position."""
+    return _records_and_plots(layer, options, places)[0]
+
+
+def records_by_plot(
+    layer: Layer, options: RecordOptions, places: Places
+) -> Imported[dict[str, Observations]]:
+    """Return the records of a layer that name their plot, and a row and a plant on it, by plot."""
+    read, plot = _records_and_plots(layer, options, places)
+    named = [] if plot is None else sorted(set(plot.tolist()))
+    return read.having({name: read.value.take(plot == name) for name in named})
+
+
+def _records_and_plots(
+    layer: Layer, options: RecordOptions, places: Places | None
+) -> tuple[Imported[Observations], NDArray[np.str_] | None]:
+    """Return the records of a layer, and the plot that each names, if they do."""
     if len(layer) == 0:
         raise ObservationError(f"{layer.name} must hold records, but it holds none.")
     layer, repeated = _once_each(layer)
@@ -68,7 +84,8 @@ def records_of(
         leaves_sampled=table.numbers("leaves"),
     )
     messages = (*layer.messages, *repeated, *found.messages, *day_findings, *counts.messages)
-    return Imported(observations, (*messages, *_species(table), *_same_visit(observations)))
+    more = (*_species(table), *_same_visit(observations))
+    return Imported(observations, (*messages, *more)), found.plot
 
 
 @dataclass(frozen=True, eq=False)

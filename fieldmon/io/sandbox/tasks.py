@@ -10,7 +10,7 @@ from fieldmon.io.readers.crews import crews_of
 from fieldmon.io.readers.inspection_file.rows import InspectionRows, rows_of
 from fieldmon.io.readers.plots import named_areas, plots_of
 from fieldmon.io.readers.points_and_lines import lines_of, plants_of
-from fieldmon.io.readers.records import records_of
+from fieldmon.io.readers.records import records_by_plot, records_of
 from fieldmon.io.sandbox.unpack import Workroom
 
 if TYPE_CHECKING:
@@ -49,6 +49,14 @@ def records(
 ) -> Imported[Observations]:
     """Return the records of a source."""
     return records_of(open_layer(source, options, Workroom(Path(folder))), options, places)
+
+
+def plot_records(
+    folder: str, source: Source, options: RecordOptions, places: Places
+) -> Imported[dict[str, Observations]]:
+    """Return the records of a source that name their plots, by plot."""
+    layer = open_layer(source, options, Workroom(Path(folder)))
+    return records_by_plot(layer, options, places)
 
 
 def plants(folder: str, source: Source, options: ReadOptions) -> Imported[Plants]:

@@ -47,10 +47,14 @@ class Stop(NamedTuple):
     vertex: int
 
     @property
+    def plant_label(self) -> str:
+        """Return the plant's number in its row, with its face where it has two: ``17``, ``17b``."""
+        return f"{self.number}{'ab'[self.face - 1] if self.face else ''}"
+
+    @property
     def label(self) -> str:
         """Return a short name that a handheld shows, and that reads back: ``012 R3/17``."""
-        face = "ab"[self.face - 1] if self.face else ""
-        return f"{self.order:03d} R{self.row}/{self.number}{face}"
+        return f"{self.order:03d} R{self.row}/{self.plant_label}"
 
 
 @dataclass(frozen=True, eq=False)

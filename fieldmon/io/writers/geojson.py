@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.io.writers.day_file import HandoffPlan
     from fieldmon.planning.route import Route
 
 # RFC 7946 positions are degrees; 8 decimals are about a millimetre
@@ -70,6 +71,11 @@ def route_geojson(route: Route, notes: RouteNotes) -> str:
     if len(everything):
         collection["bbox"] = [*everything.min(axis=0).tolist(), *everything.max(axis=0).tolist()]
     return json.dumps(collection, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def handed_geojson(plan: HandoffPlan) -> bytes:
+    """Return a day to hand off as GeoJSON; see `route_geojson`."""
+    return route_geojson(plan.route, plan.notes).encode()
 
 
 def write_route(path: str | Path, route: Route, notes: RouteNotes) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from functools import partial
-from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,9 +14,9 @@ from fieldmon.infestation.ensemble import Ensemble
 from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import PlotEstimate, estimate_plot
+from fieldmon.io.html import page
 from fieldmon.simulation.season import days
 from fieldmon.studies.charts import Line, line_chart
-from fieldmon.studies.samplers.report import STYLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -196,12 +195,6 @@ def _reliability(
 
 def report_html(made: dict[str, Calibration], about: str) -> str:
     """Return the calibrations of some beliefs as one HTML document."""
-    rows = "".join(
-        f'<tr><th scope="row">{escape(name)}</th><td>{c.brier:.5f}</td><td>{c.log_score:.4f}</td>'
-        f"<td>{c.suspicious_log_score:.4f}</td><td>{c.covered:.0%}</td>"
-        f"<td>{1000 * c.seconds_a_day:.0f}</td></tr>"
-        for name, c in made.items()
-    )
     lines = [Line("as often as said", (0.0, 1.0), (0.0, 1.0))]
     clean = list(lines)
     for name, c in made.items():
@@ -209,15 +202,12 @@ def report_html(made: dict[str, Calibration], about: str) -> str:
         lines.append(Line(name, c.said[some].tolist(), c.was[some].tolist()))
         clean.append(Line(name, c.clean_said[told].tolist(), c.clean_was[told].tolist()))
     axes = ("chance said", "share that was so")
-    return (
-        '<!doctype html><html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>Beliefs compared</title><style>{STYLE}</style></head><body>"
-        f"<h1>Beliefs compared</h1><p>{escape(about)}</p>"
-        '<div class="wide" tabindex="0"><table><thead><tr><th scope="col">belief</th>'
-        '<th scope="col">Brier score</th><th scope="col">log score</th>'
-        '<th scope="col">as suspicious or not</th><th scope="col">90 % interval holds</th>'
-        f'<th scope="col">ms a day</th></tr></thead><tbody>{rows}</tbody></table></div>'
-        f"{line_chart(f'Plants ({_FEW} mornings or more a dot)', lines, axes)}"
-        f"{line_chart('The plot is clean', clean, axes)}</body></html>\n"
+    return page(
+        "fieldmon/studies/samplers/calibration.html.j2",
+        about=about,
+        made=made,
+        charts=[
+            line_chart(f"Plants ({_FEW} mornings or more a dot)", lines, axes),
+            line_chart("The plot is clean", clean, axes),
+        ],
     )

@@ -12,11 +12,10 @@ import pandas as pd
 import pyogrio
 import pytest
 
-from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspections import read_inspections
-from fieldmon.io.writers import FORMATS, write_handoff
+from fieldmon.io.writers import write_handoff
 from fieldmon.plot.layout import rectangle
 from tests.io.writers.handed import DAYS, START, apart_m, crooked, day, usual
 
@@ -27,45 +26,6 @@ GPX = "{http://www.topografix.com/GPX/1/1}"
 @pytest.fixture(params=DAYS)
 def plan(request):
     return DAYS[request.param]()
-
-
-# --- the door ----------------------------------------------------------------------------------
-
-
-def test_the_ending_or_the_name_tells_the_format(tmp_path):
-    plan = usual()
-    (by_ending,) = write_handoff(plan, tmp_path / "a.CSV")
-    (by_name,) = write_handoff(plan, tmp_path / "a.txt", "csv")
-    assert by_ending.read_bytes() == by_name.read_bytes()
-    with pytest.raises(SettingError, match="must end in one of"):
-        write_handoff(plan, tmp_path / "a.docx")
-    with pytest.raises(SettingError, match=r"written as nav2, .* not as 'docx'"):
-        write_handoff(plan, tmp_path / "a.csv", "docx")
-
-
-def test_every_ending_tells_one_format_only():
-    endings = [ending for chosen in FORMATS.values() for ending in chosen.endings]
-    assert len(set(endings)) == len(endings)
-
-
-@pytest.mark.parametrize("name", FORMATS)
-def test_a_place_that_cannot_be_written_to_is_a_sentence(tmp_path, name):
-    with pytest.raises(FileProblem, match="must exist"):
-        write_handoff(usual(), tmp_path / "none" / f"a{FORMATS[name].endings[0]}")
-
-
-@pytest.mark.parametrize("name", FORMATS)
-def test_every_format_is_written_for_every_day(tmp_path, name, plan):
-    to = tmp_path / f"a{FORMATS[name].endings[0]}"
-    if name in {"nav2", "waypoints"} and not len(plan.route):
-        with pytest.raises(SettingError, match="drives nowhere"):
-            write_handoff(plan, to)
-        assert list(tmp_path.iterdir()) == []
-        return
-    paths = write_handoff(plan, to)
-    assert sorted(tmp_path.iterdir()) == sorted(paths)
-    assert all(path.stat().st_size for path in paths)
-    assert FORMATS[name].several == (len(paths) > 1)
 
 
 # --- GeoJSON: RFC 7946, rule by rule -----------------------------------------------------------

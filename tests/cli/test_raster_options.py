@@ -2,7 +2,6 @@
 
 import json
 import re
-import sys
 import warnings
 
 import numpy as np
@@ -10,28 +9,10 @@ import pytest
 import rasterio
 from rasterio.transform import from_origin
 
-from fieldmon.cli import main
 from tests.paths import SAMPLE_DATA
 
 ESTATE = SAMPLE_DATA
 PLAN = ["plan", ESTATE / "paran_estate.zip", "--feature", "Nursery", "--date", "2026-11-18"]
-
-
-@pytest.fixture
-def run(monkeypatch, capsys, tmp_path):
-    """Run a command in an empty folder; return exit code, output and complaints."""
-    monkeypatch.chdir(tmp_path)
-
-    def go(*words):
-        monkeypatch.setattr(sys, "argv", ["fieldmon", *map(str, words)])
-        code = 0
-        try:
-            main.main()
-        except SystemExit as stop:
-            code = stop.code or 0
-        return code, *capsys.readouterr()
-
-    return go
 
 
 def covariate(path, low=0.0, high=1.0, bands=1):
@@ -71,10 +52,10 @@ def chances(path):
 
 def test_a_risk_raster_raises_the_chance_where_it_says_so(run, tmp_path):
     risk = covariate(tmp_path / "risk.tif", 0.0, 0.3)
-    code, out, err = run(*PLAN, "--chance-map", "before.tif")
+    code, out, err, _ = run(*PLAN, "--chance-map", "before.tif")
     assert code == 0, err
     assert "Chance map written to before.tif" in out
-    code, out, err = run(*PLAN, "--risk", risk, "--chance-map", "after.tif")
+    code, out, err, _ = run(*PLAN, "--risk", risk, "--chance-map", "after.tif")
     assert code == 0, err
     assert "seen: Risk by chance: 0 to 0.3" in err
     (west_before, east_before), (west, east) = chances("before.tif"), chances("after.tif")
@@ -84,10 +65,10 @@ def test_a_risk_raster_raises_the_chance_where_it_says_so(run, tmp_path):
 
 def test_what_a_risk_raster_means_is_an_option(run, tmp_path):
     risk = covariate(tmp_path / "ndvi.tif", 0.8, 0.3)
-    code, _, err = run(*PLAN, "--risk", risk, "--risk-option", "meaning=rank")
+    code, _, err, _ = run(*PLAN, "--risk", risk, "--risk-option", "meaning=rank")
     assert code == 2
     assert "mean_share" in err
-    code, _, err = run(
+    code, _, err, _ = run(
         *[*PLAN, "--risk", risk, "--risk-option", "meaning=score", "--risk-option", "how=nearest"],
         *["--risk-option", "mean_share=0.04", "--risk-option", "low_is_risky=yes"],
         *["--chance-map", "c.tif"],
@@ -100,9 +81,9 @@ def test_what_a_risk_raster_means_is_an_option(run, tmp_path):
 
 def test_plants_under_a_low_canopy_are_not_planned_for(run, tmp_path):
     canopy = covariate(tmp_path / "canopy.tif", 0.2, 1.5)
-    _, out, _ = run(*PLAN)
+    _, out, _, _ = run(*PLAN)
     (all_plants,) = re.search(r"of (\d+) plants in", out).groups()
-    code, out, err = run(
+    code, out, err, _ = run(
         *[*PLAN, "--canopy", canopy, "--canopy-below", 0.5, "--canopy-option", "how=nearest"]
     )
     assert code == 0, err
@@ -113,7 +94,7 @@ def test_plants_under_a_low_canopy_are_not_planned_for(run, tmp_path):
     assert 0.3 < int(missing) / int(all_plants) < 0.7
     stops = json.loads((tmp_path / "route.geojson").read_text(encoding="utf-8"))["features"][1:]
     lon = [stop["geometry"]["coordinates"][0] for stop in stops]
-    code, _, _ = run(*PLAN)
+    code, _, _, _ = run(*PLAN)
     stops = json.loads((tmp_path / "route.geojson").read_text(encoding="utf-8"))["features"][1:]
     everywhere = [stop["geometry"]["coordinates"][0] for stop in stops]
     assert min(lon) > min(everywhere) + 2e-4
@@ -121,11 +102,11 @@ def test_plants_under_a_low_canopy_are_not_planned_for(run, tmp_path):
 
 def test_what_was_guessed_is_said_with_the_option_that_undoes_it(run, tmp_path):
     risk = covariate(tmp_path / "risk.tif", -9999.0, 0.3)
-    code, _, err = run(*PLAN, "--risk", risk)
+    code, _, err, _ = run(*PLAN, "--risk", risk)
     assert code == 0, err
     assert "(They are values: --risk-option nodata=none)" in err
     assert "have no value on the raster" in err
-    code, _, err = run(*PLAN, "--risk", risk, "--risk-option", "nodata=none")
+    code, _, err, _ = run(*PLAN, "--risk", risk, "--risk-option", "nodata=none")
     assert code == 2
     assert "must hold values in 0..1" in err
 
@@ -134,9 +115,9 @@ def test_a_season_begins_with_rasters_and_maps_its_days(run, tmp_path):
     risk = covariate(tmp_path / "risk.tif", 0.0, 0.3)
     plot = [ESTATE / "paran_estate.zip", "--feature", "Nursery"]
     day = ["--begins", "2026-11-18"]
-    code, out, err = run("init", "plain.gpkg", *plot, *day)
+    code, out, err, _ = run("init", "plain.gpkg", *plot, *day)
     assert code == 0, err
-    code, out, err = run(
+    code, out, err, _ = run(
         *["init", "season.gpkg", *plot, *day, "--risk", risk],
         *["--canopy", risk, "--canopy-below", "-1"],
     )
@@ -144,7 +125,7 @@ def test_a_season_begins_with_rasters_and_maps_its_days(run, tmp_path):
     assert "seen: 0 of" in err
     day = ["--date", "2026-11-18"]
     for season in ("plain", "season"):
-        code, out, err = run("plan", f"{season}.gpkg", *day, "--chance-map", f"{season}.tif")
+        code, out, err, _ = run("plan", f"{season}.gpkg", *day, "--chance-map", f"{season}.tif")
         assert code == 0, err
         assert f"Chance map written to {season}.tif" in out
     (_, plain_east), (_, east) = chances("plain.tif"), chances("season.tif")
@@ -153,7 +134,7 @@ def test_a_season_begins_with_rasters_and_maps_its_days(run, tmp_path):
 
     said = [remark.sentence for remark in Season("season.gpkg").messages()]
     assert any("Risk by chance" in sentence for sentence in said)
-    code, _, err = run("plan", "season.gpkg", *day, "--risk", risk)
+    code, _, err, _ = run("plan", "season.gpkg", *day, "--risk", risk)
     assert code == 2
     assert "--risk" in err
 
@@ -161,7 +142,7 @@ def test_a_season_begins_with_rasters_and_maps_its_days(run, tmp_path):
 def test_a_simulated_season_starts_from_the_risk_and_without_missing_plants(run, tmp_path):
     canopy = covariate(tmp_path / "canopy.tif", 0.2, 0.9)
     words = ["simulate", *PLAN[1:], "--sampler", "naive", "--days", 1, "--infested", 0.1]
-    code, _, err = run(
+    code, _, err, _ = run(
         *[*words, "--risk", canopy, "--risk-option", "how=highest"],
         *["--canopy", canopy, "--canopy-below", 0.5],
     )
@@ -189,7 +170,7 @@ def test_a_simulated_season_starts_from_the_risk_and_without_missing_plants(run,
 )
 def test_what_cannot_be_done_is_said(run, tmp_path, words, said):
     covariate(tmp_path / "three.tif", bands=3)
-    code, _, err = run(*PLAN, *words)
+    code, _, err, _ = run(*PLAN, *words)
     assert code == 2
     assert said in err
     assert not (tmp_path / "route.geojson").exists()

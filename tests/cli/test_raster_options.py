@@ -22,13 +22,13 @@ def covariate(path, low=0.0, high=1.0, bands=1):
         with rasterio.open(ESTATE / "backdrop.tif") as tif:
             crs, bounds = tif.crs, tif.bounds
         from fieldmon.io.options import PlotOptions
-        from fieldmon.io.parse.crs import system, way_from
+        from fieldmon.io.parse.crs import system, transformation_from
         from fieldmon.io.rasters.values import projected
         from fieldmon.io.read import read_plots
 
         (nursery,) = read_plots(ESTATE / "paran_estate.zip", PlotOptions(feature="Nursery")).value
         middle = np.array([[nursery.boundary.centroid.x, nursery.boundary.centroid.y]])
-        grid = way_from(system(crs.to_wkt()), (bounds.left, bounds.bottom))
+        grid = transformation_from(system(crs.to_wkt()), (bounds.left, bounds.bottom))
         x = float(projected(grid, middle)[0, 0])
         values = np.full((bands, 993, 1093), low, "float32")
         values[..., int(x - bounds.left) :] = high

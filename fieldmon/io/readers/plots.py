@@ -14,7 +14,7 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, dropped, guessed, seen
 from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.geometry import boundary, closed_lines, filled, sort_out
+from fieldmon.io.parse.geometry import boundary, closed_lines, filled, geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
 from fieldmon.io.readers.known_rows import with_known_rows
@@ -84,10 +84,10 @@ def _told_apart(names: list[str]) -> list[str]:
 def _areas(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     """Return the features that have an area; offer lines and points for what they can be."""
     messages: list[ImportMessage] = []
-    areas, lines, points = sort_out(_shapes(layer))
+    areas, lines, points = geometry_kinds(_shapes(layer))
     if not areas.any() and lines.any():
         layer, messages = _outlines(layer)
-        areas, lines, points = sort_out(_shapes(layer))
+        areas, lines, points = geometry_kinds(_shapes(layer))
     if not areas.any():
         _refuse_without_areas(layer, int(lines.sum()), int(points.sum()))
     missing = len(layer) - int((areas | lines | points).sum())

@@ -39,21 +39,21 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.options import RecordOptions
-    from fieldmon.io.parse.values import Dated
-    from fieldmon.io.readers.places import Places
+    from fieldmon.io.parse.values import DatedColumn
+    from fieldmon.io.readers.places import NamedPlaces
 
 _LOOKED_AT = 200
 
 
 def records_of(
-    layer: Layer, options: RecordOptions, places: Places | None = None
+    layer: Layer, options: RecordOptions, places: NamedPlaces | None = None
 ) -> Imported[Observations]:
     """Return the records of a layer, each with a position."""
     return _records_and_plots(layer, options, places)[0]
 
 
 def records_by_plot(
-    layer: Layer, options: RecordOptions, places: Places
+    layer: Layer, options: RecordOptions, places: NamedPlaces
 ) -> Imported[dict[str, Observations]]:
     """Return the records of a layer that name their plot, and a row and a plant on it, by plot."""
     read, plot = _records_and_plots(layer, options, places)
@@ -62,7 +62,7 @@ def records_by_plot(
 
 
 def _records_and_plots(
-    layer: Layer, options: RecordOptions, places: Places | None
+    layer: Layer, options: RecordOptions, places: NamedPlaces | None
 ) -> tuple[Imported[Observations], NDArray[np.str_] | None]:
     """Return the records of a layer, and the plot that each names, if they do."""
     if len(layer) == 0:
@@ -158,7 +158,7 @@ def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[ImportMessage]]:
     return read.day, [seen(f"Dates are in column(s) {where}."), *_about_dates(read, where)]
 
 
-def _about_dates(read: Dated, where: str) -> list[ImportMessage]:
+def _about_dates(read: DatedColumn, where: str) -> list[ImportMessage]:
     messages = []
     if read.is_ambiguous:
         messages.append(

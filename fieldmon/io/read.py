@@ -2,7 +2,7 @@
 
 A source is a path, an `Upload`, or several of them that belong together. What a file leaves open
 is asked by `ChoiceNeeded`; what is unusable is a `FileProblem`; all else that there is to say
-stands in the findings. The file itself is opened in a process of its own (`guard`).
+stands in the messages. The file itself is opened in a process of its own (`sandbox.process`).
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def read_records(
     options
         What was chosen about how to read it.
     near
-        Only records on this plot or close by; the others are counted in the findings.
+        Only records on this plot or close by; the others are counted in the messages.
     places
         Plots or plants that records may name instead of giving a position.
     """

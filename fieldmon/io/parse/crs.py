@@ -126,7 +126,7 @@ def transformation_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Transfo
     try:
         rough = pyproj.Transformer.from_crs(flat, WGS84, always_xy=True).transform(*centre)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # a missing grid is a finding of ours
+            warnings.simplefilter("ignore", UserWarning)  # a missing grid is a message of ours
             group = TransformerGroup(flat, WGS84, always_xy=True, area_of_interest=_around(*rough))
     except ProjError as bad:
         raise FileProblem(

@@ -33,7 +33,7 @@ class Georeferenced:
         ``(n, 2)`` degrees WGS84.
     step_m
         Coarsest step that all coordinates of the file are whole multiples of: how they are rounded.
-    findings
+    messages
         What was found on the way.
     """
 

@@ -178,7 +178,7 @@ def _finite(xy: NDArray[np.float64]) -> NDArray[np.bool_]:
 def _coordinates(
     layer: Layer, options: ReadOptions, how: str, names: tuple[str, ...]
 ) -> tuple[NDArray[np.float64], str | None, list[ImportMessage]]:
-    """Return what the columns hold ``(n, 2)``, its coordinate system if that is sure, findings."""
+    """Return what the columns hold ``(n, 2)``, its coordinate system if that is sure, messages."""
     columns = [layer.column(name) for name in names]
     if how == "metres":
         return np.stack([numbers(c, options.decimal) for c in columns], axis=1), None, []

@@ -31,13 +31,13 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     if layer.geometry is None:
         return _plot_of_corners(layer, options)
     areas, messages = _areas(layer)
-    names, name_findings = plot_names(areas, options.name_column)
+    names, name_messages = plot_names(areas, options.name_column)
     chosen = _chosen(names, options.feature)
-    placed, place_findings = place_geometry(_shapes(areas)[chosen], layer.crs, options)
-    fields, shape_findings = _fields(placed, [names[i] for i in chosen])
-    fields, row_findings = with_known_rows(fields, areas, names)
-    found = (*layer.messages, *messages, *name_findings, *place_findings, *shape_findings)
-    return Imported(fields, (*found, *row_findings))
+    placed, place_messages = place_geometry(_shapes(areas)[chosen], layer.crs, options)
+    fields, shape_messages = _fields(placed, [names[i] for i in chosen])
+    fields, row_messages = with_known_rows(fields, areas, names)
+    found = (*layer.messages, *messages, *name_messages, *place_messages, *shape_messages)
+    return Imported(fields, (*found, *row_messages))
 
 
 def named_areas(layer: Layer, options: PlotOptions) -> tuple[Layer, list[str]]:

@@ -70,7 +70,7 @@ def _records_and_plots(
     layer, repeated = _once_each(layer)
     found = located(layer, options, places)
     table = _Table(found.layer, options)
-    day, day_findings = _days(table)
+    day, day_messages = _days(table)
     counts = _counts(table)
     stated_m = table.numbers("accuracy")
     observations = Observations.of(
@@ -83,7 +83,7 @@ def _records_and_plots(
         stage=table.texts("stage"),
         leaves_sampled=table.numbers("leaves"),
     )
-    messages = (*layer.messages, *repeated, *found.messages, *day_findings, *counts.messages)
+    messages = (*layer.messages, *repeated, *found.messages, *day_messages, *counts.messages)
     more = (*_species(table), *_same_visit(observations))
     return Imported(observations, (*messages, *more)), found.plot
 

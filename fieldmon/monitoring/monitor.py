@@ -18,12 +18,12 @@ from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import looks_of, plan_day
+from fieldmon.planning.workday import plan_day
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE
-from fieldmon.samplers import NEVER, Scene
 from fieldmon.samplers import sampler as sampler_of
+from fieldmon.samplers.base import NEVER, Scene
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief, Learning
     from fieldmon.plot.plot import Plot
-    from fieldmon.samplers import Sampler, Stops
+    from fieldmon.samplers.base import Sampler, Stops, WouldFind
 
 # told clocks are compared with charged ones to a millisecond
 _SAME_S = 1e-3
@@ -213,11 +213,11 @@ class MonitorDay:
     def __init__(self, monitor: Monitor, scene: Scene, sampler: Sampler) -> None:
         self.ended = False
         self._monitor, self._sampler = monitor, sampler
-        self._times = looks_of(scene.robot, sampler)
+        self._times = sampler.inspection_times(scene.robot)
         self._told: list[tuple[PlantToInspect, bool | None]] = []
         self._asked: PlantToInspect | None = None
         self._stops: Stops | None = None
-        self._would_find: NDArray[np.bool_] | NDArray[np.uint8]
+        self._would_find: WouldFind
         self._begin(scene, 0.0)
 
     def __enter__(self) -> Self:
@@ -305,9 +305,8 @@ class MonitorDay:
 
     def _begin(self, scene: Scene, since_s: float) -> None:
         self._scene, self._since_s, self._next = scene, since_s, 0
-        choosing = len(self._times.stop_s) > 1
         # what an inspection would find; of plants not inspected yet a sampler reads nothing
-        self._would_find = np.zeros(len(scene.chance), np.uint8 if choosing else np.bool_)
+        self._would_find = np.zeros(len(scene.chance), np.uint8)
         self._stops = None
 
     def _plan_on(self, at: int, now_s: float) -> None:
@@ -330,9 +329,9 @@ class MonitorDay:
 
     def _level(self, k: int) -> int:
         """Return which of its inspection times the sampler took at a stop, from 0."""
-        if self._stops is None or self._stops.look is None:
+        if self._stops is None or self._stops.time is None:
             return 0
-        return int(self._stops.look[k])
+        return int(self._stops.time[k])
 
     def _stop(self, stops: Stops, k: int) -> PlantToInspect:
         plant, level = int(stops.plant[k]), self._level(k)

@@ -16,8 +16,9 @@ from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_day as plan_work
 from fieldmon.plot.robot import Robot
-from fieldmon.samplers import NEVER, Adaptive, Sampler, Scene
 from fieldmon.samplers import sampler as sampler_of
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import NEVER, Sampler, Scene
 
 _STARTS = time(6)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import counted
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -60,6 +61,10 @@ class Route:
     line_s: NDArray[np.float64]
     end_s: float
     notes: RouteNotes | None = None
+
+    def __repr__(self) -> str:
+        length_km, hours = self.drive_m / 1000, self.end_s / 3600
+        return f"<Route: {counted(len(self), 'stop')}, {length_km:.2f} km, {hours:.2f} h>"
 
     def __len__(self) -> int:
         """Return the number of stops."""

@@ -44,6 +44,9 @@ class Plot:
     field: Field
     aisles: Aisles
 
+    def __repr__(self) -> str:
+        return f"<Plot {self.field.name}: {self.grid.counts}>"
+
     @property
     def grid(self) -> PlantGrid:
         """Return the plants."""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.plot import Plot
-    from fieldmon.samplers import Sampler
+    from fieldmon.samplers.base import Sampler
     from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.start import Start
 

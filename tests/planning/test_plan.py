@@ -13,7 +13,7 @@ from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import Naive
+from fieldmon.samplers.sweeps import Naive
 
 ROBOT = Robot(hours=1)
 

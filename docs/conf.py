@@ -1,4 +1,4 @@
-"""How these pages are built: sphinx-build -W --keep-going docs docs/_build.
+"""How these pages are built: sphinx-build -E -W --keep-going docs docs/_build.
 
 Building asks nothing of the internet, and neither does reading: no script, font or style comes
 from elsewhere.
@@ -46,6 +46,7 @@ myst_heading_anchors = 3
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 240
+nb_merge_streams = True
 # no widgets, and so no script from elsewhere for them
 nb_ipywidgets_js = {}
 

@@ -51,7 +51,7 @@ def _paragraphs(said: str) -> Iterator[str]:
         examples = re.findall(r"^Example: (.*)$", part, re.MULTILINE)
         rest = re.sub(r"^Example: .*$\n?", "", part, flags=re.MULTILINE).strip()
         if rest:
-            yield f"{' '.join(rest.split())}\n"
+            yield _flat(rest) + "\n"
         if examples:
             yield "```sh\n" + "\n".join(examples) + "\n```\n"
 
@@ -63,5 +63,10 @@ def _param(param: Any) -> str:  # noqa: ANN401 - as above
     default = param.default
     shown = isinstance(default, (int, float, str)) and not isinstance(default, bool)
     usual = f" Default: `{getattr(default, 'value', default)}`." if shown and default != "" else ""
-    said = " ".join((getattr(param, "help", None) or "").split()).replace("<", "\\<")
-    return f"{label}\n: {said}{usual}\n"
+    return f"{label}\n: {_flat(getattr(param, 'help', None) or '')}{usual}\n"
+
+
+def _flat(said: str) -> str:
+    """Return words on one line, options among them as code."""
+    words = " ".join(said.split()).replace("<", "\\<")
+    return re.sub(r"(?<![\w`-])(--[a-z][a-z-]*)", r"`\1`", words)

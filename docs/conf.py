@@ -34,6 +34,10 @@ extensions = [
 ]
 exclude_patterns = ["_build", "generated/.ipynb_checkpoints"]
 templates_path = ["_templates"]
+# two hyphens are an option, not a dash
+smartquotes = False
+# names in single backquotes, as docstrings have them
+default_role = "py:obj"
 
 myst_enable_extensions = ["colon_fence", "deflist", "attrs_inline"]
 myst_heading_anchors = 3

@@ -46,6 +46,10 @@ class SettingError(FieldmonError):
     """A setting is outside what it may be: change the number."""
 
 
+class ImportDoubt(UserWarning):
+    """An import guessed, dropped or doubts something: look before you use it."""
+
+
 class PlotError(FieldmonError):
     """The plot cannot carry what was asked (no room for a plant, no way between rows)."""
 

@@ -297,7 +297,7 @@ def read(seed: Seed, parts: tuple[Upload, ...]) -> str:
         elif seed.door == "reported":
             reading.read_inspection_rows(source, InspectionOptions())
         elif seed.door == "records":
-            places = awkward.Places((awkward.HOME,), awkward.ROWS)
+            places = awkward.NamedPlaces((awkward.HOME,), awkward.ROWS)
             _check_places(reading.read_records(source, RecordOptions(), None, places).value.lonlat)
         else:
             options = PlotOptions() if seed.door == "plots" else None

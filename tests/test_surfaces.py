@@ -7,6 +7,7 @@ that returns what it made, and a line in `SURFACES`.
 
 import csv
 from concurrent.futures import Future
+from contextlib import nullcontext
 from datetime import date
 from pathlib import Path
 
@@ -182,7 +183,7 @@ class AtOnce:
 def _one_process(monkeypatch):
     """Let all be done in this process; with others, these commands are tested by themselves."""
     monkeypatch.setattr(plan_all, "ProcessPoolExecutor", AtOnce)
-    monkeypatch.setattr(executor, "cluster", lambda *_: executor.threads())
+    monkeypatch.setattr(executor, "cluster", lambda *_: nullcontext(executor.here()))
 
 
 @pytest.mark.usefixtures("_records", "_one_process")

@@ -9,9 +9,7 @@ import pytest
 from tests.paths import ROOT
 
 #: names that two rooms still share, and since when; the list only shrinks, and ends empty
-SHARED_SINCE = {
-    "Places": date(2026, 11, 22),  # io.readers and the app's first screen: branch app
-}
+SHARED_SINCE = {}
 
 
 def public_classes(source: str) -> list[str]:

@@ -15,7 +15,7 @@ from ..words import texts
 if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.samplers import Scene
+    from fieldmon.samplers.base import Scene
 
     from ..words.units import Units
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.planning.route import route_of
-from fieldmon.samplers import NEVER, Scene
+from fieldmon.samplers.base import NEVER, Scene
 
 from . import map_layers
 from .maps import colours, marks, plant_layers, route_layers

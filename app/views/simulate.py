@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.samplers import COMPARED
+
 from ..actions import comparing
 from ..show import charts, field_map, simulated_day
 from ..state import cached, chosen_day
@@ -51,7 +53,7 @@ def show(choices: Choices) -> None:
 
 
 def _names(choices: Choices) -> list[str]:
-    usual = dict.fromkeys([choices.sampler, "naive", "bouncy", "dynamic"])
+    usual = dict.fromkeys([choices.sampler, *COMPARED])
     chosen = st.multiselect(texts.COMPARED, list(texts.SAMPLERS), list(usual), key="compared",
                             max_selections=6, format_func=sampler_name)  # fmt: skip
     return list(dict.fromkeys([choices.sampler, *chosen]))

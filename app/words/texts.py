@@ -1,5 +1,7 @@
 """Every text of the app in one place: a translation is one file."""
 
+from fieldmon.samplers import of_equal_times
+
 
 def isolated(name: str) -> str:
     """Return a name that reads right inside any sentence, whatever its script and direction."""
@@ -38,17 +40,7 @@ WHO = "Who inspects"
 ROBOT, SCOUT = "Robot", "Scout on foot"
 HOURS, INSPECTION_S = "Working hours", "Seconds at a plant"
 SAMPLER = "Who chooses the plants"
-SAMPLERS = {
-    "adaptive": "Adaptive: the drive that should find most",
-    "dynamic": "Dynamic: suspicious plants first",
-    "naive": "Naive: every plant, row by row",
-    "bouncy": "Bouncy: every second plant",
-    "snake": "Snake: up one side of an aisle, down the other",
-    "snake-random": "Snake-random: every 1st to 4th plant by chance",
-    "neighbor": "Neighbor: both sides of the aisle at each stop",
-    "neighbor-random": "Neighbor-random: every 1st to 4th stop by chance",
-    "random": "Random: a third of the plot, drawn every day",
-}
+SAMPLERS = {name: f"{kind.title}: {kind.does}" for name, kind in of_equal_times().items()}
 DATE = "Day"
 PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
 FINDS_HELP = (

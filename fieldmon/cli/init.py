@@ -22,7 +22,7 @@ from fieldmon.cli.options import (
     sampler_settings,
 )
 from fieldmon.cli.preparing import prepared
-from fieldmon.cli.sampler_names import SamplerName
+from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.times import clock, day
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class InitOptions:
     plot: MaybePlotFile = None
     observations: Records = None
     feature: Feature = None
-    sampler: OneSampler = SamplerName.ADAPTIVE
+    sampler: OneSampler = USUAL_SAMPLER
     every: Every = None
     begins: Annotated[
         str | None, typer.Option(help="First day of the season, YYYY-MM-DD; today.")

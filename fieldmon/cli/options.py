@@ -12,12 +12,13 @@ from fieldmon.cli.named_values import chosen
 from fieldmon.cli.raster_options import RasterFiles
 from fieldmon.cli.sampler_names import SamplerName
 from fieldmon.errors import SettingError
+from fieldmon.samplers import kind_of, sampler
 
 if TYPE_CHECKING:
     from fieldmon.io.options import PlotOptions
     from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
     from fieldmon.plot.robot import Robot
-    from fieldmon.samplers import Sampler
+    from fieldmon.samplers.base import Sampler
 
 PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
 
@@ -228,23 +229,13 @@ def plot_options(
     return chosen(PlotOptions(feature=feature, crs=crs, layer=layer), more)
 
 
-def every_of(name: SamplerName, every: int | None) -> int | None:
-    """Return every how many plants a sampler stops, if that was said and it leaves any out."""
-    from fieldmon.samplers import EVERY  # noqa: PLC0415
-
-    return every if name.value in EVERY else None
-
-
 def sampler_settings(name: SamplerName, every: int | None) -> dict[str, float]:
     """Return what was said of a sampler."""
-    counts = every_of(name, every)
-    return {} if counts is None else {"every": counts}
+    return kind_of(name.value).settings_for(every)
 
 
 def sampler_of(name: SamplerName, every: int | None) -> Sampler:
     """Return the sampler that was chosen."""
-    from fieldmon.samplers import sampler  # noqa: PLC0415
-
     return sampler(name.value, **sampler_settings(name, every))
 
 

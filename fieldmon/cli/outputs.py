@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.io.writers.geojson import RouteNotes
     from fieldmon.planning.route import Route
     from fieldmon.plot.plot import Plot
 
@@ -20,12 +19,10 @@ ChanceMap = Annotated[
 ]
 
 
-def write_routes(route: Route, notes: RouteNotes, outputs: list[Path] | None) -> None:
+def write_routes(route: Route, outputs: list[Path] | None) -> None:
     """Write a route in every format asked for, and say where."""
-    from fieldmon.io.writers import HandoffPlan, write_handoff  # noqa: PLC0415
-
     for output in outputs or [Path("route.geojson")]:
-        for path in write_handoff(HandoffPlan(route, notes), output):
+        for path in route.to_file(output):
             typer.echo(f"Route written to {path}")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -22,13 +22,12 @@ from fieldmon.cli.options import (
     StartTime,
     WorkDate,
     WorkerOptions,
-    every_of,
     sampler_of,
 )
 from fieldmon.cli.outputs import ChanceMap, day_in_words, write_chance_map, write_routes
 from fieldmon.cli.plan_season import plan_season
 from fieldmon.cli.preparing import estate, prepared
-from fieldmon.cli.sampler_names import SamplerName
+from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.times import clock, day
 from fieldmon.errors import SettingError
 
@@ -53,7 +52,7 @@ class PlanOptions:
     output: Outputs = None
     observations: Records = None
     feature: Feature = None
-    sampler: OneSampler = SamplerName.ADAPTIVE
+    sampler: OneSampler = USUAL_SAMPLER
     every: Every = None
     on: WorkDate = None
     start: StartTime = "06:00"
@@ -119,7 +118,7 @@ def _plan_one(options: PlanOptions) -> None:
         )
     typer.echo(day_in_words(today.route))
     notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
-    write_routes(today.route, notes, options.output)
+    write_routes(replace(today.route, notes=notes), options.output)
     write_chance_map(options.chance_map, known.plot, today.chance)
 
 
@@ -135,7 +134,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
     orders = Orders(
         day=np.datetime64(begins.date(), "D"),
         sampler=options.sampler.value,
-        every=every_of(options.sampler, options.every),
+        every=options.every,
         on_foot=worker.scout,
         robot=worker.given(),
         planting=request.planting.given(),

@@ -21,26 +21,23 @@ _OF_A_PLAN = {"plot", "output", "on", "now", "chance_map"}
 
 def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> None:
     """Plan a day of a season, keep the route in its file, and write it for whoever drives."""
-    from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
     from fieldmon.monitoring import Season  # noqa: PLC0415
-    from fieldmon.monitoring.routes import begins  # noqa: PLC0415
 
     _refuse_what_was_chosen(context)
     season = Season(file)
     on, now = day(options.on), options.now
     today = season.plan(on, None if now is None else clock(now, "--now"))
-    route, settings = today.route, season.settings
+    route = today.route
     if not len(route):
         left_h = today.scene.seconds_left / 3600
         raise SettingError(
             "The working day must be long enough to reach another plant and come back, but "
             f"{left_h:.1f} h are left of {on}. Plan another day with --date."
         )
-    notes = RouteNotes(season.plot.field.name, settings.sampler, begins(settings, today))
     seen = season.history.on(today.scene.day)
     done = f"{len(seen)} done, " if len(seen) else ""
     typer.echo(f"{on}: {done}{day_in_words(route)}")
-    write_routes(route, notes, options.output)
+    write_routes(route, options.output)
     write_chance_map(options.chance_map, season.plot, today.chance)
 
 

@@ -1,20 +1,14 @@
-"""The names of the samplers, without the samplers: a command's help must not wait for them."""
+"""The names of the samplers as values of an option."""
 
 from __future__ import annotations
 
 from enum import StrEnum
 
+from fieldmon.samplers import COMPARED, SAMPLERS, USUAL
 
-class SamplerName(StrEnum):
-    """Who decides which plants come next."""
-
-    NAIVE = "naive"
-    BOUNCY = "bouncy"
-    DYNAMIC = "dynamic"
-    ADAPTIVE = "adaptive"
-    ADAPTIVE_LOOKS = "adaptive-looks"
-    SNAKE = "snake"
-    SNAKE_RANDOM = "snake-random"
-    NEIGHBOR = "neighbor"
-    NEIGHBOR_RANDOM = "neighbor-random"
-    RANDOM = "random"
+SamplerName = StrEnum(  # type: ignore[misc] # mypy wants to read the names here
+    "SamplerName", {name.upper().replace("-", "_"): name for name in SAMPLERS}
+)
+SamplerName.__doc__ = "Who decides which plants come next."
+USUAL_SAMPLER = SamplerName(USUAL)
+COMPARED_SAMPLERS = tuple(SamplerName(name) for name in COMPARED)

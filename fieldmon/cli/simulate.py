@@ -21,7 +21,7 @@ from fieldmon.cli.options import (
     sampler_of,
 )
 from fieldmon.cli.preparing import prepared
-from fieldmon.cli.sampler_names import SamplerName
+from fieldmon.cli.sampler_names import COMPARED_SAMPLERS, SamplerName
 from fieldmon.cli.times import day
 
 if TYPE_CHECKING:
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from fieldmon.simulation.start import Start
 
 _HEADER = "sampler,day,detection_pct,visited_pct,ever_visited_pct,found,infested_left"
-_USUAL = (SamplerName.NAIVE, SamplerName.BOUNCY, SamplerName.DYNAMIC)
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,7 @@ def simulate(options: SimulateOptions) -> None:
     streams = RandomStreams(options.seed)
     begin = season_start(plot.grid, chance, options.infested, streams)
     rows = []
-    for name in options.sampler or _USUAL:
+    for name in options.sampler or COMPARED_SAMPLERS:
         rows += _season(plot, robot, name, begin, options)
     if options.output is not None:
         from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415

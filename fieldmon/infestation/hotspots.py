@@ -160,6 +160,29 @@ def hot_spots(
     """Return where finds cluster, from each plant's `state` ``(n,)`` (see :func:`states`).
 
     The two faces of a vine count as one plant, infested if either is.
+
+    Parameters
+    ----------
+    grid
+        The plants.
+    state
+        ``(n,)`` int8: 1 found infested, 0 only found clean, -1 never inspected.
+    settings
+        Windows and the false discovery rate; None: the defaults.
+
+    Raises
+    ------
+    ObservationError
+        If `state` has not one entry a plant.
+
+    Examples
+    --------
+    >>> import numpy as np, fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> state = np.zeros(plot.n_plants, np.int8)
+    >>> state[1000:1006] = 1
+    >>> len(fm.hot_spots(plot.grid, state))
+    1
     """
     settings = settings or HotSpotSettings()
     if len(state) != len(grid):

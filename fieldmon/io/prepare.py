@@ -24,8 +24,8 @@ from fieldmon.io.read import (
     read_records_by_plot,
 )
 from fieldmon.io.readers.crews import Crew
-from fieldmon.io.readers.nearby import apart, on_plants
-from fieldmon.io.readers.places import Places, labelled, plots_called
+from fieldmon.io.readers.nearby import near_plot, on_plants
+from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.layout import Planting
 from fieldmon.plot.plot import Plot, planting_of
@@ -148,7 +148,7 @@ class EstateRecords:
 
     def on(self, plot: Field) -> Observations:
         """Return the records on a plot or near it; there may be none."""
-        return apart(self.candidates(plot.name), plot).inside
+        return near_plot(self.candidates(plot.name), plot).inside
 
 
 @dataclass(frozen=True, eq=False)
@@ -303,7 +303,7 @@ def records_on(
         if question.option not in {"plants", "plots"}:
             raise
         known = (plot.field,) if fields is None else fields()
-        places = Places.of(known, plot.grid, measured, plot.field.name)
+        places = NamedPlaces.of(known, plot.grid, measured, plot.field.name)
         read = read_records(source.file, source.options, plot.field, places)
     return read.having(read.value, on_plants(read.value, plot.grid))
 
@@ -316,7 +316,7 @@ def records_of(
         read = read_records(source.file, source.options)
     except ChoiceNeeded as question:
         if question.option == "plots":
-            read = read_records(source.file, source.options, places=Places(fields))
+            read = read_records(source.file, source.options, places=NamedPlaces(fields))
             return read.having(EstateRecords(read.value))
         if question.option != "plants":
             raise
@@ -405,11 +405,11 @@ def _by_plant(
     """Return records that name rows and plants, each on its own plot; `plots` are those named."""
     if len(fields) == 1:
         (only,) = fields
-        places = Places.of(fields, lay(only).plot.grid, None, only.name)
+        places = NamedPlaces.of(fields, lay(only).plot.grid, None, only.name)
         read = read_records(source.file, source.options, places=places)
         return read.having(EstateRecords(named={only.name: read.value}))
     named_plots = plots_called(plots, fields) if plots else (_plot_by_hand(fields, source),)
-    places = Places(fields, plants_of=_plants_of(named_plots, lay))
+    places = NamedPlaces(fields, plants_of=_plants_of(named_plots, lay))
     by_plot = read_records_by_plot(source.file, source.options, places)
     none = Observations.none()
     named = {field.name: by_plot.value.get(field.name, none) for field in fields}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import sqlite3
 from contextlib import closing
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -136,32 +137,36 @@ def store(db: sqlite3.Connection, made: list[tuple[object, ...]]) -> int:
 def load(db: sqlite3.Connection, begins: date) -> Inspections:
     """Return the inspections that count, by day; within a day by time, untimed ones last."""
     found = db.execute(
-        "SELECT plant, day, result, time, count, who, notes FROM inspections "
-        "WHERE undone = 0 AND digest IS NOT NULL "
-        "ORDER BY day, time IS NULL, time, fid"
+        "SELECT plant, day, result, time, count, coalesce(who, ''), coalesce(notes, '') "
+        "FROM inspections "
+        "WHERE undone = 0 AND digest IS NOT NULL ORDER BY fid"
     )
     texts: dict[str, str] = {}  # the same name stands in thousands of rows
-    lots: list[list[NDArray[Any]]] = []
+    lots = []
     while rows := found.fetchmany(_LOT):
-        plant, day, result, time, count, who, notes = zip(*rows, strict=True)
-        lots.append(
-            [
-                np.array(plant, np.int32),
-                np.array([_CODES[name] for name in result], np.int8),
-                np.datetime64(begins, "D") + np.array(day, np.int64),
-                np.array([_second(text) for text in time], np.float64),
-                np.array(count, np.float64),
-                *(
-                    np.array([texts.setdefault(text or "", text or "") for text in column], object)
-                    for column in (who, notes)
-                ),
-            ]
-        )
+        lots.append(_columns(rows, texts))
     if not lots:
         return Inspections.none()
-    return Inspections(*(np.concatenate(column) for column in zip(*lots, strict=True)))
+    columns = [np.concatenate(column) for column in zip(*lots, strict=True)]
+    day, second = columns[2], columns[3]
+    columns[2] = np.datetime64(begins, "D") + day
+    return Inspections(*columns).take(np.lexsort((second, np.isnan(second), day)))
 
 
+def _columns(rows: list[tuple[Any, ...]], texts: dict[str, str]) -> list[NDArray[Any]]:
+    """Return rows as columns, in the order of `Inspections`, but with numbers of days."""
+    plant, day, result, time, count, *said = zip(*rows, strict=True)
+    return [
+        np.array(plant, np.int32),
+        np.array([_CODES[name] for name in result], np.int8),
+        np.array(day, np.int32),
+        np.array([_second(text) for text in time], np.float64),
+        np.array(count, np.float64),
+        *(np.array([texts.setdefault(t, t) for t in column], object) for column in said),
+    ]
+
+
+@lru_cache(maxsize=_DAY_S)
 def _second(text: str | None) -> float:
     if text is None:
         return np.nan

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass, replace
+from datetime import date
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import prior_chance
+from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.monitoring import (
     batches,
     day_figures,
@@ -38,7 +41,7 @@ from fieldmon.plot.grid import RowLabel, row_label
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable
-    from datetime import date, time
+    from datetime import time
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -46,7 +49,6 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
-    from fieldmon.infestation.observations import Observations
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.tables import KeptMessage
     from fieldmon.plot.plot import Plot
@@ -97,16 +99,25 @@ class Season:
         cls,
         path: str | Path,
         plot: Plot,
-        observations: Observations,
-        settings: MonitoringSettings,
+        observations: Observations | None = None,
+        settings: MonitoringSettings | None = None,
         messages: Iterable[KeptMessage] = (),
         risk: Floats | None = None,
+        **chosen: Any,  # noqa: ANN401 - fields of the settings
     ) -> Season:
         """Begin a season in a new file, whole or not at all; raise `FileProblem` if it exists.
+
+        Settings may be given one by one instead, as ``begins=date(2026, 11, 18)`` or
+        ``robot=Robot(hours=4)``; a season begins today unless told otherwise.
 
         `risk` ``(n,)`` is one more chance of being infested at the start, from a raster for
         instance, see `fieldmon.infestation.prior.prior_chance`.
         """
+        if settings is None:
+            today = date.today()  # noqa: DTZ011 - the local day
+            settings = MonitoringSettings(**({"begins": today} | chosen))
+        if observations is None:
+            observations = Observations.none()
         begins = np.datetime64(settings.begins, "D")
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
         history = _nothing_yet(plot, settings, prior)
@@ -204,6 +215,9 @@ class Season:
             scene = contents.history.scene(shift, day, contents.morning(day), now_s)
             work = plan_day(scene, settings.decides())
             today = DayPlan(scene, work, route_of(scene, work))
+            begins = routes.begins(settings, today)
+            notes = RouteNotes(self.plot.field.name, settings.sampler, begins)
+            today = replace(today, route=replace(today.route, notes=notes))
             if keep and len(today.route):
                 with self.store.writing() as db:
                     if routes.keep(db, settings, self.label, today):
@@ -216,7 +230,7 @@ class Season:
         with self.store.reading() as db:
             return routes.plants(db, day)
 
-    def record(self, inspections: Inspections, source: str, who: str = "") -> Recorded:
+    def record(self, inspections: Inspections, source: str = "", who: str = "") -> Recorded:
         """Add inspections; those that the season holds already change nothing.
 
         Raises

@@ -13,12 +13,11 @@ from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring.history import BeliefSettings
-from fieldmon.planning.workday import looks_of
 from fieldmon.plot.robot import Robot, Viewpoints
-from fieldmon.samplers import sampler
+from fieldmon.samplers import USUAL, sampler
 
 if TYPE_CHECKING:
-    from fieldmon.samplers import Sampler
+    from fieldmon.samplers.base import Sampler
 
 # a season of a perennial crop fits into it twice; a slip in a date does not
 _MOST_DAYS = 800
@@ -49,14 +48,14 @@ class MonitoringSettings:
     begins: date
     starts: time = time(6)
     robot: Robot = field(default_factory=Robot)
-    sampler: str = "adaptive"
+    sampler: str = USUAL
     sampler_settings: dict[str, float] = field(default_factory=dict)
     prior: PriorSettings = field(default_factory=PriorSettings)
     belief: BeliefSettings = field(default_factory=BeliefSettings)
     seed: int = 1
 
     def __post_init__(self) -> None:
-        if len(looks_of(self.robot, self.decides()).detects) > 1:
+        if len(self.decides().inspection_times(self.robot).detects) > 1:
             raise SettingError(
                 "The sampler of a season must look equally long at every plant, for that is what "
                 f"its findings are read by, but {self.sampler!r} chooses. Take another sampler."

@@ -61,4 +61,4 @@ def _drive_s(scene: Scene, plants: NDArray[np.int32]) -> NDArray[np.float64]:
     back = [GATE] if scene.robot.returns else []
     places = np.concatenate([[GATE], plants, back]).astype(np.int64)
     legs = [places[k : k + 2] for k in range(len(places) - 1)]
-    return np.array([driven_s(scene.aisles.ground, scene.clock, leg) for leg in legs])
+    return np.array([driven_s(scene.aisles.travel, scene.clock, leg) for leg in legs])

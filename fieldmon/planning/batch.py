@@ -9,7 +9,7 @@ from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.robot import Robot, scout
-from fieldmon.samplers import sampler
+from fieldmon.samplers import USUAL, kind_of, sampler
 
 if TYPE_CHECKING:
     import numpy as np
@@ -41,7 +41,7 @@ class Orders:
     """
 
     day: np.datetime64
-    sampler: str = "adaptive"
+    sampler: str = USUAL
     every: int | None = None
     on_foot: bool = False
     robot: dict[str, float] = field(default_factory=dict)
@@ -79,10 +79,8 @@ def plan_task(task: Task, plot: Plot, observations: Observations) -> DayPlan:
     """Plan the day on a task's plot; raise a `FieldmonError` where it cannot be done."""
     orders = task.orders
     robot = _robot(task)
-    settings = {} if orders.every is None else {"every": orders.every}
-    today = first_day(
-        plot, observations, orders.day, PlanSettings(robot, sampler(orders.sampler, **settings))
-    )
+    decides = sampler(orders.sampler, **kind_of(orders.sampler).settings_for(orders.every))
+    today = first_day(plot, observations, orders.day, PlanSettings(robot, decides))
     if not len(today.route):
         raise SettingError(
             f"The working day must be long enough to reach a plant and come back, but "

@@ -14,6 +14,8 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 from shapely import MultiPolygon, Polygon
 
+from fieldmon.compute.arrays import runs
+from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
@@ -67,6 +69,10 @@ class RoadNetwork(NamedTuple):
     end: NDArray[np.int64]
     gate: int
 
+    def __repr__(self) -> str:
+        nodes, roads = counted(len(self.xy_m), "node"), counted(len(self.to) // 2, "way")
+        return f"<RoadNetwork: {nodes}, {roads}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Obstacles:
@@ -89,6 +95,9 @@ class Obstacles:
     drivable_m: shapely.Geometry
     shut_m: shapely.Geometry
     no_go_m: shapely.Geometry
+
+    def __repr__(self) -> str:
+        return f"<Obstacles: {counted(len(self.row_box_m), 'row piece')}>"
 
     @classmethod
     def of(cls, grid: PlantGrid, no_go_m: shapely.Geometry) -> Obstacles:
@@ -219,7 +228,7 @@ def _end_plants(grid: PlantGrid) -> Index:
     return np.stack([grid.row_start[:-1], grid.row_start[1:] - 1], axis=1)
 
 
-def ways(
+def find_roads(
     grid: PlantGrid,
     gate_xy_m: tuple[float, float] | None = None,
     no_go_m: MultiPolygon | None = None,
@@ -321,8 +330,8 @@ def _along_aisles(grid: PlantGrid, xy_m: Float, place: Index) -> Index:
     aisle_y = xy_m[aisle, 1]
     low = np.searchsorted(y, aisle_y.min(axis=1) - reach)
     n_near = np.searchsorted(y, aisle_y.max(axis=1) + reach, side="right") - low
-    owner = np.repeat(np.arange(len(aisle)), n_near)
-    near = node[np.arange(len(owner)) + np.repeat(low - np.cumsum(n_near) + n_near, n_near)]
+    place_in_y, owner = runs(low, n_near)
+    near = node[place_in_y]
     x, ends_x = xy_m[near, 0], xy_m[aisle, 0][owner]
     on_it = (ends_x[:, 0] - _SAME_M <= x) & (x <= ends_x[:, 1] + _SAME_M)
     owner, near = owner[on_it], near[on_it]

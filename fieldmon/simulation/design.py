@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
-from fieldmon.samplers import SAMPLERS
+from fieldmon.samplers import COMPARED, kind_of
 from fieldmon.simulation.experiment import Experiment
 from fieldmon.simulation.worker import simulate_chunk
 
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 # a chunk takes about so long; what seasons cost was measured, see docs/benchmarks
 _CHUNK_S = 4.0
-_S_PER_PLANT_DAY = {"dynamic": 4e-7, "adaptive": 2.5e-6}
-_S_PER_BLIND_PLANT_DAY = 2e-8
 _S_PER_DAY = 3e-4
 # changes when seasons come out differently, so that old chunks are not taken for new ones
 _VERSION, _DIGITS = "1", 20
@@ -77,7 +75,7 @@ class Combination:
     Parameters
     ----------
     sampler
-        Name in `SAMPLERS`.
+        Name in `fieldmon.samplers.SAMPLERS`.
     hours, look_s
         Working day, and seconds spent looking at a plant.
     infested
@@ -100,7 +98,7 @@ class Design:
     Parameters
     ----------
     samplers
-        Names in `SAMPLERS`.
+        Names in `fieldmon.samplers.SAMPLERS`.
     hours, look_s, infested, spread
         The levels of each factor, see `Combination`.
     n_days
@@ -109,7 +107,7 @@ class Design:
         Seasons of each combination; season k starts from seed ``first_seed + k`` in all of them.
     """
 
-    samplers: tuple[str, ...] = ("naive", "bouncy", "dynamic")
+    samplers: tuple[str, ...] = COMPARED
     hours: tuple[float, ...] = (12.0,)
     look_s: tuple[float, ...] = (40.0,)
     infested: tuple[float, ...] = (0.02,)
@@ -119,11 +117,8 @@ class Design:
     first_seed: int = 1
 
     def __post_init__(self) -> None:
-        unknown = [name for name in self.samplers if name not in SAMPLERS]
-        if unknown:
-            raise SettingError(
-                f"A sampler must be one of {', '.join(SAMPLERS)}, but it is {unknown[0]!r}."
-            )
+        for name in self.samplers:
+            kind_of(name)
         for named in fields(self)[:5]:
             values = getattr(self, named.name)
             if not values or len(set(values)) < len(values):
@@ -172,8 +167,8 @@ def study_of(plots: Sequence[StudyPlot], design: Design) -> Experiment[Setting, 
 
 def _seasons(sampler: str, n_plants: int, n_days: int) -> int:
     """Return how many seasons take about `_CHUNK_S`."""
-    each_s = _S_PER_PLANT_DAY.get(sampler, _S_PER_BLIND_PLANT_DAY)
-    return math.ceil(_CHUNK_S / (n_days * (_S_PER_DAY + n_plants * each_s)))
+    day_s = _S_PER_DAY + n_plants * kind_of(sampler).s_per_plant_day
+    return math.ceil(_CHUNK_S / (n_days * day_s))
 
 
 def _as_written(settings: object) -> bytes:

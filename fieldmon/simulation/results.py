@@ -11,6 +11,7 @@ from dataclasses import asdict
 from io import BytesIO
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.dataset as ds
 import pyarrow.parquet as pq
@@ -106,9 +107,15 @@ class StudyFolder:
 
 
 def seasons(folder: Path) -> pa.Table:
-    """Return all seasons that a study has so far, in the order of their settings and seeds."""
+    """Return all seasons that a study has so far, in the order of their settings and seeds.
+
+    Each once, also where parts overlap, as they may when chunks were cut in another way before.
+    """
     if not any(folder.glob("sampler=*/*.parquet")):
         raise FileProblem(f"{folder} must hold a study with finished seasons, but it does not.")
     by_sampler = ds.partitioning(pa.schema([("sampler", pa.string())]), flavor="hive")
     table = ds.dataset(folder, format="parquet", partitioning=by_sampler).to_table()
-    return table.sort_by([(column, "ascending") for column in _ORDER])
+    table = table.sort_by([(column, "ascending") for column in _ORDER])
+    columns = [table[name].to_numpy() for name in _ORDER]
+    fresh = np.logical_or.reduce([column[1:] != column[:-1] for column in columns])
+    return table.filter(pa.array(np.concatenate([[True], fresh])))

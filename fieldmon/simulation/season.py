@@ -11,7 +11,7 @@ from fieldmon.errors import PlotError, SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread, night
-from fieldmon.planning.workday import looks_of, luck, outcomes, work_day
+from fieldmon.planning.workday import draw_detections, work_day
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers.base import NEVER, Scene
 
@@ -169,54 +169,98 @@ def simulated_days(
     insects, and would find the same ones on a plant.
     """
     _check(aisles, start)
-    learning = settings.learning or Learning(detection=robot.detects)
-    believed = settings.believed_spread or settings.spread
-    looks, blind = looks_of(robot, sampler), getattr(sampler, "blind", False)
-    choosing = len(looks.detects) > 1
-    infested = start.infested.copy()
-
-    def learning_from(work: Workday) -> Learning:
-        return replace(learning, detection=work.detects) if choosing else learning
-
-    mornings = _MorningBeliefs(
-        lambda: settings.believe(aisles.grid, start.chance), learning_from, believed
-    )
-    last_inspected = np.full(len(infested), NEVER, np.int32)
-    ever_infested, ever_found = int(np.count_nonzero(infested)), 0
-    trail, at = np.empty(0, np.int32), GATE
+    season = _Season(aisles, robot, sampler, start, settings)
     keys = zip(*(streams.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
-    for number, (own_key, look_key, night_key) in zip(range(settings.n_days), keys, strict=False):
-        belief = None if blind else mornings.on(number)
-        scene = Scene(
-            aisles=aisles,
-            robot=robot,
-            chance=start.chance if belief is None else belief.chance,
-            pair_chance=None if belief is None else belief.pair_chance,
-            last_inspected=last_inspected,
-            day=number,
-            at=at,
-            seconds_left=robot.day_s,
-            trail=trail,
-            key=own_key,
+    for number, (own, inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
+        day = season.work(number, own, inspect)
+        yield day
+        season.pass_night(day.work, overnight)
+
+
+class _Season:
+    """A season on its way: what a day changes, and how."""
+
+    def __init__(
+        self,
+        aisles: Aisles,
+        robot: Robot,
+        sampler: Sampler,
+        start: Start,
+        settings: SeasonSettings,
+    ) -> None:
+        self.aisles, self.robot, self.sampler, self.settings = aisles, robot, sampler, settings
+        self.first_chance, self.infested = start.chance, start.infested.copy()
+        self.detects = sampler.inspection_times(robot).detects
+        self.mornings = _mornings(
+            aisles.grid, robot, start, settings, chooses_time=len(self.detects) > 1
         )
-        if choosing:
-            work = work_day(scene, sampler, luck(infested, looks, look_key))
-        else:
-            work = work_day(scene, sampler, outcomes(infested, float(looks.detects[0]), look_key))
-        last_inspected = last_inspected.copy()
-        last_inspected[work.plant] = number
-        ever_found += int(np.count_nonzero(work.found))
-        yield SimulatedDay(
-            number, work, infested, mornings, last_inspected, ever_infested, ever_found
+        self.last_inspected = np.full(len(self.infested), NEVER, np.int32)
+        self.ever_infested, self.ever_found = int(np.count_nonzero(self.infested)), 0
+        self.trail, self.at = np.empty(0, np.int32), GATE
+
+    def work(self, number: int, own_key: np.uint64, inspect_key: np.uint64) -> SimulatedDay:
+        """Work for a day; return what came of it."""
+        would_find = draw_detections(self.infested, self.detects, inspect_key)
+        work = work_day(self._scene(number, own_key), self.sampler, would_find)
+        self.last_inspected = self.last_inspected.copy()
+        self.last_inspected[work.plant] = number
+        self.ever_found += int(np.count_nonzero(work.found))
+        return SimulatedDay(
+            number,
+            work,
+            self.infested,
+            self.mornings,
+            self.last_inspected,
+            self.ever_infested,
+            self.ever_found,
         )
-        mornings.add(work)
-        evening = infested.copy()
+
+    def pass_night(self, work: Workday, key: np.uint64) -> None:
+        """Destroy what was found, and let the others spread."""
+        self.mornings.add(work)
+        evening = self.infested.copy()
         evening[work.plant[work.found]] = False
-        infested = night(aisles.grid, evening, settings.spread, night_key)
+        self.infested = night(self.aisles.grid, evening, self.settings.spread, key)
         # nobody recovers at night
-        ever_infested += int(np.count_nonzero(infested)) - int(np.count_nonzero(evening))
-        trail = work.plant if len(work) else trail
-        at = GATE if robot.returns or not len(trail) else int(trail[-1])
+        self.ever_infested += int(np.count_nonzero(self.infested) - np.count_nonzero(evening))
+        self.trail = work.plant if len(work) else self.trail
+        stays = len(self.trail) and not self.robot.returns
+        self.at = int(self.trail[-1]) if stays else GATE
+
+    def _scene(self, number: int, key: np.uint64) -> Scene:
+        belief = self.mornings.on(number) if self.sampler.reads_chance else None
+        return Scene(
+            aisles=self.aisles,
+            robot=self.robot,
+            chance=self.first_chance if belief is None else belief.chance,
+            pair_chance=None if belief is None else belief.pair_chance,
+            last_inspected=self.last_inspected,
+            day=number,
+            at=self.at,
+            seconds_left=self.robot.day_s,
+            trail=self.trail,
+            key=key,
+        )
+
+
+def _mornings(
+    grid: PlantGrid,
+    robot: Robot,
+    start: Start,
+    settings: SeasonSettings,
+    *,
+    chooses_time: bool,
+) -> _MorningBeliefs:
+    """Return what will be believed on the mornings of a season."""
+    usual = settings.learning or Learning(detection=robot.detects)
+
+    def first() -> Belief:
+        return settings.believe(grid, start.chance)
+
+    def learning(work: Workday) -> Learning:
+        return replace(usual, detection=work.detects) if chooses_time else usual
+
+    return _MorningBeliefs(first, learning, settings.believed_spread or settings.spread)
 
 
 def _check(aisles: Aisles, start: Start) -> None:

@@ -21,7 +21,8 @@ from fieldmon.planning.workday import plan_day
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
+from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.studies.thesis.chapter4 import draws, listings
 from fieldmon.studies.thesis.chapter4.listing_errors import AS_PUBLISHED
 from fieldmon.studies.thesis.chapter4.trial import NoPriorTrial, ThesisStrategy, night_of, walk_of

@@ -34,7 +34,8 @@ from fieldmon.plot.layout import Planting, lay
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
+from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
 from tests.benchmarks.test_bench_grid import crooked_plot

@@ -10,7 +10,7 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import start_infested
 from fieldmon.monitoring import MonitoringSettings, Season
-from fieldmon.planning.workday import outcomes
+from fieldmon.planning.workday import draw_detections
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.plot import Plot
@@ -35,7 +35,8 @@ def season_of(path, plot, n_days):
 def work(project, day, infested):
     on = BEGINS + timedelta(days=day)
     plants = project.plan(on).route.plant
-    found = outcomes(infested, 0.84, RandomStreams(1).key("inspect", day))[plants]
+    key = RandomStreams(1).key("inspect", day)
+    found = draw_detections(infested, np.array([0.84]), key)[plants] > 0
     project.record(Inspections.of(plants, found, np.datetime64(on, "D")), f"day {day}")
 
 

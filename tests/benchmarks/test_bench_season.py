@@ -10,7 +10,8 @@ from fieldmon.planning.workday import plan_day
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
+from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
 

@@ -9,7 +9,6 @@ from fieldmon.cli.options import (
     PlotFiles,
     RowOptions,
     WorkerOptions,
-    every_of,
     sampler_of,
     sampler_settings,
 )
@@ -79,6 +78,6 @@ def test_a_command_without_any_plot_says_what_to_give():
 def test_only_samplers_that_leave_plants_out_hear_of_every():
     assert sampler_settings(SamplerName.BOUNCY, 3) == {"every": 3}
     assert sampler_settings(SamplerName.NAIVE, 3) == {}
-    assert every_of(SamplerName.RANDOM, None) is None
+    assert sampler_settings(SamplerName.RANDOM, None) == {}
     assert sampler_of(SamplerName.BOUNCY, 3).every == 3
     assert sampler_of(SamplerName.ADAPTIVE, 3) == sampler_of(SamplerName.ADAPTIVE, None)

@@ -11,7 +11,7 @@ from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import start_infested
 from fieldmon.infestation.spread import night
 from fieldmon.monitoring import MonitoringSettings, Season
-from fieldmon.planning.workday import outcomes
+from fieldmon.planning.workday import draw_detections
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting
 from fieldmon.plot.plot import Plot
@@ -51,8 +51,9 @@ class Insects:
     def look(self, day, plants):
         """Return the results of inspecting plants on a day, and let the night come."""
         grid, settings = self.season.plot.grid, self.season.settings
-        finds = outcomes(self.infested, settings.robot.detects, self.chance.key("inspect", day))
-        found = finds[plants]
+        detects = np.array([settings.robot.detects])
+        finds = draw_detections(self.infested, detects, self.chance.key("inspect", day))
+        found = finds[plants] > 0
         self.infested = self.infested.copy()
         self.infested[plants[found]] = False
         self.infested = night(

@@ -62,7 +62,7 @@ def test_a_season_comes_back_bit_for_bit(tmp_path):
     assert again.plot.field.gate == plot.field.gate
     assert np.array_equal(again.observations.lonlat, records.lonlat)
     assert np.array_equal(again.observations.day, records.day, equal_nan=True)
-    assert np.array_equal(again.plot.aisles.ground.between_m, plot.aisles.ground.between_m)
+    assert np.array_equal(again.plot.aisles.travel.between_m, plot.aisles.travel.between_m)
 
 
 def test_a_new_season_never_replaces_a_file(tmp_path):

@@ -70,7 +70,7 @@ def test_a_plot_comes_back_exactly_as_it_was_laid(db, faces):
         value, other = getattr(plot.field, name), getattr(again.field, name)
         same = np.array_equal(value, other) if isinstance(value, np.ndarray) else value == other
         assert same, name
-    assert np.array_equal(again.aisles.ground.between_m, plot.aisles.ground.between_m)
+    assert np.array_equal(again.aisles.travel.between_m, plot.aisles.travel.between_m)
 
 
 def test_plants_that_cannot_be_read_are_a_sentence(db):

@@ -34,8 +34,8 @@ def test_one_time_missing_leaves_the_order_of_recording_and_what_the_work_costs(
     assert sorted(recorded.tolist()) == sorted(PLANTS.tolist())
     scene = season.plan(BEGINS, keep=False).scene
     places = np.concatenate([[GATE], recorded]).astype(np.int64)
-    ground = season.plot.aisles.ground
-    legs = [driven_s(ground, scene.clock, places[k : k + 2]) for k in range(3)]
+    travel = season.plot.aisles.travel
+    legs = [driven_s(travel, scene.clock, places[k : k + 2]) for k in range(3)]
     gone = np.cumsum(np.array(legs) + season.settings.robot.visit_s)
     assert route.leave_s == pytest.approx(gone)
     assert route.end_s > route.leave_s[-1]

@@ -8,7 +8,8 @@ import numpy as np
 from fieldmon.planning.explain import explain
 from fieldmon.planning.workday import plan_day
 from fieldmon.plot.layout import rectangle
-from fieldmon.samplers import NEVER, Adaptive
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import NEVER
 from tests.scenes import scene_on
 
 GRID = rectangle(40, 30)

@@ -130,11 +130,11 @@ def test_compiled_loops_drive_as_far():
     aisles = Aisles.of(SHAPES["hole"])
 
     @nb.njit
-    def one(ground, i, j):
-        return drive_m(ground, i, j)
+    def one(travel, i, j):
+        return drive_m(travel, i, j)
 
     for i, j in [(0, 100), (100, 0), (-1, 7), (7, -1), (3, 3), (3, 5), (-1, -1)]:
-        assert one(aisles.ground, i, j) == aisles.distance_m(i, j)
+        assert one(aisles.travel, i, j) == aisles.distance_m(i, j)
 
 
 def test_both_faces_of_an_aisle_are_inspected_from_one_lane():
@@ -208,7 +208,7 @@ def test_paths_stay_on_the_plot_unless_parts_must_be_joined(grid, seed):
 @given(crooked_grids(max_radius_m=60))
 @settings(max_examples=40)
 def test_no_detour_is_shorter_than_the_way(grid):
-    between_m = Aisles.of(grid).ground.between_m
+    between_m = Aisles.of(grid).travel.between_m
     assert (between_m == between_m.T).all()
     for via in range(len(between_m)):
         assert (between_m <= between_m[:, via, None] + between_m[None, via] + 1e-9).all()
@@ -248,7 +248,7 @@ def notched_beside_another():
 @settings(max_examples=25)
 @example(notched_beside_another())
 def test_lane_ends_are_never_nearer_than_the_shortest_way_there(grid):
-    between_m = Aisles.of(grid).ground.between_m[:-1, :-1]
+    between_m = Aisles.of(grid).travel.between_m[:-1, :-1]
     assert (between_m >= least_m(grid, lane_ends(grid)) - 0.05).all()
 
 
@@ -266,7 +266,7 @@ def test_a_way_to_another_part_is_no_short_cut_over_a_notch():
 )
 def test_lane_ends_are_hardly_farther_than_the_shortest_way_there(name, factor):
     grid = SHAPES[name]
-    between_m = Aisles.of(grid).ground.between_m[:-1, :-1]
+    between_m = Aisles.of(grid).travel.between_m[:-1, :-1]
     truth_m = shortest_m(grid, lane_ends(grid))
     # the truth touches the rows' last plants, the robot keeps clear of them
     assert between_m.sum() <= factor * truth_m.sum()
@@ -339,5 +339,5 @@ def test_no_line_crosses_no_row(line):
 
 def test_what_aisles_hold_cannot_be_changed():
     aisles = Aisles.of(SHAPES["rectangle"])
-    for values in (*aisles.ground, aisles.stop_m, aisles.ways.xy_m):
+    for values in (*aisles.travel, aisles.stop_m, aisles.roads.xy_m):
         assert not values.flags.writeable

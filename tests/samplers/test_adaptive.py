@@ -9,11 +9,13 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread
-from fieldmon.planning.workday import looks_of, luck, plan_day, work_day
+from fieldmon.planning.workday import plan_day, work_day
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import Adaptive, Dynamic, Naive
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.dynamic import Dynamic
+from fieldmon.samplers.sweeps import Naive
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
 from tests.scenes import GRIDS, scene_on
@@ -66,7 +68,7 @@ def test_of_several_looks_the_suspected_plant_gets_the_long_one_and_the_others_s
     chance = np.full(N, 0.02)
     hot = np.arange(3 * 30, 3 * 30 + 10)
     chance[hot] = 0.6
-    work = plan_day(scene_with(chance, hours=3.0), Adaptive(chooses_look=True))
+    work = plan_day(scene_with(chance, hours=3.0), Adaptive(chooses_time=True))
     suspected = np.isin(work.plant, hot)
     assert (work.detects[suspected] == 0.84).all()
     assert (work.detects[~suspected] < 0.84).mean() > 0.5
@@ -76,27 +78,18 @@ def test_of_several_looks_the_suspected_plant_gets_the_long_one_and_the_others_s
     assert found > found_fixed
 
 
-def test_a_look_finds_what_a_shorter_one_finds_and_no_more_than_its_share():
-    infested = np.ones(20_000, bool)
-    looks = looks_of(Robot(), Adaptive(chooses_look=True))
-    first = luck(infested, looks, np.uint64(5))
-    for k, detects in enumerate(looks.detects):
-        assert np.mean((first > 0) & (first <= k + 1)) == pytest.approx(detects, abs=0.01)
-    assert not luck(~infested, looks, np.uint64(5)).any()
-
-
 def test_what_a_look_finds_depends_on_which_look_it_was():
     chance = np.full(N, 0.02)
     scene = scene_with(chance, hours=1.0)
     only_long = np.full(N, 5, np.uint8)  # nothing is seen in less than the longest look
-    work = work_day(scene, Adaptive(chooses_look=True), only_long)
+    work = work_day(scene, Adaptive(chooses_time=True), only_long)
     assert (work.found == (work.detects == 0.84)).all()
     assert not work.found.all()
 
 
 def test_a_robot_whose_detection_is_given_outright_has_no_looks_to_choose_from():
     with pytest.raises(SettingError, match="what each time of looking detects"):
-        looks_of(Robot(detection=0.7), Adaptive(chooses_look=True))
+        Adaptive(chooses_time=True).inspection_times(Robot(detection=0.7))
 
 
 def test_a_season_learns_from_short_looks_less_than_from_long_ones():
@@ -106,7 +99,7 @@ def test_a_season_learns_from_short_looks_less_than_from_long_ones():
     season = simulated_days(
         Aisles.of(grid),
         Robot(hours=1.5),
-        Adaptive(chooses_look=True),
+        Adaptive(chooses_time=True),
         start,
         settings,
         RandomStreams(1),

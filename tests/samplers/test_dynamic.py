@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from fieldmon.planning.workday import plan_day, work_day
-from fieldmon.samplers import GATE, NEVER, Dynamic, Scene
+from fieldmon.plot.travel import GATE
+from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.samplers.dynamic import Dynamic
 from tests.scenes import GRIDS, charged_s, scene_on
 
 GRID = GRIDS["rectangle"]

@@ -9,7 +9,14 @@ from fieldmon.errors import SettingError
 from fieldmon.planning.workday import plan_day
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.robot import Robot
-from fieldmon.samplers import NEVER, Neighbor, NeighborRandom, RandomShare, Snake, SnakeRandom
+from fieldmon.samplers.base import NEVER
+from fieldmon.samplers.without_prior import (
+    Neighbor,
+    NeighborRandom,
+    RandomShare,
+    Snake,
+    SnakeRandom,
+)
 from tests.scenes import charged_s, scene_on
 
 # the thesis's vineyard in small: 4 vine rows, outer faces not inspected, so 6 sides of 8 plants

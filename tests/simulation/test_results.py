@@ -31,6 +31,14 @@ def test_seasons_come_back_in_the_order_of_their_settings(tmp_path):
     assert set(table.column_names) == set(SCHEMA.names)
 
 
+def test_a_season_that_two_parts_hold_counts_once(tmp_path):
+    store = simulated(tmp_path, [plot()])
+    once = results.seasons(tmp_path)
+    rows = [row for row in once.to_pylist() if row["sampler"] == "naive" and row["seed"] > 1]
+    store.keep(("naive", "cut in another way"), rows)
+    assert results.seasons(tmp_path).equals(once)
+
+
 def test_the_dataset_is_read_by_any_reader_of_parquet(tmp_path):
     simulated(tmp_path, [plot()])
     table = pq.read_table(tmp_path)

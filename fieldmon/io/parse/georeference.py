@@ -24,7 +24,7 @@ _LOOKED_AT = 5_000
 
 
 @dataclass(frozen=True, eq=False)
-class Placed:
+class Georeferenced:
     """Coordinates on the earth.
 
     Parameters
@@ -33,7 +33,7 @@ class Placed:
         ``(n, 2)`` degrees WGS84.
     step_m
         Coarsest step that all coordinates of the file are whole multiples of: how they are rounded.
-    findings
+    messages
         What was found on the way.
     """
 
@@ -52,7 +52,7 @@ def place_geometry(
     return moved, placed.messages
 
 
-def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> Placed:
+def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> Georeferenced:
     """Return degrees WGS84 for a file's coordinates ``(n, 2)``; ask where they cannot be known."""
     messages: list[ImportMessage] = []
     if not np.isfinite(xy).all():
@@ -75,7 +75,7 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
     _check_landing(lonlat, crs)
     step_m = _step(xy) * (_DEGREE_M if crs.is_geographic else 1.0)
     found = (*messages, *more, *through.messages(), *_distance(lonlat, options))
-    return Placed(lonlat, step_m, found)
+    return Georeferenced(lonlat, step_m, found)
 
 
 def _middle(xy: NDArray[np.float64]) -> tuple[float, float]:

@@ -24,19 +24,19 @@ from fieldmon.io.import_report import (
 )
 from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.geometry import sort_out
+from fieldmon.io.parse.geometry import geometry_kinds
 from fieldmon.io.parse.georeference import place
 from fieldmon.io.parse.values import (
     all_degrees,
     hemispheres,
     is_missing,
     numbers,
-    pairs,
     plain_numbers,
+    positions_in_cells,
 )
 from fieldmon.io.readers.places import (
-    Named,
-    Places,
+    NamedPlaces,
+    PlacedByName,
     by_plant,
     by_plot,
     by_plot_and_plant,
@@ -55,7 +55,7 @@ _COARSE_M = 1.5
 
 
 @dataclass(frozen=True, eq=False)
-class Located:
+class LocatedFeatures:
     """The features of a layer that have a position.
 
     Parameters
@@ -79,19 +79,21 @@ class Located:
     plot: NDArray[np.str_] | None = None
 
 
-def located(layer: Layer, options: ReadOptions, places: Places | None = None) -> Located:
+def located(
+    layer: Layer, options: ReadOptions, places: NamedPlaces | None = None
+) -> LocatedFeatures:
     """Return the features of a layer that have a position, or name a place that has one."""
     if layer.geometry is not None:
         return _points(layer, options)
     way = _way(layer, options)
     if way is not None:
         return _by_coordinates(layer, options, *way)
-    return _by_name(layer, options, places or Places())
+    return _by_name(layer, options, places or NamedPlaces())
 
 
-def _points(layer: Layer, options: ReadOptions) -> Located:
+def _points(layer: Layer, options: ReadOptions) -> LocatedFeatures:
     geometry = layer.geometry
-    areas, lines, points = sort_out(np.asarray(geometry))
+    areas, lines, points = geometry_kinds(np.asarray(geometry))
     if geometry is None or not points.any():
         raise FileProblem(
             f"{layer.name} must hold points, but it holds {int(areas.sum())} area(s) and "
@@ -105,7 +107,7 @@ def _points(layer: Layer, options: ReadOptions) -> Located:
     kept = layer.take(np.flatnonzero(points)[index])
     placed = place(shapely.get_coordinates(single), layer.crs, options)
     accuracy, coarse = _rounding(placed.step_m, len(kept))
-    return Located(kept, placed.lonlat, accuracy, (*messages, *placed.messages, *coarse))
+    return LocatedFeatures(kept, placed.lonlat, accuracy, (*messages, *placed.messages, *coarse))
 
 
 def _way(layer: Layer, options: ReadOptions) -> tuple[str, tuple[str, ...]] | None:
@@ -129,7 +131,7 @@ def _way(layer: Layer, options: ReadOptions) -> tuple[str, tuple[str, ...]] | No
 
 def _holds_pairs(layer: Layer, name: str) -> bool:
     some = [text(v) for v in layer.column(name)[:50] if not is_missing(v)]
-    return bool(some) and bool(np.isfinite(pairs(some).values).any())
+    return bool(some) and bool(np.isfinite(positions_in_cells(some).values).any())
 
 
 def _are_numbers_of_plants(layer: Layer, names: tuple[str, ...]) -> bool:
@@ -141,7 +143,7 @@ def _are_numbers_of_plants(layer: Layer, names: tuple[str, ...]) -> bool:
 
 def _by_coordinates(
     layer: Layer, options: ReadOptions, how: str, names: tuple[str, ...]
-) -> Located:
+) -> LocatedFeatures:
     shown = " and ".join(repr(name) for name in names)
     xy, crs, messages = _coordinates(layer, options, how, names)
     stated, more = _stated_crs(layer, options)
@@ -161,7 +163,7 @@ def _by_coordinates(
     placed = place(xy[there], stated or crs, options)
     accuracy, coarse = _rounding(placed.step_m, int(there.sum()))
     found = (seen(f"Positions are in column(s) {shown}."), *messages, *more)
-    return Located(
+    return LocatedFeatures(
         layer.take(np.flatnonzero(there)),
         placed.lonlat,
         accuracy,
@@ -176,12 +178,12 @@ def _finite(xy: NDArray[np.float64]) -> NDArray[np.bool_]:
 def _coordinates(
     layer: Layer, options: ReadOptions, how: str, names: tuple[str, ...]
 ) -> tuple[NDArray[np.float64], str | None, list[ImportMessage]]:
-    """Return what the columns hold ``(n, 2)``, its coordinate system if that is sure, findings."""
+    """Return what the columns hold ``(n, 2)``, its coordinate system if that is sure, messages."""
     columns = [layer.column(name) for name in names]
     if how == "metres":
         return np.stack([numbers(c, options.decimal) for c in columns], axis=1), None, []
     if how == "together":
-        read = pairs([text(v) for v in columns[0]])
+        read = positions_in_cells([text(v) for v in columns[0]])
         return read.values, _WGS84, _order_of(read.is_certain, names[0])
     xy = np.stack([all_degrees(c, options.decimal) for c in columns], axis=1)
     if _letters_are_crossed(layer, names):
@@ -251,7 +253,7 @@ def _known_system(value: str) -> str | None:
     return known
 
 
-def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
+def _by_name(layer: Layer, options: ReadOptions, places: NamedPlaces) -> LocatedFeatures:
     """Return the records that name a plant or a plot, at the place they name."""
     row = options.column("row") or find("row", layer.columns)
     taken = frozenset({row} if row else ())
@@ -278,8 +280,11 @@ def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
 
 
 def _by_plant(
-    layer: Layer, names: tuple[str | None, str | None, str], options: ReadOptions, places: Places
-) -> Named:
+    layer: Layer,
+    names: tuple[str | None, str | None, str],
+    options: ReadOptions,
+    places: NamedPlaces,
+) -> PlacedByName:
     """Return where records lie that name plants, on the plot that they name or on the only one.
 
     `names` are those of the columns of plots, rows and plants.
@@ -327,14 +332,14 @@ def _check_one_plot(layer: Layer, plot: str | None) -> None:
         )
 
 
-def _kept(layer: Layer, named: Named) -> Located:
+def _kept(layer: Layer, named: PlacedByName) -> LocatedFeatures:
     there = _finite(named.lonlat)
     if not there.any():
         said = " ".join(message.sentence for message in named.messages)
         raise FileProblem(
             f"Records of {layer.name} must name places that are known, but none does. {said}"
         )
-    return Located(
+    return LocatedFeatures(
         layer.take(np.flatnonzero(there)),
         named.lonlat[there],
         named.accuracy_m[there],

@@ -17,7 +17,7 @@ from rasterio.errors import RasterioError
 from rasterio.windows import Window
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.formats.signatures import Kind
+from fieldmon.io.formats.signatures import FileKind
 from fieldmon.io.import_report import ImportMessage, Remedy, guessed, seen
 from fieldmon.io.options import source_name
 from fieldmon.io.parse.crs import (
@@ -59,7 +59,7 @@ _MOST_TEXT = 20_000
 _UNREADABLE = (RasterioError, CPLE_BaseError, ValueError, OSError, OverflowError)
 
 
-class Part(NamedTuple):
+class RasterPart(NamedTuple):
     """The part of a raster that is read, and the pixels ``(h, w)`` it is read to."""
 
     window: Window
@@ -80,7 +80,7 @@ class Part(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Opened:
+class OpenRaster:
     """A raster that is open, and where it lies."""
 
     tif: DatasetReader
@@ -92,11 +92,11 @@ class Opened:
 
 
 @contextmanager
-def open_raster(folder: str, source: Source, options: RasterOptions) -> Iterator[Opened]:
+def open_raster(folder: str, source: Source, options: RasterOptions) -> Iterator[OpenRaster]:
     """Open the one raster of a source; whatever GDAL says against it becomes a `FileProblem`."""
     room = Workroom(Path(folder))
     found = members(source, room)
-    rasters = tuple(member for member in found if member.kind is Kind.RASTER)
+    rasters = tuple(member for member in found if member.kind is FileKind.RASTER)
     if not rasters:
         raise FileProblem(f"{source_name(source)} must be a GeoTIFF, but it is not. Choose one.")
     member = choose_member(rasters, options.member, source_name(source))
@@ -117,7 +117,7 @@ def open_raster(folder: str, source: Source, options: RasterOptions) -> Iterator
             ) from bad
 
 
-def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -> Opened:
+def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -> OpenRaster:
     _check_shape(tif, name)
     to_map = _to_map(tif, name)
     size = np.array([[tif.width / 2, tif.height / 2]])
@@ -143,7 +143,7 @@ def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -
         messages.append(seen(f"The raster is turned by {turn:.4g} degrees; positions follow it."))
     elif e > 0:
         messages.append(seen("The raster's first line lies in the south; positions follow it."))
-    return Opened(tif, name, to_map, crs, through, (*messages, *through.messages()))
+    return OpenRaster(tif, name, to_map, crs, through, (*messages, *through.messages()))
 
 
 def _check_shape(tif: DatasetReader, name: str) -> None:
@@ -220,7 +220,7 @@ def _text(path: Path) -> str:
         return file.read(_MOST_TEXT).decode("utf-8", "replace")
 
 
-def band_named(opened: Opened, wanted: str) -> int:
+def band_named(opened: OpenRaster, wanted: str) -> int:
     """Return the number of the band that is named; raise `ChoiceNeeded` where there is none."""
     tif = opened.tif
     text = wanted.strip()
@@ -236,7 +236,7 @@ def band_named(opened: Opened, wanted: str) -> int:
     )
 
 
-def part_of(opened: Opened, bounds: Bounds | None, most: int, n_bands: int = 1) -> Part:
+def part_of(opened: OpenRaster, bounds: Bounds | None, most: int, n_bands: int = 1) -> RasterPart:
     """Return what is read: within bounds or all, not more pixels than `most`."""
     window = _window(opened, bounds)
     step = max(1.0, math.sqrt(window.width * window.height / most))
@@ -254,10 +254,10 @@ def part_of(opened: Opened, bounds: Bounds | None, most: int, n_bands: int = 1) 
             f"{limits.size(decoded)}. Cut it to the plot, or save it as a Cloud Optimised GeoTIFF, "
             "which holds smaller copies of itself."
         )
-    return Part(window, shape)
+    return RasterPart(window, shape)
 
 
-def _window(opened: Opened, bounds: Bounds | None) -> Window:
+def _window(opened: OpenRaster, bounds: Bounds | None) -> Window:
     whole = Window(0, 0, opened.tif.width, opened.tif.height)
     if bounds is None:
         return whole
@@ -295,9 +295,9 @@ def _around(bounds: Bounds) -> Float:
 
 
 def without_value(
-    opened: Opened,
+    opened: OpenRaster,
     bands: tuple[int, ...],
-    part: Part,
+    part: RasterPart,
     raw: NDArray[Any],
     nodata: str | None,
 ) -> tuple[NDArray[np.bool_], list[ImportMessage]]:
@@ -341,7 +341,7 @@ def _undeclared(raw: NDArray[Any], missing: NDArray[np.bool_]) -> list[ImportMes
     ]
 
 
-def what_was_read(opened: Opened, bands: tuple[int, ...], part: Part) -> ImportMessage:
+def what_was_read(opened: OpenRaster, bands: tuple[int, ...], part: RasterPart) -> ImportMessage:
     """Return what the raster is, and how much of it was read."""
     tif = opened.tif
     window = part.window

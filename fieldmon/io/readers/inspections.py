@@ -5,11 +5,11 @@ Decisions
 - A plant is known by its number in the grid, as every file given out has it (column ``plant``);
   else by row and number in it, as people count; else by position. Where a file has a row but no
   number in it, ``plant`` is read as that number.
-- What was not filled in stays unknown: blank records are no findings. "Could not inspect" is one,
-  and is kept with its note.
+- What was not filled in stays unknown: blank records are no inspections. "Could not inspect" is
+  one, and is kept with its note.
 - A position is snapped to the nearest plant. It is doubtful where, within its accuracy, another
   plant could be the nearest, or where it lies further than half the spacing from the nearest,
-  along the row or across. Doubtful findings are listed and left out unless one asks for them.
+  along the row or across. Doubtful records are listed and left out unless one asks for them.
 - Where both faces of a plant are inspected and a file does not say which, it is the first face,
   and the import says so.
 - Of two inspections of one file that are the same but for their notes, one is taken. What a season

@@ -54,7 +54,7 @@ class Plants:
 
 
 @dataclass(frozen=True, eq=False)
-class Places:
+class NamedPlaces:
     """What records may name.
 
     Parameters
@@ -101,7 +101,7 @@ def plots_called(names: Iterable[str], plots: tuple[Field, ...]) -> tuple[Field,
 
 
 @dataclass(frozen=True, eq=False)
-class Named:
+class PlacedByName:
     """Where records lie that name a place.
 
     Parameters
@@ -122,7 +122,9 @@ class Named:
     plot: NDArray[np.str_] | None = None
 
 
-def by_plant(row: NDArray[np.object_] | None, plant: NDArray[np.object_], plants: Plants) -> Named:
+def by_plant(
+    row: NDArray[np.object_] | None, plant: NDArray[np.object_], plants: Plants
+) -> PlacedByName:
     """Return where records lie that name a plant, or a row and a plant in it."""
     if row is None:
         known, wanted = list(plants.plant), _names(plant)
@@ -133,15 +135,15 @@ def by_plant(row: NDArray[np.object_] | None, plant: NDArray[np.object_], plants
     match, how = _join(wanted, known)
     lonlat = np.where(match[:, None] >= 0, plants.lonlat[match], np.nan)
     messages = (*how, *_unmatched(wanted, match, "plant"))
-    return Named(lonlat, np.full(len(wanted), np.nan), messages)
+    return PlacedByName(lonlat, np.full(len(wanted), np.nan), messages)
 
 
 def by_plot_and_plant(
     plot: NDArray[np.object_],
     row: NDArray[np.object_] | None,
     plant: NDArray[np.object_],
-    places: Places,
-) -> Named:
+    places: NamedPlaces,
+) -> PlacedByName:
     """Return where records lie that name a plot, and a row and a plant on it.
 
     Records on plots whose plants are not known have no place: they are not asked for.
@@ -160,10 +162,10 @@ def by_plot_and_plant(
         lonlat[which] = there.lonlat
         about = name if len(places.plants_of) > 1 else None
         messages += [replace(message, feature=about) for message in there.messages]
-    return Named(lonlat, np.full(len(wanted), np.nan), tuple(messages), of)
+    return PlacedByName(lonlat, np.full(len(wanted), np.nan), tuple(messages), of)
 
 
-def _elsewhere(plot: NDArray[np.str_], places: Places) -> list[ImportMessage]:
+def _elsewhere(plot: NDArray[np.str_], places: NamedPlaces) -> list[ImportMessage]:
     """Return what to say of records on plots that are known, but not their plants."""
     others = [name for name in plot.tolist() if name and name not in places.plants_of]
     if not others:
@@ -172,7 +174,7 @@ def _elsewhere(plot: NDArray[np.str_], places: Places) -> list[ImportMessage]:
     return [dropped(f"{len(others)} record(s) are of {len(named)} other plot(s): {_some(named)}.")]
 
 
-def by_plot(names: NDArray[np.object_], places: Places) -> Named:
+def by_plot(names: NDArray[np.object_], places: NamedPlaces) -> PlacedByName:
     """Return where records lie that name a plot: at its middle, as far off as the plot is wide."""
     if not places.plots:
         raise ChoiceNeeded(
@@ -192,7 +194,7 @@ def by_plot(names: NDArray[np.object_], places: Places) -> Named:
         f"{int(there.sum())} record(s) name a plot and lie somewhere on it: they were put at its "
         "middle, with the plot's radius as their accuracy."
     )
-    return Named(lonlat, accuracy, (*how, said, *_unmatched(wanted, match, "plot")))
+    return PlacedByName(lonlat, accuracy, (*how, said, *_unmatched(wanted, match, "plot")))
 
 
 def _names(column: NDArray[np.object_]) -> list[str]:

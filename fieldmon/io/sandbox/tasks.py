@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
     from fieldmon.io.readers.crews import Crew
     from fieldmon.io.readers.inspection_options import InspectionOptions
-    from fieldmon.io.readers.places import Places, Plants
+    from fieldmon.io.readers.places import NamedPlaces, Plants
     from fieldmon.plot.field import Field
 
 
@@ -45,14 +45,14 @@ def crews(
 
 
 def records(
-    folder: str, source: Source, options: RecordOptions, places: Places | None
+    folder: str, source: Source, options: RecordOptions, places: NamedPlaces | None
 ) -> Imported[Observations]:
     """Return the records of a source."""
     return records_of(open_layer(source, options, Workroom(Path(folder))), options, places)
 
 
 def plot_records(
-    folder: str, source: Source, options: RecordOptions, places: Places
+    folder: str, source: Source, options: RecordOptions, places: NamedPlaces
 ) -> Imported[dict[str, Observations]]:
     """Return the records of a source that name their plots, by plot."""
     layer = open_layer(source, options, Workroom(Path(folder)))

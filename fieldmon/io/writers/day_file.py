@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from datetime import timedelta
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -16,8 +16,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.writers.geojson import RouteNotes
-    from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantGrid
+    from fieldmon.plot.travel import Aisles
+
+    Floats = NDArray[np.float64]
 
 #: decimals of a degree in every file: about a millimetre
 DECIMALS = 8
@@ -57,6 +59,77 @@ class Stop(NamedTuple):
         return f"{self.order:03d} R{self.row}/{self.plant_label}"
 
 
+class DrivenRoute(Protocol):
+    """What files tell of a route; see `fieldmon.planning.route.Route`, which is one."""
+
+    @property
+    def aisles(self) -> Aisles:
+        """Return the plot it runs through."""
+        ...
+
+    @property
+    def plant(self) -> NDArray[np.int32]:
+        """Return plants in order, ``(k,)``."""
+        ...
+
+    @property
+    def arrive_s(self) -> Floats:
+        """Return seconds since the start on arrival at each, ``(k,)``."""
+        ...
+
+    @property
+    def leave_s(self) -> Floats:
+        """Return seconds since the start on leaving each, ``(k,)``."""
+        ...
+
+    @property
+    def chance(self) -> Floats:
+        """Return believed chance of infestation at each stop, ``(k,)``."""
+        ...
+
+    @property
+    def line_m(self) -> Floats:
+        """Return the driven line, metres of the plot's frame, ``(m, 2)``."""
+        ...
+
+    @property
+    def line_stop(self) -> NDArray[np.int64]:
+        """Return vertex of the line at which each stop is made, ``(k,)``."""
+        ...
+
+    @property
+    def line_s(self) -> Floats:
+        """Return seconds since the start at each vertex of the line, ``(m,)``."""
+        ...
+
+    @property
+    def end_s(self) -> float:
+        """Return seconds at the end of the line."""
+        ...
+
+    @property
+    def drive_m(self) -> float:
+        """Return length of the driven line."""
+        ...
+
+    @property
+    def expected_finds(self) -> float:
+        """Return infested plants on the route, as believed."""
+        ...
+
+    def __len__(self) -> int:
+        """Return the number of stops."""
+        ...
+
+    def line_lonlat(self) -> Floats:
+        """Return the driven line in degrees, ``(m, 2)``."""
+        ...
+
+    def stops_lonlat(self) -> Floats:
+        """Return the plants' own positions in degrees, ``(k, 2)``."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class HandoffPlan:
     """A planned day, ready to be handed to whoever inspects.
@@ -70,7 +143,7 @@ class HandoffPlan:
         Name of the plot, who chose the plants, local date and time of the start.
     """
 
-    route: Route
+    route: DrivenRoute
     notes: RouteNotes
 
     @property

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.io.writers.day_file import HandoffPlan
-    from fieldmon.planning.route import Route
+    from fieldmon.io.writers.day_file import DrivenRoute, HandoffPlan
 
 # RFC 7946 positions are degrees; 8 decimals are about a millimetre
 _DECIMALS = 8
@@ -43,7 +42,7 @@ class RouteNotes:
     start: datetime | None = None
 
 
-def summary(route: Route, notes: RouteNotes) -> dict[str, Any]:
+def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
     """Return the figures of a route: stops, seconds, metres, expected finds."""
     return {
         "plot": notes.plot,
@@ -58,7 +57,7 @@ def summary(route: Route, notes: RouteNotes) -> dict[str, Any]:
     }
 
 
-def route_geojson(route: Route, notes: RouteNotes) -> str:
+def route_geojson(route: DrivenRoute, notes: RouteNotes) -> str:
     """Return a route as GeoJSON text: first the driven line, then a point for every stop.
 
     A stop lies at its plant; its ``line_vertex`` tells where on the line the robot stands for it.
@@ -78,13 +77,13 @@ def handed_geojson(plan: HandoffPlan) -> bytes:
     return route_geojson(plan.route, plan.notes).encode()
 
 
-def write_route(path: str | Path, route: Route, notes: RouteNotes) -> None:
+def write_route(path: str | Path, route: DrivenRoute, notes: RouteNotes) -> None:
     """Write a route's GeoJSON file, whole or not at all; raise `FileProblem` if it cannot be."""
     write_whole(path, route_geojson(route, notes).encode())
 
 
 def _line_feature(
-    route: Route, notes: RouteNotes, line_lonlat: NDArray[np.float64]
+    route: DrivenRoute, notes: RouteNotes, line_lonlat: NDArray[np.float64]
 ) -> dict[str, Any]:
     # a line needs two positions; a day without stops has no line
     line = line_lonlat.tolist() if len(line_lonlat) > 1 else None
@@ -100,7 +99,7 @@ def _line_feature(
     }
 
 
-def _stop_features(route: Route, notes: RouteNotes) -> list[dict[str, Any]]:
+def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]]:
     label = row_label(route.aisles.grid, route.plant)
     columns = zip(
         route.stops_lonlat().round(_DECIMALS).tolist(),

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.belief import Belief, Learning
     from fieldmon.infestation.spread import Spread
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.samplers import Sampler
+    from fieldmon.samplers.base import Sampler
     from fieldmon.studies.samplers.scenarios import Scenario
 
     Believe = Callable[[PlantGrid, NDArray[np.float64]], Belief]

@@ -10,7 +10,10 @@ import numpy as np
 from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.plot.robot import Robot
-from fieldmon.samplers import Adaptive, Bouncy, Dynamic, Naive
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import Sampler
+from fieldmon.samplers.dynamic import Dynamic
+from fieldmon.samplers.sweeps import Bouncy, Naive
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,7 +22,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.samplers import Sampler, Scene, Stops
+    from fieldmon.samplers.base import Scene, Stops, WouldFind
 
 ADAPTIVE, WORDED, TUNED = "adaptive", "dynamic, as worded", "dynamic, tuned"
 NO_TRAVEL, CLAIRVOYANT = "no travel", "clairvoyant"
@@ -65,7 +68,7 @@ CONTENDERS = (
 NAMES = (*(contender.name for contender in CONTENDERS), CLAIRVOYANT)
 
 
-class Oracle:
+class Oracle(Sampler):
     """The clairvoyant: drives as Adaptive does, on the truth instead of a chance map.
 
     Parameters
@@ -77,7 +80,7 @@ class Oracle:
     def __init__(self, truth: NDArray[np.bool_]) -> None:
         self.truth = truth
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day, at infested plants first."""
         chance = np.where(self.truth, 1.0 - 1e-6, 1e-6)
         start, other = scene.grid.adjacent
@@ -85,7 +88,7 @@ class Oracle:
         return Adaptive().walk(replace(scene, chance=chance, pair_chance=pair_chance), would_find)
 
 
-class Misinformed:
+class Misinformed(Sampler):
     """A sampler that takes the robot to detect what the thesis's does.
 
     Parameters
@@ -97,7 +100,7 @@ class Misinformed:
     def __init__(self, sampler: Sampler) -> None:
         self.sampler = sampler
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day."""
         robot = replace(scene.robot, detection=Robot().detects)
         return self.sampler.walk(replace(scene, robot=robot), would_find)

@@ -11,7 +11,10 @@ from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.planning.workday import work_day
 from fieldmon.plot.robot import Robot
-from fieldmon.samplers import NEVER, Adaptive, Dynamic, Naive, Scene
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.samplers.dynamic import Dynamic
+from fieldmon.samplers.sweeps import Naive
 from fieldmon.studies.plant_maps import PUBLIC_MAPS, read_plant_map
 
 if TYPE_CHECKING:
@@ -20,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.travel import Aisles
-    from fieldmon.samplers import Sampler
+    from fieldmon.samplers.base import Sampler
     from fieldmon.studies.plant_maps import PlantMap
 
 SHARES = (0.05, 0.10, 0.20, 0.40)

@@ -9,7 +9,7 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread
-from fieldmon.samplers import Dynamic
+from fieldmon.samplers.dynamic import Dynamic
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Experiment, Memory, run
 from fieldmon.simulation.metrics import season_metrics

@@ -7,7 +7,7 @@ from shapely import MultiPolygon
 
 from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.readers.places import (
-    Places,
+    NamedPlaces,
     Plants,
     by_plant,
     by_plot,
@@ -47,14 +47,14 @@ def test_a_plant_is_known_by_its_row_and_number_and_no_other():
 
 
 def test_a_record_that_names_a_plot_is_as_far_off_as_the_plot_is_wide():
-    named = by_plot(cells("South", "Moon"), Places(FIELDS))
+    named = by_plot(cells("South", "Moon"), NamedPlaces(FIELDS))
     assert SOUTH.boundary.contains(shapely.Point(named.lonlat[0]))
     assert named.accuracy_m[0] == pytest.approx(np.sqrt(area_m2(SOUTH.boundary) / np.pi))
     assert np.isnan(named.lonlat[1]).all()
 
 
 def test_rows_are_those_of_the_plot_that_is_named():
-    places = Places(FIELDS, plants_of={"North 1": plants(0.0), "South": plants(0.01)})
+    places = NamedPlaces(FIELDS, plants_of={"North 1": plants(0.0), "South": plants(0.01)})
     plot = cells("South", "North 1", "South", "East 2", "Moon", "")
     named = by_plot_and_plant(plot, cells(1, 1, 7, 1, 1, 1), cells(2, 2, 7, 1, 1, 1), places)
     np.testing.assert_array_equal(named.lonlat[0], places.plants_of["South"].lonlat[1])
@@ -78,7 +78,7 @@ def test_plots_are_called_in_any_way_of_writing_but_alike_for_all():
 
 def test_the_only_plots_plants_are_its_own_also_by_its_name():
     grid = rectangle(3, 4)
-    places = Places.of((NORTH,), grid, plot="North 1")
+    places = NamedPlaces.of((NORTH,), grid, plot="North 1")
     assert places.plants_of == {"North 1": places.plants}
-    assert Places.of((), grid).plants_of == {}
+    assert NamedPlaces.of((), grid).plants_of == {}
     np.testing.assert_array_equal(labelled(grid).lonlat, places.plants.lonlat)

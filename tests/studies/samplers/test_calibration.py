@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.samplers import Naive
+from fieldmon.samplers.sweeps import Naive
 from fieldmon.studies.samplers.calibration import BELIEFS, EDGES, calibration, report_html
 from fieldmon.studies.samplers.scenarios import Scenario
 

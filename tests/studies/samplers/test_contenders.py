@@ -7,7 +7,9 @@ import numpy as np
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import NEVER, Adaptive, Naive, Scene
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.samplers.sweeps import Naive
 from fieldmon.studies.samplers.contenders import (
     CLAIRVOYANT,
     CONTENDERS,

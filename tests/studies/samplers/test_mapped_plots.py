@@ -6,7 +6,7 @@ import pytest
 from fieldmon.errors import FileProblem
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import Naive
+from fieldmon.samplers.sweeps import Naive
 from fieldmon.studies.samplers.mapped_plots import (
     FILES,
     SHARES,

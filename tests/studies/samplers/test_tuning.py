@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.samplers import Dynamic
+from fieldmon.samplers.dynamic import Dynamic
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.studies.samplers import tuning
 from fieldmon.studies.samplers.contenders import CONTENDERS, TUNED, Contender

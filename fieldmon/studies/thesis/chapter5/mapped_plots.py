@@ -12,8 +12,9 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.independent import learn, overnight
 from fieldmon.infestation.prior import PriorSettings
-from fieldmon.planning.workday import outcomes
-from fieldmon.samplers import NEVER, Scene, sampler
+from fieldmon.planning.workday import draw_detections
+from fieldmon.samplers import sampler
+from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Experiment, Memory, in_settings, run
 from fieldmon.simulation.statistics import summary_statistics
@@ -124,7 +125,8 @@ def inspect(
     trail = np.empty(0, np.int32)
     for day in range(len(plants.dates)):
         truth = plants.infested[day] & ~gone
-        would_find = outcomes(truth, robot.detects, streams.key("inspect", day))
+        key = streams.key("inspect", day)
+        would_find = draw_detections(truth, np.array([robot.detects]), key) > 0
         scene = Scene(
             aisles=aisles,
             robot=robot,

@@ -10,8 +10,10 @@ import numpy as np
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.independent import learn, overnight
 from fieldmon.infestation.spread import night
-from fieldmon.planning.workday import outcomes
-from fieldmon.samplers import GATE, NEVER, Scene, sampler
+from fieldmon.planning.workday import draw_detections
+from fieldmon.plot.travel import GATE
+from fieldmon.samplers import kind_of, sampler
+from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.studies.thesis.chapter5.open_choices import N_DAYS, OpenChoices
 from fieldmon.studies.thesis.chapter5.sites import first_morning
 
@@ -33,8 +35,6 @@ N_COLUMNS = AT_LEVEL + len(LEVELS_PCT)
 the evening before (day 1: at the start); plants infested, and found, at least once by then; and
 at which part of the working day detection came to each of `LEVELS_PCT` (NaN: not on that day)."""
 
-# who does not look at the chance map needs none
-_BLIND = frozenset({"naive", "bouncy"})
 _MOST = 1.0 - 1e-6
 
 
@@ -129,7 +129,7 @@ def play_from(site: Site, trial: PriorTrial, start: Start, keys: SeedKeys) -> Fl
         row = table[day]
         row[:AT_LEVEL] = len(plants), len(finds), here, new, count(ever), count(ever_found)
         row[AT_LEVEL:] = _levels(table[: day + 1], choices, again, at_s[found] / robot.day_s)
-        if trial.sampler not in _BLIND:
+        if kind_of(trial.sampler).reads_chance:
             evening = learn(belief, site.grid, plants, found, Learning(detection=robot.detects))
             belief = _morning(site, choices, evening, (plants, found, missed))
         after = _night(site, choices, infested, missed, keys.spread[day])
@@ -144,7 +144,7 @@ def _inspect(
     trial: PriorTrial, scene: Scene, infested: Flags, key: np.uint64
 ) -> tuple[NDArray[np.int32], Flags, Floats]:
     """Return the plants inspected on a day, which were found infested, and when it was done."""
-    would_find = outcomes(infested, scene.robot.detects, key)
+    would_find = draw_detections(infested, np.array([scene.robot.detects]), key) > 0
     plants, arrive_s, _ = sampler(trial.sampler).walk(scene, would_find)
     end = len(plants)
     if trial.sampler == "bouncy" and trial.choices.bouncy_rests:

@@ -8,17 +8,15 @@ from scipy import stats
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.errors import SettingError
 from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, lay
-from fieldmon.plot.robot import Viewpoints
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
-from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS, OpenChoices, StartUp, side_of
+from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS, OpenChoices
 from fieldmon.studies.thesis.chapter5.replicates import run_trials, seed_keys
 from fieldmon.studies.thesis.chapter5.seasons import (
     AT_LEVEL,
@@ -125,17 +123,6 @@ def test_under_the_product_s_rules_a_season_is_the_product_s(name):
     assert ours[:, VISITED].tolist() == [len(day.work) for day in theirs]
     assert ours[:, FOUND].tolist() == [day.found for day in theirs]
     assert detection_pct(ours, PRODUCT) == pytest.approx([day.detection_pct for day in theirs])
-
-
-def test_the_published_frame():
-    assert [side_of(ha) ** 2 for ha in (1.0, 5.0, 10.0)] == [784, 4096, 8281]
-    robot = OpenChoices().robot()
-    assert (robot.hours, robot.look_s, robot.detects) == (12.0, 40.0, 0.84)
-    assert robot.speed_m_s == pytest.approx(2.5 / 3.6)
-    steps = {20.0: 0.5, 25.0: 0.6, 30.0: 0.69, 35.0: 0.77, 40.0: 0.84, 40.1: 0.9, 300.0: 0.9}
-    assert {s: Viewpoints().detection(s) for s in steps} == steps
-    grid = square(1.0).grid
-    assert (grid.row_spacing_m, grid.plant_spacing_m) == (4.0, 3.0)
 
 
 @pytest.mark.parametrize("name", SAMPLERS)
@@ -248,24 +235,3 @@ def test_knowing_what_was_missed_finds_it_sooner():
         return np.sum(seasons, axis=0)[:, FOUND].sum()
 
     assert found(known=True) > found(known=False)
-
-
-@pytest.mark.parametrize("bad", [{"sources": "some"}, {"counts": "mites"}, {"ends": "never"}])
-def test_unknown_choices_are_refused(bad):
-    with pytest.raises(SettingError):
-        OpenChoices(**bad)
-
-
-@pytest.mark.parametrize(
-    "bad",
-    [
-        {"share": 0.0},
-        {"share": 0.6},
-        {"margin_share": 1.1},
-        {"depth_m": 0.0},
-        {"cluster_size": 0.5},
-    ],
-)
-def test_impossible_starts_are_refused(bad):
-    with pytest.raises(SettingError):
-        StartUp(**bad)

@@ -54,6 +54,7 @@ autodoc_typehints_format = "short"
 python_maximum_signature_line_length = 72
 autosummary_generate = True
 napoleon_google_docstring = False
+napoleon_attr_annotations = False
 
 html_theme = "pydata_sphinx_theme"
 html_title = "fieldmon"

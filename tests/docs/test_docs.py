@@ -110,6 +110,12 @@ def test_every_command_is_on_a_page():
     assert missing == []
 
 
+def test_every_name_of_the_library_is_on_its_page():
+    page = PAGES["docs/api.md"]
+    told = set(re.findall(r"^ {3}(\w+)$", page, re.MULTILINE)) | set(INLINE.findall(page))
+    assert set(fieldmon.__all__) - {"__version__"} <= told
+
+
 def test_every_sampler_and_every_route_format_has_its_line():
     assert SAMPLERS.keys() <= set(INLINE.findall(PAGES["docs/strategies.md"]))
     told = set(INLINE.findall(PAGES["docs/routes.md"]))

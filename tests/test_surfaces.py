@@ -2,12 +2,13 @@
 
 A record gives a position, or names a row and a plant, or its plot too, or its plot alone. What a
 surface makes of positions it must make of the names that mean the same. A surface is a function
-that returns what it made, and a line in `SURFACES`: those of the app belong there too.
+that returns what it made, and a line in `SURFACES`.
 """
 
 import csv
 from concurrent.futures import Future
 from contextlib import nullcontext
+from datetime import date
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +27,7 @@ from fieldmon.monitoring import Season
 from fieldmon.plot.grid import plant_at
 from fieldmon.plot.projection import Frame
 from fieldmon.simulation import executor
+from tests.app import driving
 from tests.parcels import write_geojson
 
 FRAME = Frame(5.0, 45.0)
@@ -95,6 +97,37 @@ def studied(records):
     return sorted((row for row in rows if row["plot"] == PLOT), key=lambda row: row["seed"])
 
 
+def opened_in_app(records):
+    """Return a session of the app with the plot and the records brought to it, on Today."""
+    session = driving.opened()
+    driving.upload(
+        session, plot=("plots.geojson", Path("plots.geojson").read_bytes()),
+        record=(records, Path(records).read_bytes()),
+    )  # fmt: skip
+    which = next(box for box in session.selectbox if box.label == "Which plot")
+    which.set_value(which.options.index(PLOT)).run()
+    session.slider(key="hours Robot").set_value(0.5)
+    session.date_input[0].set_value(date.fromisoformat(DAY)).run()
+    driving.go(session, "today")
+    assert not [*session.exception, *session.error, *session.warning]
+    return session
+
+
+def shown_in_app(records):
+    """Return the chances and the route that the app's first page shows."""
+    session = opened_in_app(records)
+    return [driving.layer(session, name)["data"] for name in ("plants", "route", "numbers")]
+
+
+def begun_in_app(records):
+    """Return what a season begun in the app believes on its first morning, and its route."""
+    name = Path(records).stem
+    assert not driving.begun(opened_in_app(records), name).error
+    season = Season(Path("seasons", f"{name}.gpkg"))
+    first = season.settings.begins
+    return season.morning(first).tolist(), season.plan(first, keep=False).route.plant.tolist()
+
+
 SURFACES = {
     "plan": planned,
     "plan --all": planned_with_all,
@@ -102,6 +135,8 @@ SURFACES = {
     "simulate": simulated,
     "study prior": played,
     "study run": studied,
+    "app, today": shown_in_app,
+    "app, a season": begun_in_app,
 }
 
 
@@ -109,6 +144,7 @@ SURFACES = {
 def _records(tmp_path, monkeypatch):
     """Work in a folder with three plots, and the same records in every way of writing them."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("FIELDMON_SEASONS", str(tmp_path / "seasons"))
     shapes = [FRAME.geometry_lonlat(MultiPolygon([shapely.box(*box)])) for box in BOXES]
     write_geojson(tmp_path / "plots.geojson", shapes)
     (field,) = read_plots(tmp_path / "plots.geojson", PlotOptions(feature=PLOT)).value

@@ -11,6 +11,7 @@ import streamlit as st
 from fieldmon.errors import FieldmonError
 from fieldmon.io.import_report import ImportMessage, Severity
 from fieldmon.plot import robot as robots
+from fieldmon.samplers import USUAL
 
 from ..state import (
     cached,
@@ -148,7 +149,7 @@ def _work(source: str) -> tuple[Robot, str, str]:
         )  # fmt: skip
         sampler = widget_memory.show(
             st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), key="sampler",
-            default=next(iter(texts.SAMPLERS)), **changing.NAMED,
+            default=USUAL, **changing.NAMED,
         )  # fmt: skip
         st.caption(sampler_does(sampler))
     return replace(base, hours=float(hours), look_s=float(inspection_s)), sampler, str(day)

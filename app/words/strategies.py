@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from fieldmon.samplers import kind_of
+
 from . import texts
 
 
 def sampler_name(sampler: str) -> str:
     """Return a sampler's name without its description."""
-    return texts.SAMPLERS[sampler].split(":")[0]
+    return kind_of(sampler).title
 
 
 def sampler_does(sampler: str) -> str:
     """Return what a sampler does, without its name."""
-    return texts.SAMPLERS[sampler].partition(": ")[2]
+    return kind_of(sampler).does
 
 
 def strategy_name(sampler: str, hours: float, inspection_s: float) -> str:

@@ -92,12 +92,12 @@ class Workroom:
             self._copy(entry, room / f"data{entry.path.suffix.lower()}")
         return main
 
-    def unpack(self, entry: FileEntry) -> IO[bytes]:
-        """Return an entry of an archive as a file that can be sought in."""
+    def unpack(self, entry: FileEntry) -> Path:
+        """Copy an archive, which may lie in another, to where it can be sought in."""
         self.n_staged += 1
         path = self.folder / f"{self.n_staged:03d}.zip"
         self._copy(entry, path)
-        return path.open("rb")
+        return path
 
     def _copy(self, entry: FileEntry, to: Path) -> None:
         with _opened(entry) as source, to.open("wb") as target:

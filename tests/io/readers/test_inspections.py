@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem, SettingError
+from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 from fieldmon.io.formats.layer import Layer
 from fieldmon.io.import_report import Severity
@@ -47,52 +47,11 @@ def two_faced():
     return lay(field, Planting(faces=2, row_spacing_m=3.0, plant_spacing_m=2.0))
 
 
-@pytest.mark.parametrize(
-    ("word", "result"),
-    [
-        *((w, FOUND) for w in ("yes", "TRUE", "1", "found", "x", "✓", "ja", "sí", "oui", "כן")),
-        *((w, FOUND) for w in ("+", "+3", "7", "<5", "3-5", "befall", "נגוע", "gefunden", "many")),
-        *(
-            (w, CLEAN)
-            for w in ("no", "False", "0", "clean", "nein", "לא", "נקי", "ok", "not found")
-        ),
-        *((w, SKIPPED) for w in ("not inspected", "could_not_inspect", "skipped", "לא נבדק")),
-    ],
-)
-def test_results_are_read_in_many_spellings(word, result):
-    findings = read(f"plant,found\n7,{word}\n8,clean\n").value
-    assert findings.plant.tolist() == [7, 8]
-    assert findings.result.tolist() == [result, CLEAN]
-
-
-@pytest.mark.parametrize("blank", ["", "  ", "NA", "?", "nan", "-"])
-def test_what_is_not_filled_in_stays_unknown(blank):
-    imported = read(f"plant,found,count\n7,{blank},\n8,no,\n")
-    assert imported.value.plant.tolist() == [8]
-    assert any("1 of 2 record(s) are not filled in" in f.sentence for f in imported.messages)
-
-
-def test_a_minus_is_clean_only_beside_a_plus():
-    assert read("plant,found\n7,-\n8,+\n").value.result.tolist() == [CLEAN, FOUND]
-    assert read("plant,found\n7,-\n8,x\n").value.plant.tolist() == [8]
-
-
-def test_a_word_that_says_nothing_is_named_and_left_unknown():
-    imported = read("plant,found\n7,maybe\n8,no\n")
-    assert imported.value.plant.tolist() == [8]
-    assert any("'maybe'" in f.sentence for f in imported.of(Severity.DOUBTFUL))
-
-
 def test_counts_alone_say_whether_and_how_many():
     findings = read("plant,count\n1,0\n2,4\n3,<5\n4,\n5,2-6\n").value
     assert findings.plant.tolist() == [1, 2, 3, 5]
     assert findings.result.tolist() == [CLEAN, FOUND, FOUND, FOUND]
     np.testing.assert_array_equal(findings.count, [np.nan, 4, np.nan, np.nan])
-
-
-def test_a_count_in_the_column_for_results_is_a_count_but_one_is_yes():
-    findings = read("plant,found,count\n1,7,\n2,1,\n3,+2,\n4,yes,9\n").value
-    np.testing.assert_array_equal(findings.count, [7, np.nan, 2, 9])
 
 
 def test_result_and_count_that_contradict_are_left_out_unless_one_asks():
@@ -207,35 +166,6 @@ def test_both_faces_of_a_plant_are_told_apart_by_number_or_by_face():
 # --- times -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("head", "row", "noted"),
-    [
-        ("time", "2026-11-18T08:30:05", "2026-11-18T08:30:05"),
-        ("time", "2026-11-18 08:30", "2026-11-18T08:30:00"),
-        ("date,time", "18.11.2026,08:30", "2026-11-18T08:30:00"),
-        ("date,hour", "18/11/2026 8:30 PM,", "2026-11-18T20:30:00"),
-        ("when", "45979.5", "2025-11-18T12:00:00"),
-        ("time", "2026-11-18T08:30:05+02:00", "2026-11-18T08:30:05"),
-        ("תאריך,שעה", "18.11.2026,7:05", "2026-11-18T07:05:00"),
-    ],
-)
-def test_times_are_read_as_people_write_them(head, row, noted):
-    findings = read(f"plant,found,{head}\n7,x,{row}\n").value
-    midnight = np.datetime64(noted[:10], "s")
-    assert str(findings.date[0]) == noted[:10]
-    assert findings.second[0] == (np.datetime64(noted) - midnight).astype(int)
-
-
-def test_utc_times_become_local_where_the_zone_is_told():
-    text = "plant,found,time\n7,x,2026-11-18T22:30:00Z\n"
-    kept = read(text)
-    assert str(when(kept.value)[0]) == "2026-11-18T22:30:00"
-    assert [f.remedy.option for f in kept.of(Severity.GUESSED)] == ["zone"]
-    for zone in ("Asia/Jerusalem", "+02:00"):
-        moved = read(text, InspectionOptions(zone=zone)).value
-        assert (str(when(moved)[0]), str(moved.date[0])) == ("2026-11-19T00:30:00", "2026-11-19")
-
-
 def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
     told = InspectionOptions(day=np.datetime64("2026-11-20"))
     planned = read("plant,arrive,found\n7,2026-11-18T08:30:00,x\n8,,x\n", told).value
@@ -245,16 +175,6 @@ def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
     dated = read("plant,found,date\n7,x,17.11.2026\n", told).value
     assert np.isnan(dated.second).all()
     assert dated.date.astype(str).tolist() == ["2026-11-17"]
-
-
-def test_options_that_cannot_be_are_refused_in_a_sentence():
-    with pytest.raises(SettingError, match="time zone"):
-        InspectionOptions(zone="Paran")
-    with pytest.raises(SettingError, match="accuracy"):
-        InspectionOptions().choose("accuracy_m", "good")
-    with pytest.raises(SettingError, match="day"):
-        InspectionOptions().choose("day", "soon")
-    assert InspectionOptions().choose("day", "2026-11-18").day == np.datetime64("2026-11-18")
 
 
 # --- the same finding --------------------------------------------------------------------------

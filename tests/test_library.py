@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 import warnings
+from datetime import date
 
 import pytest
 
@@ -126,3 +127,30 @@ def test_contenders_of_one_start_meet_the_same_insects():
     )
     assert naive.new[0] == adaptive.new[0] == start.infested.sum()
     assert adaptive.found.sum() > naive.found.sum()
+
+
+@pytest.mark.usefixtures("_here")
+@pytest.mark.filterwarnings("ignore::fieldmon.errors.ImportDoubt")
+def test_what_the_library_gives_says_itself_in_one_short_line():
+    plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    day = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=1))
+    start = fm.draw_start(plot, day.chance)
+    simulated = fm.simulate(plot, start, "naive", settings=fm.SeasonSettings(n_days=2))
+    season = fm.Season.create("season.gpkg", plot, begins=date(2026, 11, 18))
+    season.record(fm.Inspections.of([0, 1], [0, 1], date(2026, 11, 18)))
+    said = {
+        plot: "<Plot Gate: 3825 plants in 45 rows>",
+        fm.read_records("sample_data/mite_records.csv", plot): "<Observations: 329 records>",
+        day: f"<DayPlan: {len(day.route)} of 3825 plants, {day.route.drive_m / 1000:.2f} km, ",
+        day.route: f"<Route: {len(day.route)} stops, ",
+        start: f"<Start: {start.infested.sum()} of 3825 plants infested>",
+        fm.simulate(
+            plot, start, "naive", settings=fm.SeasonSettings(n_days=2)
+        ): "<SeasonMetrics: 2 days, ",
+        season: "<Season season.gpkg: <Plot Gate: 3825 plants in 45 rows>>",
+        season.history.inspections: "<Inspections: 2 inspections, 1 find>",
+        season.status(date(2026, 11, 18)).hot_spots: "<HotSpots: 0 hot spots with 0 finds>",
+    }
+    for given, words in said.items():
+        assert repr(given).startswith(words)
+        assert len(repr(given)) < 100

@@ -20,6 +20,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
@@ -115,6 +116,10 @@ class HotSpots:
         for value in vars(self).values():
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
+
+    def __repr__(self) -> str:
+        finds = counted(int(self.found.sum()), "find")
+        return f"<HotSpots: {counted(len(self), 'hot spot')} with {finds}>"
 
     def __len__(self) -> int:
         """Return the number of hot spots."""

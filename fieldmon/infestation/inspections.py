@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
@@ -76,6 +77,10 @@ class Inspections:
                 )
             column.setflags(write=False)
             object.__setattr__(self, name, column)
+
+    def __repr__(self) -> str:
+        finds = int(np.count_nonzero(self.result == FOUND))
+        return f"<Inspections: {counted(len(self), 'inspection')}, {counted(finds, 'find')}>"
 
     def __len__(self) -> int:
         """Return the number of inspections."""

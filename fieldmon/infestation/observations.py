@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
@@ -56,6 +57,9 @@ class Observations:
                     f"but {name} has {len(values)}."
                 )
             values.setflags(write=False)
+
+    def __repr__(self) -> str:
+        return f"<Observations: {counted(len(self), 'record')}>"
 
     def __len__(self) -> int:
         """Return the number of records."""

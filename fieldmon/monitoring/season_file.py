@@ -94,6 +94,10 @@ class Season:
             self.observations: Observations = tables.read_observations(db)
             self.risk: Floats | None = tables.read_arrays(db, "risk").get("risk")
 
+    def __repr__(self) -> str:
+        """Say which file and which plot."""
+        return f"<Season {self.path.name}: {self.plot!r}>"
+
     @classmethod
     def create(
         cls,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.pairs import pair_chances
@@ -58,6 +59,11 @@ class DayPlan:
     scene: Scene
     work: Workday
     route: Route
+
+    def __repr__(self) -> str:
+        length_km, hours = self.route.drive_m / 1000, self.route.end_s / 3600
+        stops = f"{len(self.route)} of {counted(len(self.scene.grid), 'plant')}"
+        return f"<DayPlan: {stops}, {length_km:.2f} km, {hours:.2f} h>"
 
     @property
     def chance(self) -> NDArray[np.float64]:

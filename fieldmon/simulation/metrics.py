@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import counted
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -43,6 +45,10 @@ class SeasonMetrics:
     found: NDArray[np.int64]
     new: NDArray[np.int64]
     left: NDArray[np.int64]
+
+    def __repr__(self) -> str:
+        days, finds = counted(len(self.left), "day"), counted(int(self.found.sum()), "find")
+        return f"<SeasonMetrics: {days}, {finds}, {self.infested_plant_days} infested plant-days>"
 
     @property
     def infested_plant_days(self) -> int:

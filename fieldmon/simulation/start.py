@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.infestation.prior import start_infested
 
@@ -30,6 +31,10 @@ class Start:
 
     infested: NDArray[np.bool_]
     chance: NDArray[np.float64]
+
+    def __repr__(self) -> str:
+        plants = counted(len(self.infested), "plant")
+        return f"<Start: {int(self.infested.sum())} of {plants} infested>"
 
 
 def season_start(

@@ -69,7 +69,7 @@ class Outline:
 
 
 @dataclass(frozen=True, eq=False)
-class Prepared:
+class PlotFromFiles:
     """A plot that is ready to be planned.
 
     Parameters
@@ -133,14 +133,14 @@ def _measured(file: File | None) -> tuple[Plants | None, str]:
     return cached.measured_plants(file.key, options, file.source), f"{file.key}{options}"
 
 
-def prepared(files: Files, outline: Outline) -> Prepared:
+def prepared(files: Files, outline: Outline) -> PlotFromFiles:
     """Return the plot with its plants, records and risk."""
     plot, key = _plot(files, outline)
     # records may name plants by numbers that count those missing too
     records, read, key = _records(files.records, outline, plot, key)
     plot, missing, key = rasters.without_missing(plot, key)
     risk, said, key = rasters.risk(plot, key)
-    return Prepared(key, plot, records, risk, (*outline.messages, *missing, *read, *said))
+    return PlotFromFiles(key, plot, records, risk, (*outline.messages, *missing, *read, *said))
 
 
 def _plot(files: Files, outline: Outline) -> tuple[Plot, str]:

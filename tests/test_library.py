@@ -144,9 +144,7 @@ def test_what_the_library_gives_says_itself_in_one_short_line():
         day: f"<DayPlan: {len(day.route)} of 3825 plants, {day.route.drive_m / 1000:.2f} km, ",
         day.route: f"<Route: {len(day.route)} stops, ",
         start: f"<Start: {start.infested.sum()} of 3825 plants infested>",
-        fm.simulate(
-            plot, start, "naive", settings=fm.SeasonSettings(n_days=2)
-        ): "<SeasonMetrics: 2 days, ",
+        simulated: "<SeasonMetrics: 2 days, ",
         season: "<Season season.gpkg: <Plot Gate: 3825 plants in 45 rows>>",
         season.history.inspections: "<Inspections: 2 inspections, 1 find>",
         season.status(date(2026, 11, 18)).hot_spots: "<HotSpots: 0 hot spots with 0 finds>",

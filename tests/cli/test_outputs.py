@@ -1,6 +1,7 @@
 """What a plan leaves on the disk."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -24,11 +25,12 @@ NOTES = RouteNotes("square", "adaptive", DAY.astype("datetime64[s]").item())
 
 def test_a_route_is_written_as_geojson_unless_said_otherwise(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    write_routes(TODAY.route, NOTES, None)
+    route = replace(TODAY.route, notes=NOTES)
+    write_routes(route, None)
     _, *stops = json.loads((tmp_path / "route.geojson").read_text(encoding="utf-8"))["features"]
     assert len(stops) == len(TODAY.route)
     assert capsys.readouterr().out == "Route written to route.geojson\n"
-    write_routes(TODAY.route, NOTES, [tmp_path / "a.csv", tmp_path / "b.gpx"])
+    write_routes(route, [tmp_path / "a.csv", tmp_path / "b.gpx"])
     assert {path.name for path in tmp_path.iterdir()} == {"route.geojson", "a.csv", "b.gpx"}
     assert len(capsys.readouterr().out.splitlines()) == 2
 

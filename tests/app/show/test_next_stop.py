@@ -10,7 +10,8 @@ from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_day
 from fieldmon.plot.robot import Robot
-from fieldmon.samplers import NEVER, Scene, sampler
+from fieldmon.samplers import sampler
+from fieldmon.samplers.base import NEVER, Scene
 from tests.app.chosen import a_plot
 
 

@@ -16,9 +16,7 @@ from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.monitoring.history import BeliefSettings
-from fieldmon.planning.plan import DayPlan
-from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.plan import plan_in
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE
@@ -31,6 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief, Learning
+    from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.plot import Plot
     from fieldmon.samplers.base import Sampler, Stops, WouldFind
 
@@ -145,9 +144,7 @@ class Monitor:
 
     def plan(self) -> DayPlan:
         """Return the day ahead as it goes if nothing is found."""
-        scene = self._scene()
-        work = plan_day(scene, self._sampler)
-        return DayPlan(scene, work, route_of(scene, work))
+        return plan_in(self._scene(), self._sampler)
 
     def day(self) -> MonitorDay:
         """Begin a day; use it in a ``with`` statement, at whose end the belief learns.

@@ -33,9 +33,7 @@ from fieldmon.monitoring.history import History, Shift, Treatment
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
-from fieldmon.planning.plan import DayPlan
-from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.plan import plan_in
 from fieldmon.plot.grid import RowLabel, row_label
 
 if TYPE_CHECKING:
@@ -51,6 +49,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.tables import KeptMessage
+    from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.plot import Plot
 
     Floats = NDArray[np.float64]
@@ -217,8 +216,7 @@ class Season:
             )
             now_s = None if now is None else seconds(now)
             scene = contents.history.scene(shift, day, contents.morning(day), now_s)
-            work = plan_day(scene, settings.decides())
-            today = DayPlan(scene, work, route_of(scene, work))
+            today = plan_in(scene, settings.decides())
             begins = routes.begins(settings, today)
             notes = RouteNotes(self.plot.field.name, settings.sampler, begins)
             today = replace(today, route=replace(today.route, notes=notes))

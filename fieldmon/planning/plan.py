@@ -207,5 +207,10 @@ def plan_from(plot: Plot, chance: NDArray[np.float64], plans: PlanSettings) -> D
         # as a season believes: it goes the same way on its first day
         pair_chance=pair_chances(chance, plot.grid),
     )
-    work = plan_work(scene, plans.sampler)
+    return plan_in(scene, plans.sampler)
+
+
+def plan_in(scene: Scene, sampler: Sampler) -> DayPlan:
+    """Plan the rest of the day that a scene stands in, as it goes if nothing is found."""
+    work = plan_work(scene, sampler)
     return DayPlan(scene, work, route_of(scene, work))

@@ -15,7 +15,7 @@ from fieldmon.infestation.pairs import pair_chances
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import plan_day as plan_work
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler as sampler_of
 from fieldmon.samplers.adaptive import Adaptive

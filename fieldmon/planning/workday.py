@@ -53,7 +53,7 @@ class Workday:
         return len(self.plant)
 
 
-def plan_day(scene: Scene, sampler: Sampler) -> Workday:
+def plan_work(scene: Scene, sampler: Sampler) -> Workday:
     """Return the rest of the day as it goes if nothing is found."""
     return work_day(scene, sampler, np.zeros(len(scene.chance), np.bool_))
 

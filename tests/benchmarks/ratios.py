@@ -17,7 +17,7 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread, night
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
@@ -170,7 +170,7 @@ def routes():
     n = len(scene.chance)
     sys.stdout.write(f"a day of {ROUTE_HOURS:g} h on {n} plants, most expected finds\n")
     for name in SAMPLERS:
-        seconds, work = best_of(lambda name=name: plan_day(scene, sampler(name)), 50)
+        seconds, work = best_of(lambda name=name: plan_work(scene, sampler(name)), 50)
         finds = scene.chance[work.plant].sum()
         best = max(best, finds)
         say(f"  {name}", seconds, f"{finds:.2f} expected on {len(work)} stops")

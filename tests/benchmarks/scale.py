@@ -29,7 +29,7 @@ from fieldmon.io.writers.geojson import RouteNotes, write_route
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import Planting, lay
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
@@ -91,7 +91,7 @@ def measure(n_plants):
     )
     for name in SAMPLERS:
         took[f"a day's plan and route: {name}"], _ = best_of(
-            lambda name=name: route_of(scene, plan_day(scene, sampler(name)))
+            lambda name=name: route_of(scene, plan_work(scene, sampler(name)))
         )
     start = Start(start_infested(chance, 0.02, RandomStreams(1).of("start")), chance)
     for name in THESIS:
@@ -147,7 +147,7 @@ def per_visit_and_night():
     visits = {}
     for name in THESIS:
         scene = Scene(aisles, Robot(), chance, last, seconds_left=Robot().day_s)
-        took, work = best_of(lambda scene=scene, name=name: plan_day(scene, sampler(name)), 200)
+        took, work = best_of(lambda scene=scene, name=name: plan_work(scene, sampler(name)), 200)
         visits[name] = took / len(work) * 1e9
     infested = np.random.default_rng(1).random(n) < 0.1
     nights = {

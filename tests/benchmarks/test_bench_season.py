@@ -6,7 +6,7 @@ import pytest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
@@ -40,7 +40,7 @@ def test_plan_and_route_of_a_day_on_scenario_c(benchmark, name):
         last_inspected=np.full(N, NEVER, np.int32),
         seconds_left=Robot().day_s,
     )
-    route = benchmark(lambda: route_of(scene, plan_day(scene, sampler(name))))
+    route = benchmark(lambda: route_of(scene, plan_work(scene, sampler(name))))
     assert len(route) > 300
 
 

@@ -9,7 +9,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread
-from fieldmon.planning.workday import plan_day, work_day
+from fieldmon.planning.workday import plan_work, work_day
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
@@ -35,7 +35,7 @@ def test_it_expects_more_finds_than_dynamic_and_naive(seed):
     scene = replace(scene_on(GRID, hours=3.0, seed=seed), pair_chance=None)
     chance = scene.chance
     expected = {
-        type(s).__name__: chance[plan_day(scene, s).plant].sum()
+        type(s).__name__: chance[plan_work(scene, s).plant].sum()
         for s in (Adaptive(spares=0.0, beside_find=0.0), Dynamic(), Naive())
     }
     assert expected["Adaptive"] > 1.1 * expected["Dynamic"]
@@ -44,14 +44,14 @@ def test_it_expects_more_finds_than_dynamic_and_naive(seed):
 
 def test_where_nothing_is_known_and_plants_are_independent_the_day_is_a_sweep():
     scene = scene_with(np.full(N, 0.2))
-    work, sweep = plan_day(scene, Adaptive()), plan_day(scene, Naive())
+    work, sweep = plan_work(scene, Adaptive()), plan_work(scene, Naive())
     assert len(work) >= 0.97 * len(sweep)
     rows = GRID.row[work.plant]
     assert np.count_nonzero(np.diff(rows)) <= len(np.unique(rows)) + 1
 
 
 def test_after_a_clean_look_the_plant_beside_it_can_wait():
-    apart = plan_day(scene_with(np.full(N, 0.02), company=0.6), Adaptive())
+    apart = plan_work(scene_with(np.full(N, 0.02), company=0.6), Adaptive())
     in_first_row = apart.plant[GRID.row[apart.plant] == GRID.row[apart.plant[0]]]
     assert np.median(np.abs(np.diff(in_first_row))) > 1
 
@@ -60,7 +60,7 @@ def test_a_hot_spot_is_driven_to_across_the_plot():
     chance = np.full(N, 0.001)
     hot = np.array([25 * 30 + 20, 25 * 30 + 21, 26 * 30 + 20])
     chance[hot] = 0.6
-    work = plan_day(scene_with(chance, hours=0.5), Adaptive())
+    work = plan_work(scene_with(chance, hours=0.5), Adaptive())
     assert set(hot) <= set(work.plant.tolist())
 
 
@@ -68,12 +68,12 @@ def test_of_several_looks_the_suspected_plant_gets_the_long_one_and_the_others_s
     chance = np.full(N, 0.02)
     hot = np.arange(3 * 30, 3 * 30 + 10)
     chance[hot] = 0.6
-    work = plan_day(scene_with(chance, hours=3.0), Adaptive(chooses_time=True))
+    work = plan_work(scene_with(chance, hours=3.0), Adaptive(chooses_time=True))
     suspected = np.isin(work.plant, hot)
     assert (work.detects[suspected] == 0.84).all()
     assert (work.detects[~suspected] < 0.84).mean() > 0.5
     assert work.stop_s[work.detects == 0.5] == pytest.approx(20.0)
-    fixed = plan_day(scene_with(chance, hours=3.0), Adaptive())
+    fixed = plan_work(scene_with(chance, hours=3.0), Adaptive())
     found, found_fixed = (chance[w.plant] @ w.detects for w in (work, fixed))
     assert found > found_fixed
 
@@ -118,13 +118,13 @@ def test_a_plant_that_is_hardly_suspected_is_not_worth_a_long_way():
     chance = np.full(N, 1e-6)
     chance[:60] = 0.1
     chance[29 * 30 + 29] = 0.001
-    work = plan_day(scene_with(chance, hours=0.6), Adaptive())
+    work = plan_work(scene_with(chance, hours=0.6), Adaptive())
     assert 29 * 30 + 29 not in work.plant
 
 
 def test_the_plants_beside_finds_are_inspected_those_in_their_row_at_once():
     scene = scene_with(np.full(N, 0.01), company=0.6)
-    calm = plan_day(scene, Adaptive())
+    calm = plan_work(scene, Adaptive())
     k = len(calm) // 3
     find = int(calm.plant[k])
     found = np.zeros(N, bool)
@@ -158,4 +158,4 @@ def test_impossible_settings_are_refused(bad):
 
 def test_one_plant_is_visited():
     scene = scene_on(GRIDS["one plant"], hours=1.0)
-    assert plan_day(scene, Adaptive()).plant.tolist() == [0]
+    assert plan_work(scene, Adaptive()).plant.tolist() == [0]

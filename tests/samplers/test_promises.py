@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError
-from fieldmon.planning.workday import plan_day, work_day
+from fieldmon.planning.workday import plan_work, work_day
 from fieldmon.plot.layout import Planting, lay
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers import SAMPLERS, sampler
@@ -83,7 +83,7 @@ def test_no_sampler_peeks_at_plants_it_has_not_inspected(name, seed):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_same_scene_gives_the_same_day(name):
-    one, other = (plan_day(scene_on(GRIDS["rectangle"], seed=5), sampler(name)) for _ in "ab")
+    one, other = (plan_work(scene_on(GRIDS["rectangle"], seed=5), sampler(name)) for _ in "ab")
     assert (one.plant == other.plant).all()
     assert (one.arrive_s == other.arrive_s).all()
 
@@ -91,7 +91,7 @@ def test_the_same_scene_gives_the_same_day(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_with_time_for_all_every_plant_is_inspected(name):
     scene = scene_on(GRIDS["rectangle"], hours=24.0)
-    visited = sorted(plan_day(scene, sampler(name)).plant)
+    visited = sorted(plan_work(scene, sampler(name)).plant)
     if name == "random":  # a third of the plot is all it ever takes
         assert len(visited) == len(scene.chance) // 3
     else:
@@ -102,7 +102,7 @@ def test_with_time_for_all_every_plant_is_inspected(name):
 def test_a_sampler_reads_the_chances_if_it_says_so(name):
     scene = scene_on(GRIDS["rectangle"], seed=3)
     other = replace(scene, chance=scene.chance[::-1] / 3)
-    one, two = (plan_day(each, sampler(name)).plant for each in (scene, other))
+    one, two = (plan_work(each, sampler(name)).plant for each in (scene, other))
     assert np.array_equal(one, two) != sampler(name).reads_chance
 
 
@@ -112,14 +112,14 @@ def test_a_day_goes_on_though_the_first_plants_were_all_inspected_today(name):
     last = np.full(len(grid), NEVER, np.int32)
     # the first of the sweep, and every second of the others
     last[np.append(grid.snake[:4], grid.snake[::2])] = 0
-    work = plan_day(scene_on(grid, hours=12.0, last_inspected=last), sampler(name))
+    work = plan_work(scene_on(grid, hours=12.0, last_inspected=last), sampler(name))
     assert set(work.plant.tolist()) <= set(np.flatnonzero(last == NEVER).tolist())
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_day_without_time_has_no_stops(name):
     scene = scene_on(GRIDS["rectangle"], hours=0.005)
-    work = plan_day(scene, sampler(name))
+    work = plan_work(scene, sampler(name))
     assert (len(work), work.end_s) == (0, 0.0)
 
 
@@ -128,6 +128,6 @@ def test_a_plant_inspected_earlier_today_is_left_out_when_planning_again(name):
     last = np.full(187, NEVER, np.int32)
     last[40:120] = 0
     scene = scene_on(GRIDS["rectangle"], last_inspected=last, at=119)
-    work = plan_day(scene, sampler(name))
+    work = plan_work(scene, sampler(name))
     assert len(work) > 0
     promises_hold(scene, work)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import COMPARED, SAMPLERS, USUAL, kind_of, of_equal_times, sampler
 from fieldmon.samplers.base import Sampler
@@ -39,7 +39,7 @@ def test_every_is_given_to_those_that_take_it(name):
 @pytest.mark.parametrize("name", [name for name in NAMES if SAMPLERS[name].every is not None])
 def test_a_larger_every_inspects_other_plants(name):
     scene = scene_on(GRIDS["rectangle"], hours=2.0)
-    own, other = (plan_day(scene, sampler(name, every=n)).plant for n in (SAMPLERS[name].every, 5))
+    own, other = (plan_work(scene, sampler(name, every=n)).plant for n in (SAMPLERS[name].every, 5))
     assert not np.array_equal(own, other)
 
 

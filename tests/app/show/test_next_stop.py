@@ -8,7 +8,7 @@ from app.words import texts
 from app.words.units import Units
 from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.samplers.base import NEVER, Scene
@@ -26,7 +26,7 @@ def planned(plot, at=-1):
     chance = np.full(len(grid), 0.01)
     scene = Scene(aisles=plot.aisles, robot=robot, chance=chance, at=at, seconds_left=robot.day_s,
                   last_inspected=np.full(len(grid), NEVER, np.int32))  # fmt: skip
-    work = plan_day(scene, sampler("naive"))
+    work = plan_work(scene, sampler("naive"))
     return DayPlan(scene, work, route_of(scene, work))
 
 

@@ -6,50 +6,32 @@ from pathlib import Path
 
 import streamlit as st
 
-# `streamlit run` puts this file's own folder on the path; the package is one above it
-sys.path[:] = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolve().parent]
-if str(Path(__file__).resolve().parents[1]) not in sys.path:
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+_HERE = Path(__file__).resolve().parent
+_TOP = next(folder for folder in _HERE.parents if not (folder / "__init__.py").is_file())
+# a script belongs to no package by itself: this one to `app`, or to `fieldmon._app` as installed
+__package__ = ".".join(_HERE.relative_to(_TOP).parts)
+# Streamlit puts the script's own folder on the path; the package is found from further up
+sys.path[:] = [p for p in sys.path if Path(p).resolve() != _HERE]
+if str(_TOP) not in sys.path:
+    sys.path.insert(0, str(_TOP))
+importlib.import_module(__package__)
 
-# little more than this is needed for a first look at the map: the rest is loaded below
-from app import early, remembered, texts, warming  # noqa: E402 - after the path is right
-from fieldmon.errors import FieldmonError  # noqa: E402
+# little more than this is needed for a first screen: the rest is loaded below
+from fieldmon.errors import FieldmonError  # noqa: E402 - after the path is right
+
+from .startup import first_screen, preload  # noqa: E402
+from .state import browser, plot_source, widget_memory  # noqa: E402
+from .words import texts  # noqa: E402
 
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
-# Streamlit leaves a hand's breadth above the page, which a phone cannot spare; names in Hebrew or
-# Arabic are set from the right, each by its own first letter
-# what moves is drawn sixty times a second: without a graphics card that takes seconds from a map
-# that is being made, so placeholders stand still and the sign of working turns in steps
-st.html(
-    "<style>[data-testid=stMainBlockContainer]{padding-top:4rem;padding-bottom:3rem}"
-    "[data-testid=stSkeleton],[data-testid=stSkeleton] *{animation:none!important}"
-    "[data-testid=stSpinnerIcon]{animation-timing-function:steps(6)!important}"
-    "h1,h2,h3,[data-testid=stMarkdownContainer] p{unicode-bidi:plaintext}"
-    ".st-key-start_scouting a{border:1px solid rgba(128,128,128,.5);border-radius:.5rem;"
-    "min-height:2.5rem;padding:.25rem .75rem;margin:0}"
-    ".st-key-start_scouting [data-testid=stElementContainer]{margin:0}"
-    # on a phone the table's own tools always show, over the box above it
-    ".st-key-route_marks [data-testid=stElementToolbar]{display:none}</style>"
-)
-if early.is_dark():
-    # Streamlit writes white on the pale green of the dark theme: 2:1, where AA asks for 4.5:1
-    st.html(
-        "<style>[data-testid^=stBaseButton-primary]:enabled,"
-        "[data-testid^=stBaseButton-primary]:enabled *,[data-tag],[data-tag] *"
-        "{color:#0b1f14!important}</style>"
-    )
-else:
-    # captions and charts' words are 4.3:1 and 3.7:1 on white by themselves
-    st.html(
-        "<style>[data-testid=stCaptionContainer],[data-testid=stVegaLiteChart] text"
-        "{color:#59625c!important;fill:#59625c!important;opacity:1}</style>"
-    )
-warming.start()
+st.html(_HERE / "style" / "every_page.css")
+st.html(_HERE / "style" / ("dark.css" if browser.is_dark() else "light.css"))
+preload.start()
 
 
 def view(name: str):  # noqa: ANN201 - a page's module
     """Return a page's module, loaded when it is turned to."""
-    return importlib.import_module(f"app.views.{name}")
+    return importlib.import_module(f".views.{name}", __package__)
 
 
 def page(name: str, title: str, icon: str, path: str = "") -> st.Page:
@@ -58,15 +40,15 @@ def page(name: str, title: str, icon: str, path: str = "") -> st.Page:
 
     def run() -> None:
         # a box of its own, empty or not: a map below that moves by a place forgets its zoom
-        said = st.container()
-        places = (early.places(),) if name == "today" else ()
-        warming.start().load(map_sent=bool(places))
-        from app import keeping  # noqa: PLC0415 - as just loaded
-        from app.choices import choose  # noqa: PLC0415
+        above = st.container()
+        places = (first_screen.places(),) if name == "today" else ()
+        preload.start().load(map_sent=bool(places))
+        from .actions.choosing import choose  # noqa: PLC0415 - as just loaded
+        from .state import notices  # noqa: PLC0415
 
-        chosen = choose(*places)
-        with said:
-            keeping.said()
+        chosen = choose(first_screen.waiting(*places))
+        with above:
+            notices.show()
         if chosen.choices is None:
             view("plot").bring(chosen.problem)
             return
@@ -82,9 +64,9 @@ def page(name: str, title: str, icon: str, path: str = "") -> st.Page:
 
 def page_prior() -> None:
     """Show the study with prior information, on the chosen plot too."""
-    from app.choices import choose  # noqa: PLC0415 - as above
+    from .actions.choosing import choose  # noqa: PLC0415 - as above
 
-    view("prior_study").show(choose().choices)
+    view("prior_study").show(choose(first_screen.waiting()).choices)
 
 
 def page_study() -> None:
@@ -95,7 +77,7 @@ def page_study() -> None:
 scouting = page("scout", texts.SCOUTING, "eco")
 st.session_state["scout_page"] = scouting
 # a click may end the first run of a page before its sidebar is there
-remembered.first("season", st.query_params.get("season"))
+plot_source.begin_from_address()
 turned = st.navigation(
     [
         page("today", texts.TODAY, "route"),
@@ -111,6 +93,6 @@ turned = st.navigation(
     ],
     position="top",
 )
-remembered.turn(turned.url_path)
+widget_memory.turn(turned.url_path)
 turned.run()
-warming.start().shown.set()
+preload.start().shown.set()

@@ -1,1 +1,146 @@
-"""Decide which plants to inspect for pests today, and learn from what is found."""
+"""Decide which plants to inspect for pests today, and learn from what is found.
+
+>>> import fieldmon as fm
+>>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+>>> records = fm.read_records("sample_data/mite_records.csv", near=plot)
+>>> day = fm.plan_day(plot, records, "2026-11-18", fm.Robot(hours=4))
+>>> len(day.route) > 100
+True
+
+Names are loaded when they are first used, so that ``import fieldmon`` costs next to nothing.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fieldmon.errors import (
+        ChoiceNeeded,
+        FieldmonError,
+        FileProblem,
+        ImportDoubt,
+        ObservationError,
+        PlotError,
+        SettingError,
+    )
+    from fieldmon.infestation.hotspots import HotSpots, hot_spots
+    from fieldmon.infestation.inspections import Inspections
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.spread import Spread
+    from fieldmon.io.library import read_inspections, read_plot, read_plots, read_records
+    from fieldmon.io.sources import PlantingChoices
+    from fieldmon.monitoring.history import BeliefSettings
+    from fieldmon.monitoring.monitor import Monitor, MonitorDay, PlantToInspect
+    from fieldmon.monitoring.season_file import Season
+    from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.planning import routes
+    from fieldmon.planning.plan import DayPlan, plan_day
+    from fieldmon.planning.route import Route
+    from fieldmon.plot.field import Field
+    from fieldmon.plot.layout import Planting
+    from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot, Viewpoints, scout
+    from fieldmon.samplers import SAMPLERS
+    from fieldmon.simulation.library import draw_start, simulate
+    from fieldmon.simulation.metrics import SeasonMetrics
+    from fieldmon.simulation.season import SeasonSettings
+    from fieldmon.simulation.start import Start
+
+_MODULES = {
+    "errors": (
+        "ChoiceNeeded",
+        "FieldmonError",
+        "FileProblem",
+        "ImportDoubt",
+        "ObservationError",
+        "PlotError",
+        "SettingError",
+    ),
+    "infestation.hotspots": ("HotSpots", "hot_spots"),
+    "infestation.inspections": ("Inspections",),
+    "infestation.observations": ("Observations",),
+    "infestation.spread": ("Spread",),
+    "io.library": ("read_inspections", "read_plot", "read_plots", "read_records"),
+    "monitoring.history": ("BeliefSettings",),
+    "monitoring.monitor": ("Monitor", "MonitorDay", "PlantToInspect"),
+    "monitoring.season_file": ("Season",),
+    "monitoring.settings": ("MonitoringSettings",),
+    "planning.plan": ("DayPlan", "plan_day"),
+    "planning.route": ("Route",),
+    "plot.field": ("Field",),
+    "plot.layout": ("Planting",),
+    "plot.plot": ("Plot",),
+    "plot.robot": ("Robot", "Viewpoints", "scout"),
+    "samplers": ("SAMPLERS",),
+    "simulation.library": ("draw_start", "simulate"),
+    "simulation.metrics": ("SeasonMetrics",),
+    "simulation.season": ("SeasonSettings",),
+    "simulation.start": ("Start",),
+    "io.sources": ("PlantingChoices",),
+}
+#: names that are modules themselves
+_AS_MODULES = {"routes": "planning.routes"}
+_HOME = {name: module for module, names in _MODULES.items() for name in names}
+
+__all__ = [
+    "SAMPLERS",
+    "BeliefSettings",
+    "ChoiceNeeded",
+    "DayPlan",
+    "Field",
+    "FieldmonError",
+    "FileProblem",
+    "HotSpots",
+    "ImportDoubt",
+    "Inspections",
+    "Monitor",
+    "MonitorDay",
+    "MonitoringSettings",
+    "ObservationError",
+    "Observations",
+    "PlantToInspect",
+    "Planting",
+    "PlantingChoices",
+    "Plot",
+    "PlotError",
+    "Robot",
+    "Route",
+    "Season",
+    "SeasonMetrics",
+    "SeasonSettings",
+    "SettingError",
+    "Spread",
+    "Start",
+    "Viewpoints",
+    "__version__",
+    "draw_start",
+    "hot_spots",
+    "plan_day",
+    "read_inspections",
+    "read_plot",
+    "read_plots",
+    "read_records",
+    "routes",
+    "scout",
+    "simulate",
+]
+
+
+def __getattr__(name: str) -> Any:  # noqa: ANN401 - any of the names above
+    if name == "__version__":
+        from importlib.metadata import version  # noqa: PLC0415 - slow, and seldom asked for
+
+        return version("fieldmon")
+    if name in _AS_MODULES:
+        return import_module(f"fieldmon.{_AS_MODULES[name]}")
+    if name not in _HOME:
+        raise AttributeError(f"module 'fieldmon' has no attribute {name!r}")
+    value = getattr(import_module(f"fieldmon.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -26,19 +26,28 @@ class ChoiceNeeded(FieldmonError):  # noqa: N818
         What has to be chosen: ``"layer"``, ``"feature"``, ``"crs"``, ``"member"``, ``"columns"``...
     choices
         The possible answers, best first, as they can be handed back.
+    role
+        Which file asks, where a plot is prepared from several (`fieldmon.io.sources.Role`).
     """
 
-    def __init__(self, message: str, option: str, choices: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self, message: str, option: str, choices: tuple[str, ...] = (), role: str = ""
+    ) -> None:
         super().__init__(message)
         self.option = option
         self.choices = choices
+        self.role = role
 
-    def __reduce__(self) -> tuple[type[ChoiceNeeded], tuple[str, str, tuple[str, ...]]]:
-        return type(self), (str(self), self.option, self.choices)
+    def __reduce__(self) -> tuple[type[ChoiceNeeded], tuple[str, str, tuple[str, ...], str]]:
+        return type(self), (str(self), self.option, self.choices, self.role)
 
 
 class SettingError(FieldmonError):
     """A setting is outside what it may be: change the number."""
+
+
+class ImportDoubt(UserWarning):
+    """An import guessed, dropped or doubts something: look before you use it."""
 
 
 class PlotError(FieldmonError):

@@ -21,7 +21,7 @@ import shapely
 from shapely import LineString, MultiPolygon, Point, Polygon, box
 
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Upload
-from fieldmon.io.readers.places import Places, Plants
+from fieldmon.io.readers.places import NamedPlaces, Plants
 from fieldmon.plot.field import Field
 
 PARAN = (35.15, 30.36)
@@ -44,7 +44,7 @@ class Case:
     asks: tuple[str, ...] = ()
     refuses: str | None = None
     near: Field | None = None
-    places: Places | None = None
+    places: NamedPlaces | None = None
     check: Callable[[Any], object] | None = None
 
     @property
@@ -920,7 +920,7 @@ ROWS = Plants(
 
 @case(
     "records",
-    places=Places(plants=ROWS),
+    places=NamedPlaces(plants=ROWS),
     at=((35.1501, 30.3602), (35.1502, 30.3601)),
     says="dropped: 1 record(s) name 1 plant(s) that are not known: 7/7",
 )
@@ -928,14 +928,14 @@ def rows_and_plants_by_number():
     return table(f"row,plant,date,count\n2,1,{DAY},4\n1,2,{DAY},0\n7,7,{DAY},1\n")
 
 
-@case("records", asks="places", refuses="name plants instead of positions")
+@case("records", asks="plants", refuses="name plants instead of positions")
 def rows_and_plants_without_any_plants():
     return rows_and_plants_by_number()
 
 
 @case(
     "records",
-    places=Places(plots=(Field("North 1", MultiPolygon([SQUARE])),)),
+    places=NamedPlaces(plots=(Field("North 1", MultiPolygon([SQUARE])),)),
     at=((35.151, 30.361),),
     says=(
         "guessed: without capitals, spaces and marks",
@@ -949,7 +949,7 @@ def plots_by_name_with_some_unknown():
     return table("field,date,count\n" + "".join(f"{name},{DAY},{n}\n" for name, n in rows))
 
 
-@case("records", asks="places", refuses="name plots instead of positions")
+@case("records", asks="plots", refuses="name plots instead of positions")
 def plots_by_name_without_any_plots():
     return plots_by_name_with_some_unknown()
 
@@ -1287,7 +1287,7 @@ def thousands_with_points_beside_decimal_commas():
 
 @case(
     "records",
-    places=Places(plants=ROWS),
+    places=NamedPlaces(plants=ROWS),
     check=counts(1234),
     says="guessed: Counts such as 1,234 were read as thousands [decimal=,]",
 )
@@ -1307,7 +1307,7 @@ def a_column_that_could_be_the_date_is_offered():
 
 @case(
     "records",
-    places=Places(plants=ROWS),
+    places=NamedPlaces(plants=ROWS),
     asks=("where", "block=A", "block=B"),
     refuses="rows and plants must be of one plot",
 )
@@ -1317,7 +1317,7 @@ def rows_and_plants_of_several_plots():
 
 @case(
     "records",
-    places=Places(plants=ROWS),
+    places=NamedPlaces(plants=ROWS),
     options=RecordOptions(where="block=A"),
     at=((35.1501, 30.3601),),
 )

@@ -4,7 +4,10 @@ import os
 import shutil
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, is_hypothesis_test, settings
+
+# each property is tried on so many examples instead of its own number: see `thorough` below
+EXAMPLES = int(os.environ.get("FIELDMON_EXAMPLES", "0"))
 
 # the first example of a property pays for compiling; a landing must not depend on luck
 settings.register_profile(
@@ -13,7 +16,31 @@ settings.register_profile(
     derandomize="CI" in os.environ,
     suppress_health_check=[HealthCheck.too_slow],
 )
-settings.load_profile("fieldmon")
+settings.register_profile(
+    "thorough",
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
+    print_blob=True,
+)
+settings.load_profile("thorough" if EXAMPLES else "fieldmon")
+
+
+def thorough(test):
+    """Let a property be tried on `EXAMPLES` examples, for as long as it takes.
+
+    A profile alone does not do: what a test states itself comes first.
+    """
+    own = test.obj._hypothesis_internal_use_settings
+    test.obj._hypothesis_internal_use_settings = settings(own, max_examples=EXAMPLES)
+    test.add_marker(pytest.mark.timeout(0))
+
+
+def pytest_collection_modifyitems(items):
+    if EXAMPLES:
+        for test in items:
+            if is_hypothesis_test(getattr(test, "obj", None)):
+                thorough(test)
+
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 # software drawing: Mesa's, which keeps compiled shaders, or else the browser's own, some seconds

@@ -29,7 +29,7 @@ import shapely
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.io import read as reading
 from fieldmon.io.options import PlotOptions, RecordOptions, Upload
-from fieldmon.io.readers.reported import FindingsOptions
+from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.sandbox import limits, process
 from tests import awkward
 
@@ -295,9 +295,9 @@ def read(seed: Seed, parts: tuple[Upload, ...]) -> str:
         if seed.door == "layers":
             reading.list_layers(source)
         elif seed.door == "reported":
-            reading.read_reported(source, FindingsOptions())
+            reading.read_inspection_rows(source, InspectionOptions())
         elif seed.door == "records":
-            places = awkward.Places((awkward.HOME,), awkward.ROWS)
+            places = awkward.NamedPlaces((awkward.HOME,), awkward.ROWS)
             _check_places(reading.read_records(source, RecordOptions(), None, places).value.lonlat)
         else:
             options = PlotOptions() if seed.door == "plots" else None

@@ -4,8 +4,8 @@ import numpy as np
 
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
-from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import GATE, NEVER, Scene
+from fieldmon.plot.travel import GATE, Aisles
+from fieldmon.samplers.base import NEVER, Scene
 
 
 def scene_on(grid, hours=3.0, seed=0, **changes):

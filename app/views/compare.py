@@ -6,25 +6,29 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from app import cached, charts, keeping, panels, texts, verdicts, ways
-from app.comparing import Comparison, curve, outcomes
+from ..actions import changing, comparing
+from ..show import charts, verdicts
+from ..state import cached, chosen_day
+from ..state.comparison import Comparison, curve, outcomes
+from ..words import texts
 
 if TYPE_CHECKING:
-    from app.choices import Choices
+    from ..state.choices import Choices
 
-MOST_ARMS = 12
+_MOST = 12
 
 
 def show(choices: Choices) -> None:
     """Choose what to compare, and watch the results come."""
     st.subheader(f"{choices.name}: {texts.COMPARE}")
     st.caption(texts.COMPARE_INTRO)
-    asked = ways.asked(choices)
-    if not 1 <= len(asked.arms) <= MOST_ARMS:
-        st.warning(texts.TOO_MANY.format(most=MOST_ARMS, n=len(asked.arms)))
+    settings = comparing.settings(choices)
+    if not 1 <= len(settings.strategies) <= _MOST:
+        st.warning(texts.TOO_MANY.format(most=_MOST, n=len(settings.strategies)))
         return
     key = f"{choices.key} {choices.revision} {choices.day}"
-    running = cached.comparison(key, asked, choices.robot, choices.plot, panels.chance_of(choices))
+    chance = chosen_day.chance(choices)
+    running = cached.comparison(key, settings, choices.robot, choices.plot, chance)
     with st.container(horizontal=True):
         label = texts.GO_ON if 0 < running.done < running.total else texts.RUN
         st.button(label, type="primary", key="run", on_click=running.start,
@@ -49,12 +53,14 @@ def _results(choices: Choices, running: Comparison, *, at_work: bool) -> None:
         st.info(texts.COMPARE_EMPTY)
         return
     st.markdown(verdicts.sentence(ranked))
-    curves = {verdicts.name(arm): curve(walked) for arm, walked in seasons.items()}
+    curves = {verdicts.name(one): curve(walked) for one, walked in seasons.items()}
     st.altair_chart(charts.bands(curves, (texts.DAY_AXIS, texts.DETECTION_AXIS)),
                     alt=texts.DETECTION_AXIS)  # fmt: skip
     st.dataframe(verdicts.table(ranked), hide_index=True)
     with st.container(horizontal=True, vertical_alignment="bottom"):
-        arm = st.selectbox(texts.WAY, [o.arm for o in ranked], format_func=verdicts.name,
-                           key=f"use_arm {running.asked.arms}", width=340)  # fmt: skip
-        st.button(texts.USE_THIS, key="use_this", on_click=keeping.use,
-                  args=(choices, arm.sampler, arm.hours, arm.look_s))  # fmt: skip
+        strategy = st.selectbox(
+            texts.STRATEGY, [o.strategy for o in ranked], format_func=verdicts.name, width=340,
+            key=f"use_strategy {running.settings.strategies}",
+        )  # fmt: skip
+        st.button(texts.USE_THIS, key="use_this", on_click=changing.use,
+                  args=(choices, strategy))  # fmt: skip

@@ -5,16 +5,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 import streamlit as st
 
-from app import canopies, drawing, files, maps, panels, risks, texts
-from app.choices import row_settings
 from fieldmon.errors import PlotError
 
+from ..actions import bringing_files, drawing, rasters
+from ..show import field_map, plot_figures
+from ..show.maps import marks
+from ..show.records import records_until
+from ..state import chosen_day, plot_files, plot_source
+from ..state.row_settings import row_settings
+from ..words import texts
+
 if TYPE_CHECKING:
-    from app.choices import Choices
     from fieldmon.errors import FieldmonError
+
+    from ..state.choices import Choices
 
 
 def bring(problem: FieldmonError | None) -> None:
@@ -22,11 +28,11 @@ def bring(problem: FieldmonError | None) -> None:
     if problem is None:
         st.title(texts.TITLE)
         st.markdown(texts.EMPTY)
-    if st.session_state.get("season") == texts.UPLOAD:
-        files.bring()
+    if plot_source.chosen() == texts.UPLOAD:
+        bringing_files.show()
     if problem is not None:
-        files.say(problem)
-        laying = st.session_state.get("laying", "")
+        bringing_files.say(problem)
+        laying = plot_files.laying()
         # what was set by hand may be what is wrong: it must stay within reach
         if isinstance(problem, PlotError) and any(row_settings(laying).values()):
             drawing.rows(laying)
@@ -34,48 +40,36 @@ def bring(problem: FieldmonError | None) -> None:
 
 def show(choices: Choices) -> None:
     """Show the plot as it was understood, and change what was not."""
-    if st.session_state.get("season") == texts.UPLOAD:
-        files.bring()
+    if plot_source.chosen() == texts.UPLOAD:
+        bringing_files.show()
     st.subheader(f"{choices.name}: {texts.PLOT}")
     left, right = st.columns([3, 2])
     with right:
-        if choices.project is None:
+        if choices.season is None:
             drawing.rows(choices.plot_key)
             drawing.tools(choices)
-            canopies.bring()
-            risks.bring()
+            rasters.show_missing()
+            rasters.show_risk()
         else:
             st.info(texts.FIXED)
-        with st.expander(texts.FINDINGS, expanded=True):
-            files.show_findings(choices.heard)
-            for remark in panels.remarks_on_records(choices):
-                st.markdown(f"- {remark}")
+        with st.expander(texts.MESSAGES, expanded=True):
+            bringing_files.show_messages(choices.messages)
+            for message in chosen_day.messages_on_records(choices):
+                st.markdown(f"- {message}")
     with left:
-        _figures(choices)
+        plot_figures.show(choices.plot, choices.units)
         _map(choices)
 
 
-def _figures(choices: Choices) -> None:
-    grid, units = choices.plot.grid, choices.units
-    area_m2 = shapely.area(grid.frame.geometry_m(choices.plot.field.drivable()))
-    apart = f"{units.metres(grid.row_spacing_m, 1)} / {units.metres(grid.plant_spacing_m, 1)}"
-    with st.container(horizontal=True):
-        st.metric(texts.AREA_IS, units.square(float(area_m2)), width="content")
-        st.metric(texts.PLANTS_ARE, f"{len(grid):,}", width="content")
-        st.metric(texts.ROWS_ARE, int(grid.row_line.max()) + 1, width="content")
-        st.metric(texts.BEARING_IS, f"{grid.frame.bearing_deg % 180:.1f}°", width="content")
-        st.metric(texts.SPACING_IS, apart, width="content")
-
-
 def _map(choices: Choices) -> None:
-    records, said = panels.records_until(choices)
+    records, said = records_until(choices.records)
     layers = [
         *drawing.plain_plants(choices),
-        *maps.records(records, dark=choices.dark),
+        *marks.records(records, dark=choices.dark),
         *drawing.layers(choices),
     ]
-    panels.draw(choices, layers, "plot_map", clicked=drawing.clicks(choices))
-    panels.captions([texts.LEGEND_RECORDS, *([said] if said else [])])
+    field_map.draw(choices, layers, "plot_map", clicked=drawing.clicks(choices))
+    field_map.captions([texts.LEGEND_RECORDS, *([said] if said else [])])
     if not len(choices.records):
         st.caption(texts.RECORDS_NONE)
     elif np.isnat(choices.records.day).any():

@@ -5,28 +5,29 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING
 
-import numpy as np
 import pandas as pd
 import streamlit as st
 
-from app import charts, studying, texts
-from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.studies.thesis.chapter5.published import PARTS
 from fieldmon.studies.thesis.chapter5.report import report_html
-from fieldmon.studies.thesis.chapter5.sites import Site
 from fieldmon.studies.thesis.chapter5.study import (
     TITLES,
-    csv_text,
-    label_of,
     rows,
     run_prior,
     run_site,
 )
+from fieldmon.studies.tidy_csv import csv_text
+
+from ..actions import studying
+from ..show import charts
+from ..show.study_curves import curves
+from ..words import texts
 
 if TYPE_CHECKING:
-    from app.choices import Choices
-    from app.studying import Progress
-    from fieldmon.studies.thesis.chapter5.study import Part, Study
+    from fieldmon.studies.thesis.chapter5.study import PriorStudy
+
+    from ..actions.studying import Progress
+    from ..state.choices import Choices
 
 
 def show(choices: Choices | None) -> None:
@@ -54,26 +55,16 @@ def show(choices: Choices | None) -> None:
         _result(*kept[1:])
 
 
-def _run(part: str, seeds: int, own: Choices | None, progress: Progress) -> Study:
+def _run(part: str, seeds: int, own: Choices | None, progress: Progress) -> PriorStudy:
     if own is not None:
-        return run_site(_site(own), seeds, progress=progress)
+        return run_site(studying.site_of(own), seeds, progress=progress)
     return run_prior((part,), seeds, progress=progress)
 
 
-def _site(choices: Choices) -> Site:
-    """Return the chosen plot; where it has records, they seed the start."""
-    plot = choices.plot
-    if not len(choices.records):
-        return Site(plot.field.name, plot.aisles, plot.field)
-    day = np.datetime64(choices.day, "D")
-    chance = prior_chance(plot.grid, plot.field, choices.records, day, PriorSettings())
-    return Site(plot.field.name, plot.aisles, plot.field, chance)
-
-
-def _result(made: Study, table_csv: str, report: str) -> None:
+def _result(made: PriorStudy, table_csv: str, report: str) -> None:
     for part in made.parts:
         st.markdown(f"**{part.title}**")
-        chart = charts.curves(_curves(part), (texts.DAY_AXIS, texts.DETECTION_AXIS))
+        chart = charts.curves(curves(part), (texts.DAY_AXIS, texts.DETECTION_AXIS))
         st.altair_chart(chart, alt=texts.STUDY_ALT.format(title=part.title))
     if made.compared:
         st.dataframe(pd.read_csv(io.StringIO(csv_text(made.compared))), hide_index=True)
@@ -81,15 +72,3 @@ def _result(made: Study, table_csv: str, report: str) -> None:
     with st.container(horizontal=True):
         st.download_button(texts.STUDY_REPORT, report, "prior.html", "text/html", on_click="ignore")
         st.download_button(texts.STUDY_CSV, table_csv, "prior.csv", "text/csv", on_click="ignore")
-
-
-def _curves(part: Part) -> pd.DataFrame:
-    """Return the mean detection day by day, a column a configuration."""
-    columns = {}
-    for runs in part.runs:
-        name = label_of(part.name, runs.trial)
-        size = f", {runs.trial.hectares:g} ha" if part.name == "size" else ""
-        columns[name + size] = runs.detection_pct.mean(axis=0)
-    table = pd.DataFrame(columns)
-    table.index += 1
-    return table

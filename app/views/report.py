@@ -7,25 +7,27 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from app import keeping, panels, report, texts
+from ..show import day, report
+from ..state import chosen_day
+from ..words import texts
 
 if TYPE_CHECKING:
-    from app.choices import Choices
+    from ..state.choices import Choices
 
 
 def show(choices: Choices) -> None:
     """Show the report, and hand it out."""
     st.subheader(f"{choices.name}: {texts.REPORT}")
     st.caption(texts.REPORT_INTRO)
-    today = choices.today()
-    days = [] if choices.project is None else keeping.figures(choices)
+    plan = choices.plan()
+    days = [] if choices.season is None else chosen_day.figures_so_far(choices)
     facts = report.Facts(
         choices.plot.field.name, choices.units.day(choices.day), choices.units,
-        panels.chance_of(choices), panels.states_of(choices), choices.robot,
-        texts.SAMPLERS[choices.sampler], panels.route_of_day(choices).route,
-        panels.found_on_day(choices),
+        chosen_day.chance(choices), chosen_day.states(choices), choices.robot,
+        texts.SAMPLERS[choices.sampler], chosen_day.route(choices).route,
+        day.found_by_row(choices),
     )  # fmt: skip
-    page = report.html(facts, today, panels.stops(choices, today), days)
+    page = report.html(facts, plan, day.stops(choices, plan), days)
     st.download_button(
         texts.REPORT_DOWNLOAD, page, f"report_{choices.day}.html", "text/html", type="primary",
         on_click="ignore",

@@ -2,67 +2,69 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from app import maps, panels, scouting, texts
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
+
+from ..actions import scouting
+from ..show import field_map, map_layers
+from ..show.maps import marks
+from ..show.next_stop import next_stop
+from ..state import chosen_day
+from ..words import texts
 
 if TYPE_CHECKING:
-    from app.choices import Choices
+    from ..state.choices import Choices
 
-_BIG = """<style>
-[class*="st-key-scout"] button {min-height:4.2rem;width:100%}
-.st-key-scout_count button {min-height:0;width:auto}
-[class*="st-key-scout"] button p {font-size:1.4rem;font-weight:600}
-.st-key-scout_clean button {background:#146c43;color:#fff;border-color:#146c43}
-.st-key-scout_found button {background:#b3171d;color:#fff;border-color:#b3171d}
-</style>"""
+# the buttons are as large as thumbs in gloves
+_STYLE = Path(__file__).with_name("scout.css")
 
 
 def show(choices: Choices) -> None:
     """Lead from plant to plant."""
-    if choices.project is None:
+    if choices.season is None:
         st.markdown(texts.SCOUT_NEEDS)
         return
-    st.html(_BIG)
+    st.html(_STYLE)
     scouting.give_out(choices)
     scouting.ask_start(choices)
-    today = choices.today()
-    status = scouting.status(choices)
-    if not len(today.route):
-        st.markdown(texts.SCOUT_DONE.format(inspected=status.inspected_today,
-                                            found=status.found_today))  # fmt: skip
+    plan, progress = choices.plan(), chosen_day.progress(choices)
+    if not len(plan.route):
+        st.markdown(texts.SCOUT_DONE.format(inspected=progress.inspected_today,
+                                            found=progress.found_today))  # fmt: skip
         st.caption(texts.SCOUT_LONGER_NOTE)
         with st.container(key="scout_more"):
             st.button(texts.SCOUT_LONGER, key="scout_hour", on_click=scouting.longer,
                       args=(choices,))  # fmt: skip
         _undo(choices)
         return
-    step = scouting.next_step(choices, today)
-    st.markdown(f"## {step.arrow} {step.place}")
-    st.markdown(f"**{step.way}**")
-    st.caption(step.chance)
+    stop = next_stop(plan, progress.inspected_today, choices.units)
+    st.markdown(f"## {stop.arrow} {stop.place}")
+    st.markdown(f"**{stop.direction}**")
+    st.caption(stop.chance)
     with st.container(key="scout_buttons", horizontal=True):
         for key, label, result in (
-            ("scout_clean", texts.CLEAN_BUTTON, scouting.CLEAN),
-            ("scout_found", texts.FOUND_BUTTON, scouting.FOUND),
+            ("scout_clean", texts.CLEAN_BUTTON, CLEAN),
+            ("scout_found", texts.FOUND_BUTTON, FOUND),
         ):
             st.button(label, key=key, width="stretch", on_click=scouting.tap,
-                          args=(choices, step.plant, result))  # fmt: skip
+                          args=(choices, stop.plant, result))  # fmt: skip
     st.number_input(texts.COUNT_LABEL, 0, 100_000, None, key="scout_count")
     with st.container(key="scout_others"):
         st.button(texts.SKIP_BUTTON, key="scout_skip", width="stretch", on_click=scouting.tap,
-                  args=(choices, step.plant, scouting.SKIPPED))  # fmt: skip
+                  args=(choices, stop.plant, SKIPPED))  # fmt: skip
     _undo(choices)
     layers = [
-        *panels.plant_layers(choices, "state"),
-        *panels.route_layers(choices, today.route, numbers=False),
-        maps.places([step.lonlat], "next", (255, 190, 0), texts.NEXT),
+        *map_layers.plants(choices, "state"),
+        *map_layers.route(choices, plan.route, numbers=False),
+        marks.places([stop.lonlat], "next", (255, 190, 0), texts.NEXT),
     ]
-    panels.draw(choices, layers, "scout_map")
-    st.markdown(maps.state_legend(texts.LEGEND_STATES), unsafe_allow_html=True)
-    panels.captions([texts.LEGEND_ROUTE])
+    field_map.draw(choices, layers, "scout_map")
+    field_map.state_legend()
+    field_map.captions([texts.LEGEND_ROUTE])
 
 
 def _undo(choices: Choices) -> None:

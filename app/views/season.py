@@ -7,54 +7,57 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from app import cached, charts, keeping, recording, texts
+from ..actions import beginning, recording
+from ..show import charts
+from ..state import chosen_day
+from ..words import texts
 
 if TYPE_CHECKING:
-    from app.choices import Choices
-    from app.figures import DayFigures, Known
+    from fieldmon.monitoring import DayFigures, Progress
+
+    from ..state.choices import Choices
 
 
 def show(choices: Choices) -> None:
     """Show where the season stands, and take in what was found."""
     st.subheader(f"{choices.name}: {texts.SEASON}")
-    if choices.project is None:
+    if choices.season is None:
         st.markdown(texts.NEEDS_SEASON)
-        keeping.begin(choices)
+        beginning.show(choices)
         return
-    days = keeping.figures(choices)
-    known = cached.known(choices.key, choices.revision, choices.day, choices.project)
-    _figures(choices, days[-1], known)
+    days, progress = chosen_day.figures_so_far(choices), chosen_day.progress(choices)
+    _figures(choices, days[-1], progress)
     left, right = st.columns([1, 1])
     with left:
-        _charts(choices, days, known)
+        _charts(choices, days, progress)
     with right:
         recording.show(choices)
         with st.expander(texts.BATCHES, expanded=True):
-            keeping.batches(choices)
+            recording.show_batches(choices)
 
 
-def _figures(choices: Choices, now: DayFigures, known: Known) -> None:
+def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
     plants = len(choices.plot.grid)
-    everything = known.found + now.expected
-    detected = 100.0 * known.found / everything if everything else 100.0
+    everything = progress.found + now.expected
+    detected = 100.0 * progress.found / everything if everything else 100.0
     with st.container(horizontal=True):
         st.metric(texts.EXPECTED_LEFT, f"{now.expected:.1f} ({now.low}-{now.high})",
                   help=texts.EXPECTED_HELP, width="content")  # fmt: skip
-        st.metric(texts.FOUND_EVER, f"{known.found:,}", width="content")
+        st.metric(texts.FOUND_EVER, f"{progress.found:,}", width="content")
         st.metric(texts.DETECTED, f"{detected:.0f} %", width="content")
-        st.metric(texts.INSPECTED_EVER, f"{known.inspected:,} / {plants:,}", width="content")
-        st.metric(texts.CLEAN_CHANCE, f"{now.clean:.1%}", width="content")
+        st.metric(texts.INSPECTED_EVER, f"{progress.inspected:,} / {plants:,}", width="content")
+        st.metric(texts.CLEAN_CHANCE, f"{now.chance_clean:.1%}", width="content")
 
 
-def _charts(choices: Choices, days: list[DayFigures], known: Known) -> None:
+def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> None:
     axes = (texts.DATE_AXIS, texts.INSPECTED_AXIS, texts.FOUND_AXIS)
     st.altair_chart(charts.season_days(days, axes), alt=texts.FOUND_AXIS)
     st.altair_chart(charts.still_out(days, (texts.DATE_AXIS, texts.OUT_AXIS)), alt=texts.OUT_AXIS)
     st.markdown(f"**{texts.ROW_AGES}**")
     line = choices.plot.grid.row_line.astype(np.int64) + 1
-    never = len(np.unique(line)) - len(np.unique(line[~np.isnan(known.days_since)]))
+    never = len(np.unique(line)) - len(np.unique(line[~np.isnan(progress.days_since)]))
     st.altair_chart(
-        charts.row_ages(known.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE)),
+        charts.row_ages(progress.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE)),
         alt=texts.ROW_AGES,
     )
     st.caption(texts.NEVER_ROWS.format(n=never, all=len(np.unique(line))))

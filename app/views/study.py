@@ -7,10 +7,12 @@ import io
 import pandas as pd
 import streamlit as st
 
-from app import studying, texts
-from fieldmon.studies.thesis.chapter4.measures import csv_text
 from fieldmon.studies.thesis.chapter4.report import report_html
 from fieldmon.studies.thesis.chapter4.study import run_no_prior, table_names
+from fieldmon.studies.tidy_csv import csv_text
+
+from ..actions import studying
+from ..words import texts
 
 
 def show() -> None:

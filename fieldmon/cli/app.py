@@ -24,14 +24,12 @@ def open_app(
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,  # noqa: FBT002
 ) -> None:
     """Open the app in the browser. It needs no internet; stop it with Ctrl-C."""
-    import importlib.util  # noqa: PLC0415
     import socket  # noqa: PLC0415
     import subprocess  # noqa: PLC0415
 
     from fieldmon.io.sandbox.process import own_path  # noqa: PLC0415
 
-    if importlib.util.find_spec("app") is None:
-        raise SettingError("The app must be installed beside fieldmon, but it was not found.")
+    server = _server()
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
@@ -43,7 +41,7 @@ def open_app(
             ) from error
     typer.echo(f"fieldmon is at http://{address}:{port} (stop it with Ctrl-C)")
     # -P: -m looks in the folder one stands in first, which need not be where the app is
-    command = [sys.executable, "-P", "-m", "app.serve", *(["--browser"] if browser else [])]
+    command = [sys.executable, "-P", "-m", server, *(["--browser"] if browser else [])]
     # everything else is set, with reasons, in the app's own .streamlit/config.toml
     env = os.environ | {
         "STREAMLIT_SERVER_ADDRESS": address,
@@ -54,3 +52,12 @@ def open_app(
     with WAITING.silent():
         ended = subprocess.run(command, check=False, env=env)  # noqa: S603 - our own
     raise typer.Exit(ended.returncode)
+
+
+def _server() -> str:
+    """Return the module that serves the app: in fieldmon as installed, beside it in its tree."""
+    fieldmon = Path(__file__).resolve().parents[1]
+    for package, folder in (("fieldmon._app", fieldmon / "_app"), ("app", fieldmon.parent / "app")):
+        if (folder / "startup" / "serve.py").is_file():
+            return f"{package}.startup.serve"
+    raise SettingError("The app must be installed beside fieldmon, but it was not found.")

@@ -19,7 +19,8 @@ import typer
 from fieldmon.cli.waiting import progress
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.atomic_write import write_whole
-from fieldmon.io.readers.nearby import apart
+from fieldmon.io.prepare import lay
+from fieldmon.io.sources import PlantingChoices
 from fieldmon.io.writers.geojson import RouteNotes, write_route
 from fieldmon.planning.batch import plan_task
 
@@ -29,10 +30,8 @@ if TYPE_CHECKING:
     from datetime import datetime
     from pathlib import Path
 
-    from fieldmon.infestation.observations import Observations
-    from fieldmon.io.readers.crews import Crew
+    from fieldmon.io.prepare import Estate, EstateRecords
     from fieldmon.planning.batch import Orders, Task
-    from fieldmon.plot.field import Field
 
 SUMMARY = "summary.csv"
 _COLUMNS = (
@@ -55,15 +54,15 @@ class Day:
 
     Parameters
     ----------
-    observations
-        Records of all plots.
+    records
+        Those of all plots.
     folder
         Where the routes go.
     began
         Local date and time of the start.
     """
 
-    observations: Observations
+    records: EstateRecords
     folder: Path
     began: datetime
 
@@ -71,9 +70,7 @@ class Day:
 _day: list[Day] = []
 
 
-def plan_all(
-    plots: Iterable[tuple[Field, Crew]], orders: Orders, day: Day, workers: int | None = None
-) -> None:
+def plan_all(plots: Estate, orders: Orders, day: Day, workers: int | None = None) -> None:
     """Plan every plot; write a route file each, and `SUMMARY` in the same folder.
 
     A plot that cannot be planned is refused with its sentence, and the others go on. What an
@@ -81,7 +78,9 @@ def plan_all(
     """
     tasks = _tasks(plots, orders)
     day.folder.mkdir(parents=True, exist_ok=True)
-    digests = {name: task.digest(day.observations) for name, task in tasks.items()}
+    digests = {
+        name: task.digest(plots.records.candidates(task.plot.name)) for name, task in tasks.items()
+    }
     rows = _finished(day.folder, digests)
     left = {name: task for name, task in tasks.items() if name not in rows}
     if len(left) < len(tasks):
@@ -93,16 +92,16 @@ def plan_all(
     _tell(rows, day.folder)
 
 
-def _tasks(plots: Iterable[tuple[Field, Crew]], orders: Orders) -> dict[str, Task]:
+def _tasks(plots: Estate, orders: Orders) -> dict[str, Task]:
     """Return the tasks by the names of their files."""
     from fieldmon.planning.batch import (  # noqa: PLC0415 - with orders, which the caller has made
         Task,
     )
 
-    listed = list(plots)
-    digits = len(str(len(listed)))
+    digits = len(str(len(plots.fields)))
     tasks = {}
-    for number, (plot, crew) in enumerate(listed, 1):
+    for number, plot in enumerate(plots.fields, 1):
+        crew = plots.crew(plot)
         stated = {"hours": crew.hours, "look_s": crew.look_s}
         stated["speed_m_s"] = None if crew.speed_km_h is None else crew.speed_km_h / 3.6
         known = {name: value for name, value in stated.items() if value is not None}
@@ -201,7 +200,9 @@ def _work(name: str, task: Task) -> Row:
     (day,) = _day
     row = dict.fromkeys(_COLUMNS, "") | {"plot": task.plot.name, "file": name}
     try:
-        today = plan_task(task, apart(day.observations, task.plot).inside)
+        choices = PlantingChoices(**task.orders.planting)  # type: ignore[arg-type]
+        plot = lay(task.plot, choices).plot
+        today = plan_task(task, plot, day.records.on(task.plot))
     except FieldmonError as error:
         (day.folder / name).unlink(missing_ok=True)
         return row | {"state": "refused", "sentence": str(error)}

@@ -2,53 +2,89 @@
 
 from __future__ import annotations
 
-from datetime import date
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fieldmon.cli.waiting import progress
-from fieldmon.errors import SettingError
+from fieldmon.cli.messages import Terminal
+from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.preparing import estate
+from fieldmon.cli.times import day
+from fieldmon.cli.waiting import counting
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-    from fieldmon.simulation.design import Design, Site
+    from fieldmon.simulation.design import Design, StudyPlot
 
 
-def register(app: typer.Typer) -> None:
-    """Add the command to `fieldmon study`."""
-    app.command("run")(study_run)
+@dataclass(frozen=True)
+class StudyOptions:
+    """What `fieldmon study run` is told."""
 
-
-def study_run(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
-    plot: Annotated[Path, typer.Argument(help="Plot file; all its plots unless one is chosen.")],
+    plot: Annotated[Path, typer.Argument(help="Plot file; all its plots unless one is chosen.")]
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder of the Parquet dataset.")
-    ] = Path("study"),
-    feature: Annotated[str | None, typer.Option(help="Only this plot: name or number.")] = None,
-    observations: Annotated[Path | None, typer.Option(help="Dated pest records.")] = None,
+    ] = Path("study")
+    feature: Annotated[str | None, typer.Option(help="Only this plot: name or number.")] = None
+    observations: Annotated[Path | None, typer.Option(help="Dated pest records.")] = None
     sampler: Annotated[
         list[str] | None, typer.Option(help="Who chooses; repeat. Naive, bouncy, dynamic if none.")
-    ] = None,
-    hours: Annotated[list[float] | None, typer.Option(help="Working hours; repeat.")] = None,
-    look: Annotated[list[float] | None, typer.Option(help="Seconds a plant; repeat.")] = None,
+    ] = None
+    hours: Annotated[list[float] | None, typer.Option(help="Working hours; repeat.")] = None
+    look: Annotated[list[float] | None, typer.Option(help="Seconds a plant; repeat.")] = None
     infested: Annotated[
         list[float] | None, typer.Option(help="Share infested at the start; repeat.")
-    ] = None,
+    ] = None
     spread: Annotated[
         list[float] | None, typer.Option(help="Chance a night per neighbour; repeat.")
-    ] = None,
-    days: Annotated[int, typer.Option(help="Working days of a season.")] = 25,
-    seeds: Annotated[int, typer.Option(help="Seasons of each combination.")] = 100,
-    first_seed: Annotated[int, typer.Option(help="The same seeds, the same seasons.")] = 1,
-    on: Annotated[str | None, typer.Option("--date", help="First day, YYYY-MM-DD; today.")] = None,
-    workers: Annotated[int | None, typer.Option(help="Processes; one a core.", min=1)] = None,
+    ] = None
+    days: Annotated[int, typer.Option(help="Working days of a season.")] = 25
+    seeds: Annotated[int, typer.Option(help="Seasons of each combination.")] = 100
+    first_seed: Annotated[int, typer.Option(help="The same seeds, the same seasons.")] = 1
+    on: Annotated[str | None, typer.Option("--date", help="First day, YYYY-MM-DD; today.")] = None
+    workers: Annotated[int | None, typer.Option(help="Processes; one a core.", min=1)] = None
     scheduler: Annotated[
         str | None, typer.Option(help="A Dask cluster's scheduler: tcp://host:8786.")
-    ] = None,
-) -> None:
+    ] = None
+
+    def design(self) -> Design:
+        """Return what is compared."""
+        from fieldmon.simulation.design import Design  # noqa: PLC0415
+
+        told = {
+            "samplers": self.sampler,
+            "hours": self.hours,
+            "look_s": self.look,
+            "infested": self.infested,
+            "spread": self.spread,
+        }
+        chosen: dict[str, Any] = {name: tuple(values) for name, values in told.items() if values}
+        return Design(**chosen, n_days=self.days, n_seeds=self.seeds, first_seed=self.first_seed)
+
+    def plots(self) -> tuple[StudyPlot, ...]:
+        """Return the plots with their records."""
+        import numpy as np  # noqa: PLC0415
+
+        from fieldmon.io.options import PlotOptions  # noqa: PLC0415
+        from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource  # noqa: PLC0415
+        from fieldmon.plot.plot import planting_of  # noqa: PLC0415
+        from fieldmon.simulation.design import StudyPlot  # noqa: PLC0415
+
+        on = np.datetime64(day(self.on), "D")
+        records = None if self.observations is None else RecordSource(self.observations)
+        sources = PlotSources(self.plot, PlotOptions(feature=self.feature))
+        known = estate(PlotRequest(sources, records=records), Terminal(flags={}))
+        return tuple(
+            StudyPlot(field, planting_of(field), known.records.on(field), on)
+            for field in known.fields
+        )
+
+
+@with_options
+def study_run(options: StudyOptions) -> None:
     """Compare samplers on plots of one's own, over many seasons, on as many machines as there are.
 
     Every combination of the options' values meets the same insects, seed by seed. Seasons are
@@ -58,59 +94,20 @@ def study_run(  # noqa: PLR0913, PLR0917 - a command's options are its arguments
     Example: fieldmon study run vines.zip --feature 3 --hours 6 --hours 12 --seeds 200 -o study
     """
     from fieldmon.simulation import executor, results  # noqa: PLC0415
-    from fieldmon.simulation.design import Design  # noqa: PLC0415
+    from fieldmon.simulation.design import study_of  # noqa: PLC0415
+    from fieldmon.simulation.experiment import run  # noqa: PLC0415
 
-    values = {"hours": hours, "look_s": look, "infested": infested, "spread": spread}
-    chosen: dict[str, Any] = {
-        name: tuple(each)
-        for name, each in (values | {"samplers": sampler}).items()
-        if each is not None
-    }
-    design = Design(**chosen, n_days=days, n_seeds=seeds, first_seed=first_seed)
-    sites = _sites(plot, feature, observations, on)
-    with executor.cluster(scheduler, workers) as client:
-        typer.echo(f"Dashboard: {client.dashboard_link}", err=True)
-        refused = _run(client, output, sites, design)
-    for name, sentence in refused.items():
+    design, plots, output = options.design(), options.plots(), options.output
+    with executor.cluster(options.scheduler, options.workers) as workers:
+        typer.echo(f"Dashboard: {workers.dashboard}", err=True)
+        folder = results.StudyFolder(output, plots, design)
+        with counting("Simulating") as count:
+            run(study_of(plots, design), workers, folder, count)
+    for name, sentence in folder.refused.items():
         typer.echo(f"refused: {name}: {sentence}", err=True)
-    if len(refused) < len(sites):
+    if len(folder.refused) < len(plots):
         _tell(results.seasons(output))
         typer.echo(f"Seasons are in {output}")
-
-
-def _run(client: Any, output: Path, sites: tuple[Site, ...], design: Design) -> dict[str, str]:  # noqa: ANN401 - Dask's
-    from fieldmon.simulation import executor  # noqa: PLC0415
-
-    with progress("Simulating") as bar:
-
-        def shown(done: int, total: int) -> None:
-            bar.length = total
-            bar.update(done - bar.pos)
-
-        return executor.run(client, output, sites, design, shown)
-
-
-def _sites(
-    plot: Path, feature: str | None, observations: Path | None, on: str | None
-) -> tuple[Site, ...]:
-    import numpy as np  # noqa: PLC0415
-
-    from fieldmon.infestation.observations import Observations  # noqa: PLC0415
-    from fieldmon.io.options import PlotOptions  # noqa: PLC0415
-    from fieldmon.io.read import read_plots, read_records  # noqa: PLC0415
-    from fieldmon.io.readers.nearby import apart  # noqa: PLC0415
-    from fieldmon.plot.plot import planting_of  # noqa: PLC0415
-    from fieldmon.simulation.design import Site  # noqa: PLC0415
-
-    try:
-        day = np.datetime64(date.fromisoformat(on) if on else date.today(), "D")  # noqa: DTZ011 - local day
-    except ValueError as error:
-        raise SettingError(f"--date must be a day as YYYY-MM-DD, but it is {on!r}.") from error
-    fields = read_plots(plot, PlotOptions(feature=feature)).value
-    records = Observations.none() if observations is None else read_records(observations).value
-    return tuple(
-        Site(field, planting_of(field), apart(records, field).inside, day) for field in fields
-    )
 
 
 def _tell(seasons: pa.Table) -> None:

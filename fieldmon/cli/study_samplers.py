@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.waiting import progress
-from fieldmon.errors import FileProblem, SettingError
+from fieldmon.cli.study_output import must_be_folder, write_all
+from fieldmon.cli.waiting import counting
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-_SAVED_EVERY_S = 15.0
+    from fieldmon.studies.samplers.scenarios import Scenario
+    from fieldmon.studies.samplers.seasons import SeasonOutcome
 
 
 def samplers(
@@ -47,134 +48,79 @@ def samplers(
 
     Example: fieldmon study samplers --cell "B, spread 30% to one" --seeds 20 -o study
     """
-    from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
     from fieldmon.studies.samplers.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.samplers.scenarios import all_cells, usual_cells  # noqa: PLC0415
-    from fieldmon.studies.samplers.seasons import run  # noqa: PLC0415
-    from fieldmon.studies.samplers.summary import (  # noqa: PLC0415
-        csv_text,
-        outcomes_from,
-        sentences,
-    )
+    from fieldmon.studies.samplers.summary import sentences  # noqa: PLC0415
 
-    if not output.is_dir():
-        raise FileProblem(f"The folder {output} must exist, but it does not. Make it first.")
+    must_be_folder(output)
     if maps is not None:
         _on_maps(maps, output)
         return
     if tune:
         _tune()
         return
-    cells = all_cells() if full else usual_cells()
-    if cell:
-        cells = [each for each in cells if any(each.name.startswith(name) for name in cell)]
-    if not cells:
-        raise SettingError(f"A cell must begin with {' or '.join(cell or [])}, but none does.")
     table = output / "samplers.csv"
-    made = outcomes_from(table.read_text(encoding="utf-8"), table.name) if table.exists() else []
-    done = frozenset((outcome.cell, outcome.seed) for outcome in made)
-    ahead = [(each.name, seed) for each in cells for seed in range(seeds)]
-    with progress("Seasons", len(ahead)) as bar:
-        bar.update(len(done & set(ahead)))
-        saved = monotonic()
-        try:
-            for outcomes in run(cells, range(seeds), done):
-                made += outcomes
-                bar.update(1)
-                if monotonic() > saved + _SAVED_EVERY_S:
-                    write_whole(table, csv_text(made).encode())
-                    saved = monotonic()
-        finally:
-            write_whole(table, csv_text(made).encode())
-    wanted = set(ahead)
-    shown = [outcome for outcome in made if (outcome.cell, outcome.seed) in wanted]
+    shown = _outcomes(_scenarios(cell, full=full), seeds, table)
     for sentence in sentences(shown):
         typer.echo(sentence)
-    page = output / "samplers.html"
-    write_whole(page, report_html(shown).encode())
-    typer.echo(f"Written: {table}\nWritten: {page}")
+    typer.echo(f"Written: {table}")
+    write_all(output, {"samplers.html": report_html(shown)})
 
 
-def beliefs(
-    seeds: Annotated[int, typer.Option(min=1, help="Simulated seasons a belief.")] = 10,
-    cell: Annotated[
-        str, typer.Option(help="How the name of the situation begins (see `study samplers`).")
-    ] = "B, spread 30% to one, clusters, prior none",
-    sampler: Annotated[str, typer.Option(help="Who inspects meanwhile.")] = "adaptive",
-    output: Annotated[
-        Path, typer.Option("--output", "-o", help="Folder for the report (HTML).")
-    ] = Path(),
-) -> None:
-    """Compare chance maps by what came true: reliability, scores, intervals, cost.
+def _scenarios(beginnings: list[str] | None, *, full: bool) -> list[Scenario]:
+    """Return the scenarios that are meant."""
+    from fieldmon.studies.samplers.scenarios import all_scenarios, usual_scenarios  # noqa: PLC0415
 
-    Example: fieldmon study beliefs --seeds 20 --sampler naive -o study
-    """
-    from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
-    from fieldmon.samplers import sampler as named  # noqa: PLC0415
-    from fieldmon.studies.samplers.calibration import (  # noqa: PLC0415
-        BELIEFS,
-        calibration,
-        report_html,
-    )
-    from fieldmon.studies.samplers.scenarios import all_cells  # noqa: PLC0415
+    scenarios = all_scenarios() if full else usual_scenarios()
+    if not beginnings:
+        return scenarios
+    meant = [each for each in scenarios if each.name.startswith(tuple(beginnings))]
+    if not meant:
+        raise SettingError(f"A cell must begin with {' or '.join(beginnings)}, but none does.")
+    return meant
 
-    if not output.is_dir():
-        raise FileProblem(f"The folder {output} must exist, but it does not. Make it first.")
-    chosen = next((each for each in all_cells() if each.name.startswith(cell)), None)
-    if chosen is None:
-        raise SettingError(f"A cell must begin with {cell!r}, but none does.")
-    made = {}
-    for name, believe in BELIEFS.items():
-        made[name] = c = calibration([chosen], named(sampler), believe, seeds)
-        typer.echo(
-            f"{name:24} Brier {c.brier:.5f}, log score {c.log_score:.4f} "
-            f"(as suspicious or not {c.suspicious_log_score:.4f}), 90 % interval holds "
-            f"{c.covered:.0%}, {1000 * c.seconds_a_day:.0f} ms a day"
-        )
-    about = f"{chosen.name}; {seeds} seasons of 12 days inspected by {sampler}."
-    page = output / "beliefs.html"
-    write_whole(page, report_html(made, about).encode())
-    typer.echo(f"Written: {page}")
+
+def _outcomes(scenarios: list[Scenario], seeds: int, file: Path) -> list[SeasonOutcome]:
+    """Simulate what the table lacks, and keep it there; return the outcomes asked for."""
+    from fieldmon.simulation import executor  # noqa: PLC0415
+    from fieldmon.simulation.experiment import run  # noqa: PLC0415
+    from fieldmon.studies.samplers.outcome_table import OutcomeTable  # noqa: PLC0415
+    from fieldmon.studies.samplers.seasons import study_of  # noqa: PLC0415
+
+    study = study_of(scenarios, range(seeds))
+    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()])
+    with counting("Seasons") as count, table, executor.threads() as workers:
+        run(study, workers, table, count)
+    return table.asked()
 
 
 def _tune() -> None:
     """Print what each of Dynamic's open choices loses."""
     from fieldmon.studies.samplers.tuning import (  # noqa: PLC0415
-        CHOICES,
         SEEDS,
         losses,
-        tuning_cells,
+        tuning_scenarios,
     )
 
-    made = []
-    with progress("Choices", len(CHOICES)) as bar:
-        for choice, loss in losses(tuning_cells(), SEEDS):
-            made.append((loss, *choice))
-            bar.update(1)
-    for loss, suspicious, at_once in sorted(made):
+    with counting("Choices") as count:
+        made = losses(tuning_scenarios(), SEEDS, count)
+    for loss, suspicious, at_once in sorted((loss, *choice) for choice, loss in made.items()):
         typer.echo(f"{loss:8.1f} infested plant-days: {suspicious = }, {at_once = }")
 
 
 def _on_maps(folder: Path, output: Path) -> None:
     """Print and write how many infested plants a look finds on mapped plots."""
-    from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
     from fieldmon.studies.samplers.mapped_plots import (  # noqa: PLC0415
-        LAYOUTS,
         SHARES,
-        maps_from,
+        plots_in,
         table,
         table_csv,
     )
 
-    files = [folder / name for name in LAYOUTS if (folder / name).is_file()]
-    if not files:
-        raise FileProblem(f"{folder} must hold one of {', '.join(LAYOUTS)}, but it does not.")
-    rows = table([m for file in files for m in maps_from(file.name, file.read_text("utf-8"))])
+    rows = table(plots_in(folder))
     typer.echo(f"{'Infested plants found per look, after':38} " + _columns(SHARES, "{:6.0%}"))
     for name, who, values in rows:
         typer.echo(f"{name:28} {who:9} " + _columns(values, "{:6.2f}"))
-    write_whole(output / "maps.csv", table_csv(rows).encode())
-    typer.echo(f"Written: {output / 'maps.csv'}")
+    write_all(output, {"maps.csv": table_csv(rows)})
 
 
 def _columns(values: Iterable[float], form: str) -> str:

@@ -13,7 +13,7 @@ import typer
 from fieldmon.compute.jit_progress import FIRST_USE
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 # a command that answers sooner says nothing; what is said is shorter than any answer, which so
 # writes over it
@@ -99,3 +99,15 @@ def progress(label: str, length: int = 1) -> Iterator[Any]:
         ) as bar,
     ):
         yield bar
+
+
+@contextmanager
+def counting(label: str) -> Iterator[Callable[[int, int], None]]:
+    """Show a bar that is told how much is done, and of how much."""
+    with progress(label) as bar:
+
+        def count(done: int, total: int) -> None:
+            bar.length = total
+            bar.update(done - bar.pos)
+
+        yield count

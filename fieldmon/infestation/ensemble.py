@@ -15,7 +15,8 @@ import numba as nb
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams, coin
-from fieldmon.infestation.belief import CLUSTERING, pairs
+from fieldmon.infestation.clustering import CLUSTERING
+from fieldmon.infestation.pairs import pair_chances
 from fieldmon.infestation.plot_estimate import PlotEstimate, draw_fields
 from fieldmon.infestation.spread import night
 
@@ -44,11 +45,11 @@ class Ensemble:
 
     @classmethod
     def of(
-        cls, grid: PlantGrid, chance: NDArray[np.float64], company: float = CLUSTERING
+        cls, grid: PlantGrid, chance: NDArray[np.float64], clustering: float = CLUSTERING
     ) -> Ensemble:
-        """Draw fields from a chance map, see :func:`fieldmon.infestation.belief.pairs`."""
+        """Draw fields from a chance map, see :func:`fieldmon.infestation.pairs.pair_chances`."""
         fields = np.zeros((_FIELDS, len(grid)), np.bool_)
-        believed = chance, pairs(chance, grid, company)
+        believed = chance, pair_chances(chance, grid, clustering)
         draw_fields(believed, grid.adjacent, RandomStreams(0).key("fields"), fields)
         return cls(grid, fields, RandomStreams(0))
 
@@ -87,7 +88,7 @@ class Ensemble:
         luck = self.chances.of("treated", self.steps).random(self.fields.shape)
         return Ensemble(self.grid, self.fields & (luck < left), self.chances, self.steps + 1)
 
-    def outlook(self, sure: float = 0.9) -> PlotEstimate:
+    def estimate(self, sure: float = 0.9) -> PlotEstimate:
         """Return what the fields say of the whole plot."""
         counts = self.fields.sum(axis=1)
         low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])

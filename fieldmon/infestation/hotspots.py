@@ -20,9 +20,10 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
-from fieldmon.infestation.prior import outside_m
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -116,6 +117,10 @@ class HotSpots:
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
 
+    def __repr__(self) -> str:
+        finds = counted(int(self.found.sum()), "find")
+        return f"<HotSpots: {counted(len(self), 'hot spot')} with {finds}>"
+
     def __len__(self) -> int:
         """Return the number of hot spots."""
         return len(self.found)
@@ -160,6 +165,29 @@ def hot_spots(
     """Return where finds cluster, from each plant's `state` ``(n,)`` (see :func:`states`).
 
     The two faces of a vine count as one plant, infested if either is.
+
+    Parameters
+    ----------
+    grid
+        The plants.
+    state
+        ``(n,)`` int8: 1 found infested, 0 only found clean, -1 never inspected.
+    settings
+        Windows and the false discovery rate; None: the defaults.
+
+    Raises
+    ------
+    ObservationError
+        If `state` has not one entry a plant.
+
+    Examples
+    --------
+    >>> import numpy as np, fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> state = np.zeros(plot.n_plants, np.int8)
+    >>> state[1000:1006] = 1
+    >>> len(fm.hot_spots(plot.grid, state))
+    1
     """
     settings = settings or HotSpotSettings()
     if len(state) != len(grid):

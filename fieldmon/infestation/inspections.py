@@ -1,70 +1,126 @@
-"""Inspections: which plant was looked at when, and what was seen."""
+"""Inspections: which plant was inspected when, what was found there, and by whom."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
+    import datetime as dt
+
     from numpy.typing import NDArray
 
 
 CLEAN, FOUND, SKIPPED = 0, 1, 2
+#: as files and people write them
+RESULT_NAMES = {CLEAN: "clean", FOUND: "found", SKIPPED: "skipped"}
+
+_TYPES: dict[str, Any] = {
+    "plant": "int32",
+    "result": "int8",
+    "date": "datetime64[D]",
+    "second": "float64",
+    "count": "float64",
+    "who": object,
+    "notes": object,
+}
+_WHOLE = frozenset({"plant", "result"})
 
 
 @dataclass(frozen=True, eq=False)
 class Inspections:
-    """Results of inspecting plants, in the order in which they were made, ``(k,)`` each.
+    """What was found at which plants, one array entry an inspection, ``(k,)`` each.
 
     Parameters
     ----------
     plant
-        int32.
-    day
-        int32 day of the season, from 0, never falling.
+        int32, number in the grid.
     result
         int8: `CLEAN`, `FOUND`, or `SKIPPED` (stood before it but could not inspect it).
+    date
+        datetime64[D], the local date; NaT where it is not known.
     second
-        Seconds since midnight; NaN where not noted.
+        Seconds since local midnight; NaN where no time was noted.
+    count
+        Pests counted; NaN where they were not.
+    who, notes
+        Text; empty where nothing was noted.
     """
 
     plant: NDArray[np.int32]
-    day: NDArray[np.int32]
     result: NDArray[np.int8]
+    date: NDArray[np.datetime64]
     second: NDArray[np.float64]
+    count: NDArray[np.float64]
+    who: NDArray[np.object_]
+    notes: NDArray[np.object_]
 
     def __post_init__(self) -> None:
-        if (np.diff(self.day) < 0).any():
-            raise ObservationError("Inspections must be in the order of their days.")
-        for values in vars(self).values():
-            values.setflags(write=False)
+        k = len(self.plant)
+        for name, type_ in _TYPES.items():
+            values = np.asarray(getattr(self, name))
+            if len(values) != k:
+                raise ObservationError(
+                    f"All columns of the inspections must have {k} entries, "
+                    f"but {name} has {len(values)}."
+                )
+            # a view: the caller's own array stays as it is
+            column = values.astype(type_, copy=False).view()
+            if name in _WHOLE and not np.array_equal(column, values):
+                raise ObservationError(
+                    f"The {name} of inspections must be whole numbers of {type_}."
+                )
+            column.setflags(write=False)
+            object.__setattr__(self, name, column)
+
+    def __repr__(self) -> str:
+        finds = int(np.count_nonzero(self.result == FOUND))
+        return f"<Inspections: {counted(len(self), 'inspection')}, {counted(finds, 'find')}>"
 
     def __len__(self) -> int:
         """Return the number of inspections."""
         return len(self.plant)
 
-    def of(self, which: NDArray[np.generic] | slice) -> Inspections:
-        """Return some of them."""
-        return Inspections(**{name: values[which].copy() for name, values in vars(self).items()})
-
-    def on(self, day: int) -> Inspections:
-        """Return those of one day."""
-        return self.of(slice(*np.searchsorted(self.day, [day, day + 1])))
-
-    def before(self, day: int) -> Inspections:
-        """Return those of all days before `day`."""
-        return self.of(slice(0, np.searchsorted(self.day, day)))
-
-    @property
-    def looked(self) -> Inspections:
-        """Return those at which the plant was really inspected."""
-        return self.of(self.result != SKIPPED)
+    @classmethod
+    def of(
+        cls,
+        plant: NDArray[np.integer],
+        result: NDArray[np.integer],
+        on: dt.date | np.datetime64 | NDArray[np.datetime64],
+        **columns: NDArray[np.generic],
+    ) -> Inspections:
+        """Return inspections of one date, or of a date each; columns not given are unknown."""
+        k, dates = len(plant), np.asarray(on, "datetime64[D]")
+        known: dict[str, Any] = {
+            "plant": plant,
+            "result": result,
+            "date": np.full(k, dates) if dates.ndim == 0 else dates,
+            "second": np.full(k, np.nan),
+            "count": np.full(k, np.nan),
+            "who": np.full(k, "", object),
+            "notes": np.full(k, "", object),
+        }
+        return cls(**(known | columns))
 
     @classmethod
     def none(cls) -> Inspections:
         """Return no inspections."""
-        return cls(np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0, np.int8), np.empty(0))
+        return cls.of(np.empty(0, np.int32), np.empty(0, np.int8), np.datetime64("NaT"))
+
+    def take(self, which: NDArray[np.generic] | slice) -> Inspections:
+        """Return those at the given indices, mask or slice."""
+        return Inspections(**{name: getattr(self, name)[which] for name in _TYPES})
+
+    def on(self, date: dt.date | np.datetime64) -> Inspections:
+        """Return those of one date."""
+        return self.take(self.date == np.asarray(date, "datetime64[D]"))
+
+    @property
+    def inspected(self) -> Inspections:
+        """Return those at which the plant was really inspected."""
+        return self.take(self.result != SKIPPED)

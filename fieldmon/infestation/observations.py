@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
@@ -57,6 +58,9 @@ class Observations:
                 )
             values.setflags(write=False)
 
+    def __repr__(self) -> str:
+        return f"<Observations: {counted(len(self), 'record')}>"
+
     def __len__(self) -> int:
         """Return the number of records."""
         return len(self.lonlat)
@@ -90,3 +94,44 @@ class Observations:
     def none(cls) -> Observations:
         """Return no records at all."""
         return cls.of(np.empty((0, 2)), np.empty(0, np.int8))
+
+
+@dataclass(frozen=True, eq=False)
+class UsableRecords:
+    """The records that speak on a day, and how many others there were.
+
+    Parameters
+    ----------
+    observations
+        Records that say infested or clean, not later than the day; undated ones included.
+    undecided, future, undated
+        How many were left out because they say neither, because they are of a later day; and how
+        many of those kept have no date.
+    """
+
+    observations: Observations
+    undecided: int
+    future: int
+    undated: int
+
+    def messages(self) -> tuple[str, ...]:
+        """Return a sentence for each thing that a person should know about the records."""
+        said = (
+            (self.undecided, "say neither infested nor clean and are left out"),
+            (self.future, "are of a later day than the one planned and are left out"),
+            (self.undated, "have no date and count as old ones"),
+        )
+        return tuple(f"{count} of the records {what}." for count, what in said if count)
+
+
+def usable(observations: Observations, on_day: np.datetime64) -> UsableRecords:
+    """Return the records that speak on a day; the caller tells of the others."""
+    undecided = observations.present == UNKNOWN
+    future = ~undecided & (observations.day > on_day.astype("datetime64[D]"))
+    kept = observations.take(~undecided & ~future)
+    return UsableRecords(
+        observations=kept,
+        undecided=int(np.count_nonzero(undecided)),
+        future=int(np.count_nonzero(future)),
+        undated=int(np.count_nonzero(np.isnat(kept.day))),
+    )

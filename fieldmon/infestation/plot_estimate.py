@@ -14,7 +14,7 @@ import numpy as np
 from fieldmon.compute.jit import inlined, loop
 from fieldmon.compute.random_streams import coin
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import pairs
+from fieldmon.infestation.pairs import pair_chances
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -47,7 +47,7 @@ class PlotEstimate:
     chance_clean: float
 
     def sentence(self) -> str:
-        """Return the outlook in words."""
+        """Return the estimate in words."""
         return (
             f"About {self.expected:.0f} plants are still infested "
             f"(between {self.low} and {self.high}); "
@@ -55,7 +55,7 @@ class PlotEstimate:
         )
 
 
-def outlook(
+def estimate_plot(
     grid: PlantGrid,
     chance: NDArray[np.float64],
     pair_chance: NDArray[np.float64] | None = None,
@@ -68,8 +68,8 @@ def outlook(
     ----------
     pair_chance
         Chance ``(e,)`` that two plants side by side are both infested (`Belief.pair_chance`);
-        without it they share their fate as `fieldmon.infestation.belief.pairs` has it. Taken as
-        independent, the number would seem far surer than it is.
+        without it they share their fate as `fieldmon.infestation.pairs.pair_chances` has it.
+        Taken as independent, the number would seem far surer than it is.
     sure
         Chance that the interval holds the number.
     key
@@ -78,7 +78,7 @@ def outlook(
     if not 0.0 < sure < 1.0:
         raise SettingError(f"'sure' must be a chance between 0 and 1, but it is {sure}.")
     if pair_chance is None:
-        pair_chance = pairs(chance, grid)
+        pair_chance = pair_chances(chance, grid)
     table = _table(chance, pair_chance, grid.adjacent)
     drawn = _drawn(table, key, len(chance))
     clean = float(np.exp(np.log1p(-table[-1]).sum()))  # the same chain draws no infested plant

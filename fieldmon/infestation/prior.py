@@ -1,25 +1,25 @@
 """From records, edges, paths and rasters to a chance of infestation for every plant.
 
 A plant can be infested in several ways that are taken as independent: from anywhere (background),
-from the plot's edge, from a path, for a reason that a raster shows. Those make the *base*. Dated
-records then move each plant away from its base, oldest first, and the base takes it back with a
-half-life. So newer evidence outweighs older evidence of the same place, and of records of one day
-the order does not matter.
+from the plot's edge, from a path, for a reason that a raster shows. Those make the *base*, from
+which dated records then move each plant away (`record_kernel`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-import numba as nb
 import numpy as np
 import shapely
 from scipy.optimize import brentq
 from scipy.special import expit, logit
 
 from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.observations import PRESENT, UNKNOWN
+from fieldmon.infestation.belief import MOST_CHANCE
+from fieldmon.infestation.nearby_plants import PlantRows, distance_m
+from fieldmon.infestation.observations import usable
+from fieldmon.infestation.record_kernel import record_chance
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,13 +30,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-# edges, paths and records are followed no farther than they change a chance by this
-_LEAST_SAY = 1e-4
-# nobody is infested for certain: a clean look must be able to undo it
-_MOST = 1.0 - 1e-6
-# records farther from the plot are not even brought into its plane of metres
-_FAR_M = 100_000.0
-_EARTH_M = 6_371_000.0
+# edges and paths are followed no farther than they change a chance by this
+_LEAST_CHANGE = 1e-4
 
 
 @dataclass(frozen=True)
@@ -120,47 +115,6 @@ class PriorSettings:
             )
 
 
-@dataclass(frozen=True, eq=False)
-class Usable:
-    """The records that speak on a day, and how many others there were.
-
-    Parameters
-    ----------
-    observations
-        Records that say infested or clean, not later than the day; undated ones included.
-    undecided, future, undated
-        How many were left out because they say neither, because they are of a later day; and how
-        many of those kept have no date.
-    """
-
-    observations: Observations
-    undecided: int
-    future: int
-    undated: int
-
-    def remarks(self) -> tuple[str, ...]:
-        """Return a sentence for each thing that a person should know about the records."""
-        said = (
-            (self.undecided, "say neither infested nor clean and are left out"),
-            (self.future, "are of a later day than the one planned and are left out"),
-            (self.undated, "have no date and count as old ones"),
-        )
-        return tuple(f"{count} of the records {what}." for count, what in said if count)
-
-
-def usable(observations: Observations, on_day: np.datetime64) -> Usable:
-    """Return the records that speak on a day; the caller tells of the others."""
-    undecided = observations.present == UNKNOWN
-    future = ~undecided & (observations.day > on_day.astype("datetime64[D]"))
-    kept = observations.take(~undecided & ~future)
-    return Usable(
-        observations=kept,
-        undecided=int(np.count_nonzero(undecided)),
-        future=int(np.count_nonzero(future)),
-        undated=int(np.count_nonzero(np.isnat(kept.day))),
-    )
-
-
 def prior_chance(
     grid: PlantGrid,
     field: Field,
@@ -171,8 +125,8 @@ def prior_chance(
 ) -> Floats:
     """Return the chance of infestation of every plant on a morning, ``(n,)`` in [0, 1].
 
-    Only the :func:`usable` records are heard. `risk` is one more way of being infested, ``(n,)``
-    in [0, 1], from a raster for instance; NaN where it says nothing.
+    Only the `usable` records count. `risk` is one more way of being infested, ``(n,)`` in [0, 1],
+    from a raster for instance; NaN where it says nothing.
 
     Raises
     ------
@@ -188,14 +142,14 @@ def prior_chance(
     if risk is not None:
         ways.append(_checked_risk(grid, risk))
     clean = np.prod([1.0 - way for way in ways], axis=0)
-    heard = usable(observations, on_day).observations
-    return record_chance(grid, np.minimum(1.0 - clean, _MOST), heard, on_day, settings)
+    base = np.minimum(1.0 - clean, MOST_CHANCE)
+    return record_chance(grid, base, usable(observations, on_day).observations, on_day, settings)
 
 
 def edge_chance(grid: PlantGrid, settings: PriorSettings) -> Floats:
     """Return the chance that a plant was infested from the plot's edge, ``(n,)``."""
     edges = shapely.boundary(grid.drivable_m)
-    return _entering(grid, edges, settings.edge_chance, settings.edge_depth_m)
+    return _from_lines(grid, edges, settings.edge_chance, settings.edge_depth_m)
 
 
 def path_chance(grid: PlantGrid, field: Field, settings: PriorSettings) -> Floats:
@@ -204,68 +158,7 @@ def path_chance(grid: PlantGrid, field: Field, settings: PriorSettings) -> Float
     # the roads of a whole country may come along: those within a day's drive do
     paths = shapely.clip_by_rect(field.paths, lon - 0.7, lat - 0.7, lon + 0.7, lat + 0.7)
     paths_m = grid.frame.geometry_m(paths)
-    return _entering(grid, paths_m, settings.path_chance, settings.path_depth_m)
-
-
-def record_chance(
-    grid: PlantGrid,
-    base: Floats,
-    observations: Observations,
-    on_day: np.datetime64,
-    settings: PriorSettings,
-) -> Floats:
-    """Return the chance of infestation ``(n,)`` after hearing records about plants at `base`.
-
-    A record speaks in full of the plant it stands at, as sharply as its position is known, and
-    more softly of the plants about it. A find is one more way of being infested,
-    1 - (1 - p)(1 - s) with s what it says here; a clean look is Bayes' rule, p (1 - s) / (1 - p s).
-    All records must be :func:`usable` ones; raise `ObservationError` if all are out of reach.
-    """
-    if not len(observations):
-        return base.copy()
-    speech = _speech(grid, observations, settings)
-    near = _within_reach(grid, observations, speech.radius_m)
-    heard = observations.take(near)
-    xy_m = grid.frame.xy_m(heard.lonlat)
-    age_days = _age_days(heard, on_day, settings)
-    find = heard.present == PRESENT
-    spoken = _RecordKernel(*(column[near] for column in speech))
-    # oldest first, a day's finds before its clean looks; the rest only settles the last digit
-    order = np.lexsort((*spoken, *xy_m.T, ~find, -age_days))
-    records = _Records(xy_m[order, 0].copy(), xy_m[order, 1].copy(), age_days[order], find[order])
-    chance = base.copy()
-    _apply_records(
-        chance,
-        _rows(grid),
-        records,
-        _RecordKernel(*(column[order] for column in spoken)),
-        1.0 / settings.half_life_days,
-    )
-    return chance
-
-
-def outside_m(grid: PlantGrid, lonlat: Floats) -> Floats:
-    """Return how far positions ``(m, 2)`` lie outside the plot, ``(m,)`` metres; 0 inside.
-
-    To the kilometre beyond 100 km; infinite where the numbers are no longitude and latitude.
-    """
-    on_earth = (np.abs(lonlat[:, 0]) <= 360.0) & (np.abs(lonlat[:, 1]) <= 90.0)
-    lon, lat = (np.deg2rad(np.where(on_earth, degrees, 0.0)) for degrees in lonlat.T)
-    lon_0, lat_0 = np.deg2rad([grid.frame.lon, grid.frame.lat])
-    chord = np.sin((lat - lat_0) / 2) ** 2 + (
-        np.cos(lat) * np.cos(lat_0) * np.sin((lon - lon_0) / 2) ** 2
-    )
-    off_m: Floats = 2.0 * _EARTH_M * np.arcsin(np.sqrt(np.clip(chord, 0.0, 1.0)))
-    off_m[~on_earth] = np.inf
-    near = off_m < _FAR_M
-    xy_m = grid.frame.xy_m(lonlat[near])
-    shapely.prepare(grid.drivable_m)
-    # most are inside, and that is soon seen
-    beyond = ~shapely.contains_xy(grid.drivable_m, xy_m)
-    off_m[near] = 0.0
-    outer = np.flatnonzero(near)[beyond]
-    off_m[outer] = shapely.distance(grid.drivable_m, shapely.points(xy_m[beyond]))
-    return off_m
+    return _from_lines(grid, paths_m, settings.path_chance, settings.path_depth_m)
 
 
 def scaled(chance: Floats, expected_share: float) -> Floats:
@@ -309,32 +202,6 @@ def start_infested(
     return drawn
 
 
-class _RecordKernel(NamedTuple):
-    """What each record says, ``(m,)`` each: at its own plant and about it, and how far."""
-
-    own: Floats  # peak at the plant itself
-    own_m2: Floats  # variance of that bell
-    near: Floats  # peak about it
-    near_m2: Floats
-    strength: Floats  # factor on both: a clean look's detection
-    radius_m: Floats  # beyond it the record says nothing
-
-
-class _Records(NamedTuple):
-    x_m: Floats
-    y_m: Floats
-    age_days: Floats
-    find: NDArray[np.bool_]
-
-
-class _Rows(NamedTuple):
-    x_m: Floats  # (n,) ascending within each row
-    y_m: Floats  # (n,)
-    start: NDArray[np.int64]  # (r + 1,)
-    low_m: Floats  # (r,) smallest y of the row
-    high_m: Floats  # (r,)
-
-
 def _checked_risk(grid: PlantGrid, risk: Floats) -> Floats:
     if len(risk) != len(grid):
         raise ObservationError(
@@ -349,163 +216,10 @@ def _checked_risk(grid: PlantGrid, risk: Floats) -> Floats:
     return np.where(np.isnan(risk), 0.0, risk)
 
 
-def _entering(grid: PlantGrid, lines: shapely.Geometry, chance: float, depth_m: float) -> Floats:
+def _from_lines(grid: PlantGrid, lines: shapely.Geometry, chance: float, depth_m: float) -> Floats:
     """Return a chance that falls by 1/e every `depth_m` away from lines (metres), ``(n,)``."""
     points, line = shapely.get_coordinates(shapely.get_parts(lines), return_index=True)
     ahead = np.flatnonzero(line[1:] == line[:-1])
     pieces = np.concatenate([points[ahead], points[ahead + 1]], axis=1)
-    farthest_m = depth_m * np.log(max(chance / _LEAST_SAY, 1.0))
-    return chance * np.exp(-_distance_m(_rows(grid), pieces, farthest_m) / depth_m)
-
-
-def _speech(grid: PlantGrid, observations: Observations, settings: PriorSettings) -> _RecordKernel:
-    find = observations.present == PRESENT
-    accuracy_m = np.where(
-        observations.accuracy_m >= 0.0, observations.accuracy_m, settings.accuracy_m
-    )
-    # A plant is a bell as heavy as its own ground, so that a record without error says all of it
-    # to its own plant; an error of position widens both bells and lowers them, mass kept.
-    plant_m2 = grid.row_spacing_m * grid.plant_spacing_m / (2.0 * np.pi)
-    own_m2 = plant_m2 + accuracy_m**2
-    near_m2 = settings.reach_m**2 + accuracy_m**2
-    own = np.where(find, settings.at_record, 1.0) * plant_m2 / own_m2
-    near = _beside(observations, settings) * settings.reach_m**2 / near_m2
-    strength = np.where(find, 1.0, _detection(observations, settings))
-    radius_m = np.maximum(_radius_m(own, own_m2), _radius_m(near, near_m2))
-    return _RecordKernel(own, own_m2, near, near_m2, strength, radius_m)
-
-
-def _beside(observations: Observations, settings: PriorSettings) -> Floats:
-    """Return how much each record says of the plants about it: more, the more was counted."""
-    count = np.where(np.isnan(observations.count), settings.half_count, observations.count)
-    count = np.where(observations.present == PRESENT, np.maximum(count, 0.0), 0.0)
-    full = np.where(np.isinf(count), 1.0, count / (np.minimum(count, 1e300) + settings.half_count))
-    return settings.beside_one + (settings.beside_many - settings.beside_one) * full
-
-
-def _detection(observations: Observations, settings: PriorSettings) -> Floats:
-    leaves = observations.leaves_sampled
-    found = 1.0 - (1.0 - settings.leaf_detection) ** np.where(leaves >= 0.0, leaves, 0.0)
-    return np.minimum(np.where(leaves >= 0.0, found, settings.detection), _MOST)
-
-
-def _radius_m(peak: Floats, variance_m2: Floats) -> Floats:
-    return np.sqrt(2.0 * variance_m2 * np.log(np.maximum(peak / _LEAST_SAY, 1.0)))
-
-
-def _age_days(observations: Observations, on_day: np.datetime64, settings: PriorSettings) -> Floats:
-    age = (on_day.astype("datetime64[D]") - observations.day) / np.timedelta64(1, "D")
-    return np.where(np.isnan(age), settings.undated_days, age)
-
-
-def _within_reach(
-    grid: PlantGrid, observations: Observations, radius_m: Floats
-) -> NDArray[np.bool_]:
-    off_m = outside_m(grid, observations.lonlat)
-    near: NDArray[np.bool_] = off_m <= np.minimum(radius_m, _FAR_M)
-    if near.any():
-        return near
-    turned_m = outside_m(grid, observations.lonlat[:, ::-1])
-    turned = turned_m.min() <= radius_m.max()
-    raise ObservationError(
-        f"At least one record must lie on the plot or within {radius_m.max():.0f} m of it, but "
-        f"of {len(observations)} the nearest is {_in_words(off_m.min())}. "
-        + (
-            "With longitude and latitude exchanged they would lie there: name the columns anew."
-            if turned
-            else "Check the coordinate system, the order of longitude and latitude, "
-            "and whether the records belong to this plot."
-        )
-    )
-
-
-def _in_words(metres: float) -> str:
-    if not np.isfinite(metres):
-        return "nowhere on Earth (longitude and latitude must be in degrees)"
-    return f"{metres:.0f} m away" if metres < 1000.0 else f"{metres / 1000.0:.0f} km away"
-
-
-def _rows(grid: PlantGrid) -> _Rows:
-    y_m = np.ascontiguousarray(grid.xy_m[:, 1])
-    starts = grid.row_start[:-1]
-    return _Rows(
-        np.ascontiguousarray(grid.xy_m[:, 0]),
-        y_m,
-        grid.row_start,
-        np.minimum.reduceat(y_m, starts),
-        np.maximum.reduceat(y_m, starts),
-    )
-
-
-@nb.njit(cache=True, nogil=True)
-def _distance_m(rows: _Rows, pieces: Floats, farthest_m: float) -> Floats:
-    """Return metres from each plant to straight pieces ``(s, 4)``; infinite beyond `farthest_m`."""
-    squares = np.full(rows.x_m.size, np.inf)
-    for ax, ay, bx, by in pieces:
-        length_m2 = max((bx - ax) ** 2 + (by - ay) ** 2, 1e-12)
-        for row in range(rows.low_m.size):
-            if rows.low_m[row] > max(ay, by) + farthest_m:
-                continue
-            if rows.high_m[row] < min(ay, by) - farthest_m:
-                continue
-            end = rows.start[row + 1]
-            i = _first(rows.x_m, rows.start[row], end, min(ax, bx) - farthest_m)
-            while i < end and rows.x_m[i] <= max(ax, bx) + farthest_m:
-                x, y = rows.x_m[i] - ax, rows.y_m[i] - ay
-                share = min(max((x * (bx - ax) + y * (by - ay)) / length_m2, 0.0), 1.0)
-                square = (x - share * (bx - ax)) ** 2 + (y - share * (by - ay)) ** 2
-                if square <= farthest_m * farthest_m:
-                    squares[i] = min(squares[i], square)
-                i += 1
-    distance_m: Floats = np.sqrt(squares)
-    return distance_m
-
-
-@nb.njit(cache=True, nogil=True)
-def _apply_records(
-    chance: Floats, rows: _Rows, records: _Records, speech: _RecordKernel, fade_per_day: float
-) -> None:
-    """Let each record, in order, change the plants in its radius; then age them all to today."""
-    base = chance.copy()
-    age_days = np.zeros(chance.size)  # as old as the last record that spoke of the plant
-    for r in range(records.x_m.size):
-        x, y, radius = records.x_m[r], records.y_m[r], speech.radius_m[r]
-        age = records.age_days[r]
-        for row in range(rows.low_m.size):
-            if rows.low_m[row] > y + radius or rows.high_m[row] < y - radius:
-                continue
-            end = rows.start[row + 1]
-            i = _first(rows.x_m, rows.start[row], end, x - radius)
-            while i < end and rows.x_m[i] <= x + radius:
-                square = (rows.x_m[i] - x) ** 2 + (rows.y_m[i] - y) ** 2
-                if square <= radius * radius:
-                    own = speech.own[r] * np.exp(-0.5 * square / speech.own_m2[r])
-                    near = speech.near[r] * np.exp(-0.5 * square / speech.near_m2[r])
-                    says = speech.strength[r] * (1.0 - (1.0 - own) * (1.0 - near))
-                    p = _aged(chance[i], base[i], (age_days[i] - age) * fade_per_day)
-                    if records.find[r]:
-                        p = min(1.0 - (1.0 - p) * (1.0 - says), _MOST)
-                    else:
-                        p = p * (1.0 - says) / (1.0 - p * says)
-                    chance[i], age_days[i] = p, age
-                i += 1
-    for i in range(chance.size):
-        chance[i] = _aged(chance[i], base[i], age_days[i] * fade_per_day)
-
-
-@nb.njit(cache=True, inline="always")
-def _aged(chance: float, base: float, half_lives: float) -> float:
-    # a plant not spoken of yet sits at its base, whatever time has passed
-    return chance if half_lives <= 0.0 else base + (chance - base) * 0.5**half_lives
-
-
-@nb.njit(cache=True)
-def _first(x_m: Floats, first: int, end: int, least_m: float) -> int:
-    """Return the first index in ``first:end`` whose x is at least `least_m` (else `end`)."""
-    while first < end:
-        middle = (first + end) // 2
-        if x_m[middle] < least_m:
-            first = middle + 1
-        else:
-            end = middle
-    return first
+    farthest_m = depth_m * np.log(max(chance / _LEAST_CHANGE, 1.0))
+    return chance * np.exp(-distance_m(PlantRows.of(grid), pieces, farthest_m) / depth_m)

@@ -1,6 +1,6 @@
 """What an import saw, repaired, guessed, dropped or doubts, for people and for programs.
 
-A finding with a remedy can be answered. The remedy names an option of the door (`options`) and the
+A message with a remedy can be answered. The remedy names an option of the door (`options`) and the
 values that can be chosen for it, the likeliest first:
 
 - a page shows a button for each of `remedy.choices` and reads again with
@@ -23,7 +23,7 @@ U = TypeVar("U")
 
 
 class Severity(StrEnum):
-    """How much a finding matters, from good to know to look before you use it."""
+    """How much a message matters, from good to know to look before you use it."""
 
     SEEN = "seen"
     REPAIRED = "repaired"
@@ -95,7 +95,7 @@ class ImportMessage:
         return self.line()
 
     def line(self, flag: str = "") -> str:
-        """Return the finding in a line, its remedy behind the `flag` that takes it."""
+        """Return the message in a line, its remedy behind the `flag` that takes it."""
         place = f"{self.feature}: " if self.feature else ""
         way_out = ""
         if self.remedy is not None:
@@ -111,7 +111,7 @@ class Imported(Generic[T]):
     ----------
     value
         The data.
-    findings
+    messages
         In the order in which they were made.
     """
 
@@ -124,42 +124,42 @@ class Imported(Generic[T]):
         return max((f.severity for f in self.messages), key=lambda s: s.rank, default=None)
 
     def of(self, *severities: Severity) -> tuple[ImportMessage, ...]:
-        """Return the findings of the given severities."""
+        """Return the messages of the given severities."""
         return tuple(f for f in self.messages if f.severity in severities)
 
     def having(self, value: U, more: Iterable[ImportMessage] = ()) -> Imported[U]:
-        """Return another value with these findings and more."""
+        """Return another value with these messages and more."""
         return Imported(value, (*self.messages, *more))
 
 
 def seen(sentence: str, feature: str | None = None, remedy: Remedy | None = None) -> ImportMessage:
-    """Return a finding that is good to know."""
+    """Return a message that is good to know."""
     return ImportMessage(Severity.SEEN, sentence, feature, remedy)
 
 
 def repaired(
     sentence: str, feature: str | None = None, remedy: Remedy | None = None
 ) -> ImportMessage:
-    """Return a finding about something put right."""
+    """Return a message about something put right."""
     return ImportMessage(Severity.REPAIRED, sentence, feature, remedy)
 
 
 def guessed(
     sentence: str, feature: str | None = None, remedy: Remedy | None = None
 ) -> ImportMessage:
-    """Return a finding about something that could have been read otherwise."""
+    """Return a message about something that could have been read otherwise."""
     return ImportMessage(Severity.GUESSED, sentence, feature, remedy)
 
 
 def dropped(
     sentence: str, feature: str | None = None, remedy: Remedy | None = None
 ) -> ImportMessage:
-    """Return a finding about something left out."""
+    """Return a message about something left out."""
     return ImportMessage(Severity.DROPPED, sentence, feature, remedy)
 
 
 def doubtful(
     sentence: str, feature: str | None = None, remedy: Remedy | None = None
 ) -> ImportMessage:
-    """Return a finding about something to look at before the data are used."""
+    """Return a message about something to look at before the data are used."""
     return ImportMessage(Severity.DOUBTFUL, sentence, feature, remedy)

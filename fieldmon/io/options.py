@@ -175,9 +175,12 @@ class RecordOptions(ReadOptions):
     ----------
     date_order
         ``"dmy"``, ``"mdy"`` or ``"ymd"``: what 03/04/2026 means.
+    plot
+        The plot whose rows and plants the records name, where no column says which.
     """
 
     date_order: DateOrder | None = None
+    plot: str | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -2,7 +2,7 @@
 
 A source is a path, an `Upload`, or several of them that belong together. What a file leaves open
 is asked by `ChoiceNeeded`; what is unusable is a `FileProblem`; all else that there is to say
-stands in the findings. The file itself is opened in a process of its own (`guard`).
+stands in the messages. The file itself is opened in a process of its own (`sandbox.process`).
 """
 
 from __future__ import annotations
@@ -24,8 +24,9 @@ if TYPE_CHECKING:
     from fieldmon.io.formats.layer import LayerInfo
     from fieldmon.io.import_report import Imported
     from fieldmon.io.readers.crews import Crew
-    from fieldmon.io.readers.places import Places, Plants
-    from fieldmon.io.readers.reported import FindingsOptions, Reported
+    from fieldmon.io.readers.inspection_file.rows import InspectionRows
+    from fieldmon.io.readers.inspection_options import InspectionOptions
+    from fieldmon.io.readers.places import NamedPlaces, Plants
     from fieldmon.plot.field import Field
 
 
@@ -64,7 +65,7 @@ def read_records(
     source: Source,
     options: RecordOptions | None = None,
     near: Field | None = None,
-    places: Places | None = None,
+    places: NamedPlaces | None = None,
 ) -> Imported[Observations]:
     """Return the pest records of a source.
 
@@ -75,7 +76,7 @@ def read_records(
     options
         What was chosen about how to read it.
     near
-        Only records on this plot or close by; the others are counted in the findings.
+        Only records on this plot or close by; the others are counted in the messages.
     places
         Plots or plants that records may name instead of giving a position.
     """
@@ -96,6 +97,14 @@ def read_records(
     return records.having(kept, more)
 
 
+def read_records_by_plot(
+    source: Source, options: RecordOptions, places: NamedPlaces
+) -> Imported[dict[str, Observations]]:
+    """Return the records of a source that name a plot, a row and a plant, by the plots' names."""
+    records: Imported[dict[str, Observations]] = _read("plot_records", source, options, places)
+    return records
+
+
 def read_plants(source: Source, options: ReadOptions | None = None) -> Imported[Plants]:
     """Return measured positions of plants, with their labels if the file has any."""
     plants: Imported[Plants] = _read("plants", source, options or ReadOptions())
@@ -108,7 +117,7 @@ def read_lines(source: Source, options: ReadOptions | None = None) -> Imported[M
     return lines
 
 
-def read_reported(source: Source, options: FindingsOptions) -> Imported[Reported]:
+def read_inspection_rows(source: Source, options: InspectionOptions) -> Imported[InspectionRows]:
     """Return what a file says of plants that were inspected, before they are looked up."""
-    reported: Imported[Reported] = _read("reported", source, options)
-    return reported
+    rows: Imported[InspectionRows] = _read("inspection_rows", source, options)
+    return rows

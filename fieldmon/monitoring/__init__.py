@@ -2,31 +2,27 @@
 
 from __future__ import annotations
 
-from fieldmon.monitoring.batches import Batch
-from fieldmon.monitoring.inspection_table import (
-    NAMES,
-    RESULTS,
-    Results,
-    counting_copy,
-    results_from,
-)
-from fieldmon.monitoring.season_file import Recorded, Season, Status
-from fieldmon.monitoring.settings import SeasonSetup
-from fieldmon.monitoring.tables import Remark
+from fieldmon.monitoring.batches import Batch, Recorded
+from fieldmon.monitoring.day_figures import DayFigures, Progress
+from fieldmon.monitoring.inspection_table import counting_copy
+from fieldmon.monitoring.season_file import Season
+from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.monitoring.status import Status
+from fieldmon.monitoring.tables import KeptMessage
 from fieldmon.monitoring.transactions import Store, is_season
+from fieldmon.monitoring.worked_route import worked_route
 
 __all__ = [
-    "NAMES",
-    "RESULTS",
     "Batch",
+    "DayFigures",
+    "KeptMessage",
+    "MonitoringSettings",
+    "Progress",
     "Recorded",
-    "Remark",
-    "Results",
     "Season",
-    "SeasonSetup",
     "Status",
     "Store",
     "counting_copy",
     "is_season",
-    "results_from",
+    "worked_route",
 ]

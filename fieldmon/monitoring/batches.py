@@ -31,7 +31,7 @@ class Batch:
     source, who
         File or screen it came from, and the person.
     rows
-        Results it added.
+        Inspections or treatments it added.
     undone
         Whether it was undone; it is kept nevertheless.
     """
@@ -43,6 +43,23 @@ class Batch:
     who: str
     rows: int
     undone: bool
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What recording did.
+
+    Parameters
+    ----------
+    batch
+        Its number, for undoing; None if nothing was new.
+    new, known
+        Inspections or treatments that were added, and those that the season held already.
+    """
+
+    batch: int | None
+    new: int
+    known: int
 
 
 def begin(db: sqlite3.Connection, kind: str, source: str, who: str) -> int:

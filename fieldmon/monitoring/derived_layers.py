@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
@@ -10,10 +9,9 @@ import numpy as np
 import shapely
 from shapely import MultiPolygon
 
+from fieldmon.compute.digest import digest
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.infestation.observations import PRESENT
-from fieldmon.infestation.plot_estimate import outlook
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, insert, touch
 
@@ -25,33 +23,21 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.hotspots import HotSpots
-    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring.history import History
-    from fieldmon.monitoring.settings import SeasonSetup
     from fieldmon.plot.plot import Plot
 
 STATES = {-1: "never inspected", 0: "looked clean", 1: "found infested"}
 _DIGITS = 9  # of a chance; a digest must not hang on the last bit of another processor
 
 
-def digest(chance: NDArray[np.float64]) -> str:
+def map_digest(chance: NDArray[np.float64]) -> str:
     """Return a short name for a chance map ``(n,)``: the same for the same map only."""
-    plain = np.round(chance, _DIGITS).astype("<f8").tobytes()
-    return hashlib.sha256(plain).hexdigest()[:24]
-
-
-def outlook_of(history: History, morning: Belief, day: int) -> PlotEstimate:
-    """Return how many plants are infested and not found yet, after a day's work."""
-    evening = history.evening(morning, day)
-    if not history.beliefs.treated:  # what was found is known: it is not out there any more
-        evening = evening.treated(np.where(history.states(day) == PRESENT, 0.0, 1.0))
-    return outlook(history.grid, evening.chance, evening.pair_chance)
+    return digest(np.round(chance, _DIGITS).astype("<f8"), length=24, end=b"")
 
 
 def refresh(
     db: sqlite3.Connection,
     plot: Plot,
-    setup: SeasonSetup,
     history: History,
     morning: Callable[[int], Belief],
     since: int = 0,
@@ -60,24 +46,25 @@ def refresh(
 
     What is known of days before `since` did not change.
     """
-    worked = [int(day) for day in np.unique(history.inspections.day)]
+    worked = np.unique(history.days).tolist()
     planned = [day for (day,) in db.execute("SELECT DISTINCT day FROM routes")]
     treated = [treatment.day for treatment in history.treatments]
     days = sorted({0, *worked, *planned, *treated})
     db.execute("DELETE FROM days WHERE day >= ?", (since,))
-    rows = [_day_row(setup, history, morning(day), day) for day in days if day >= since]
+    rows = [_day_row(history, morning(day), day) for day in days if day >= since]
     insert(db, schema.DAYS, rows)
     spots = _write_spots(db, plot, history, days[-1])
-    _write_states(db, setup, history, spots, (days[-1], morning(days[-1])))
+    _write_states(db, history, spots, (days[-1], morning(days[-1])))
 
 
-def _day_row(setup: SeasonSetup, history: History, morning: Belief, day: int) -> tuple[object, ...]:
-    today = history.inspections.on(day).looked
-    ahead = outlook_of(history, morning, day)
+def _day_row(history: History, morning: Belief, day: int) -> tuple[object, ...]:
+    today = history.on(day).inspected
+    estimate = history.estimate(morning, day)
     found = int(np.count_nonzero(today.result == FOUND))
     return (
-        *(day, str(setup.date(day)), len(today), found),
-        *(ahead.expected, ahead.low, ahead.high, ahead.chance_clean, digest(morning.chance)),
+        *(day, str(history.date_of(day)), len(today), found),
+        *(estimate.expected, estimate.low, estimate.high, estimate.chance_clean),
+        map_digest(morning.chance),
     )
 
 
@@ -108,13 +95,12 @@ def spot_area(plot: Plot, spots: HotSpots, h: int) -> MultiPolygon:
 
 def _write_states(
     db: sqlite3.Connection,
-    setup: SeasonSetup,
     history: History,
     spots: HotSpots,
     latest: tuple[int, Belief],
 ) -> None:
     day, morning = latest
-    name = {int(d): str(setup.date(int(d))) for d in np.unique(history.inspections.day)}
+    name = {day: str(history.date_of(day)) for day in np.unique(history.days).tolist()}
     rows = zip(
         range(1, len(history.grid) + 1),
         np.round(history.evening(morning, day).chance, 6).tolist(),

@@ -56,7 +56,7 @@ _SYSTEMS = (
 
 
 @dataclass(frozen=True)
-class Table:
+class GeoPackageTable:
     """A table of a GeoPackage.
 
     Parameters
@@ -92,7 +92,7 @@ def found(db: sqlite3.Connection) -> None:
     db.executemany("INSERT INTO gpkg_spatial_ref_sys VALUES (?, ?, ?, ?, ?, ?)", _SYSTEMS)
 
 
-def create(db: sqlite3.Connection, table: Table) -> None:
+def create(db: sqlite3.Connection, table: GeoPackageTable) -> None:
     """Add a table, and tell the GeoPackage's contents of it."""
     geom = (f"geom {table.shape}",) if table.shape else ()
     body = ", ".join(("fid INTEGER PRIMARY KEY AUTOINCREMENT", *geom, *table.columns))
@@ -100,7 +100,7 @@ def create(db: sqlite3.Connection, table: Table) -> None:
     announce(db, table)
 
 
-def announce(db: sqlite3.Connection, table: Table) -> None:
+def announce(db: sqlite3.Connection, table: GeoPackageTable) -> None:
     """Tell the GeoPackage's contents of a table or view that exists."""
     kind, srs = ("features", WGS84) if table.shape else ("attributes", None)
     db.execute(
@@ -115,7 +115,9 @@ def announce(db: sqlite3.Connection, table: Table) -> None:
         )
 
 
-def insert(db: sqlite3.Connection, table: Table, rows: Sequence[tuple[object, ...]]) -> None:
+def insert(
+    db: sqlite3.Connection, table: GeoPackageTable, rows: Sequence[tuple[object, ...]]
+) -> None:
     """Add rows, each with a value for every one of the table's `names`."""
     marks = ", ".join("?" * len(table.names))
     into = f"INSERT INTO {table.name} ({', '.join(table.names)}) VALUES ({marks})"  # noqa: S608 - names of ours

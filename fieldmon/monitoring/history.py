@@ -3,29 +3,36 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from datetime import timedelta
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.errors import SettingError
+from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
+from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.travel import GATE, driven_s, robot_clock
 from fieldmon.samplers.base import NEVER, Scene
 
 if TYPE_CHECKING:
+    from datetime import date
+
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
 
 
 @dataclass(frozen=True)
-class Beliefs:
+class BeliefSettings:
     """How the chance map follows from what is done and found on a real plot.
 
     Parameters
@@ -82,60 +89,94 @@ class History:
     ----------
     grid
         The plants.
-    prior
-        What is believed on the first morning.
+    begins
+        The first day; days are counted from it, from 0.
+    first_morning
+        What is believed on its morning.
     inspections, treatments
-        What was done.
-    beliefs
+        What was done; inspections in the order in which they were made.
+    belief
         What is made of it.
     detection
         Chance that an inspection finds what is there.
     """
 
     grid: PlantGrid
-    prior: Belief
+    begins: date
+    first_morning: Belief
     inspections: Inspections = field(default_factory=Inspections.none)
     treatments: tuple[Treatment, ...] = ()
-    beliefs: Beliefs = field(default_factory=Beliefs)
+    belief: BeliefSettings = field(default_factory=BeliefSettings)
     detection: float = 0.84
+
+    def __post_init__(self) -> None:
+        if (np.diff(self.days) < 0).any():
+            raise ObservationError("Inspections must be in the order of their days.")
+
+    @cached_property
+    def days(self) -> NDArray[np.int32]:
+        """Number of the day of each inspection, ``(k,)``."""
+        since = self.inspections.date - np.datetime64(self.begins, "D")
+        return since.astype(np.int32)
+
+    def date_of(self, day: int) -> date:
+        """Return the date of a day."""
+        return self.begins + timedelta(days=day)
+
+    def on(self, day: int) -> Inspections:
+        """Return the inspections of a day."""
+        return self.inspections.take(slice(*np.searchsorted(self.days, [day, day + 1])))
+
+    def until(self, day: int) -> Inspections:
+        """Return the inspections up to the evening of a day."""
+        return self.inspections.take(slice(0, np.searchsorted(self.days, day + 1)))
 
     def night_after(self, morning: Belief, day: int) -> Belief:
         """Return what is believed the next morning, from what was on the morning of a day."""
-        return self.evening(morning, day).overnight(self.beliefs.spread)
+        return self.evening(morning, day).overnight(self.belief.spread)
 
     def evening(self, morning: Belief, day: int) -> Belief:
         """Return what is believed after what was found and treated on a day."""
-        done = self.inspections.on(day).looked
+        done = self.on(day).inspected
         believed = morning
         if len(done):
-            learning = self.beliefs.learning(self.detection)
+            learning = self.belief.learning(self.detection)
             believed = believed.learn(done.plant, done.result == FOUND, learning)
         for treatment in self.treatments:
             if treatment.day == day:
                 believed = believed.treated(np.where(treatment.plants, 1 - treatment.efficacy, 1.0))
         return believed
 
+    def estimate(self, morning: Belief, day: int) -> PlotEstimate:
+        """Return how many plants are infested and not found yet, after a day's work."""
+        evening = self.evening(morning, day)
+        if not self.belief.treated:  # what was found is known: it is not out there any more
+            evening = evening.treated(np.where(self.states(day) == PRESENT, 0.0, 1.0))
+        return estimate_plot(self.grid, evening.chance, evening.pair_chance)
+
     def last_inspected(self, day: int) -> NDArray[np.int32]:
         """Return ``(n,)`` the day of each plant's last inspection up to `day`, or `NEVER`."""
         last = np.full(len(self.grid), NEVER, np.int32)
-        done = self.inspections.before(day + 1).looked
-        last[done.plant] = done.day
+        done = self.until(day)
+        inspected = done.result != SKIPPED
+        last[done.plant[inspected]] = self.days[: len(done)][inspected]
         return last
 
     def states(self, day: int) -> NDArray[np.int8]:
         """Return ``(n,)`` up to `day`: 1 found infested, 0 only looked clean, -1 never seen."""
         state = np.full(len(self.grid), -1, np.int8)
-        done = self.inspections.before(day + 1).looked
-        np.maximum.at(state, done.plant, done.result)
+        done = self.until(day)
+        inspected = done.result != SKIPPED
+        np.maximum.at(state, done.plant[inspected], done.result[inspected])
         return state
 
-    def scene(self, crew: Crew, day: int, morning: Belief, now_s: float | None = None) -> Scene:
+    def scene(self, shift: Shift, day: int, morning: Belief, now_s: float | None = None) -> Scene:
         """Return the scene of a day as it stands after what was recorded of it.
 
         Parameters
         ----------
-        crew
-            Who works, and where.
+        shift
+            Who works, where, and from when on.
         day
             Number of the day.
         morning
@@ -144,8 +185,8 @@ class History:
             Seconds since midnight; None: when the last inspection recorded was done, by its own
             time or, where none was noted, by what driving and looking cost.
         """
-        aisles, robot = crew.aisles, crew.robot
-        today, believed = self.inspections.on(day), self.evening(morning, day)
+        aisles, robot = shift.aisles, shift.robot
+        today, believed = self.on(day), self.evening(morning, day)
         last = self.last_inspected(day)
         last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
         trail = self._trail(day)
@@ -158,19 +199,23 @@ class History:
             last_inspected=last,
             day=day,
             at=int(today.plant[-1]) if len(today) else resting,
-            seconds_left=max(0.0, robot.day_s - _gone_s(crew, today, resting, now_s)),
+            seconds_left=max(0.0, robot.day_s - _gone_s(shift, today, resting, now_s)),
             trail=trail,
-            key=crew.chance.key("sampler", day),
+            key=shift.streams.key("sampler", day),
         )
 
     def _trail(self, day: int) -> NDArray[np.int32]:
-        earlier = self.inspections.before(day).looked
-        return earlier.on(int(earlier.day[-1])).plant if len(earlier) else earlier.plant
+        """Return the plants ``(k,)`` of the last day before `day` on which any was inspected."""
+        earlier = self.until(day - 1)
+        inspected = np.flatnonzero(earlier.result != SKIPPED)
+        if not len(inspected):
+            return earlier.plant[:0]
+        return self.on(int(self.days[inspected[-1]])).inspected.plant
 
 
 @dataclass(frozen=True, eq=False)
-class Crew:
-    """Who works on a plot, and when.
+class Shift:
+    """Who works on a plot, and from when on.
 
     Parameters
     ----------
@@ -180,25 +225,25 @@ class Crew:
         Who inspects.
     starts_s
         Seconds since midnight at which the work starts.
-    chance
+    streams
         For samplers that draw.
     """
 
     aisles: Aisles
     robot: Robot
     starts_s: float = 6 * 3600.0
-    chance: RandomStreams = RandomStreams(1)  # noqa: RUF009 - a seed, not a call with effects
+    streams: RandomStreams = RandomStreams(1)  # noqa: RUF009 - a seed, not a call with effects
 
 
-def _gone_s(crew: Crew, today: Inspections, resting: int, now_s: float | None) -> float:
+def _gone_s(shift: Shift, today: Inspections, resting: int, now_s: float | None) -> float:
     """Return the seconds of the working day that are gone."""
     if now_s is not None:
-        return max(0.0, now_s - crew.starts_s)
+        return max(0.0, now_s - shift.starts_s)
     if not len(today):
         return 0.0
     if np.isfinite(today.second[-1]):
-        return max(0.0, float(today.second[-1]) - crew.starts_s)
-    robot = crew.robot
+        return max(0.0, float(today.second[-1]) - shift.starts_s)
+    robot = shift.robot
     clock = robot_clock(robot, robot.day_s)
-    drive_s = driven_s(crew.aisles.ground, clock, np.append(np.int64(resting), today.plant))
+    drive_s = driven_s(shift.aisles.travel, clock, np.append(np.int64(resting), today.plant))
     return drive_s + robot.visit_s * len(today)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
 from shapely import LineString
 
+from fieldmon.compute.digest import digest
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, insert, point_blobs, touch
 
@@ -17,34 +17,36 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.monitoring.settings import SeasonSetup
+    from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.grid import RowLabel
 
 
-def begins(setup: SeasonSetup, today: DayPlan) -> datetime:
+def begins(settings: MonitoringSettings, today: DayPlan) -> datetime:
     """Return the local time at which a route begins: the start of work, or half-way."""
-    gone_s = setup.robot.day_s - today.scene.seconds_left
-    start = datetime.combine(setup.date(today.scene.day), setup.starts)
+    gone_s = settings.robot.day_s - today.scene.seconds_left
+    start = datetime.combine(settings.date(today.scene.day), settings.starts)
     return start + timedelta(seconds=round(gone_s))
 
 
-def keep(db: sqlite3.Connection, setup: SeasonSetup, label: RowLabel, today: DayPlan) -> bool:
+def keep(
+    db: sqlite3.Connection, settings: MonitoringSettings, label: RowLabel, today: DayPlan
+) -> bool:
     """Keep a day's route, unless it is the one kept last; tell whether it was."""
     day, route = today.scene.day, today.route
-    digest = _digest(today)
+    mark = _digest(today)
     last = db.execute(
         "SELECT revision, digest FROM routes WHERE day = ? ORDER BY revision DESC LIMIT 1", (day,)
     ).fetchone()
-    if last is not None and last[1] == digest:
+    if last is not None and last[1] == mark:
         return False
-    begin, line = begins(setup, today), route.line_lonlat()
+    begin, line = begins(settings, today), route.line_lonlat()
     row = {
         "geom": blob(LineString(line)) if len(line) > 1 else None,
         "day": day,
-        "date": str(setup.date(day)),
+        "date": str(settings.date(day)),
         "revision": 1 if last is None else last[0] + 1,
-        "sampler": setup.sampler,
+        "sampler": settings.sampler,
         "starts": begin.isoformat(),
         "seconds": route.end_s,
         "drive_m": route.drive_m,
@@ -52,7 +54,7 @@ def keep(db: sqlite3.Connection, setup: SeasonSetup, label: RowLabel, today: Day
         "expected": route.expected_finds,
         "at_plant": today.scene.at,
         "seconds_left": today.scene.seconds_left,
-        "digest": digest,
+        "digest": mark,
     }
     cursor = db.execute(
         f"INSERT INTO routes ({', '.join(row)}) VALUES ({', '.join('?' * len(row))})",  # noqa: S608 - ours
@@ -89,7 +91,6 @@ def plants(db: sqlite3.Connection, day: int) -> NDArray[np.int32]:
 
 
 def _digest(today: DayPlan) -> str:
-    said = hashlib.sha256(today.route.plant.astype("<i4").tobytes())
-    said.update(np.round(today.route.arrive_s, 3).astype("<f8").tobytes())
-    said.update(repr((today.scene.at, round(today.scene.seconds_left, 3))).encode())
-    return said.hexdigest()[:24]
+    plant, arrive_s = today.route.plant, np.round(today.route.arrive_s, 3)
+    stands = today.scene.at, round(today.scene.seconds_left, 3)
+    return digest(plant.astype("<i4"), arrive_s.astype("<f8"), stands, length=24, end=b"")

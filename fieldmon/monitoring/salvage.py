@@ -18,7 +18,7 @@ from fieldmon.monitoring.season_file import Season
 from fieldmon.monitoring.transactions import Store
 
 if TYPE_CHECKING:
-    from fieldmon.monitoring.geopackage import Table
+    from fieldmon.monitoring.geopackage import GeoPackageTable
 
 _MOST_ROWS = 50_000_000
 _MOST_BYTES = 2**34
@@ -101,7 +101,7 @@ def _padded_copy(source: Path, folder: Path) -> Path:
     return copy
 
 
-def _rows(db: sqlite3.Connection, table: Table) -> tuple[list[tuple[object, ...]], bool]:
+def _rows(db: sqlite3.Connection, table: GeoPackageTable) -> tuple[list[tuple[object, ...]], bool]:
     """Return the rows that can be read, and whether those are all.
 
     Read forwards up to the damage, then backwards down to it.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fieldmon.monitoring.geopackage import Table, announce, create, found
+from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create, found
 from fieldmon.monitoring.qgis_styles import add_styles
 
 if TYPE_CHECKING:
@@ -13,26 +13,28 @@ if TYPE_CHECKING:
 
 VERSION = 2
 
-META = Table("fieldmon", ("key TEXT NOT NULL UNIQUE", "value TEXT"), None, "What this file is.")
-SETTINGS = Table(
+META = GeoPackageTable(
+    "fieldmon", ("key TEXT NOT NULL UNIQUE", "value TEXT"), None, "What this file is."
+)
+SETTINGS = GeoPackageTable(
     "settings",
     ("name TEXT NOT NULL", "value TEXT NOT NULL", "changed TEXT NOT NULL"),
     None,
     "Settings of the season as JSON; the last of a name counts.",
 )
-IMPORTS = Table(
+IMPORTS = GeoPackageTable(
     "import_findings",
     ("source TEXT", "severity TEXT", "feature TEXT", "sentence TEXT", "remedy TEXT", "at TEXT"),
     None,
     "What was seen, repaired, guessed or dropped when files were read.",
 )
-ARRAYS = Table(
+ARRAYS = GeoPackageTable(
     "arrays",
     ("name TEXT NOT NULL UNIQUE", "dtype TEXT", "shape TEXT", "data BLOB"),
     None,
     "The plant grid as it was laid, compressed: plant numbers never move.",
 )
-BATCHES = Table(
+BATCHES = GeoPackageTable(
     "batches",
     (
         "at TEXT NOT NULL",
@@ -45,7 +47,7 @@ BATCHES = Table(
     None,
     "Everything recorded, in order; what was undone is marked, never deleted.",
 )
-DAYS = Table(
+DAYS = GeoPackageTable(
     "days",
     (
         "day INTEGER NOT NULL UNIQUE",
@@ -61,27 +63,29 @@ DAYS = Table(
     None,
     "Each day's figures after its work, and the digest of its morning's chance map.",
 )
-PLANT_STATE = Table(
+PLANT_STATE = GeoPackageTable(
     "plant_state",
     ("chance REAL", "state TEXT", "last_inspected DATE", "hot_spot INTEGER"),
     None,
     "The latest state of each plant (fid as in plants); see the layer chance.",
 )
-PLOTS = Table(
+PLOTS = GeoPackageTable(
     "plots",
     ("name TEXT", "area_ha REAL", "plants INTEGER"),
     "MULTIPOLYGON",
     "Boundary of the plot.",
 )
-PLACES = Table("places", ("kind TEXT NOT NULL",), "GEOMETRY", "Gate, paths and no-go areas.")
-ROWS = Table("rows", ("line INTEGER", "plants INTEGER"), "LINESTRING", "Rows of plants.")
-PLANTS = Table(
+PLACES = GeoPackageTable(
+    "places", ("kind TEXT NOT NULL",), "GEOMETRY", "Gate, paths and no-go areas."
+)
+ROWS = GeoPackageTable("rows", ("line INTEGER", "plants INTEGER"), "LINESTRING", "Rows of plants.")
+PLANTS = GeoPackageTable(
     "plants",
     ("plant INTEGER NOT NULL", "line INTEGER", "number INTEGER"),
     "POINT",
     "Plants: number in this file, row and place in the row as people count.",
 )
-OBSERVATIONS = Table(
+OBSERVATIONS = GeoPackageTable(
     "observations",
     (
         "present INTEGER",
@@ -95,7 +99,7 @@ OBSERVATIONS = Table(
     "POINT",
     "Pest records from before the season: 1 present, 0 looked and saw nothing, -1 undecided.",
 )
-INSPECTIONS = Table(
+INSPECTIONS = GeoPackageTable(
     "inspections",
     (
         "plant INTEGER",
@@ -115,7 +119,7 @@ INSPECTIONS = Table(
     "POINT",
     "What was found at which plant: clean, found or skipped.",
 )
-TREATMENTS = Table(
+TREATMENTS = GeoPackageTable(
     "treatments",
     (
         "day INTEGER",
@@ -130,7 +134,7 @@ TREATMENTS = Table(
     "MULTIPOLYGON",
     "Areas treated, and how well it works.",
 )
-ROUTES = Table(
+ROUTES = GeoPackageTable(
     "routes",
     (
         "day INTEGER NOT NULL",
@@ -149,7 +153,7 @@ ROUTES = Table(
     "LINESTRING",
     "The line to drive on each day; the highest revision of a day counts.",
 )
-STOPS = Table(
+STOPS = GeoPackageTable(
     "stops",
     (
         "route INTEGER NOT NULL",
@@ -164,7 +168,7 @@ STOPS = Table(
     "POINT",
     "The plants of each route in order.",
 )
-HOT_SPOTS = Table(
+HOT_SPOTS = GeoPackageTable(
     "hot_spots",
     (
         "spot INTEGER",
@@ -178,7 +182,7 @@ HOT_SPOTS = Table(
     "MULTIPOLYGON",
     "Where finds cluster more than chance allows, as of now.",
 )
-CHANCE = Table(
+CHANCE = GeoPackageTable(
     "chance",
     (),
     "POINT",

@@ -2,125 +2,65 @@
 
 from __future__ import annotations
 
-import hashlib
 import threading
 from dataclasses import dataclass, replace
+from datetime import date
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.belief import Pairs
-from fieldmon.infestation.hotspots import HotSpots, hot_spots
-from fieldmon.infestation.inspections import FOUND
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import prior_chance
+from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.monitoring import (
     batches,
+    day_figures,
     derived_layers,
     inspection_table,
     routes,
-    schema,
     settings_log,
     tables,
+    treatments,
 )
-from fieldmon.monitoring.geopackage import blob, geometry, touch
-from fieldmon.monitoring.history import Crew, History, Treatment
-from fieldmon.monitoring.settings import SeasonSetup, as_json, from_json, seconds
+from fieldmon.monitoring.batches import Recorded
+from fieldmon.monitoring.day_figures import DayFigures, Progress
+from fieldmon.monitoring.history import History, Shift, Treatment
+from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
+from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
-from fieldmon.planning.plan import DayPlan
-from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.plan import plan_in
 from fieldmon.plot.grid import RowLabel, row_label
 
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable
-    from datetime import date, time
+    from datetime import time
     from pathlib import Path
 
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
     from fieldmon.infestation.belief import Belief
-    from fieldmon.infestation.observations import Observations
-    from fieldmon.infestation.plot_estimate import PlotEstimate
+    from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.batches import Batch
-    from fieldmon.monitoring.inspection_table import Results
-    from fieldmon.monitoring.tables import Remark
+    from fieldmon.monitoring.tables import KeptMessage
+    from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.plot import Plot
 
     Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Recorded:
-    """What recording did.
-
-    Parameters
-    ----------
-    batch
-        Its number, for undoing; None if nothing was new.
-    new, known
-        Results that were added, and results that the season held already.
-    """
-
-    batch: int | None
-    new: int
-    known: int
-
-
 @dataclass(frozen=True, eq=False)
-class Status:
-    """Where a season stands on a day, after what was recorded of it.
-
-    Parameters
-    ----------
-    day
-        Number of the day, from 0.
-    on
-        Its date.
-    plants
-        Plants of the plot.
-    inspected, found
-        Plants inspected so far at least once, and plants found infested so far.
-    inspected_today, found_today
-        Plants inspected and found infested on this day.
-    outlook
-        How many are infested and not found yet, as believed.
-    days_since
-        ``(r,)`` days since any plant of each row was inspected; NaN: never.
-    hot_spots
-        Where finds cluster.
-    """
-
-    day: int
-    on: date
-    plants: int
-    inspected: int
-    found: int
-    inspected_today: int
-    found_today: int
-    outlook: PlotEstimate
-    days_since: Floats
-    hot_spots: HotSpots
-
-    @property
-    def detection_pct(self) -> float:
-        """Return the finds in percent of finds and what is still expected out there."""
-        everything = self.found + self.outlook.expected
-        return 100.0 * self.found / everything if everything else 100.0
-
-
-@dataclass(frozen=True, eq=False)
-class _Snapshot:
+class _Contents:
     """What the file said when it was read last; mornings are added as they are asked for."""
 
     revision: str
-    setup: SeasonSetup
+    settings: MonitoringSettings
     history: History
     mornings: list[Belief]
 
@@ -146,41 +86,54 @@ class Season:
     def __init__(self, path: str | Path) -> None:
         self.store = Store(path)
         self._lock = threading.RLock()
-        self._last: _Snapshot | None = None
+        self._last: _Contents | None = None
         self._prior: tuple[object, Floats] | None = None
         with self.store.reading() as db:
             self.plot: Plot = tables.read_plot(db)
             self.observations: Observations = tables.read_observations(db)
             self.risk: Floats | None = tables.read_arrays(db, "risk").get("risk")
 
+    def __repr__(self) -> str:
+        """Say which file and which plot."""
+        return f"<Season {self.path.name}: {self.plot!r}>"
+
     @classmethod
     def create(
         cls,
         path: str | Path,
         plot: Plot,
-        observations: Observations,
-        setup: SeasonSetup,
-        remarks: Iterable[Remark] = (),
+        observations: Observations | None = None,
+        settings: MonitoringSettings | None = None,
+        messages: Iterable[KeptMessage] = (),
         risk: Floats | None = None,
+        **chosen: Any,  # noqa: ANN401 - fields of the settings
     ) -> Season:
         """Begin a season in a new file, whole or not at all; raise `FileProblem` if it exists.
+
+        Settings may be given one by one instead, as ``begins=date(2026, 11, 18)`` or
+        ``robot=Robot(hours=4)``; a season begins today unless told otherwise.
 
         `risk` ``(n,)`` is one more chance of being infested at the start, from a raster for
         instance, see `fieldmon.infestation.prior.prior_chance`.
         """
-        begins = np.datetime64(setup.begins, "D")
-        prior = prior_chance(plot.grid, plot.field, observations, begins, setup.prior, risk)
-        history = _nothing_yet(plot, setup, prior)
-        first = _Snapshot("", setup, history, [history.prior])
+        if settings is None:
+            today = date.today()  # noqa: DTZ011 - the local day
+            settings = MonitoringSettings(**({"begins": today} | chosen))
+        if observations is None:
+            observations = Observations.none()
+        begins = np.datetime64(settings.begins, "D")
+        prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
+        history = _nothing_yet(plot, settings, prior)
+        first = _Contents("", settings, history, [history.first_morning])
         with Store.new(path) as db:
             tables.write_plot(db, plot)
             tables.write_observations(db, observations)
-            tables.write_remarks(db, remarks)
+            tables.write_messages(db, messages)
             if risk is not None:
                 tables.write_array(db, "risk", risk)
-            settings_log.write(db, as_json(setup))
+            settings_log.write(db, as_json(settings))
             set_meta(db, "revision", "0")
-            derived_layers.refresh(db, plot, setup, history, first.morning)
+            derived_layers.refresh(db, plot, history, first.morning)
         return cls(path)
 
     @property
@@ -189,9 +142,15 @@ class Season:
         return self.store.path
 
     @property
-    def setup(self) -> SeasonSetup:
+    def revision(self) -> str:
+        """Return what changes when anything that counts does, whoever changed it."""
+        with self.store.reading() as db:
+            return _revision(db)
+
+    @property
+    def settings(self) -> MonitoringSettings:
         """Return what is chosen for the season."""
-        return self._now().setup
+        return self._now().settings
 
     @property
     def history(self) -> History:
@@ -203,32 +162,32 @@ class Season:
         """Row and number of every plant, as people count."""
         return row_label(self.plot.grid)
 
-    def change(self, setup: SeasonSetup, seen: SeasonSetup) -> None:
+    def change(self, settings: MonitoringSettings, seen: MonitoringSettings) -> None:
         """Choose otherwise; raise `FileProblem` if the choices are no longer those `seen`."""
         with self._lock, self.store.writing() as db:
-            if as_json(_setup(db)) != as_json(seen):
+            if as_json(_settings(db)) != as_json(seen):
                 raise FileProblem(
                     "The season's settings must be as they were when you looked, but another "
                     "window changed them. Look again and repeat your change."
                 )
-            settings_log.write(db, as_json(setup))
+            settings_log.write(db, as_json(settings))
             self._refresh(db)
 
-    def before_change(self) -> SeasonSetup | None:
+    def before_change(self) -> MonitoringSettings | None:
         """Return what counted before the last change of settings; None: nothing was changed."""
         with self.store.reading() as db:
             parts = settings_log.before_now(db)
         return None if parts is None else from_json(parts)
 
-    def undo_change(self) -> SeasonSetup:
+    def undo_change(self) -> MonitoringSettings:
         """Take the last change of settings back; return what counts again.
 
         Raise `SettingError` if there is none.
         """
         with self._lock, self.store.writing() as db:
-            setup = settings_log.undo(db)
+            settings = settings_log.undo(db)
             self._refresh(db)
-        return setup
+        return settings
 
     # -- the working day
 
@@ -246,30 +205,35 @@ class Season:
             whether the route is kept in the file: the same one once, an empty one never.
         """
         with self._lock:
-            snapshot = self._now()
-            setup = snapshot.setup
-            day = setup.day(on)
-            crew = Crew(
-                self.plot.aisles, setup.robot, seconds(setup.starts), RandomStreams(setup.seed)
+            contents = self._now()
+            settings = contents.settings
+            day = settings.day(on)
+            shift = Shift(
+                self.plot.aisles,
+                settings.robot,
+                seconds(settings.starts),
+                RandomStreams(settings.seed),
             )
             now_s = None if now is None else seconds(now)
-            scene = snapshot.history.scene(crew, day, snapshot.morning(day), now_s)
-            work = plan_day(scene, setup.decides())
-            today = DayPlan(scene, work, route_of(scene, work))
+            scene = contents.history.scene(shift, day, contents.morning(day), now_s)
+            today = plan_in(scene, settings.decides())
+            begins = routes.begins(settings, today)
+            notes = RouteNotes(self.plot.field.name, settings.sampler, begins)
+            today = replace(today, route=replace(today.route, notes=notes))
             if keep and len(today.route):
                 with self.store.writing() as db:
-                    if routes.keep(db, setup, self.label, today):
+                    if routes.keep(db, settings, self.label, today):
                         self._refresh(db, day)
         return today
 
     def kept_route(self, on: date) -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none."""
-        day = self.setup.day(on)
+        day = self.settings.day(on)
         with self.store.reading() as db:
             return routes.plants(db, day)
 
-    def record(self, found: Results, source: str, who: str = "") -> Recorded:
-        """Add results of inspections; those that the season holds already change nothing.
+    def record(self, inspections: Inspections, source: str = "", who: str = "") -> Recorded:
+        """Add inspections; those that the season holds already change nothing.
 
         Raises
         ------
@@ -281,13 +245,13 @@ class Season:
         with self._lock, self.store.writing() as db:
             batch = batches.begin(db, "findings", source, who)
             made = inspection_table.rows(
-                found, self.plot.grid, self.label, _setup(db), (batch, who)
+                inspections, self.plot.grid, self.label, _settings(db), (batch, who)
             )
             new = inspection_table.store(db, made)
             batches.end(db, batch, new)
             if new:
-                self._refresh(db, _setup(db).day(found.day.min().item()))
-        return Recorded(batch if new else None, new, len(found) - new)
+                self._refresh(db, _settings(db).day(inspections.date.min().item()))
+        return Recorded(batch if new else None, new, len(inspections) - new)
 
     def treat(
         self, on: date, efficacy: float, area: MultiPolygon | None = None, product: str = ""
@@ -301,20 +265,11 @@ class Season:
                 "Check its coordinates."
             )
         with self._lock, self.store.writing() as db:
-            day = _setup(db).day(on)
+            day = _settings(db).day(on)
             treatment = Treatment(day, plants, efficacy)  # or raise
             batch = batches.begin(db, "treatment", product, "")
-            said = (day, str(on), treatment.efficacy, product, int(plants.sum()))
-            mark = hashlib.sha256(repr((said, blob(ground))).encode()).hexdigest()[:24]
-            names = schema.TREATMENTS.names
-            cursor = db.execute(
-                f"INSERT OR IGNORE INTO treatments ({', '.join(names)}) "  # noqa: S608 - ours
-                f"VALUES ({', '.join('?' * len(names))})",
-                (blob(ground), *said, batch, mark, 0),
-            )
-            new = cursor.rowcount
+            new = treatments.store(db, treatment, (ground, str(on), product), batch)
             batches.end(db, batch, new)
-            touch(db, schema.TREATMENTS.name, ground.bounds)
             if new:
                 self._refresh(db, day)
         return Recorded(batch if new else None, new, 1 - new)
@@ -337,67 +292,71 @@ class Season:
     def morning(self, on: date) -> Floats:
         """Return the chance map ``(n,)`` of a morning."""
         with self._lock:
-            snapshot = self._now()
-            return snapshot.morning(snapshot.setup.day(on)).chance
+            contents = self._now()
+            return contents.morning(contents.settings.day(on)).chance
 
     def evening(self, on: date) -> Floats:
         """Return the chance map ``(n,)`` of a day, after what was recorded of it so far."""
         with self._lock:
-            snapshot = self._now()
-            day = snapshot.setup.day(on)
-            return snapshot.history.evening(snapshot.morning(day), day).chance
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.evening(contents.morning(day), day).chance
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""
         with self._lock:
-            snapshot = self._now()
-            setup, history, grid = snapshot.setup, snapshot.history, self.plot.grid
-            day = setup.day(on)
-            morning = snapshot.morning(day)
-        done = history.inspections.before(day + 1).looked
-        today, state = done.on(day), history.states(day)
-        last = np.full(grid.n_rows, -1, np.int64)
-        np.maximum.at(last, grid.row[done.plant], done.day)
-        return Status(
-            day=day,
-            on=on,
-            plants=len(grid),
-            inspected=int(np.count_nonzero(state >= 0)),
-            found=int(np.count_nonzero(state == PRESENT)),
-            inspected_today=len(today),
-            found_today=int(np.count_nonzero(today.result == FOUND)),
-            outlook=derived_layers.outlook_of(history, morning, day),
-            days_since=np.where(last < 0, np.nan, day - last),
-            hot_spots=hot_spots(grid, state),
-        )
+            contents = self._now()
+            day = contents.settings.day(on)
+            return Status.of(contents.history, contents.morning(day), day)
+
+    def progress(self, on: date) -> Progress:
+        """Return how far the inspections are after a day's work; nothing is estimated for it."""
+        now = self._now()
+        return Progress.of(now.history, now.settings.day(on))
+
+    def day_figures(self, on: date) -> DayFigures:
+        """Return a day in figures: those kept with it, or else worked out, which takes seconds."""
+        for kept in self.days():
+            if kept.on == on:
+                return kept
+        with self._lock:
+            now = self._now()
+            day = now.settings.day(on)
+            estimate = now.history.estimate(now.morning(day), day)
+        return DayFigures.of(on, Progress.of(now.history, day), estimate)
+
+    def days(self) -> tuple[DayFigures, ...]:
+        """Return the figures of the days on which anything was planned or recorded, in order."""
+        with self.store.reading() as db:
+            return day_figures.kept(db)
 
     def batches(self) -> tuple[Batch, ...]:
         """Return everything recorded, the last one first."""
         with self.store.reading() as db:
             return batches.all_of(db)
 
-    def remarks(self) -> tuple[Remark, ...]:
+    def messages(self) -> tuple[KeptMessage, ...]:
         """Return what the imports had to say."""
         with self.store.reading() as db:
-            return tables.read_remarks(db)
+            return tables.read_messages(db)
 
     def last_date(self) -> date:
         """Return the last day on which anything was planned or recorded; at first the first."""
         with self.store.reading() as db:
             (day,) = db.execute("SELECT max(day) FROM days").fetchone()
-            return _setup(db).date(int(day))
+            return _settings(db).date(int(day))
 
     def verify(self) -> tuple[str, ...]:
         """Hold the chance maps rebuilt from the causes to the digests kept; say what differs."""
         with self._lock:
-            snapshot = self._now()
+            contents = self._now()
             with self.store.reading() as db:
                 kept = db.execute("SELECT day, date, digest FROM days ORDER BY day").fetchall()
             return tuple(
                 f"The chance map of {on} comes out differently from the one used then: it was "
                 "made by another version of fieldmon, or the file was changed by other hands."
-                for day, on, digest in kept
-                if derived_layers.digest(snapshot.morning(day).chance) != digest
+                for day, on, then in kept
+                if derived_layers.map_digest(contents.morning(day).chance) != then
             )
 
     def rebuild(self) -> None:
@@ -407,36 +366,30 @@ class Season:
 
     # -- inside
 
-    def _now(self) -> _Snapshot:
+    def _now(self) -> _Contents:
         with self._lock, self.store.reading() as db:
             return self._read(db)
 
-    def _read(self, db: sqlite3.Connection) -> _Snapshot:
+    def _read(self, db: sqlite3.Connection) -> _Contents:
         """Return what the file says; nothing is read again that did not change."""
         revision = _revision(db)
         if self._last is None or self._last.revision != revision:
-            setup = _setup(db)
-            prior = self._first_morning(setup)
-            treatments = tuple(
-                Treatment(day, self._inside(geometry(geom)), efficacy)
-                for day, geom, efficacy in db.execute(
-                    "SELECT day, geom, efficacy FROM treatments WHERE undone = 0 ORDER BY fid"
-                )
-            )
+            settings = _settings(db)
+            prior = self._first_morning(settings)
             history = replace(
-                _nothing_yet(self.plot, setup, prior),
-                inspections=inspection_table.load(db),
-                treatments=treatments,
+                _nothing_yet(self.plot, settings, prior),
+                inspections=inspection_table.load(db, settings.begins),
+                treatments=treatments.load(db, self._inside),
             )
-            self._last = _Snapshot(revision, setup, history, [history.prior])
+            self._last = _Contents(revision, settings, history, [history.first_morning])
         return self._last
 
-    def _first_morning(self, setup: SeasonSetup) -> Floats:
-        key = (setup.begins, setup.prior)
+    def _first_morning(self, settings: MonitoringSettings) -> Floats:
+        key = (settings.begins, settings.prior)
         if self._prior is None or self._prior[0] != key:
-            begins = np.datetime64(setup.begins, "D")
+            begins = np.datetime64(settings.begins, "D")
             plot, records = self.plot, self.observations
-            chance = prior_chance(plot.grid, plot.field, records, begins, setup.prior, self.risk)
+            chance = prior_chance(plot.grid, plot.field, records, begins, settings.prior, self.risk)
             self._prior = (key, chance)
         return self._prior[1]
 
@@ -450,13 +403,15 @@ class Season:
         """Write what follows from the causes, within the transaction that changes them."""
         self._last = None
         now = self._read(db)
-        derived_layers.refresh(db, self.plot, now.setup, now.history, now.morning, since)
+        derived_layers.refresh(db, self.plot, now.history, now.morning, since)
         self._last = None  # the transaction may yet fail
 
 
-def _nothing_yet(plot: Plot, setup: SeasonSetup, prior: Floats) -> History:
-    belief = Pairs.of(plot.grid, prior)
-    return History(plot.grid, belief, beliefs=setup.beliefs, detection=setup.robot.detects)
+def _nothing_yet(plot: Plot, settings: MonitoringSettings, prior: Floats) -> History:
+    belief = PairApproximation.of(plot.grid, prior)
+    return History(
+        plot.grid, settings.begins, belief, belief=settings.belief, detection=settings.robot.detects
+    )
 
 
 def _revision(db: sqlite3.Connection) -> str:
@@ -465,5 +420,5 @@ def _revision(db: sqlite3.Connection) -> str:
     return repr((get_meta(db, "revision"), counted))
 
 
-def _setup(db: sqlite3.Connection) -> SeasonSetup:
+def _settings(db: sqlite3.Connection) -> MonitoringSettings:
     return from_json(settings_log.now(db))

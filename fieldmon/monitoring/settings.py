@@ -12,20 +12,19 @@ import numpy as np
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.infestation.spread import Spread
-from fieldmon.monitoring.history import Beliefs
-from fieldmon.planning.workday import looks_of
+from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.plot.robot import Robot, Viewpoints
-from fieldmon.samplers import sampler
+from fieldmon.samplers import USUAL, sampler
 
 if TYPE_CHECKING:
-    from fieldmon.samplers import Sampler
+    from fieldmon.samplers.base import Sampler
 
 # a season of a perennial crop fits into it twice; a slip in a date does not
 _MOST_DAYS = 800
 
 
 @dataclass(frozen=True)
-class SeasonSetup:
+class MonitoringSettings:
     """What is chosen for a season.
 
     Parameters
@@ -40,7 +39,7 @@ class SeasonSetup:
         Who decides which plants come next: a name of `fieldmon.samplers.SAMPLERS`.
     prior
         How records, edges and paths become a chance of infestation.
-    beliefs
+    belief
         What is made of findings and nights.
     seed
         For samplers that draw.
@@ -49,14 +48,14 @@ class SeasonSetup:
     begins: date
     starts: time = time(6)
     robot: Robot = field(default_factory=Robot)
-    sampler: str = "adaptive"
+    sampler: str = USUAL
     sampler_settings: dict[str, float] = field(default_factory=dict)
     prior: PriorSettings = field(default_factory=PriorSettings)
-    beliefs: Beliefs = field(default_factory=Beliefs)
+    belief: BeliefSettings = field(default_factory=BeliefSettings)
     seed: int = 1
 
     def __post_init__(self) -> None:
-        if len(looks_of(self.robot, self.decides()).detects) > 1:
+        if len(self.decides().inspection_times(self.robot).detects) > 1:
             raise SettingError(
                 "The sampler of a season must look equally long at every plant, for that is what "
                 f"its findings are read by, but {self.sampler!r} chooses. Take another sampler."
@@ -91,35 +90,38 @@ def seconds(at: time) -> float:
     return at.hour * 3600.0 + at.minute * 60.0 + at.second
 
 
-def as_json(setup: SeasonSetup) -> dict[str, str]:
-    """Return each part of a setup as JSON, by name."""
-    parts = {name: getattr(setup, name) for name in ("robot", "prior", "beliefs")}
-    plain: dict[str, Any] = {name: asdict(part) for name, part in parts.items()}
-    plain["season"] = {
-        "begins": setup.begins.isoformat(),
-        "starts": setup.starts.isoformat(),
-        "seed": setup.seed,
+def as_json(settings: MonitoringSettings) -> dict[str, str]:
+    """Return each part of the settings as JSON, by its name in season files."""
+    plain: dict[str, Any] = {
+        "robot": asdict(settings.robot),
+        "prior": asdict(settings.prior),
+        "beliefs": asdict(settings.belief),
     }
-    plain["sampler"] = {"name": setup.sampler, "settings": dict(setup.sampler_settings)}
+    plain["season"] = {
+        "begins": settings.begins.isoformat(),
+        "starts": settings.starts.isoformat(),
+        "seed": settings.seed,
+    }
+    plain["sampler"] = {"name": settings.sampler, "settings": dict(settings.sampler_settings)}
     return {name: json.dumps(part, sort_keys=True) for name, part in plain.items()}
 
 
-def from_json(parts: dict[str, str]) -> SeasonSetup:
-    """Return the setup that `as_json` wrote; raise `FileProblem` where it cannot be read."""
+def from_json(parts: dict[str, str]) -> MonitoringSettings:
+    """Return the settings that `as_json` wrote; raise `FileProblem` where it cannot be read."""
     try:
         plain = {name: json.loads(text) for name, text in parts.items()}
         robot, season, chooses = plain["robot"], plain["season"], plain["sampler"]
         steps = tuple((float(s), float(p)) for s, p in robot["viewpoints"]["steps"])
         viewpoints = Viewpoints(steps, robot["viewpoints"]["longer"])
-        beliefs = plain["beliefs"]
-        return SeasonSetup(
+        belief = plain["beliefs"]
+        return MonitoringSettings(
             begins=date.fromisoformat(season["begins"]),
             starts=time.fromisoformat(season["starts"]),
             robot=Robot(**{**robot, "viewpoints": viewpoints}),
             sampler=chooses["name"],
             sampler_settings=chooses["settings"],
             prior=PriorSettings(**plain["prior"]),
-            beliefs=Beliefs(**{**beliefs, "spread": Spread(**beliefs["spread"])}),
+            belief=BeliefSettings(**{**belief, "spread": Spread(**belief["spread"])}),
             seed=season["seed"],
         )
     except (KeyError, TypeError, ValueError, FieldmonError) as error:

@@ -17,9 +17,9 @@ from fieldmon.monitoring.tables import utc_now
 if TYPE_CHECKING:
     import sqlite3
 
-    from fieldmon.monitoring.settings import SeasonSetup
+    from fieldmon.monitoring.settings import MonitoringSettings
 
-#: each part of a setup as JSON, by name
+#: each part of the settings as JSON, by name
 Parts = dict[str, str]
 
 
@@ -51,7 +51,7 @@ def before_now(db: sqlite3.Connection) -> Parts | None:
     return counted[-2] if len(counted) > 1 else None
 
 
-def undo(db: sqlite3.Connection) -> SeasonSetup:
+def undo(db: sqlite3.Connection) -> MonitoringSettings:
     """Take the last change back; return what counts again, or raise `SettingError`."""
     parts = before_now(db)
     if parts is None:

@@ -28,20 +28,38 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.io.import_report import ImportMessage
+
 _FRAME = "frame"
 _SPACINGS = ("row_spacing_m", "plant_spacing_m")
 _STATED = ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
 
 
 @dataclass(frozen=True)
-class Remark:
-    """One thing that an import had to say, as the file keeps it."""
+class KeptMessage:
+    """An import's message as the season's file keeps it, with the file that it was about.
+
+    Parameters
+    ----------
+    source
+        Name of the file.
+    severity, feature, sentence
+        As the message has them.
+    remedy
+        Setting that would have answered it; None where there was nothing to choose.
+    """
 
     source: str
     severity: str
     feature: str | None
     sentence: str
     remedy: str | None = None
+
+    @classmethod
+    def of(cls, source: str, message: ImportMessage) -> KeptMessage:
+        """Return a message about a file as it is kept."""
+        remedy = None if message.remedy is None else message.remedy.setting
+        return cls(source, message.severity.value, message.feature, message.sentence, remedy)
 
 
 def utc_now() -> str:
@@ -217,18 +235,18 @@ def read_observations(db: sqlite3.Connection) -> Observations:
     )
 
 
-def write_remarks(db: sqlite3.Connection, remarks: Iterable[Remark]) -> None:
+def write_messages(db: sqlite3.Connection, messages: Iterable[KeptMessage]) -> None:
     """Keep what imports had to say."""
     now = utc_now()
-    rows = [(r.source, r.severity, r.feature, r.sentence, r.remedy, now) for r in remarks]
+    rows = [(m.source, m.severity, m.feature, m.sentence, m.remedy, now) for m in messages]
     insert(db, schema.IMPORTS, rows)
 
 
-def read_remarks(db: sqlite3.Connection) -> tuple[Remark, ...]:
+def read_messages(db: sqlite3.Connection) -> tuple[KeptMessage, ...]:
     """Return what imports had to say."""
     wanted = "source, severity, feature, sentence, remedy"
     rows = db.execute(f"SELECT {wanted} FROM import_findings ORDER BY fid")  # noqa: S608 - as above
-    return tuple(Remark(*row) for row in rows)
+    return tuple(KeptMessage(*row) for row in rows)
 
 
 def _dates(days: NDArray[np.datetime64]) -> list[str | None]:

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import shapely
-
+from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.planning.plan import PlanSettings, first_day
-from fieldmon.plot.plot import Plot, planting_of
 from fieldmon.plot.robot import Robot, scout
-from fieldmon.samplers import sampler
+from fieldmon.samplers import USUAL, kind_of, sampler
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from fieldmon.infestation.observations import Observations
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.field import Field
+    from fieldmon.plot.plot import Plot
 
 
 @dataclass(frozen=True)
@@ -42,7 +41,7 @@ class Orders:
     """
 
     day: np.datetime64
-    sampler: str = "adaptive"
+    sampler: str = USUAL
     every: int | None = None
     on_foot: bool = False
     robot: dict[str, float] = field(default_factory=dict)
@@ -73,35 +72,21 @@ class Task:
     def digest(self, observations: Observations) -> str:
         """Return what tells this task from any other, however alike."""
         parts = (*vars(self.plot).values(), self.who, self.stated, *vars(self.orders).values())
-        everything = hashlib.sha256()
-        for part in (*parts, *vars(observations).values()):
-            everything.update(_bytes(part) + b"\0")
-        return everything.hexdigest()[:16]
+        return digest(*parts, *vars(observations).values(), length=16)
 
 
-def plan_task(task: Task, observations: Observations) -> DayPlan:
-    """Plan the day on one plot; raise a `FieldmonError` where it cannot be done."""
+def plan_task(task: Task, plot: Plot, observations: Observations) -> DayPlan:
+    """Plan the day on a task's plot; raise a `FieldmonError` where it cannot be done."""
     orders = task.orders
     robot = _robot(task)
-    settings = {} if orders.every is None else {"every": orders.every}
-    plot = Plot.of(task.plot, planting_of(task.plot, **orders.planting))
-    today = first_day(
-        plot, observations, orders.day, PlanSettings(robot, sampler(orders.sampler, **settings))
-    )
+    decides = sampler(orders.sampler, **kind_of(orders.sampler).settings_for(orders.every))
+    today = first_day(plot, observations, orders.day, PlanSettings(robot, decides))
     if not len(today.route):
         raise SettingError(
             f"The working day must be long enough to reach a plant and come back, but "
             f"{robot.hours:g} h are not. Give more hours."
         )
     return today
-
-
-def _bytes(value: object) -> bytes:
-    if isinstance(value, shapely.Geometry):
-        return shapely.to_wkb(value)
-    if isinstance(value, np.ndarray):
-        return value.tobytes()
-    return repr(sorted(value.items()) if isinstance(value, dict) else value).encode()
 
 
 def _robot(task: Task) -> Robot:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
+from fieldmon.compute.wording import counted
 from fieldmon.plot.grid import row_label
-from fieldmon.samplers import NEVER
+from fieldmon.samplers.base import NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.planning.workday import Workday
-    from fieldmon.samplers import Scene
+    from fieldmon.samplers.base import Scene
 
 # an infestation is followed so far from a find: three plants or rows, whichever is more
 _AROUND = 3.0
@@ -59,11 +60,11 @@ def _told_finds(
     for find, around in zip(which[few].tolist(), count[few].tolist(), strict=True):
         line, number = (int(part[0]) for part in row_label(scene.grid, finds[[find]]))
         when = f"{found_on[find]}'s find" if len(found_on) else "the find"
-        said.append(f"{_plants(around)} around {when} in row {line}, plant {number}.")
+        said.append(f"{counted(around, 'plant')} around {when} in row {line}, plant {number}.")
     if len(few) == len(order):
         return said
     rest = order[_FINDS:]
-    return [*said, f"{_plants(int(count[rest].sum()))} around {len(rest)} other finds."]
+    return [*said, f"{counted(int(count[rest].sum()), 'plant')} around {len(rest)} other finds."]
 
 
 def _nearest_find(
@@ -99,12 +100,8 @@ def _block(scene: Scene, plants: NDArray[np.int32], line: NDArray[np.int64]) -> 
     last = scene.last_inspected[plants]
     never = int(np.count_nonzero(last == NEVER))
     if never == len(plants):
-        return f"{_plants(len(plants))} {where}: never inspected yet."
+        return f"{counted(len(plants), 'plant')} {where}: never inspected yet."
     days = round(float(np.median(scene.day - last[last != NEVER])))
-    unseen = f"not inspected for {days} day{'' if days == 1 else 's'}"
+    unseen = f"not inspected for {counted(days, 'day')}"
     others = f", {never} of them never" if never else ""
-    return f"{_plants(len(plants))} {where}: {unseen}{others}."
-
-
-def _plants(count: int) -> str:
-    return "1 plant" if count == 1 else f"{count} plants"
+    return f"{counted(len(plants), 'plant')} {where}: {unseen}{others}."

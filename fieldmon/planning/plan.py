@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from datetime import date, datetime, time
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.infestation.belief import pairs
+from fieldmon.compute.wording import counted
+from fieldmon.errors import SettingError
+from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.pairs import pair_chances
 from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.robot import Robot
-from fieldmon.samplers import NEVER, Adaptive, Sampler, Scene
+from fieldmon.samplers import sampler as sampler_of
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import NEVER, Sampler, Scene
+
+_STARTS = time(6)
 
 if TYPE_CHECKING:
+    import pydeck
+    from geopandas import GeoDataFrame
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.observations import Observations
     from fieldmon.planning.route import Route
     from fieldmon.planning.workday import Workday
     from fieldmon.plot.plot import Plot
@@ -50,10 +60,128 @@ class DayPlan:
     work: Workday
     route: Route
 
+    def __repr__(self) -> str:
+        length_km, hours = self.route.drive_m / 1000, self.route.end_s / 3600
+        stops = f"{len(self.route)} of {counted(len(self.scene.grid), 'plant')}"
+        return f"<DayPlan: {stops}, {length_km:.2f} km, {hours:.2f} h>"
+
     @property
     def chance(self) -> NDArray[np.float64]:
         """Return the believed chance of infestation of every plant, ``(n,)``."""
         return self.scene.chance
+
+    @property
+    def plants(self) -> GeoDataFrame:
+        """Return every plant as a point, EPSG:4326, with its chance and its place on the route.
+
+        Columns ``plant``, ``row``, ``number``, ``chance``, ``order`` (from 1; missing where the
+        plant is not on the route) and ``arrive_s``.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+        >>> plants = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=1)).plants
+        >>> bool(plants.order.notna().sum() == plants.order.max())
+        True
+        """
+        import pandas as pd  # noqa: PLC0415 - loaded when it is asked for
+
+        from fieldmon.plot.frames import plant_frame  # noqa: PLC0415 - likewise
+
+        frame, stops = plant_frame(self.scene.grid), self.route.plant
+        order = pd.array([pd.NA] * len(frame), dtype="Int64")
+        order[stops] = np.arange(1, len(stops) + 1)
+        arrive_s = np.full(len(frame), np.nan)
+        arrive_s[stops] = self.route.arrive_s
+        for name, values in (("chance", self.chance), ("order", order), ("arrive_s", arrive_s)):
+            frame.insert(len(frame.columns) - 1, name, values)
+        return frame
+
+    def explore(self) -> pydeck.Deck:
+        """Return a map for a notebook: plants by their chance, the route, stops that say why.
+
+        The map's ground is empty; pydeck's page itself comes from the internet.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+        >>> deck = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=1)).explore()
+        >>> [layer.id for layer in deck.layers]
+        ['plot', 'plants', 'route', 'stops']
+        """
+        from fieldmon.planning.explore import deck_of  # noqa: PLC0415 - loads pydeck
+
+        return deck_of(self)
+
+
+def plan_day(
+    plot: Plot,
+    records: Observations | None = None,
+    on: str | date | datetime | np.datetime64 | None = None,
+    robot: Robot | None = None,
+    sampler: str | Sampler = "adaptive",
+    risk: NDArray[np.float64] | None = None,
+) -> DayPlan:
+    """Plan a day on a plot of which nothing but records is known.
+
+    Parameters
+    ----------
+    plot
+        Plants and the ways between them.
+    records
+        Dated pest records; None: every plant has the chance of a plot without any.
+    on
+        The day, as ``"2026-11-18"``, a date, or a datetime that says when work starts (else
+        06:00); None: today.
+    robot
+        Who inspects; None: the thesis's robot, 12 h. `scout()` is a person on foot.
+    sampler
+        Name of a sampler in `SAMPLERS`, or one of your own.
+    risk
+        ``(n,)`` one more chance of infestation in 0..1, from a raster for instance; NaN where it
+        says nothing.
+
+    Raises
+    ------
+    SettingError
+        If there is no such day or sampler, or the hours do not reach a plant and back.
+    ObservationError
+        If all records are too far away to say anything, or `risk` does not fit the plants.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> day = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=2), sampler="naive")
+    >>> len(day.route)
+    160
+    """
+    starts = _starts(on)
+    decides = sampler_of(sampler) if isinstance(sampler, str) else sampler
+    plans = PlanSettings(robot or Robot(), decides)
+    given = Observations.none() if records is None else records
+    today = first_day(plot, given, np.datetime64(starts.date(), "D"), plans, risk)
+    if not len(today.route):
+        raise SettingError(
+            "The working day must be long enough to reach a plant and come back, but "
+            f"{plans.robot.hours:g} h are not. Give more hours."
+        )
+    who = sampler if isinstance(sampler, str) else type(sampler).__name__
+    notes = RouteNotes(plot.field.name, who, starts)
+    return replace(today, route=replace(today.route, notes=notes))
+
+
+def _starts(on: str | date | datetime | np.datetime64 | None) -> datetime:
+    """Return the local date and time at which work starts."""
+    if isinstance(on, datetime):
+        return on
+    try:
+        day = date.today() if on is None else date.fromisoformat(str(on))  # noqa: DTZ011 - local
+    except ValueError as error:
+        raise SettingError(f"A day must be as 2026-11-18, but it is {on!r}.") from error
+    return datetime.combine(day, _STARTS)
 
 
 def first_day(
@@ -77,7 +205,12 @@ def plan_from(plot: Plot, chance: NDArray[np.float64], plans: PlanSettings) -> D
         last_inspected=np.full(len(plot.grid), NEVER, np.int32),
         seconds_left=plans.robot.day_s,
         # as a season believes: it goes the same way on its first day
-        pair_chance=pairs(chance, plot.grid),
+        pair_chance=pair_chances(chance, plot.grid),
     )
-    work = plan_day(scene, plans.sampler)
+    return plan_in(scene, plans.sampler)
+
+
+def plan_in(scene: Scene, sampler: Sampler) -> DayPlan:
+    """Plan the rest of the day that a scene stands in, as it goes if nothing is found."""
+    work = plan_work(scene, sampler)
     return DayPlan(scene, work, route_of(scene, work))

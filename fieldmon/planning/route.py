@@ -8,11 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import counted
+from fieldmon.planning.bound_wording import told
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from pathlib import Path
 
+    from geopandas import GeoDataFrame
+    from numpy.typing import NDArray
+    from shapely import LineString
+
+    from fieldmon.io.writers.geojson import RouteNotes
     from fieldmon.planning.workday import Workday
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Scene
@@ -40,6 +47,11 @@ class Route:
         ``(m,)`` seconds since the start at each vertex on arrival.
     end_s
         Seconds at the end of the line.
+    notes
+        Plot, sampler and start, for files; None: files say nothing of them.
+    found_bound
+        What no route of these hours can expect to find, see `fieldmon.planning.day_bound`; None:
+        it is not known.
     """
 
     aisles: Aisles
@@ -52,6 +64,12 @@ class Route:
     line_stop: NDArray[np.int64]
     line_s: NDArray[np.float64]
     end_s: float
+    notes: RouteNotes | None = None
+    found_bound: float | None = None
+
+    def __repr__(self) -> str:
+        length_km, hours = self.drive_m / 1000, self.end_s / 3600
+        return f"<Route: {counted(len(self), 'stop')}, {length_km:.2f} km, {hours:.2f} h>"
 
     def __len__(self) -> int:
         """Return the number of stops."""
@@ -72,6 +90,13 @@ class Route:
         """Infested plants that would be found on the route, as believed."""
         return float((self.chance * self.detects).sum())
 
+    @property
+    def bound_sentence(self) -> str:
+        """Return for people what is expected, and what no other route can exceed; "" if unknown."""
+        if self.found_bound is None:
+            return ""
+        return told(self.expected_found, self.found_bound)
+
     def line_lonlat(self) -> NDArray[np.float64]:
         """Return the driven line in degrees, ``(m, 2)``."""
         return self.aisles.grid.frame.lonlat(self.line_m)
@@ -79,6 +104,68 @@ class Route:
     def stops_lonlat(self) -> NDArray[np.float64]:
         """Return the plants' own positions in degrees, ``(k, 2)``."""
         return self.aisles.grid.lonlat(self.plant)
+
+    @property
+    def line(self) -> LineString:
+        """Return the driven line in degrees; empty where there is no stop."""
+        from shapely import LineString  # noqa: PLC0415 - not needed to plan
+
+        return LineString(self.line_lonlat())
+
+    def to_file(self, path: str | Path, as_format: str | None = None) -> tuple[Path, ...]:
+        """Write the route for whoever drives; return the files written, the main one first.
+
+        Parameters
+        ----------
+        path
+            Its ending tells the format: ``.geojson``, ``.gpx``, ``.kml``, ``.gpkg``, ``.zip``
+            (shapefile), ``.csv``, ``.nav2.geojson``, ``.yaml``, ``.html`` (a sheet to print).
+        as_format
+            The format's name where the ending tells none, see `fieldmon.io.writers.FORMATS`.
+
+        Raises
+        ------
+        SettingError
+            If there is no such format.
+        FileProblem
+            If a file cannot be written; each appears whole or not at all.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+        >>> day = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=1))
+        >>> [file.name for file in day.route.to_file("day.gpx")]
+        ['day.gpx']
+        """
+        from fieldmon.io.writers import HandoffPlan, write_handoff  # noqa: PLC0415 - as above
+        from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
+
+        return write_handoff(HandoffPlan(self, self.notes or RouteNotes("", "")), path, as_format)
+
+    def to_geopandas(self) -> GeoDataFrame:
+        """Return the stops in order, a point each at its plant, EPSG:4326.
+
+        Columns ``plant`` (number in the grid, from 0), ``row`` and ``number`` (from 1),
+        ``arrive_s``, ``leave_s`` (seconds since the start), ``chance``; the index is the order,
+        from 1. The driven line is `line`.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+        >>> stops = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=1)).route.to_geopandas()
+        >>> list(stops.columns)
+        ['plant', 'row', 'number', 'arrive_s', 'leave_s', 'chance', 'geometry']
+        """
+        from fieldmon.plot.frames import plant_frame  # noqa: PLC0415 - as above
+
+        stops = plant_frame(self.aisles.grid, self.plant)
+        stops.insert(3, "arrive_s", self.arrive_s)
+        stops.insert(4, "leave_s", self.leave_s)
+        stops.insert(5, "chance", self.chance)
+        stops.index = stops.index.__class__(range(1, len(self) + 1), name="order")
+        return stops
 
 
 def route_of(scene: Scene, work: Workday) -> Route:

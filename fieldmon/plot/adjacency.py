@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from fieldmon.compute.arrays import offsets
 from fieldmon.compute.jit import loop
 
 if TYPE_CHECKING:
@@ -24,10 +25,8 @@ def lists(n: int, one: Index, other: Index) -> Lists:
     """Return CSR ``(start, plant)`` of n plants from pairs, each pair counted both ways."""
     source, target = np.concatenate([one, other]), np.concatenate([other, one])
     n_neighbours = np.bincount(source, minlength=n)
-    start = np.zeros(n + 1, np.int32)
-    np.cumsum(n_neighbours, out=start[1:])
     ordered = np.sort(source * n + target) - np.repeat(np.arange(n) * n, n_neighbours)
-    return start, ordered.astype(np.int32)
+    return offsets(n_neighbours).astype(np.int32), ordered.astype(np.int32)
 
 
 def along(x_m: Float, row: NDArray[np.integer], plant_spacing_m: float) -> Lists:

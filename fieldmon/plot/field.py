@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import shapely
 from shapely import MultiLineString, MultiPolygon
 
+from fieldmon.compute.arrays import read_only
+from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError
 from fieldmon.plot.projection import Frame
 
@@ -60,7 +62,12 @@ class Field:
                 "Draw it again or let the import repair it."
             )
         if self.plants is not None:
-            self.plants.setflags(write=False)
+            read_only(self.plants)
+
+    def __repr__(self) -> str:
+        parts = counted(len(self.boundary.geoms), "part")
+        plants = "" if self.plants is None else f", {counted(len(self.plants), 'measured plant')}"
+        return f"<Field {self.name}: {parts}{plants}>"
 
     def frame(self, bearing_deg: float = 90.0) -> Frame:
         """Return the plane in metres centred on this plot, x along ``bearing_deg``."""

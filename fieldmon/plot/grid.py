@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.arrays import offsets, read_only
+from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
@@ -99,14 +101,19 @@ class PlantGrid:
     def __post_init__(self) -> None:
         for value in vars(self).values():
             if isinstance(value, np.ndarray):
-                value.setflags(write=False)
+                read_only(value)
 
     def __repr__(self) -> str:
-        return f"PlantGrid({len(self)} plants in {self.n_rows} rows)"
+        return f"<PlantGrid: {self.counts}>"
 
     def __len__(self) -> int:
         """Return the number of plants (of faces, where both faces are inspected)."""
         return len(self.xy_m)
+
+    @property
+    def counts(self) -> str:
+        """Return how many plants and rows there are, in words."""
+        return f"{counted(len(self), 'plant')} in {counted(self.n_rows, 'row')}"
 
     @property
     def n_rows(self) -> int:
@@ -116,9 +123,8 @@ class PlantGrid:
     @cached_property
     def row(self) -> NDArray[np.int32]:
         """Row of each plant, ``(n,)``."""
-        rows = np.repeat(np.arange(self.n_rows, dtype=np.int32), np.diff(self.row_start))
-        rows.setflags(write=False)
-        return rows
+        rows = np.arange(self.n_rows, dtype=np.int32)
+        return read_only(np.repeat(rows, np.diff(self.row_start)))
 
     @cached_property
     def adjacent(self) -> Csr:
@@ -130,9 +136,7 @@ class PlantGrid:
         plant[np.arange(len(self.along_plant)) + ahead] = self.along_plant
         behind = np.repeat(self.along_start[1:], n_across)
         plant[np.arange(len(self.across_plant)) + behind] = self.across_plant
-        for values in (start, plant):
-            values.setflags(write=False)
-        return Csr(start, plant)
+        return Csr(read_only(start), read_only(plant))
 
     @cached_property
     def linked(self) -> Linked:
@@ -141,26 +145,22 @@ class PlantGrid:
 
         back = np.empty(len(self.adjacent.plant), np.int32)
         link(*self.adjacent, back)
-        back.setflags(write=False)
-        return Linked(*self.adjacent, back)
+        return Linked(*self.adjacent, read_only(back))
 
     @cached_property
     def vine(self) -> NDArray[np.intp]:
         """One number for both faces of a vine, ``(n,)``: that of the lower-numbered face."""
         itself = np.arange(len(self))
-        vines = np.where(self.twin >= 0, np.minimum(self.twin, itself), itself)
-        vines.setflags(write=False)
-        return vines
+        return read_only(np.where(self.twin >= 0, np.minimum(self.twin, itself), itself))
 
     @cached_property
     def snake(self) -> NDArray[np.int32]:
         """All plants, up one line and down the next, ``(n,)``; each face is a line of its own."""
         new_pass = (np.diff(self.row_line) != 0) | (np.diff(self.side) != 0)
-        turn = np.concatenate([[0], np.cumsum(new_pass)])[self.row]
+        turn = offsets(new_pass)[self.row]
         place = np.arange(len(self))
-        plants = np.lexsort((np.where(turn % 2 == 0, place, -place), turn)).astype(np.int32)
-        plants.setflags(write=False)
-        return plants
+        plants = np.lexsort((np.where(turn % 2 == 0, place, -place), turn))
+        return read_only(plants.astype(np.int32))
 
     @cached_property
     def tree(self) -> cKDTree:

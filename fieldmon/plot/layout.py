@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from shapely import MultiPolygon, Polygon
 
+from fieldmon.compute.arrays import offsets, runs
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot import adjacency
 from fieldmon.plot.grid import PlantGrid
@@ -226,8 +227,7 @@ def free_intervals(area: shapely.Geometry, low_y: Float, high_y: Float) -> Inter
     x1, y1, x2, y2 = _edges(area)
     first = np.searchsorted(high_y, y1, side="right")
     n_met = np.maximum(np.searchsorted(low_y, y2, side="left") - first, 0)
-    edge = np.repeat(np.arange(len(x1)), n_met)
-    strip = np.arange(len(edge)) + np.repeat(first - np.cumsum(n_met) + n_met, n_met)
+    strip, edge = runs(first, n_met)
     x1, y1, x2, y2 = x1[edge], y1[edge], x2[edge], y2[edge]
     low, high = low_y[strip], high_y[strip]
     # parts of the edge's height, so that the flattest edge cannot overflow
@@ -294,10 +294,10 @@ def _two_faced(frame: Frame, pieces: Pieces, area: MultiPolygon, planting: Plant
         piece, upper, lane_y, lane_x = piece[inner], upper[inner], lane_y[inner], lane_x[inner]
         corridor = np.unique(corridor[inner], return_inverse=True)[1]
     n_plants = np.diff(pieces.row_start)[piece]
-    start = np.concatenate([[0], np.cumsum(n_plants)])
-    row = np.repeat(np.arange(len(piece)), n_plants)
-    place = np.arange(start[-1]) - start[row]
-    xy_m = pieces.xy_m[pieces.row_start[piece][row] + place]
+    start = offsets(n_plants)
+    plant, row = runs(pieces.row_start[piece], n_plants)
+    place = plant - pieces.row_start[piece][row]
+    xy_m = pieces.xy_m[plant]
     twin_row = np.full((r, 2), -1)
     twin_row[piece, 1 - upper] = np.arange(len(piece))
     other = twin_row[piece, upper][row]
@@ -306,7 +306,7 @@ def _two_faced(frame: Frame, pieces: Pieces, area: MultiPolygon, planting: Plant
     return PlantGrid(
         frame,
         xy_m,
-        start.astype(np.int64),
+        start,
         pieces.row_line[piece],
         lane_y,
         lane_x,
@@ -386,13 +386,12 @@ def _fill(y: Float, free: Intervals, planting: Planting) -> Pieces:
     n_plants = np.floor((high - origin + _SLACK_M) / step).astype(np.int64) - first + 1
     planted = n_plants > 0
     first, n_plants, strip = first[planted], n_plants[planted], free.strip[planted]
-    row_start = np.concatenate([[0], np.cumsum(n_plants)])
-    place = np.arange(row_start[-1]) + np.repeat(first - row_start[:-1], n_plants)
+    place, _ = runs(first, n_plants)
     row_y = y[strip]
     aisle = planting.row_spacing_m / 2
     return Pieces(
         np.stack([origin + place * step, np.repeat(row_y, n_plants)], axis=1),
-        row_start,
+        offsets(n_plants),
         np.unique(strip, return_inverse=True)[1].astype(np.int32),
         np.stack([row_y - aisle, row_y + aisle], axis=1),
         np.stack([free.low_x[planted] + half, free.high_x[planted] - half], axis=1),

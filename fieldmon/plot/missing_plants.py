@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arrays import offsets
 from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
     return replace(
         grid,
         xy_m=grid.xy_m[kept],
-        row_start=np.concatenate([[0], np.cumsum(n_plants[rows])]).astype(np.int64),
+        row_start=offsets(n_plants[rows]),
         row_line=_counted(grid.row_line[rows]),
         lane_y_m=grid.lane_y_m[rows],
         lane_x_m=grid.lane_x_m[rows],
@@ -70,5 +71,5 @@ def _among(start: NDArray[np.int32], plant: NDArray[np.int32], new: NDArray[np.i
     owner = np.repeat(np.arange(len(new)), np.diff(start))
     stays = (new[owner] >= 0) & (new[plant] >= 0)
     n_neighbours = np.bincount(new[owner[stays]], minlength=int(new.max()) + 1)
-    starts = np.concatenate([[0], np.cumsum(n_neighbours)]).astype(np.int32)
+    starts = offsets(n_neighbours).astype(np.int32)
     return starts, new[plant[stays]]

@@ -12,6 +12,7 @@ from fieldmon.plot.travel import Aisles
 
 if TYPE_CHECKING:
     import numpy as np
+    from geopandas import GeoDataFrame
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
@@ -43,6 +44,9 @@ class Plot:
     field: Field
     aisles: Aisles
 
+    def __repr__(self) -> str:
+        return f"<Plot {self.field.name}: {self.grid.counts}>"
+
     @property
     def grid(self) -> PlantGrid:
         """Return the plants."""
@@ -69,6 +73,71 @@ class Plot:
         grid = grid_from_plants(plants, found)
         boundary = grid.frame.geometry_lonlat(grid.drivable_m)
         return cls._with(Field(name, boundary, gate=gate, plants=plants), grid)
+
+    @classmethod
+    def from_geopandas(
+        cls,
+        frame: GeoDataFrame,
+        planting: Planting | None = None,
+        name: str = "plot",
+        gate: tuple[float, float] | None = None,
+    ) -> Plot:
+        """Return the plot whose area, measured plants, or both are in a GeoDataFrame.
+
+        Parameters
+        ----------
+        frame
+            One polygon, points, or both, in any coordinate system; rows are found from the
+            points, or laid in the polygon.
+        planting
+            Bearing and spacings; None: found from the points, or the defaults (rows 4 m and
+            plants 3 m apart, along the longest side).
+        name
+            What the plot is called.
+        gate
+            ``(lon, lat)`` where days start and end; None: the nearest row end.
+
+        Raises
+        ------
+        SettingError
+            If the frame has no coordinate system.
+        PlotError
+            If it holds no area and no point, several areas, or no room for a plant.
+
+        Examples
+        --------
+        >>> import geopandas, fieldmon as fm
+        >>> estate = geopandas.read_file("sample_data/paran_estate.geojson")
+        >>> gate = estate[estate["name"] == "Gate"]
+        >>> fm.Plot.from_geopandas(gate, fm.Planting(row_spacing_m=4, plant_spacing_m=3)).n_plants
+        3825
+        """
+        from fieldmon.plot.frames import boundary_and_plants  # noqa: PLC0415 - loads GeoPandas
+
+        boundary, plants = boundary_and_plants(frame)
+        if boundary is None:
+            return cls.around(name, plants, planting, gate)
+        measured = plants if len(plants) else None
+        return cls.of(Field(name, boundary, gate=gate, plants=measured), planting)
+
+    def to_geopandas(self) -> GeoDataFrame:
+        """Return the plants as points, EPSG:4326, with ``plant``, ``row`` and ``number``.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> plants = fm.read_plot("sample_data/paran_estate.zip", feature="Gate").to_geopandas()
+        >>> list(plants.columns), plants.crs.to_epsg()
+        (['plant', 'row', 'number', 'geometry'], 4326)
+        """
+        from fieldmon.plot.frames import plant_frame  # noqa: PLC0415 - loads GeoPandas
+
+        return plant_frame(self.grid)
+
+    @property
+    def n_plants(self) -> int:
+        """Return the number of plants (of faces, where both faces are inspected)."""
+        return len(self.grid)
 
     def without(self, missing: NDArray[np.bool_]) -> Plot:
         """Return the plot without the plants marked ``(n,)``, which are not there."""

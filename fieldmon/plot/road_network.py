@@ -10,10 +10,12 @@ import numba as nb
 import numpy as np
 import shapely
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 from shapely import MultiPolygon, Polygon
 
+from fieldmon.compute.arrays import runs
+from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
@@ -67,6 +69,10 @@ class RoadNetwork(NamedTuple):
     end: NDArray[np.int64]
     gate: int
 
+    def __repr__(self) -> str:
+        nodes, roads = counted(len(self.xy_m), "node"), counted(len(self.to) // 2, "way")
+        return f"<RoadNetwork: {nodes}, {roads}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Obstacles:
@@ -89,6 +95,9 @@ class Obstacles:
     drivable_m: shapely.Geometry
     shut_m: shapely.Geometry
     no_go_m: shapely.Geometry
+
+    def __repr__(self) -> str:
+        return f"<Obstacles: {counted(len(self.row_box_m), 'row piece')}>"
 
     @classmethod
     def of(cls, grid: PlantGrid, no_go_m: shapely.Geometry) -> Obstacles:
@@ -219,7 +228,7 @@ def _end_plants(grid: PlantGrid) -> Index:
     return np.stack([grid.row_start[:-1], grid.row_start[1:] - 1], axis=1)
 
 
-def ways(
+def find_roads(
     grid: PlantGrid,
     gate_xy_m: tuple[float, float] | None = None,
     no_go_m: MultiPolygon | None = None,
@@ -229,8 +238,9 @@ def ways(
     Nodes are the lane ends, the points beside them where one may cross the line of a row clear of
     its plants, and their likes on the row's other side. Ways run along aisles and, wherever a
     straight line touches no row and stays in the drivable area, from node to node. Where that
-    leaves parts of the plot apart, they are joined by the shortest ways outside; never over
-    `no_go_m`. Without a gate, work starts at the low-x lane end of the first row.
+    leaves parts of the plot apart, they are joined by the shortest ways outside, which lead from
+    part to part and are no short cuts between places of one; never over `no_go_m`. Without a gate,
+    work starts at the low-x lane end of the first row.
     Raise `PlotError` if some row cannot be reached.
     """
     obstacles = Obstacles.of(grid, MultiPolygon() if no_go_m is None else no_go_m)
@@ -246,8 +256,9 @@ def ways(
     if gate_xy_m is not None:
         gate = len(net.xy_m)
         net = _with_gate(net, np.array([gate_xy_m]), obstacles, grid)
-    net = _joined(net, np.append(beside.ravel(), gate), obstacles)
-    return _sorted(_chained(net), beside, gate)
+    needed = np.append(beside.ravel(), gate)
+    net = _joined_outside(_chained(_joined_inside(net, needed, obstacles)), needed, obstacles)
+    return _sorted(net, beside, gate)
 
 
 class _Net(NamedTuple):
@@ -319,8 +330,8 @@ def _along_aisles(grid: PlantGrid, xy_m: Float, place: Index) -> Index:
     aisle_y = xy_m[aisle, 1]
     low = np.searchsorted(y, aisle_y.min(axis=1) - reach)
     n_near = np.searchsorted(y, aisle_y.max(axis=1) + reach, side="right") - low
-    owner = np.repeat(np.arange(len(aisle)), n_near)
-    near = node[np.arange(len(owner)) + np.repeat(low - np.cumsum(n_near) + n_near, n_near)]
+    place_in_y, owner = runs(low, n_near)
+    near = node[place_in_y]
     x, ends_x = xy_m[near, 0], xy_m[aisle, 0][owner]
     on_it = (ends_x[:, 0] - _SAME_M <= x) & (x <= ends_x[:, 1] + _SAME_M)
     owner, near = owner[on_it], near[on_it]
@@ -335,8 +346,7 @@ def _along_aisles(grid: PlantGrid, xy_m: Float, place: Index) -> Index:
 def _nearest(xy_m: Float) -> Index:
     """Return the pairs of each node and those nearest to it."""
     k = min(_NEAREST, len(xy_m))
-    near = cKDTree(xy_m).query(xy_m, k=k)[1].reshape(len(xy_m), k)
-    return np.stack([np.repeat(np.arange(len(xy_m)), k), near.ravel()], axis=1)
+    return _each_to(np.arange(len(xy_m)), cKDTree(xy_m).query(xy_m, k=k)[1])
 
 
 def _jumps(grid: PlantGrid, place: Index) -> Index:
@@ -400,15 +410,26 @@ def _with_gate(net: _Net, gate_m: Float, obstacles: Obstacles, grid: PlantGrid) 
     return net.plus(np.concatenate([gate_m, entry_m]), pair)
 
 
-def _joined(net: _Net, needed: Index, obstacles: Obstacles) -> _Net:
-    """Return the network with all needed nodes connected, by bridges inside if that is possible.
+def _joined_inside(net: _Net, needed: Index, obstacles: Obstacles) -> _Net:
+    """Return the network with needed nodes connected as far as that is possible on the plot."""
+    if not net.apart(needed):
+        return net
+    net = _with_corners(net, obstacles)
+    return _bridged(net, np.arange(len(net.xy_m)), obstacles, Where.INSIDE)
 
-    Raise `PlotError` if it is not possible at all.
+
+def _joined_outside(net: _Net, needed: Index, obstacles: Obstacles) -> _Net:
+    """Return the network with all needed nodes connected, where it must be by ways off the plot.
+
+    Such a way leads from one part of the network to another and is whole: it may pass over nodes
+    of its own part, and to stop there would be a short cut off the plot between two places that
+    can be reached on it. Raise `PlotError` if some node cannot be reached at all.
     """
-    for where in Where:
-        if not net.apart(needed):
-            return net
-        net = _bridged(_with_corners(net, obstacles, where), obstacles, where)
+    for where in (Where.OUTSIDE, Where.ANYWHERE):
+        if net.apart(needed):
+            net = _bridged(net, needed, obstacles, where)
+        if net.apart(needed):
+            net = _round_corners(net, needed, obstacles, where)
     if net.apart(needed):
         part = net.component()[needed]
         stranded = (part[:-1] != part[-1]).reshape(-1, 2).any(axis=1)
@@ -420,26 +441,31 @@ def _joined(net: _Net, needed: Index, obstacles: Obstacles) -> _Net:
     return net
 
 
-def _with_corners(net: _Net, obstacles: Obstacles, where: Where) -> _Net:
-    """Return the network with the corners one may have to drive around, linked to what they see."""
-    corners = obstacles.corners(where)
+def _with_corners(net: _Net, obstacles: Obstacles) -> _Net:
+    """Return the network with the plot's corners to drive around, linked to what they see."""
+    corners = obstacles.corners(Where.INSIDE)
     n, m = len(net.xy_m), len(corners)
     if not m:
         return net
-    near = cKDTree(net.xy_m).query(corners, k=min(_NEAREST, n))[1].reshape(m, -1)
-    to_near = np.stack([np.repeat(np.arange(n, n + m), near.shape[1]), near.ravel()], axis=1)
+    near = cKDTree(net.xy_m).query(corners, k=min(_NEAREST, n))[1]
+    to_near = _each_to(np.arange(n, n + m), near)
     tried = np.concatenate([np.stack(np.triu_indices(m, 1), axis=1) + n, to_near])
     xy_m = np.concatenate([net.xy_m, corners])
-    good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]], where)
+    good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]])
     return net.plus(corners, tried[good])
 
 
-def _bridged(net: _Net, obstacles: Obstacles, where: Where) -> _Net:
-    """Return the network with bridges from each component to those nearest to it."""
+def _bridged(net: _Net, joined: Index, obstacles: Obstacles, where: Where) -> _Net:
+    """Return the network with bridges between components that hold some of the nodes to be joined.
+
+    From each of them to those nearest to it.
+    """
     zone = np.zeros(len(net.xy_m), np.intp)
     if where is Where.INSIDE:  # from one part of the drivable area to another there are none
         drivable = shapely.STRtree(shapely.get_parts(obstacles.drivable_m))
         zone = np.asarray(drivable.nearest(shapely.points(net.xy_m)))
+    part = net.component()
+    zone[~np.isin(part, part[joined])] = -1
     for k in _BRIDGE_NEAREST:
         while True:
             tried = _foreign(net, zone, k)
@@ -450,18 +476,79 @@ def _bridged(net: _Net, obstacles: Obstacles, where: Where) -> _Net:
     return net
 
 
+def _round_corners(net: _Net, needed: Index, obstacles: Obstacles, where: Where) -> _Net:
+    """Return the network with parts joined by the shortest ways round corners.
+
+    Each way has corners of its own: if two shared one, they would be a way off the plot between
+    places of one part.
+    """
+    corners_m = obstacles.corners(where)
+    while len(corners_m) and net.apart(needed):
+        part = net.component()
+        for own in np.unique(part[needed]):
+            others = np.isin(part, part[needed]) & (part != own)
+            ends = np.flatnonzero(part == own), np.flatnonzero(others)
+            round_ = _shortest_round(net.xy_m, ends, corners_m, obstacles, where)
+            if len(round_):
+                break
+        else:
+            return net
+        first, last, between = round_[0], round_[-1], round_[1:-1] - len(net.xy_m)
+        new = len(net.xy_m) + np.arange(len(between))
+        chain = np.concatenate([[first], new, [last]])
+        net = net.plus(corners_m[between], np.stack([chain[:-1], chain[1:]], axis=1))
+    return net
+
+
+def _shortest_round(
+    node_m: Float, ends: tuple[Index, Index], corners_m: Float, obstacles: Obstacles, where: Where
+) -> Index:
+    """Return the shortest way by corners, numbered on after the nodes, from some nodes to others.
+
+    It is empty if there is none.
+    """
+    n, m = len(node_m), len(corners_m)
+    corner = np.arange(n, n + m)
+    out, back = (
+        nodes[cKDTree(node_m[nodes]).query(corners_m, k=min(_GATE_NEAREST, len(nodes)))[1]]
+        for nodes in ends
+    )
+    pairs = [_each_to(corner, out)[:, ::-1], _each_to(corner, back)]
+    between = np.stack(np.triu_indices(m, 1), axis=1) + n
+    tried = np.concatenate([*pairs, between, between[:, ::-1]])
+    xy_m = np.concatenate([node_m, corners_m])
+    good = tried[obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]], where)]
+    length_m = _Net(xy_m, good).length_m()
+    graph = coo_array((np.maximum(length_m, _SAME_M), good.T), shape=(n + m, n + m))
+    far, before, _ = dijkstra(graph, indices=ends[0], min_only=True, return_predecessors=True)
+    way = [int(ends[1][np.argmin(far[ends[1]])])]
+    if not np.isfinite(far[way[0]]):
+        return np.empty(0, np.intp)
+    while before[way[-1]] >= 0:
+        way.append(int(before[way[-1]]))
+    return np.array(way[::-1])
+
+
+def _each_to(nodes: Index, near: Index) -> Index:
+    """Return each of k nodes ``(k,)`` paired with those near it, ``(k, j)``."""
+    near = near.reshape(len(nodes), -1)
+    return np.stack([np.repeat(nodes, near.shape[1]), near.ravel()], axis=1)
+
+
 def _foreign(net: _Net, zone: Index, k: int) -> Index:
-    """Return each node with the k nearest nodes of other components of its zone, nearest first."""
+    """Return each node with the k nearest nodes of other components of its zone, nearest first.
+
+    Nodes in zone -1 are left alone.
+    """
     part = net.component()
     found = [np.empty((0, 2), np.intp)]
     for own in range(part.max() + 1):
         ours = np.flatnonzero(part == own)
         others = np.flatnonzero((part != own) & (zone == zone[ours[0]]))
-        if not len(others):
+        if zone[ours[0]] < 0 or not len(others):
             continue
         near = cKDTree(net.xy_m[others]).query(net.xy_m[ours], k=min(k, len(others)))[1]
-        near = near.reshape(len(ours), -1)
-        found.append(np.stack([np.repeat(ours, near.shape[1]), others[near.ravel()]], axis=1))
+        found.append(_each_to(ours, others[near]))
     return np.concatenate(found)
 
 

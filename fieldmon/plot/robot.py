@@ -117,7 +117,14 @@ class Robot:
 
 
 def scout() -> Robot:
-    """Return a person on foot with a hand lens (our choice: 4 km/h, 30 s a plant, 4 h)."""
+    """Return a person on foot with a hand lens (our choice: 4 km/h, 30 s a plant, 4 h).
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.scout().with_hours(2).day_s
+    7200.0
+    """
     return Robot(
         speed_m_s=4.0 / 3.6, row_change_s=3.0, turn_180_s=2.0, stop_s=5.0, look_s=30.0, hours=4.0
     )

@@ -11,8 +11,10 @@ import numba as nb
 import numpy as np
 import shapely
 
+from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import inlined, loop
-from fieldmon.plot.road_network import RoadNetwork, row_lines, ways
+from fieldmon.compute.wording import counted
+from fieldmon.plot.road_network import RoadNetwork, find_roads, row_lines
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -59,6 +61,10 @@ class TravelTable(NamedTuple):
     corridor: NDArray[np.int32]
     side: NDArray[np.int8]
 
+    def __repr__(self) -> str:
+        plants, rows = counted(len(self.x_m), "plant"), counted(len(self.end_x_m), "row")
+        return f"<TravelTable: {plants} in {rows}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Aisles:
@@ -71,15 +77,15 @@ class Aisles:
     ----------
     grid
         The plants.
-    ways
+    roads
         The network of ways between lane ends.
-    ground
-        The same for compiled loops, see `drive_m`.
+    travel
+        How far it is along them, for compiled loops: see `drive_m`.
     """
 
     grid: PlantGrid
-    ways: RoadNetwork
-    ground: TravelTable
+    roads: RoadNetwork
+    travel: TravelTable
 
     @classmethod
     def of(
@@ -93,10 +99,10 @@ class Aisles:
         Without a gate, work starts at the low-x lane end of the first row. `no_go_m` is what must
         not be crossed either where parts of a plot can only be joined outside the boundary.
         """
-        net = ways(grid, gate_xy_m, no_go_m)
+        roads = find_roads(grid, gate_xy_m, no_go_m)
         between_m = np.empty((2 * grid.n_rows + 1, 2 * grid.n_rows + 1))
-        _reach(net, np.append(net.end.ravel(), net.gate), between_m)
-        ground = TravelTable(
+        _reach(roads, np.append(roads.end.ravel(), roads.gate), between_m)
+        travel = TravelTable(
             np.ascontiguousarray(grid.xy_m[:, 0]),
             grid.row,
             grid.row_start,
@@ -105,29 +111,31 @@ class Aisles:
             grid.corridor,
             grid.side,
         )
-        for values in (*net[:-1], *ground):
-            values.setflags(write=False)
-        return cls(grid, net, ground)
+        for values in (*roads[:-1], *travel):
+            read_only(values)
+        return cls(grid, roads, travel)
+
+    def __repr__(self) -> str:
+        return f"<Aisles: {self.grid.counts}, {counted(len(self.roads.xy_m), 'node')}>"
 
     @property
     def gate_m(self) -> Float:
         """Where a working day starts and ends, ``(2,)``."""
-        here: Float = self.ways.xy_m[self.ways.gate]
+        here: Float = self.roads.xy_m[self.roads.gate]
         return here
 
     @cached_property
     def stop_m(self) -> Float:
         """Where the robot stands to inspect each plant, ``(n, 2)``."""
-        stop_m = np.stack([self.grid.xy_m[:, 0], self.grid.lane_y_m[self.grid.row]], axis=1)
-        stop_m.setflags(write=False)
-        return stop_m
+        lane_y_m = self.grid.lane_y_m[self.grid.row]
+        return read_only(np.stack([self.grid.xy_m[:, 0], lane_y_m], axis=1))
 
     def distance_m(self, i: ArrayLike, j: ArrayLike) -> Float:
         """Return the metres from plants i to plants j, -1 for the gate; shapes broadcast."""
         shape = np.broadcast_shapes(np.shape(i), np.shape(j))
         a, b = (np.array(np.broadcast_to(k, shape), np.int64).ravel() for k in (i, j))
         metres = np.empty(a.size)
-        _drive_all(self.ground, a, b, metres)
+        _drive_all(self.travel, a, b, metres)
         return metres.reshape(shape)
 
     def path(self, i: int, j: int) -> Float:
@@ -141,17 +149,17 @@ class Aisles:
             return np.stack([a, b])
         out, out_m = self._exits(i)
         back, back_m = self._exits(j)
-        way_m = out_m[:, None] + self.ground.between_m[out[:, None], back] + back_m
+        way_m = out_m[:, None] + self.travel.between_m[out[:, None], back] + back_m
         best = int(np.argmin(way_m))
         first, last = out[best // len(back)], back[best % len(back)]
-        nodes = _trace(self.ways, self._stop_node[first], self._stop_node[last])
-        line: Float = _plain(np.concatenate([a[None], self.ways.xy_m[nodes], b[None]]))
+        nodes = _trace(self.roads, self._stop_node[first], self._stop_node[last])
+        line: Float = _plain(np.concatenate([a[None], self.roads.xy_m[nodes], b[None]]))
         return line
 
     @cached_property
     def _stop_node(self) -> NDArray[np.int64]:
         """Node of each lane end, and of the gate, as numbered in `TravelTable.between_m`."""
-        return np.append(self.ways.end.ravel(), self.ways.gate)
+        return np.append(self.roads.end.ravel(), self.roads.gate)
 
     def _exits(self, i: int) -> tuple[NDArray[np.int64], Float]:
         """Return the ends of the lane of plant i as in `TravelTable`, and the metres there."""
@@ -177,21 +185,21 @@ def crosses_rows(grid: PlantGrid, line_xy_m: Float) -> bool:
 
 
 @inlined
-def drive_m(ground: TravelTable, i: int, j: int) -> float:
+def drive_m(travel: TravelTable, i: int, j: int) -> float:
     """Return the metres from plant i to plant j; -1 is the gate."""
     # written out: loops over the ends cost ten times as much
-    x_m, end_m, between_m = ground.x_m, ground.end_x_m, ground.between_m
+    x_m, end_m, between_m = travel.x_m, travel.end_x_m, travel.between_m
     gate = between_m.shape[0] - 1
     if i < 0:
         i, j = j, i
     if i < 0:
         return 0.0
-    a = ground.row[i]
+    a = travel.row[i]
     low_m, high_m = abs(x_m[i] - end_m[a, 0]), abs(end_m[a, 1] - x_m[i])
     if j < 0:
         return float(min(low_m + between_m[2 * a, gate], high_m + between_m[2 * a + 1, gate]))
-    b = ground.row[j]
-    if ground.corridor[a] == ground.corridor[b]:
+    b = travel.row[j]
+    if travel.corridor[a] == travel.corridor[b]:
         return float(abs(x_m[i] - x_m[j]))
     to_low_m = min(low_m + between_m[2 * a, 2 * b], high_m + between_m[2 * a + 1, 2 * b])
     to_high_m = min(low_m + between_m[2 * a, 2 * b + 1], high_m + between_m[2 * a + 1, 2 * b + 1])
@@ -202,21 +210,21 @@ def drive_m(ground: TravelTable, i: int, j: int) -> float:
 
 @nb.njit(cache=True)
 def _drive_all(
-    ground: TravelTable, i: NDArray[np.int64], j: NDArray[np.int64], metres: Float
+    travel: TravelTable, i: NDArray[np.int64], j: NDArray[np.int64], metres: Float
 ) -> None:
     for k in range(i.size):
-        metres[k] = drive_m(ground, i[k], j[k])
+        metres[k] = drive_m(travel, i[k], j[k])
 
 
 @nb.njit(cache=True)
-def _reach(ways: RoadNetwork, stops: NDArray[np.int64], between_m: Float) -> None:
+def _reach(roads: RoadNetwork, stops: NDArray[np.int64], between_m: Float) -> None:
     """Fill in the shortest ways ``(s, s)`` between the given nodes.
 
     Nodes are relaxed up and down the plot in turn, for some dozen sources side by side, until
     nothing gets shorter. As nodes are sorted by y, one sweep carries a way on until it turns back:
     on most plots a few sweeps do, far less work than a queue of nodes for each source.
     """
-    n = ways.xy_m.shape[0]
+    n = roads.xy_m.shape[0]
     near = np.empty((n, _BLOCK))
     stale = np.empty(n, np.bool_)
     for first in range(0, stops.size, _BLOCK):
@@ -226,10 +234,10 @@ def _reach(ways: RoadNetwork, stops: NDArray[np.int64], between_m: Float) -> Non
         for s in range(width):
             source = stops[first + s]
             near[source, s] = 0.0
-            stale[ways.to[ways.start[source] : ways.start[source + 1]]] = True
+            stale[roads.to[roads.start[source] : roads.start[source + 1]]] = True
         while stale.any():
-            _sweep(ways, near, stale, (0, n, 1))
-            _sweep(ways, near, stale, (n - 1, -1, -1))
+            _sweep(roads, near, stale, (0, n, 1))
+            _sweep(roads, near, stale, (n - 1, -1, -1))
         for s in range(width):
             # there and back are the same to the last bit
             for t in range(first + s + 1):
@@ -238,7 +246,7 @@ def _reach(ways: RoadNetwork, stops: NDArray[np.int64], between_m: Float) -> Non
 
 @nb.njit(cache=True)
 def _sweep(
-    ways: RoadNetwork, near: Float, stale: NDArray[np.bool_], order: tuple[int, int, int]
+    roads: RoadNetwork, near: Float, stale: NDArray[np.bool_], order: tuple[int, int, int]
 ) -> None:
     """Relax the stale nodes in order, for all columns of ``near`` (m, s)."""
     own = np.empty(_BLOCK)
@@ -247,8 +255,8 @@ def _sweep(
             continue
         stale[node] = False
         own[:] = near[node]
-        for e in range(ways.start[node], ways.start[node + 1]):
-            other, length_m = np.uint64(ways.to[e]), ways.length_m[e]
+        for e in range(roads.start[node], roads.start[node + 1]):
+            other, length_m = np.uint64(roads.to[e]), roads.length_m[e]
             for s in range(_BLOCK):
                 way_m = near[other, s] + length_m
                 own[s] = way_m if way_m < own[s] else own[s]  # noqa: FURB136 - min is slower
@@ -257,14 +265,14 @@ def _sweep(
             nearer |= own[s] < near[node, s]
             near[node, s] = own[s]
         if nearer:
-            for e in range(ways.start[node], ways.start[node + 1]):
-                stale[ways.to[e]] = True
+            for e in range(roads.start[node], roads.start[node + 1]):
+                stale[roads.to[e]] = True
 
 
 @nb.njit(cache=True)
-def _trace(ways: RoadNetwork, a: int, b: int) -> NDArray[np.int64]:
+def _trace(roads: RoadNetwork, a: int, b: int) -> NDArray[np.int64]:
     """Return the nodes on the shortest way from node a to node b (Dijkstra's, from b)."""
-    near = np.full(ways.xy_m.shape[0], np.inf)
+    near = np.full(roads.xy_m.shape[0], np.inf)
     onward = np.full(near.size, -1)
     near[b] = 0.0
     queue = [(0.0, b)]
@@ -272,8 +280,8 @@ def _trace(ways: RoadNetwork, a: int, b: int) -> NDArray[np.int64]:
         node_m, node = heapq.heappop(queue)
         if node_m > near[node]:
             continue
-        for e in range(ways.start[node], ways.start[node + 1]):
-            other, way_m = int(ways.to[e]), node_m + float(ways.length_m[e])
+        for e in range(roads.start[node], roads.start[node + 1]):
+            other, way_m = int(roads.to[e]), node_m + float(roads.length_m[e])
             if way_m < near[other]:
                 near[other], onward[other] = way_m, node
                 heapq.heappush(queue, (way_m, other))
@@ -324,32 +332,32 @@ def robot_clock(robot: Robot, seconds_left: float) -> Clock:
 
 
 @inlined
-def travel_s(ground: TravelTable, clock: Clock, i: int, j: int) -> float:
+def travel_s(travel: TravelTable, clock: Clock, i: int, j: int) -> float:
     """Return the seconds from plant (or gate) i to plant (or gate) j, without the stop itself."""
-    seconds = drive_m(ground, i, j) / clock.speed_m_s
+    seconds = drive_m(travel, i, j) / clock.speed_m_s
     if i < 0 or j < 0:
         return seconds
-    a, b = ground.row[i], ground.row[j]
-    if ground.corridor[a] != ground.corridor[b]:
+    a, b = travel.row[i], travel.row[j]
+    if travel.corridor[a] != travel.corridor[b]:
         return seconds + clock.row_change_s
-    if ground.side[a] != ground.side[b]:
+    if travel.side[a] != travel.side[b]:
         return seconds + clock.turn_180_s
     return seconds
 
 
 @loop
-def driven_s(ground: TravelTable, clock: Clock, places: NDArray[np.int64]) -> float:
+def driven_s(travel: TravelTable, clock: Clock, places: NDArray[np.int64]) -> float:
     """Return the seconds of driving from place to place ``(k,)``, plants or the gate."""
     seconds = 0.0
     for k in range(1, places.size):
-        seconds += travel_s(ground, clock, places[k - 1], places[k])
+        seconds += travel_s(travel, clock, places[k - 1], places[k])
     return seconds
 
 
 @inlined
-def in_time(ground: TravelTable, clock: Clock, plant: int, arrive_s: float) -> bool:
+def in_time(travel: TravelTable, clock: Clock, plant: int, arrive_s: float) -> bool:
     """Tell whether a plant reached then fits into the day, way back to the gate included."""
     end_s = arrive_s + clock.visit_s
     if clock.returns:
-        end_s += travel_s(ground, clock, plant, -1)
+        end_s += travel_s(travel, clock, plant, -1)
     return end_s <= clock.seconds_left

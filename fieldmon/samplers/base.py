@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
+from fieldmon.compute.wording import counted
 from fieldmon.plot.travel import GATE, robot_clock
 
 if TYPE_CHECKING:
@@ -17,13 +19,20 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles, Clock
 
+    WouldFind: TypeAlias = NDArray[np.bool_] | NDArray[np.uint8]
+
 NEVER = -1
 
 
 class InspectionTimes(NamedTuple):
-    """The looks to choose from at a stop, the shortest first.
+    """How long a plant may be inspected, the shortest time first.
 
-    Seconds of the whole stop, ``(l,)``, and the chance to find what is there, ``(l,)``.
+    Parameters
+    ----------
+    stop_s
+        ``(t,)`` seconds of the whole stop.
+    detects
+        ``(t,)`` chance that so long an inspection finds what is there.
     """
 
     stop_s: NDArray[np.float64]
@@ -31,14 +40,24 @@ class InspectionTimes(NamedTuple):
 
 
 class Stops(NamedTuple):
-    """The plants inspected in order, ``(k,)`` int32, and the seconds at arrival, ``(k,)``.
+    """The plants that a sampler inspects, in order.
 
-    And which of its looks the sampler took at each, ``(k,)`` uint8, if it has several.
+    Parameters
+    ----------
+    plant
+        ``(k,)`` int32.
+    arrive_s
+        ``(k,)`` seconds since the start, on arrival.
+    time
+        ``(k,)`` uint8 which of its `InspectionTimes` each plant gets; None: the only one.
     """
 
     plant: NDArray[np.int32]
     arrive_s: NDArray[np.float64]
-    look: NDArray[np.uint8] | None = None
+    time: NDArray[np.uint8] | None = None
+
+    def __repr__(self) -> str:
+        return f"<Stops: {counted(len(self.plant), 'plant')}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +85,7 @@ class Scene:
         none. A sweep goes on where it ends, in its direction.
     key
         64 random bits for samplers that draw, see `fieldmon.compute.random_streams.coin`.
-    both
+    pair_chance
         ``(e,)`` believed chance that two plants side by side are both infested, in the order of
         ``grid.adjacent``; None where nothing is believed of pairs.
     """
@@ -81,6 +100,10 @@ class Scene:
     trail: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
     key: np.uint64 = np.uint64(0)  # noqa: RUF009 - a number, not a call with effects
     pair_chance: NDArray[np.float64] | None = None
+
+    def __repr__(self) -> str:
+        hours = self.seconds_left / 3600
+        return f"<Scene of day {self.day}: {self.grid.counts}, {hours:.2f} h left>"
 
     @property
     def grid(self) -> PlantGrid:
@@ -112,25 +135,28 @@ class Scene:
 class Sampler(Protocol):
     """Decides which plants come next.
 
-    One that reads neither ``chance`` nor ``pair_chance`` of a scene may say so by ``blind = True``:
-    what is believed is then not worked out for it.
+    Samplers derive from this class and have its defaults.
+
+    Attributes
+    ----------
+    reads_chance
+        Whether it reads the chances of a scene. For one that does not, nothing is believed: its
+        scene holds the chances of the first morning, and no chances of pairs.
     """
 
-    def walk(self, scene: Scene, would_find: NDArray[Any]) -> Stops:
+    reads_chance: ClassVar[bool] = True
+
+    def inspection_times(self, robot: Robot) -> InspectionTimes:
+        """Return the times from which it chooses at each plant: most have only the robot's own."""
+        return InspectionTimes(np.array([robot.visit_s]), np.array([robot.detects]))
+
+    @abstractmethod
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops from here to the end of the day.
 
-        ``would_find`` (n,) says of each plant whether an inspection today would find it infested.
-        One that chooses how long to look (see `ChoosesInspectionTime`) is told from which of its
-        looks on, counted from 1, and 0 where none would find anything.
+        ``would_find`` (n,) says of each plant from which of the sampler's inspection times on an
+        inspection today would find it infested, counted from 1; 0: none would. Where there is one
+        time only, that is whether it would.
         A sampler may read an entry only when it has driven to that plant and inspected it: plants
         before the first find are those of a day on which nothing is found.
         """
-        ...
-
-
-class ChoosesInspectionTime(Sampler, Protocol):
-    """A sampler that decides at each stop how long to look."""
-
-    def looks(self, robot: Robot) -> InspectionTimes:
-        """Return what it chooses from."""
-        ...

@@ -11,13 +11,14 @@ import numpy as np
 from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.errors import SettingError
 from fieldmon.plot.travel import Clock, in_time, travel_s
-from fieldmon.samplers.base import Scene, Stops
+from fieldmon.samplers.base import Sampler, Scene, Stops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import Csr, PlantGrid
     from fieldmon.plot.travel import TravelTable
+    from fieldmon.samplers.base import WouldFind
 
 # the upper bits of a positive float64 rise with it, in 8 steps an octave: 7 to 13 % each
 _LEVEL_BITS = 49
@@ -54,7 +55,7 @@ class _Open(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Dynamic:
+class Dynamic(Sampler):
     """Drive to the nearest plant of an open list until the day is over.
 
     The open list starts with the suspicious plants. An inspected plant moves to the closed list;
@@ -86,15 +87,16 @@ class Dynamic:
                     f"but it is {getattr(self, name)}."
                 )
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day."""
         stops = scene.blank()
         steps = round(-_OCTAVE * math.log2(self.suspicious))
+        grid, chance_bits = scene.grid, scene.chance.view(np.int64)
         k = _walk(
-            scene.aisles.ground,
+            scene.aisles.travel,
             scene.clock,
-            (scene.grid.adjacent, scene.grid.lane_y_m, scene.chance.view(np.int64), would_find),
-            (scene.last_inspected == scene.day, _Open.on(scene.grid, steps)),
+            (grid.adjacent, grid.lane_y_m, chance_bits, would_find.view(np.uint8)),
+            (scene.last_inspected == scene.day, _Open.on(grid, steps)),
             (scene.at, steps, self.at_once),
             stops,
         )
@@ -103,9 +105,9 @@ class Dynamic:
 
 @loop
 def _walk(
-    ground: TravelTable,
+    travel: TravelTable,
     clock: Clock,
-    plants: tuple[Csr, NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]],
+    plants: tuple[Csr, NDArray[np.float64], NDArray[np.int64], NDArray[np.uint8]],
     lists: tuple[NDArray[np.bool_], _Open],
     start: tuple[int, int, float],
     stops: Stops,
@@ -117,11 +119,11 @@ def _walk(
     while k < stops.plant.size:
         if left == 0:
             room = int(at_once * ((clock.seconds_left - now_s) // clock.visit_s))
-            left = _refill(ground, opened, (closed, chance_bits), (max(room, 1), steps))
+            left = _refill(travel, opened, (closed, chance_bits), (max(room, 1), steps))
             if left == 0:
                 break
-        plant, way_s = _nearest(ground, clock, opened, lane_y_m, at)
-        if not in_time(ground, clock, plant, now_s + way_s):
+        plant, way_s = _nearest(travel, clock, opened, lane_y_m, at)
+        if not in_time(travel, clock, plant, now_s + way_s):
             break
         now_s += way_s
         stops.plant[k], stops.arrive_s[k] = plant, now_s
@@ -130,20 +132,20 @@ def _walk(
         at = plant
         closed[plant] = True
         opened.flag[plant] = False
-        opened.n_open[ground.row[plant]] -= 1
+        opened.n_open[travel.row[plant]] -= 1
         left -= 1
         if would_find[plant]:
             for e in range(adjacent.start[plant], adjacent.start[plant + 1]):
-                left += _open(ground, opened, closed, adjacent.plant[e])
+                left += _open(travel, opened, closed, adjacent.plant[e])
     return k
 
 
 @inlined
-def _open(ground: TravelTable, opened: _Open, closed: NDArray[np.bool_], plant: int) -> int:
+def _open(travel: TravelTable, opened: _Open, closed: NDArray[np.bool_], plant: int) -> int:
     """Put a plant on the open list; return how many joined it (0 or 1)."""
     if closed[plant] or opened.flag[plant]:
         return 0
-    row = ground.row[plant]
+    row = travel.row[plant]
     opened.flag[plant] = True
     opened.n_open[row] += 1
     opened.low[row] = min(opened.low[row], plant)
@@ -153,7 +155,7 @@ def _open(ground: TravelTable, opened: _Open, closed: NDArray[np.bool_], plant: 
 
 @part
 def _refill(
-    ground: TravelTable,
+    travel: TravelTable,
     opened: _Open,
     plants: tuple[NDArray[np.bool_], NDArray[np.int64]],
     limits: tuple[int, int],
@@ -184,8 +186,8 @@ def _refill(
             if below > least or even == 0:
                 continue
             even -= 1
-        if in_row == 0 or ground.row[plant] != row:
-            row, in_row = 0 + ground.row[plant], 0
+        if in_row == 0 or travel.row[plant] != row:
+            row, in_row = 0 + travel.row[plant], 0
             opened.low[row] = plant
         in_row += 1
         opened.flag[plant] = True
@@ -219,7 +221,7 @@ def _least_of(
 
 @inlined
 def _nearest(
-    ground: TravelTable, clock: Clock, opened: _Open, lane_y_m: NDArray[np.float64], at: int
+    travel: TravelTable, clock: Clock, opened: _Open, lane_y_m: NDArray[np.float64], at: int
 ) -> tuple[int, float]:
     """Return the open plant that is reached first from `at` (a plant or the gate), and the seconds.
 
@@ -230,18 +232,18 @@ def _nearest(
     best, best_s = -1, np.inf
     own, out_m = 0, 0.0
     if at >= 0:
-        own = ground.row[at]
-        low_m, high_m = ground.end_x_m[own, 0], ground.end_x_m[own, 1]
-        out_m = min(abs(ground.x_m[at] - low_m), abs(high_m - ground.x_m[at]))
+        own = travel.row[at]
+        low_m, high_m = travel.end_x_m[own, 0], travel.end_x_m[own, 1]
+        out_m = min(abs(travel.x_m[at] - low_m), abs(high_m - travel.x_m[at]))
     for step in (1, -1):
         row = own if step == 1 else own - 1
         while 0 <= row < opened.n_open.size:
-            if at >= 0 and ground.corridor[row] != ground.corridor[own]:
+            if at >= 0 and travel.corridor[row] != travel.corridor[own]:
                 least_m = (abs(lane_y_m[row] - lane_y_m[own]) + out_m) * _NEARLY
                 if least_m / clock.speed_m_s + clock.row_change_s > best_s:
                     break
             if opened.n_open[row] > 0:
-                plant, plant_s = _nearest_in(ground, clock, opened, at, row)
+                plant, plant_s = _nearest_in(travel, clock, opened, at, row)
                 if plant_s < best_s:
                     best, best_s = plant, plant_s
             row += step
@@ -250,17 +252,17 @@ def _nearest(
 
 @inlined
 def _nearest_in(
-    ground: TravelTable, clock: Clock, opened: _Open, at: int, row: int
+    travel: TravelTable, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
     """Return the open plant of a row that is reached first, and the seconds."""
-    if at >= 0 and ground.corridor[row] == ground.corridor[ground.row[at]]:
-        return _nearest_along(ground, clock, opened, at, row)
-    return _nearest_end(ground, clock, opened, at, row)
+    if at >= 0 and travel.corridor[row] == travel.corridor[travel.row[at]]:
+        return _nearest_along(travel, clock, opened, at, row)
+    return _nearest_end(travel, clock, opened, at, row)
 
 
 @inlined
 def _nearest_end(
-    ground: TravelTable, clock: Clock, opened: _Open, at: int, row: int
+    travel: TravelTable, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
     """Return the outermost open plant of another row that is reached first, and the seconds.
 
@@ -271,37 +273,37 @@ def _nearest_end(
     while not opened.flag[opened.high[row]]:
         opened.high[row] -= 1
     low, high = opened.low[row], opened.high[row]
-    low_s = travel_s(ground, clock, at, low)
+    low_s = travel_s(travel, clock, at, low)
     if low == high:
         return low, low_s
-    high_s = travel_s(ground, clock, at, high)
+    high_s = travel_s(travel, clock, at, high)
     return (low, low_s) if low_s <= high_s else (high, high_s)
 
 
 @inlined
 def _nearest_along(
-    ground: TravelTable, clock: Clock, opened: _Open, at: int, row: int
+    travel: TravelTable, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
     """Return the open plant of a row in the same aisle that is reached first, and the seconds."""
     best, best_s = -1, np.inf
-    start, end = ground.row_start[row], ground.row_start[row + 1]
+    start, end = travel.row_start[row], travel.row_start[row + 1]
     middle = at
-    if row != ground.row[at]:
-        middle = start + np.searchsorted(ground.x_m[start:end], ground.x_m[at])
+    if row != travel.row[at]:
+        middle = start + np.searchsorted(travel.x_m[start:end], travel.x_m[at])
     plant = max(middle, opened.low[row])
     while plant <= opened.high[row] and not opened.flag[plant]:
         plant += 1
     if plant <= opened.high[row]:
-        best, best_s = plant, travel_s(ground, clock, at, plant)
+        best, best_s = plant, travel_s(travel, clock, at, plant)
     else:
         # none from here on up: not to be looked through again
         opened.high[row] = min(opened.high[row], middle - 1)
     plant = min(middle - 1, opened.high[row])
     while plant >= opened.low[row]:
-        if (ground.x_m[at] - ground.x_m[plant]) / clock.speed_m_s >= best_s:
+        if (travel.x_m[at] - travel.x_m[plant]) / clock.speed_m_s >= best_s:
             return best, best_s
         if opened.flag[plant]:
-            plant_s = travel_s(ground, clock, at, plant)
+            plant_s = travel_s(travel, clock, at, plant)
             return (plant, plant_s) if plant_s < best_s else (best, best_s)
         plant -= 1
     opened.low[row] = max(opened.low[row], middle)

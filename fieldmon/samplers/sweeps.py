@@ -8,32 +8,33 @@ from typing import TYPE_CHECKING, ClassVar
 from fieldmon.compute.jit import loop, part
 from fieldmon.errors import SettingError
 from fieldmon.plot.travel import Clock, in_time, travel_s
-from fieldmon.samplers.base import Scene, Stops
+from fieldmon.samplers.base import Sampler, Scene, Stops
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.plot.travel import TravelTable
+    from fieldmon.samplers.base import WouldFind
 
 
 @dataclass(frozen=True)
-class Naive:
+class Naive(Sampler):
     """Inspect plant after plant, up one row and down the next; go on tomorrow where today ended.
 
     At the end of the plot it starts again at the first row. The chance map is not looked at
     (our reading of the thesis, whose text does not define the order).
     """
 
-    blind: ClassVar[bool] = True
+    reads_chance: ClassVar[bool] = False
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
         return _sweep(scene, 1)
 
 
 @dataclass(frozen=True)
-class Bouncy:
+class Bouncy(Sampler):
     """Inspect every N-th plant of the same sweep; the next pass takes other plants.
 
     A pass starts at that one of the first N plants which was inspected least recently.
@@ -44,7 +45,7 @@ class Bouncy:
         N; the thesis leaves one plant out between two (2).
     """
 
-    blind: ClassVar[bool] = True
+    reads_chance: ClassVar[bool] = False
     every: int = 2
 
     def __post_init__(self) -> None:
@@ -53,7 +54,7 @@ class Bouncy:
                 f"Bouncy must inspect every 1st, 2nd, ... plant, but 'every' is {self.every}."
             )
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
         return _sweep(scene, self.every)
 
@@ -61,7 +62,7 @@ class Bouncy:
 def _sweep(scene: Scene, every: int) -> Stops:
     stops = scene.blank()
     k = _walk(
-        scene.aisles.ground,
+        scene.aisles.travel,
         scene.clock,
         (scene.grid.snake, scene.last_inspected.copy()),
         (scene.at, scene.resume, scene.day, every),
@@ -72,7 +73,7 @@ def _sweep(scene: Scene, every: int) -> Stops:
 
 @loop
 def _walk(
-    ground: TravelTable,
+    travel: TravelTable,
     clock: Clock,
     plants: tuple[NDArray[np.int32], NDArray[np.int32]],
     start: tuple[int, int, int, int],
@@ -97,8 +98,8 @@ def _walk(
         position += every
         if last[plant] == today:
             continue
-        arrive_s = now_s + travel_s(ground, clock, at, plant)
-        if not in_time(ground, clock, plant, arrive_s):
+        arrive_s = now_s + travel_s(travel, clock, at, plant)
+        if not in_time(travel, clock, plant, arrive_s):
             break
         stops.plant[k], stops.arrive_s[k] = plant, arrive_s
         now_s = arrive_s + clock.visit_s

@@ -13,17 +13,19 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import loop, part
 from fieldmon.compute.random_streams import coin, coin_table
 from fieldmon.errors import SettingError
 from fieldmon.plot.travel import Clock, in_time, travel_s
-from fieldmon.samplers.base import Scene, Stops
+from fieldmon.samplers.base import Sampler, Scene, Stops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.travel import TravelTable
+    from fieldmon.samplers.base import WouldFind
 
 _ONLINE = 0
 # a sweep over a plot of which all was visited today ends after so many times round
@@ -39,7 +41,7 @@ class Stations(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Snake:
+class Snake(Sampler):
     """Up one side of an aisle, down the other, then the next aisle; every N-th plant.
 
     At the end of the plot it turns round, starting at the nearest of the last N plants that was
@@ -51,30 +53,30 @@ class Snake:
         N; 1 inspects every plant.
     """
 
-    blind: ClassVar[bool] = True
+    reads_chance: ClassVar[bool] = False
     every: int = 1
 
     def __post_init__(self) -> None:
         _check_every(self.every)
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
         return _sweep(scene, _one_by_one(scene.grid), self.every)
 
 
 @dataclass(frozen=True)
-class SnakeRandom:
+class SnakeRandom(Sampler):
     """The snake with N drawn anew, 1 to 4, at every stop: algorithm 3 of the thesis."""
 
-    blind: ClassVar[bool] = True
+    reads_chance: ClassVar[bool] = False
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
         return _sweep(scene, _one_by_one(scene.grid), _ONLINE)
 
 
 @dataclass(frozen=True)
-class Neighbor:
+class Neighbor(Sampler):
     """Along the aisles, alternately up and down, looking at the plants on both sides of a stop.
 
     Where rows are inspected on one face only, every aisle has plants on one side. Algorithms 6
@@ -86,30 +88,30 @@ class Neighbor:
         Every N-th stop.
     """
 
-    blind: ClassVar[bool] = True
+    reads_chance: ClassVar[bool] = False
     every: int = 1
 
     def __post_init__(self) -> None:
         _check_every(self.every)
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
         return _sweep(scene, _face_to_face(scene.grid), self.every)
 
 
 @dataclass(frozen=True)
-class NeighborRandom:
+class NeighborRandom(Sampler):
     """The neighbor sampler with N drawn anew, 1 to 4, at every stop: algorithm 5 of the thesis."""
 
-    blind: ClassVar[bool] = True
+    reads_chance: ClassVar[bool] = False
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
         return _sweep(scene, _face_to_face(scene.grid), _ONLINE)
 
 
 @dataclass(frozen=True)
-class RandomShare:
+class RandomShare(Sampler):
     """One N-th of the plot, drawn anew every day, in the order of the snake: algorithm 7.
 
     Parameters
@@ -118,13 +120,13 @@ class RandomShare:
         N; the share is 1/N, rounded down, but one plant at least.
     """
 
-    blind: ClassVar[bool] = True
+    reads_chance: ClassVar[bool] = False
     every: int = 3
 
     def __post_init__(self) -> None:
         _check_every(self.every)
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:  # noqa: ARG002
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the day's draw from the start of the plot."""
         n = len(scene.grid)
         drawn = np.argsort(coin_table(scene.key, n))[: max(n // self.every, 1)]
@@ -167,9 +169,7 @@ def _face_to_face(grid: PlantGrid) -> Stations:
 
 def _stations(*arrays: NDArray[np.int32]) -> Stations:
     """Return stations that are only read, so that sweeps are compiled once for all of them."""
-    for array in arrays:
-        array.flags.writeable = False
-    return Stations(*arrays)
+    return Stations(*map(read_only, arrays))
 
 
 def _sweep(scene: Scene, stations: Stations, every: int) -> Stops:
@@ -192,7 +192,7 @@ def _walked(
 ) -> Stops:
     stops = scene.blank()
     k = _walk(
-        scene.aisles.ground,
+        scene.aisles.travel,
         scene.clock,
         stations,
         (wanted, scene.last_inspected.copy()),
@@ -204,7 +204,7 @@ def _walked(
 
 @loop
 def _walk(
-    ground: TravelTable,
+    travel: TravelTable,
     clock: Clock,
     stations: Stations,
     plants: tuple[NDArray[np.bool_], NDArray[np.int32]],
@@ -223,17 +223,17 @@ def _walk(
             position = _turned(stations, last, ahead, step)
             ahead = -ahead
         first = k
-        plant = _next_here(ground, stations, (wanted, last, today), position, at)
+        plant = _next_here(travel, stations, (wanted, last, today), position, at)
         while plant >= 0:
-            arrive_s = now_s + travel_s(ground, clock, at, plant)
-            if k == stops.plant.size or not in_time(ground, clock, plant, arrive_s):
+            arrive_s = now_s + travel_s(travel, clock, at, plant)
+            if k == stops.plant.size or not in_time(travel, clock, plant, arrive_s):
                 return k
             stops.plant[k], stops.arrive_s[k] = plant, arrive_s
             now_s = arrive_s + clock.visit_s
             last[plant] = today
             at = plant
             k += 1
-            plant = _next_here(ground, stations, (wanted, last, today), position, at)
+            plant = _next_here(travel, stations, (wanted, last, today), position, at)
         skipped = 0 if k > first else skipped + 1
         position += ahead * step
     return k
@@ -241,7 +241,7 @@ def _walk(
 
 @part
 def _next_here(
-    ground: TravelTable,
+    travel: TravelTable,
     stations: Stations,
     plants: tuple[NDArray[np.bool_], NDArray[np.int32], int],
     position: int,
@@ -254,7 +254,7 @@ def _next_here(
         plant = int(stations.plant[e])
         if not wanted[plant] or last[plant] == today:
             continue
-        if at >= 0 and ground.side[ground.row[plant]] == ground.side[ground.row[at]]:
+        if at >= 0 and travel.side[travel.row[plant]] == travel.side[travel.row[at]]:
             return plant
         if found < 0:
             found = plant

@@ -1,5 +1,7 @@
-"""Studies of one's own: samplers x settings x seeds on any plots, on as many machines as there are.
+"""Many days: seasons, and experiments of many seasons.
 
-`design` says what is compared, `chunks` simulates a few seconds of it, `engine` has Dask do so on
-one machine or many, and `store` keeps what comes back.
+`season` walks through the days from a `start`, and `metrics` says what they come to. `experiment`
+cuts settings and seeds into chunks and has an `executor` run them on threads, processes or many
+machines. A study of one's own plots is such an experiment: `design` says what is compared,
+`worker` simulates a chunk of it, and `results` keeps what comes back.
 """

@@ -2,37 +2,38 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
+from functools import cached_property, partial
 from itertools import product
 from typing import TYPE_CHECKING
 
-import numpy as np
-import shapely
-
+from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
-from fieldmon.samplers import SAMPLERS
+from fieldmon.samplers import COMPARED, kind_of
+from fieldmon.simulation.experiment import Experiment
+from fieldmon.simulation.worker import simulate_chunk
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Sequence
+
+    import numpy as np
 
     from fieldmon.infestation.observations import Observations
     from fieldmon.plot.field import Field
     from fieldmon.plot.layout import Planting
+    from fieldmon.simulation.worker import ChunkSeasons, Setting
 
-# a chunk takes about so long; what seasons cost was measured, see the README's section on speed
+# a chunk takes about so long; what seasons cost was measured, see docs/benchmarks
 _CHUNK_S = 4.0
-_S_PER_PLANT_DAY = {"dynamic": 4e-7, "adaptive": 2.5e-6}
-_S_PER_BLIND_PLANT_DAY = 2e-8
 _S_PER_DAY = 3e-4
 # changes when seasons come out differently, so that old chunks are not taken for new ones
-_VERSION = "1"
+_VERSION, _DIGITS = "1", 20
 
 
 @dataclass(frozen=True, eq=False)
-class Site:
-    """A plot as it travels to whoever simulates on it; its plants are laid there.
+class StudyPlot:
+    """A plot of a study as it travels to whoever simulates on it; its plants are laid there.
 
     Parameters
     ----------
@@ -51,13 +52,13 @@ class Site:
     observations: Observations
     day: np.datetime64
 
-    @property
+    @cached_property
     def digest(self) -> str:
         """Return what tells this plot and its records from any others."""
         parts = (*vars(self.field).values(), *vars(self.observations).values())
-        return _digest(*parts, vars(self.planting), str(self.day))
+        return digest(*parts, _as_written(self.planting), str(self.day), length=_DIGITS)
 
-    @property
+    @cached_property
     def about_plants(self) -> int:
         """Return roughly how many plants there is room for."""
         if self.field.plants is not None:
@@ -68,13 +69,13 @@ class Site:
 
 
 @dataclass(frozen=True)
-class Case:
-    """One combination of settings: who inspects how, and what the insects do.
+class Combination:
+    """One level of every factor: who inspects how, and what the insects do.
 
     Parameters
     ----------
     sampler
-        Name in `SAMPLERS`.
+        Name in `fieldmon.samplers.SAMPLERS`.
     hours, look_s
         Working day, and seconds spent looking at a plant.
     infested
@@ -97,16 +98,16 @@ class Design:
     Parameters
     ----------
     samplers
-        Names in `SAMPLERS`.
+        Names in `fieldmon.samplers.SAMPLERS`.
     hours, look_s, infested, spread
-        Values of the settings of `Case`.
+        The levels of each factor, see `Combination`.
     n_days
         Working days of a season.
     n_seeds, first_seed
-        Seasons of each case; season k starts from seed ``first_seed + k``, the same for all cases.
+        Seasons of each combination; season k starts from seed ``first_seed + k`` in all of them.
     """
 
-    samplers: tuple[str, ...] = ("naive", "bouncy", "dynamic")
+    samplers: tuple[str, ...] = COMPARED
     hours: tuple[float, ...] = (12.0,)
     look_s: tuple[float, ...] = (40.0,)
     infested: tuple[float, ...] = (0.02,)
@@ -116,11 +117,8 @@ class Design:
     first_seed: int = 1
 
     def __post_init__(self) -> None:
-        unknown = [name for name in self.samplers if name not in SAMPLERS]
-        if unknown:
-            raise SettingError(
-                f"A sampler must be one of {', '.join(SAMPLERS)}, but it is {unknown[0]!r}."
-            )
+        for name in self.samplers:
+            kind_of(name)
         for named in fields(self)[:5]:
             values = getattr(self, named.name)
             if not values or len(set(values)) < len(values):
@@ -140,68 +138,39 @@ class Design:
                 )
 
     @property
-    def cases(self) -> tuple[Case, ...]:
-        """Return all combinations of settings."""
+    def combinations(self) -> tuple[Combination, ...]:
+        """Return every level of each factor with every level of the others."""
         values = (self.samplers, self.hours, self.look_s, self.infested, self.spread)
-        return tuple(Case(*each) for each in product(*values))
+        return tuple(Combination(*each) for each in product(*values))
 
 
-@dataclass(frozen=True, eq=False)
-class Chunk:
-    """Seasons of one case on one plot that are simulated in one go.
+def study_of(plots: Sequence[StudyPlot], design: Design) -> Experiment[Setting, ChunkSeasons]:
+    """Return a design on plots as an experiment, every plot with every combination.
 
-    Parameters
-    ----------
-    site
-        The plot.
-    case
-        The settings.
-    seeds
-        First seed, and the one after the last.
-    n_days
-        Working days of a season.
-    key
-        Names what comes out; it depends on all of the above and on nothing else.
+    Its keys are a sampler and a digest of all that its seasons depend on, and of nothing else.
     """
+    n_days = design.n_days
 
-    site: Site
-    case: Case
-    seeds: tuple[int, int]
-    n_days: int
-    key: str = field(default="")
+    def key(setting: Setting, seeds: range) -> tuple[str, str]:
+        plot, levels = setting
+        parts = (plot.digest, _as_written(levels), (seeds.start, seeds.stop), n_days)
+        return levels.sampler, digest(_VERSION, *parts, length=_DIGITS)
 
-    def __len__(self) -> int:
-        """Return the number of seasons."""
-        return self.seeds[1] - self.seeds[0]
-
-
-def chunks(sites: tuple[Site, ...], design: Design) -> Iterator[Chunk]:
-    """Yield the chunks of a study: the same ones, whoever simulates them."""
-    end = design.first_seed + design.n_seeds
-    for site in sites:
-        digest, n_plants = site.digest, site.about_plants
-        for case in design.cases:
-            size = _seasons(case.sampler, n_plants, design.n_days)
-            for first in range(design.first_seed, end, size):
-                seeds = (first, min(first + size, end))
-                key = _digest(_VERSION, digest, vars(case), seeds, design.n_days)
-                yield Chunk(site, case, seeds, design.n_days, key)
+    return Experiment(
+        settings=list(product(plots, design.combinations)),
+        seeds=range(design.first_seed, design.first_seed + design.n_seeds),
+        simulate=partial(simulate_chunk, n_days=n_days),
+        chunk_size=lambda setting: _seasons(setting[1].sampler, setting[0].about_plants, n_days),
+        key=key,
+    )
 
 
 def _seasons(sampler: str, n_plants: int, n_days: int) -> int:
     """Return how many seasons take about `_CHUNK_S`."""
-    each_s = _S_PER_PLANT_DAY.get(sampler, _S_PER_BLIND_PLANT_DAY)
-    return math.ceil(_CHUNK_S / (n_days * (_S_PER_DAY + n_plants * each_s)))
+    day_s = _S_PER_DAY + n_plants * kind_of(sampler).s_per_plant_day
+    return math.ceil(_CHUNK_S / (n_days * day_s))
 
 
-def _digest(*parts: object) -> str:
-    everything = hashlib.sha256()
-    for part in parts:
-        if isinstance(part, shapely.Geometry):
-            everything.update(shapely.to_wkb(part))
-        elif isinstance(part, np.ndarray):
-            everything.update(part.tobytes())
-        else:
-            everything.update(repr(part).encode())
-        everything.update(b"\0")
-    return everything.hexdigest()[:20]
+def _as_written(settings: object) -> bytes:
+    """Return what stands for settings in digests: names and values in the order of the class."""
+    return repr(vars(settings)).encode()

@@ -1,43 +1,103 @@
-"""A study on Dask: a cluster of this machine's cores, or one of many machines."""
+"""Who simulates an experiment: this thread, threads, processes, or a cluster of many machines.
+
+All of them are `concurrent.futures` executors, so that nothing else needs to know which.
+"""
 
 from __future__ import annotations
 
 import logging
 import os
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from distributed import Client, KilledWorker, LocalCluster, as_completed
-
-from fieldmon.errors import FieldmonError, SettingError
-from fieldmon.simulation import results
-from fieldmon.simulation.design import chunks
-from fieldmon.simulation.worker import run_chunk
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
-    import pyarrow as pa
-
-    from fieldmon.simulation.design import Chunk, Design, Site
-
-    Progress = Callable[[int, int], None]
+    from distributed import Client
 
 # chunks handed out ahead of each worker, so that none waits for the next
 _AHEAD = 3
 _CONNECT_S = 20
 
 
-@contextmanager
-def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterator[Client]:
-    """Connect to a scheduler (``tcp://...``), or start a cluster of this machine's cores.
+class Workers(NamedTuple):
+    """Who simulates.
 
-    The local one listens on 127.0.0.1 only; its workers are processes of one thread each.
+    Parameters
+    ----------
+    pool
+        Takes chunks.
+    ahead
+        How many chunks it has in hand at a time.
+    dashboard
+        Address of a page that shows it at work; empty: there is none.
     """
+
+    pool: Executor
+    ahead: int
+    dashboard: str = ""
+
+
+class _Here(Executor):
+    """Does in the calling thread, at once, what it is asked for."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:  # noqa: ANN401 - the protocol's
+        """Return the finished future of a call."""
+        future: Future[Any] = Future()
+        future.set_result(fn(*args, **kwargs))
+        return future
+
+
+def here() -> Workers:
+    """Return the calling thread: one chunk after the other, and nothing is left when it ends."""
+    return Workers(_Here(), 1)
+
+
+@contextmanager
+def threads(workers: int | None = None) -> Iterator[Workers]:
+    """Start threads, one a core: for compiled loops, which hold no lock while they run.
+
+    Left by an error or Ctrl-C, those at work end their chunk in the background.
+    """
+    n = workers or cores()
+    pool = ThreadPoolExecutor(n)
+    try:
+        yield Workers(pool, _AHEAD * n)
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+@contextmanager
+def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterator[Workers]:
+    """Connect to a Dask scheduler (``tcp://...``), or start processes on this machine's cores.
+
+    The local ones have a thread each and listen on 127.0.0.1 only. A worker that is killed costs
+    the chunks it had in hand, which others simulate again.
+    """
+    from distributed import KilledWorker  # noqa: PLC0415 - heavy
+
     # a worker that dies is replaced and its chunks are simulated again: nothing to shout about
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    with _client(scheduler, workers) as client:
+        # a chunk is told from others by its number, not by what is in it
+        pool = client.get_executor(pure=False)
+        ahead = _AHEAD * max(len(client.nthreads()), 1)
+        try:
+            yield Workers(pool, ahead, client.dashboard_link)
+        except KilledWorker as error:
+            raise SettingError(
+                "A chunk of the study ended several workers (is their memory too small for the "
+                "plot?). What is finished is kept: the same command goes on."
+            ) from error
+
+
+@contextmanager
+def _client(scheduler: str | None, workers: int | None) -> Iterator[Client]:
+    from distributed import Client, LocalCluster  # noqa: PLC0415 - heavy
+
     if scheduler is not None:
         try:
             client = Client(scheduler, timeout=_CONNECT_S)
@@ -50,7 +110,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
             yield client
         return
     local = LocalCluster(
-        n_workers=workers or _cores(),
+        n_workers=workers or cores(),
         threads_per_worker=1,
         host="127.0.0.1",
         dashboard_address="127.0.0.1:0",
@@ -59,54 +119,6 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
         yield client
 
 
-def run(
-    client: Client, folder: Path, sites: tuple[Site, ...], design: Design, progress: Progress
-) -> dict[str, str]:
-    """Simulate all seasons of a study that `folder` does not hold yet.
-
-    Each chunk's part is written here as soon as it arrives; a worker that is killed costs the
-    chunks it had in hand. `progress` hears how many of all seasons there are. Return why plots
-    were refused, by name.
-    """
-    results.begin(folder, sites, design)
-    total = len(sites) * len(design.cases) * design.n_seeds
-    left = [chunk for chunk in chunks(sites, design) if not results.part(folder, chunk).exists()]
-    done = total - sum(len(chunk) for chunk in left)
-    progress(done, total)
-    refused = {}
-    for chunk, seasons in _results(client, left):
-        if isinstance(seasons, FieldmonError):
-            refused[chunk.site.field.name] = str(seasons)
-        else:
-            results.keep(folder, chunk, seasons)
-        done += len(chunk)
-        progress(done, total)
-    return refused
-
-
-def _results(client: Client, left: list[Chunk]) -> Iterator[tuple[Chunk, pa.Table | FieldmonError]]:
-    """Have chunks simulated; yield each with its seasons, in the order they are finished."""
-    waiting = iter(left)
-    by_key = {}
-
-    def more(n: int) -> list[object]:
-        handed = list(islice(waiting, n))
-        by_key.update({chunk.key: chunk for chunk in handed})
-        return [client.submit(run_chunk, chunk, key=f"fieldmon-{chunk.key}") for chunk in handed]
-
-    finished = as_completed(more(_AHEAD * max(len(client.nthreads()), 1)), with_results=True)
-    try:
-        for future, seasons in finished:
-            chunk = by_key.pop(future.key.removeprefix("fieldmon-"))
-            for one in more(1):
-                finished.add(one)
-            yield chunk, seasons
-    except KilledWorker as error:
-        raise SettingError(
-            "A chunk of the study ended several workers (is their memory too small for the plot?). "
-            "What is finished is kept: the same command goes on."
-        ) from error
-
-
-def _cores() -> int:
+def cores() -> int:
+    """Return how many cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -7,18 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import counted
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
-    from fieldmon.simulation.season import Day
+    from fieldmon.simulation.season import SimulatedDay
 
-LEVELS_PCT = (30.0, 50.0, 80.0, 100.0)
+DETECTION_LEVELS_PCT = (30.0, 50.0, 80.0, 100.0)
 
 
 @dataclass(frozen=True, eq=False)
-class SeasonFigures:
+class SeasonMetrics:
     """The days of one season as columns, ``(d,)`` each, and what they add up to.
 
     Parameters
@@ -44,6 +46,10 @@ class SeasonFigures:
     new: NDArray[np.int64]
     left: NDArray[np.int64]
 
+    def __repr__(self) -> str:
+        days, finds = counted(len(self.left), "day"), counted(int(self.found.sum()), "find")
+        return f"<SeasonMetrics: {days}, {finds}, {self.infested_plant_days} infested plant-days>"
+
     @property
     def infested_plant_days(self) -> int:
         """Return the sum over all evenings of the plants still infested: the grower's loss."""
@@ -58,7 +64,7 @@ class SeasonFigures:
         return int(reached[0]) + 1 if reached.size else None
 
 
-def figures(season: Iterable[Day]) -> SeasonFigures:
+def season_metrics(days: Iterable[SimulatedDay]) -> SeasonMetrics:
     """Return the columns of a season from its days; nothing of a day is kept."""
     rows = [
         (
@@ -69,8 +75,8 @@ def figures(season: Iterable[Day]) -> SeasonFigures:
             day.ever_infested,
             day.left,
         )
-        for day in season
+        for day in days
     ]
     columns = np.array(rows, dtype=np.float64).reshape(-1, 6).T
     found, ever, left = columns[3:].astype(np.int64)
-    return SeasonFigures(columns[0], columns[1], columns[2], found, np.diff(ever, prepend=0), left)
+    return SeasonMetrics(columns[0], columns[1], columns[2], found, np.diff(ever, prepend=0), left)

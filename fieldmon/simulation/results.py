@@ -9,65 +9,113 @@ from __future__ import annotations
 import json
 from dataclasses import asdict
 from io import BytesIO
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.dataset as ds
 import pyarrow.parquet as pq
 
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import write_whole
+from fieldmon.simulation.worker import DETECTION_LEVELS, RefusedPlot
 
 if TYPE_CHECKING:
+    from collections.abc import Hashable, Sequence
     from pathlib import Path
 
-    from fieldmon.simulation.design import Chunk, Design, Site
+    from fieldmon.simulation.design import Design, StudyPlot
+    from fieldmon.simulation.worker import ChunkSeasons
 
 # readers of datasets pass over names that begin so
 MANIFEST = "_study.json"
+SCHEMA = pa.schema(
+    [
+        *((name, pa.string()) for name in ("plot", "sampler")),
+        *((name, pa.float64()) for name in ("hours", "look_s", "infested", "spread")),
+        *((name, pa.int64()) for name in ("seed", "days", "plants")),
+        *((name, pa.float64()) for name in ("detection_pct", "visited_pct", "ever_visited_pct")),
+        *((name, pa.int64()) for name in ("infestations", "found", "left", "infested_plant_days")),
+        *((name, pa.int32()) for name in DETECTION_LEVELS),
+        *((name, pa.list_(pa.int32())) for name in ("found_by_day", "left_by_day")),
+    ]
+)
 _ORDER = ("plot", "sampler", "hours", "look_s", "infested", "spread", "seed")
 
 
-def begin(folder: Path, sites: tuple[Site, ...], design: Design) -> None:
-    """Make a study's folder, or go on in it; refuse one that holds another study."""
-    said = asdict(design) | {"plots": [f"{site.field.name} {site.digest}" for site in sites]}
-    text = json.dumps(said, ensure_ascii=False, indent=1)
-    manifest = folder / MANIFEST
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        there = manifest.read_text(encoding="utf-8") if manifest.exists() else None
-    except OSError as error:
-        raise FileProblem(
-            f"{folder} must be a folder to write to, but it is not ({error})."
-        ) from error
-    if there is None:
-        write_whole(manifest, text.encode())
-    elif there != text:
-        raise SettingError(
-            f"{folder} holds another study (see {manifest}): its plots, settings or seeds are not "
-            "those asked for now. Choose another folder with -o, or ask for the same again."
-        )
+class StudyFolder:
+    """A store of seasons on disk, by sampler and digest.
 
+    Parameters
+    ----------
+    folder
+        Made if it is not there. One that holds another study is refused.
+    plots, design
+        What is simulated; written beside the seasons.
 
-def part(folder: Path, chunk: Chunk) -> Path:
-    """Return the file of a chunk's seasons."""
-    return folder / f"sampler={chunk.case.sampler}" / f"{chunk.key}.parquet"
+    Attributes
+    ----------
+    refused
+        Why plots were refused, by name; they have no seasons.
+    """
 
+    def __init__(self, folder: Path, plots: Sequence[StudyPlot], design: Design) -> None:
+        self.folder = folder
+        self.refused: dict[str, str] = {}
+        said = asdict(design) | {"plots": [f"{plot.field.name} {plot.digest}" for plot in plots]}
+        self._begin(json.dumps(said, ensure_ascii=False, indent=1))
 
-def keep(folder: Path, chunk: Chunk, seasons: pa.Table) -> None:
-    """Write the seasons of a chunk."""
-    to = part(folder, chunk)
-    to.parent.mkdir(exist_ok=True)
-    data = BytesIO()
-    # the folder's name says the sampler, as everywhere in partitioned datasets
-    pq.write_table(seasons.drop_columns(["sampler"]), data)
-    write_whole(to, data.getvalue())
+    def holds(self, key: Hashable) -> bool:
+        """Tell whether a chunk's seasons are there."""
+        return self.part(key).exists()
+
+    def keep(self, key: Hashable, result: ChunkSeasons) -> None:
+        """Write the seasons of a chunk, or note why there are none."""
+        if isinstance(result, RefusedPlot):
+            self.refused[result.name] = result.why
+            return
+        to = self.part(key)
+        to.parent.mkdir(exist_ok=True)
+        # the folder's name says the sampler, as everywhere in partitioned datasets
+        table = pa.Table.from_pylist(result, SCHEMA).drop_columns(["sampler"])
+        data = BytesIO()
+        pq.write_table(table, data)
+        write_whole(to, data.getvalue())
+
+    def part(self, key: Hashable) -> Path:
+        """Return the file of a chunk's seasons."""
+        sampler, digest = cast("tuple[str, str]", key)
+        return self.folder / f"sampler={sampler}" / f"{digest}.parquet"
+
+    def _begin(self, text: str) -> None:
+        manifest = self.folder / MANIFEST
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            there = manifest.read_text(encoding="utf-8") if manifest.exists() else None
+        except OSError as error:
+            raise FileProblem(
+                f"{self.folder} must be a folder to write to, but it is not ({error})."
+            ) from error
+        if there is None:
+            write_whole(manifest, text.encode())
+        elif there != text:
+            raise SettingError(
+                f"{self.folder} holds another study (see {manifest}): its plots, settings or seeds "
+                "are not those asked for now. Choose another folder with -o, or ask for the same "
+                "again."
+            )
 
 
 def seasons(folder: Path) -> pa.Table:
-    """Return all seasons that a study has so far, in the order of their settings and seeds."""
+    """Return all seasons that a study has so far, in the order of their settings and seeds.
+
+    Each once, also where parts overlap, as they may when chunks were cut in another way before.
+    """
     if not any(folder.glob("sampler=*/*.parquet")):
         raise FileProblem(f"{folder} must hold a study with finished seasons, but it does not.")
     by_sampler = ds.partitioning(pa.schema([("sampler", pa.string())]), flavor="hive")
     table = ds.dataset(folder, format="parquet", partitioning=by_sampler).to_table()
-    return table.sort_by([(column, "ascending") for column in _ORDER])
+    table = table.sort_by([(column, "ascending") for column in _ORDER])
+    columns = [table[name].to_numpy() for name in _ORDER]
+    fresh = np.logical_or.reduce([column[1:] != column[:-1] for column in columns])
+    return table.filter(pa.array(np.concatenate([[True], fresh])))

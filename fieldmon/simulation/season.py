@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.infestation.belief import Learning, Pairs
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread, night
-from fieldmon.planning.workday import looks_of, luck, outcomes, work_day
+from fieldmon.planning.workday import draw_detections, work_day
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers.base import NEVER, Scene
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Sampler
+    from fieldmon.simulation.start import Start
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ class SeasonSettings:
     spread: Spread = field(default_factory=Spread)
     believed_spread: Spread | None = None
     learning: Learning | None = None
-    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = Pairs.of
+    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = PairApproximation.of
 
     def __post_init__(self) -> None:
         if self.n_days < 1:
@@ -58,24 +60,8 @@ class SeasonSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class Start:
-    """The first morning: who is infested, and what is believed about it.
-
-    Parameters
-    ----------
-    infested
-        ``(n,)`` the truth, which no sampler sees.
-    chance
-        ``(n,)`` chance of infestation as believed.
-    """
-
-    infested: NDArray[np.bool_]
-    chance: NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Day:
-    """One day of a season.
+class SimulatedDay:
+    """One day of a simulated season.
 
     Parameters
     ----------
@@ -98,7 +84,7 @@ class Day:
     number: int
     work: Workday
     infested: NDArray[np.bool_]
-    mornings: _Mornings
+    mornings: _MorningBeliefs
     last_inspected: NDArray[np.int32]
     ever_infested: int
     ever_found: int
@@ -139,16 +125,16 @@ class Day:
         return 100.0 * float(np.mean(self.last_inspected >= 0))
 
 
-class _Mornings:
+class _MorningBeliefs:
     """What is believed on every morning of a season, worked out when somebody asks.
 
     Most of a season's time goes into it, and half of the samplers do not read it.
     """
 
     def __init__(
-        self, first: Callable[[], Belief], taught: Callable[[Workday], Learning], spread: Spread
+        self, first: Callable[[], Belief], learning: Callable[[Workday], Learning], spread: Spread
     ) -> None:
-        self._first, self._taught, self._spread = first, taught, spread
+        self._first, self._learning, self._spread = first, learning, spread
         self._works: list[Workday] = []
         self._last: tuple[int, Belief] | None = None
 
@@ -162,71 +148,119 @@ class _Mornings:
         if day > number:
             day, belief = 0, self._first()
         for work in self._works[day:number]:
-            learnt = belief.learn(work.plant, work.found, self._taught(work))
-            belief = learnt.overnight(self._spread)
+            evening = belief.learn(work.plant, work.found, self._learning(work))
+            belief = evening.overnight(self._spread)
         self._last = number, belief
         return belief
 
 
-def days(
+def simulated_days(
     aisles: Aisles,
     robot: Robot,
     sampler: Sampler,
     start: Start,
     settings: SeasonSettings,
-    chance: RandomStreams,
-) -> Iterator[Day]:
+    streams: RandomStreams,
+) -> Iterator[SimulatedDay]:
     """Yield the days of a season, one by one, as they happen.
 
-    Found insects are destroyed at once; missed ones stay and spread at night. Chance streams:
+    Found insects are destroyed at once; missed ones stay and spread at night. Random streams:
     ``inspect/day``, ``spread/day`` and ``sampler/day``, so that every sampler meets the same
-    insects and the same luck in looking.
+    insects, and would find the same ones on a plant.
     """
     _check(aisles, start)
-    learning = settings.learning or Learning(detection=robot.detects)
-    believed = settings.believed_spread or settings.spread
-    looks, blind = looks_of(robot, sampler), getattr(sampler, "blind", False)
-    choosing = len(looks.detects) > 1
-    infested = start.infested.copy()
+    season = _Season(aisles, robot, sampler, start, settings)
+    keys = zip(*(streams.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
+    for number, (own, inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
+        day = season.work(number, own, inspect)
+        yield day
+        season.pass_night(day.work, overnight)
 
-    def taught(work: Workday) -> Learning:
-        return replace(learning, detection=work.detects) if choosing else learning
 
-    mornings = _Mornings(lambda: settings.believe(aisles.grid, start.chance), taught, believed)
-    last_inspected = np.full(len(infested), NEVER, np.int32)
-    ever_infested, ever_found = int(np.count_nonzero(infested)), 0
-    trail, at = np.empty(0, np.int32), GATE
-    keys = zip(*(chance.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
-    for number, (own_key, look_key, night_key) in zip(range(settings.n_days), keys, strict=False):
-        belief = None if blind else mornings.on(number)
-        scene = Scene(
-            aisles=aisles,
-            robot=robot,
-            chance=start.chance if belief is None else belief.chance,
-            pair_chance=None if belief is None else belief.pair_chance,
-            last_inspected=last_inspected,
-            day=number,
-            at=at,
-            seconds_left=robot.day_s,
-            trail=trail,
-            key=own_key,
+class _Season:
+    """A season on its way: what a day changes, and how."""
+
+    def __init__(
+        self,
+        aisles: Aisles,
+        robot: Robot,
+        sampler: Sampler,
+        start: Start,
+        settings: SeasonSettings,
+    ) -> None:
+        self.aisles, self.robot, self.sampler, self.settings = aisles, robot, sampler, settings
+        self.first_chance, self.infested = start.chance, start.infested.copy()
+        self.detects = sampler.inspection_times(robot).detects
+        self.mornings = _mornings(
+            aisles.grid, robot, start, settings, chooses_time=len(self.detects) > 1
         )
-        if choosing:
-            work = work_day(scene, sampler, luck(infested, looks, look_key))
-        else:
-            work = work_day(scene, sampler, outcomes(infested, float(looks.detects[0]), look_key))
-        last_inspected = last_inspected.copy()
-        last_inspected[work.plant] = number
-        ever_found += int(np.count_nonzero(work.found))
-        yield Day(number, work, infested, mornings, last_inspected, ever_infested, ever_found)
-        mornings.add(work)
-        evening = infested.copy()
+        self.last_inspected = np.full(len(self.infested), NEVER, np.int32)
+        self.ever_infested, self.ever_found = int(np.count_nonzero(self.infested)), 0
+        self.trail, self.at = np.empty(0, np.int32), GATE
+
+    def work(self, number: int, own_key: np.uint64, inspect_key: np.uint64) -> SimulatedDay:
+        """Work for a day; return what came of it."""
+        would_find = draw_detections(self.infested, self.detects, inspect_key)
+        work = work_day(self._scene(number, own_key), self.sampler, would_find)
+        self.last_inspected = self.last_inspected.copy()
+        self.last_inspected[work.plant] = number
+        self.ever_found += int(np.count_nonzero(work.found))
+        return SimulatedDay(
+            number,
+            work,
+            self.infested,
+            self.mornings,
+            self.last_inspected,
+            self.ever_infested,
+            self.ever_found,
+        )
+
+    def pass_night(self, work: Workday, key: np.uint64) -> None:
+        """Destroy what was found, and let the others spread."""
+        self.mornings.add(work)
+        evening = self.infested.copy()
         evening[work.plant[work.found]] = False
-        infested = night(aisles.grid, evening, settings.spread, night_key)
+        self.infested = night(self.aisles.grid, evening, self.settings.spread, key)
         # nobody recovers at night
-        ever_infested += int(np.count_nonzero(infested)) - int(np.count_nonzero(evening))
-        trail = work.plant if len(work) else trail
-        at = GATE if robot.returns or not len(trail) else int(trail[-1])
+        self.ever_infested += int(np.count_nonzero(self.infested) - np.count_nonzero(evening))
+        self.trail = work.plant if len(work) else self.trail
+        stays = len(self.trail) and not self.robot.returns
+        self.at = int(self.trail[-1]) if stays else GATE
+
+    def _scene(self, number: int, key: np.uint64) -> Scene:
+        belief = self.mornings.on(number) if self.sampler.reads_chance else None
+        return Scene(
+            aisles=self.aisles,
+            robot=self.robot,
+            chance=self.first_chance if belief is None else belief.chance,
+            pair_chance=None if belief is None else belief.pair_chance,
+            last_inspected=self.last_inspected,
+            day=number,
+            at=self.at,
+            seconds_left=self.robot.day_s,
+            trail=self.trail,
+            key=key,
+        )
+
+
+def _mornings(
+    grid: PlantGrid,
+    robot: Robot,
+    start: Start,
+    settings: SeasonSettings,
+    *,
+    chooses_time: bool,
+) -> _MorningBeliefs:
+    """Return what will be believed on the mornings of a season."""
+    usual = settings.learning or Learning(detection=robot.detects)
+
+    def first() -> Belief:
+        return settings.believe(grid, start.chance)
+
+    def learning(work: Workday) -> Learning:
+        return replace(usual, detection=work.detects) if chooses_time else usual
+
+    return _MorningBeliefs(first, learning, settings.believed_spread or settings.spread)
 
 
 def _check(aisles: Aisles, start: Start) -> None:

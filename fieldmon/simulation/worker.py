@@ -1,99 +1,104 @@
-"""A few seconds of a study: the seasons of one chunk."""
+"""A few seconds of a study of one's own plots: the seasons of one chunk."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
-
-import pyarrow as pa
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
+from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
-from fieldmon.simulation.metrics import LEVELS_PCT, figures
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.metrics import DETECTION_LEVELS_PCT, season_metrics
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import season_start
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.simulation.design import Chunk, Site
-    from fieldmon.simulation.metrics import SeasonFigures
+    from fieldmon.simulation.design import Combination, StudyPlot
+    from fieldmon.simulation.metrics import SeasonMetrics
 
-_LEVELS = {f"d{level:g}": level for level in LEVELS_PCT}
-SCHEMA = pa.schema(
-    [
-        *((name, pa.string()) for name in ("plot", "sampler")),
-        *((name, pa.float64()) for name in ("hours", "look_s", "infested", "spread")),
-        *((name, pa.int64()) for name in ("seed", "days", "plants")),
-        *((name, pa.float64()) for name in ("detection_pct", "visited_pct", "ever_visited_pct")),
-        *((name, pa.int64()) for name in ("infestations", "found", "left", "infested_plant_days")),
-        *((name, pa.int32()) for name in _LEVELS),
-        *((name, pa.list_(pa.int32())) for name in ("found_by_day", "left_by_day")),
-    ]
-)
-# sites laid and kept by a process, for the next chunk
+    Setting = tuple[StudyPlot, Combination]
+
+DETECTION_LEVELS = {f"d{level:g}": level for level in DETECTION_LEVELS_PCT}
+# plots laid and kept by a process, for the next chunk
 _KEPT = 4
 
 
-def run_chunk(chunk: Chunk) -> pa.Table | FieldmonError:
-    """Simulate the seasons of a chunk; return a row of `SCHEMA` for each, by seed.
+class RefusedPlot(NamedTuple):
+    """A plot that cannot carry plants, and the sentence that says why."""
 
-    It depends on the chunk alone: all samplers meet the same insects of a seed. A plot that cannot
-    carry plants comes back as its error, for thousands of others are none the worse for it.
+    name: str
+    why: str
+
+
+ChunkSeasons = list[dict[str, Any]] | RefusedPlot
+"""A row a season, see `results.SCHEMA`."""
+
+
+def simulate_chunk(setting: Setting, seeds: range, n_days: int) -> ChunkSeasons:
+    """Simulate a combination on a plot; return a season's measures for each seed.
+
+    It depends on its arguments alone: all samplers meet the same insects of a seed. A plot that
+    cannot carry plants comes back as such, for thousands of others are none the worse for it.
     """
+    of, levels = setting
     try:
-        plot, chance = _laid(chunk.site.digest, _Held(chunk.site))
+        plot, chance = _laid(of.digest, _Unhashed(of))
     except FieldmonError as error:
-        return error
-    rows = [_row(chunk, plot, chance, seed) for seed in range(*chunk.seeds)]
-    return pa.Table.from_pylist(rows, SCHEMA)
+        return RefusedPlot(of.field.name, str(error))
+    rows = []
+    for seed in seeds:
+        season = simulated_season((plot, chance), Robot(), levels, seed, n_days)
+        about = {"plot": plot.field.name, **vars(levels), "seed": seed, "days": n_days}
+        rows.append(about | {"plants": len(plot.grid)} | _measures(season))
+    return rows
 
 
-class _Held:
+def simulated_season(
+    prepared: tuple[Plot, NDArray[np.float64]],
+    robot: Robot,
+    levels: Combination,
+    seed: int,
+    n_days: int,
+) -> SeasonMetrics:
+    """Return what one season comes to, on a plot with its chances of infestation ``(n,)``."""
+    (plot, chance), streams = prepared, RandomStreams(seed)
+    start = season_start(plot.grid, chance, levels.infested, streams)
+    settings = SeasonSettings(n_days=n_days, spread=Spread(levels.spread))
+    robot = replace(robot, hours=levels.hours, look_s=levels.look_s)
+    decides = sampler(levels.sampler)
+    return season_metrics(simulated_days(plot.aisles, robot, decides, start, settings, streams))
+
+
+class _Unhashed:
     """Something beside the key of a cache: equal to anything of its kind."""
 
-    def __init__(self, site: Site) -> None:
-        self.site = site
+    def __init__(self, plot: StudyPlot) -> None:
+        self.plot = plot
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Held)
+        return isinstance(other, _Unhashed)
 
     def __hash__(self) -> int:
         return 0
 
 
 @lru_cache(maxsize=_KEPT)
-def _laid(digest: str, held: _Held) -> tuple[Plot, NDArray[np.float64]]:  # noqa: ARG001 - the key
-    """Return the plot of a site and its chances of infestation."""
-    site = held.site
-    plot = Plot.of(site.field, site.planting)
-    prior = prior_chance(plot.grid, plot.field, site.observations, site.day, PriorSettings())
-    return plot, prior
+def _laid(digest: str, of: _Unhashed) -> tuple[Plot, NDArray[np.float64]]:  # noqa: ARG001 - the key
+    """Return a plot with its plants, and their chances of infestation."""
+    plot = Plot.of(of.plot.field, of.plot.planting)
+    records, day = of.plot.observations, of.plot.day
+    return plot, prior_chance(plot.grid, plot.field, records, day, PriorSettings())
 
 
-def _row(chunk: Chunk, plot: Plot, chance: NDArray[np.float64], seed: int) -> dict[str, Any]:
-    case, luck = chunk.case, RandomStreams(seed)
-    infested = start_infested(chance, case.infested, luck.of("start"))
-    settings = SeasonSettings(n_days=chunk.n_days, spread=Spread(case.spread))
-    robot = Robot(hours=case.hours, look_s=case.look_s)
-    start = Start(infested[plot.grid.vine], chance)
-    season = figures(days(plot.aisles, robot, sampler(case.sampler), start, settings, luck))
-    return {
-        "plot": plot.field.name,
-        **vars(case),
-        "seed": seed,
-        "days": chunk.n_days,
-        "plants": len(plot.grid),
-        **_measures(season),
-    }
-
-
-def _measures(season: SeasonFigures) -> dict[str, Any]:
+def _measures(season: SeasonMetrics) -> dict[str, Any]:
     return {
         "detection_pct": float(season.detection_pct[-1]),
         "visited_pct": float(season.visited_pct.mean()),
@@ -102,7 +107,7 @@ def _measures(season: SeasonFigures) -> dict[str, Any]:
         "found": int(season.found.sum()),
         "left": int(season.left[-1]),
         "infested_plant_days": season.infested_plant_days,
-        **{name: season.first_day(level) for name, level in _LEVELS.items()},
+        **{name: season.first_day(level) for name, level in DETECTION_LEVELS.items()},
         "found_by_day": season.found.tolist(),
         "left_by_day": season.left.tolist(),
     }

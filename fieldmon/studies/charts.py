@@ -1,14 +1,18 @@
-"""Plots as SVG text: no library, no file, no internet; colours follow the page's light or dark."""
+"""Plots as SVG: no library, no file, no internet; colours follow the page's light or dark."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from html import escape
 from typing import TYPE_CHECKING
+
+from markupsafe import Markup
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+
+    #: from a value on each axis to a place in the drawing
+    At = Callable[[float, float], tuple[float, float]]
 
 _WIDTH, _RIGHT, _TOP, _BOTTOM = 640, 20, 28, 40
 _LETTER = 6.6
@@ -39,11 +43,11 @@ class Line:
     high: Sequence[float] = ()
 
 
-def range_chart(title: str, rows: Sequence[Range], axis: str) -> str:
-    """Return a chart with one row a configuration, as an ``<svg>`` element."""
+def range_chart(title: str, rows: Sequence[Range], axis: str) -> Markup:
+    """Return a chart with one row a configuration, as an ``<svg>`` element; empty without rows."""
     rows = [row for row in rows if not math.isnan(row.mean)]
     if not rows:
-        return ""
+        return Markup()
     values = [v for row in rows for v in (row.low, row.high, row.other) if not math.isnan(v)]
     low, high, step = _scale(min(values), max(values))
     height = _TOP + _ROW * len(rows) + _BOTTOM
@@ -56,70 +60,74 @@ def range_chart(title: str, rows: Sequence[Range], axis: str) -> str:
     parts = [_vertical(x(tick), bottom, f"{tick:g}") for tick in _ticks(low, high, step)]
     for k, row in enumerate(rows):
         y = _TOP + _ROW * (k + 0.5)
-        parts.append(_text(left - 8, y + 4, row.label, "end"))
-        parts.append(
-            f'<line x1="{x(row.low):.1f}" y1="{y}" x2="{x(row.high):.1f}" y2="{y}" class="range"/>'
-        )
-        parts.append(f'<circle cx="{x(row.mean):.1f}" cy="{y}" r="4" class="mean"/>')
-        if not math.isnan(row.other):
-            at = x(row.other)
-            parts.append(
-                f'<path d="M{at - 4:.1f} {y - 4}l8 8m0 -8l-8 8" class="other"><title>thesis '
-                f"{row.other:g}</title></path>"
-            )
+        parts += [_text(left - 8, y + 4, row.label, "end"), _bar(row, x, y)]
     parts.append(_text((left + _WIDTH - _RIGHT) / 2, height - 8, axis, "middle"))
     return _svg(title, height, parts)
 
 
-def line_chart(title: str, lines: Sequence[Line], axes: tuple[str, str]) -> str:
-    """Return a chart of lines from (0 %, ...) with a legend, as an ``<svg>`` element."""
-    points = [
-        (x, y) for line in lines for x, y in zip(line.x, line.y, strict=True) if not math.isnan(y)
-    ]
-    if not points:
-        return ""
-    x_low, x_high, x_step = _scale(min(x for x, _ in points), max(x for x, _ in points))
-    y_low, y_high, y_step = _scale(0, max(y for _, y in points))
+def line_chart(title: str, lines: Sequence[Line], axes: tuple[str, str]) -> Markup:
+    """Return a chart of lines with a legend, as an ``<svg>`` element; empty without points."""
+    known = [point for line in lines for point in _known(line.x, line.y)]
+    if not known:
+        return Markup()
+    xs, ys = zip(*known, strict=True)
+    across, up = _scale(min(xs), max(xs)), _scale(0, max(ys))
     left, right, bottom = 50, _WIDTH - 130, _HEIGHT - _BOTTOM
 
     def at(x: float, y: float) -> tuple[float, float]:
         return (
-            left + (x - x_low) / (x_high - x_low) * (right - left),
-            bottom - (y - y_low) / (y_high - y_low) * (bottom - _TOP),
+            left + (x - across[0]) / (across[1] - across[0]) * (right - left),
+            bottom - (y - up[0]) / (up[1] - up[0]) * (bottom - _TOP),
         )
 
-    parts = [
-        _vertical(at(tick, 0)[0], bottom, f"{tick:g}") for tick in _ticks(x_low, x_high, x_step)
-    ]
+    parts = [_vertical(at(tick, 0)[0], bottom, f"{tick:g}") for tick in _ticks(*across)]
     parts += [
-        _text(left - 6, at(x_low, tick)[1] + 4, f"{tick:g}", "end")
-        for tick in _ticks(y_low, y_high, y_step)
+        _text(left - 6, at(across[0], tick)[1] + 4, f"{tick:g}", "end") for tick in _ticks(*up)
     ]
     for k, line in enumerate(lines):
-        parts.append(_band(line, at, k))
-        pairs = [at(x, y) for x, y in zip(line.x, line.y, strict=True) if not math.isnan(y)]
-        path = " ".join(f"{x:.1f},{y:.1f}" for x, y in pairs)
-        style = f'class="line c{k % _LINES}{" dashed" if k >= _LINES else ""}"'
-        parts.append(
-            f'<polyline points="{path}" {style}><title>{escape(line.label)}</title></polyline>'
-        )
-        y = _TOP + 18 * k + 6
-        parts.append(f'<line x1="{right + 10}" y1="{y}" x2="{right + 34}" y2="{y}" {style}/>')
-        parts.append(_text(right + 40, y + 4, line.label, "start"))
+        parts += [_band(line, at, k), _drawn(line, at, k), *_legend(line.label, right, k)]
     parts.append(_text((left + right) / 2, _HEIGHT - 8, axes[0], "middle"))
     parts.append(_text(left, _TOP - 8, axes[1], "start"))
     return _svg(title, _HEIGHT, parts)
 
 
-def _band(line: Line, at: Callable[[float, float], tuple[float, float]], k: int) -> str:
+def _known(x: Sequence[float], y: Sequence[float]) -> list[tuple[float, float]]:
+    """Return the points that have a value."""
+    return [point for point in zip(x, y, strict=True) if not math.isnan(point[1])]
+
+
+def _band(line: Line, at: At, k: int) -> Markup:
     """Return the area between the low and the high of a line; nothing where it has none."""
     if not line.low:
-        return ""
-    forth = [(x, y) for x, y in zip(line.x, line.high, strict=True) if not math.isnan(y)]
-    back = [(x, y) for x, y in zip(line.x, line.low, strict=True) if not math.isnan(y)]
-    corners = (at(x, y) for x, y in [*forth, *reversed(back)])
-    points = " ".join(f"{x:.1f},{y:.1f}" for x, y in corners)
-    return f'<polygon points="{points}" class="band b{k % _LINES}"/>'
+        return Markup()
+    forth, back = _known(line.x, line.high), _known(line.x, line.low)
+    corners = _points([*forth, *reversed(back)], at)
+    return Markup('<polygon points="{}" class="band b{}"/>').format(corners, k % _LINES)
+
+
+def _drawn(line: Line, at: At, k: int) -> Markup:
+    points = _points(_known(line.x, line.y), at)
+    return Markup('<polyline points="{}" class="{}"><title>{}</title></polyline>').format(
+        points, _style(k), line.label
+    )
+
+
+def _legend(label: str, right: float, k: int) -> list[Markup]:
+    """Return a line's sign and name, right of the chart."""
+    y = _TOP + 18 * k + 6
+    sign = Markup('<line x1="{}" y1="{}" x2="{}" y2="{}" class="{}"/>').format(
+        right + 10, y, right + 34, y, _style(k)
+    )
+    return [sign, _text(right + 40, y + 4, label, "start")]
+
+
+def _style(k: int) -> str:
+    """Return the classes of the k-th line: five colours, then the same dashed."""
+    return f"line c{k % _LINES}{' dashed' if k >= _LINES else ''}"
+
+
+def _points(values: Sequence[tuple[float, float]], at: At) -> str:
+    return " ".join(f"{x:.1f},{y:.1f}" for x, y in (at(*value) for value in values))
 
 
 def _scale(low: float, high: float) -> tuple[float, float, float]:
@@ -135,17 +143,34 @@ def _ticks(low: float, high: float, step: float) -> list[float]:
     return [round(low + k * step, 10) for k in range(round((high - low) / step) + 1)]
 
 
-def _vertical(x: float, bottom: float, label: str) -> str:
-    line = f'<line x1="{x:.1f}" y1="{_TOP}" x2="{x:.1f}" y2="{bottom}" class="grid"/>'
+def _bar(row: Range, x: Callable[[float], float], y: float) -> Markup:
+    """Return a row's line and dot, and its cross where there is another value."""
+    bar = Markup(
+        '<line x1="{:.1f}" y1="{}" x2="{:.1f}" y2="{}" class="range"/>'
+        '<circle cx="{:.1f}" cy="{}" r="4" class="mean"/>'
+    ).format(x(row.low), y, x(row.high), y, x(row.mean), y)
+    if math.isnan(row.other):
+        return bar
+    return bar + Markup(
+        '<path d="M{:.1f} {}l8 8m0 -8l-8 8" class="other"><title>thesis {:g}</title></path>'
+    ).format(x(row.other) - 4, y - 4, row.other)
+
+
+def _vertical(x: float, bottom: float, label: str) -> Markup:
+    line = Markup('<line x1="{:.1f}" y1="{}" x2="{:.1f}" y2="{}" class="grid"/>').format(
+        x, _TOP, x, bottom
+    )
     return line + _text(x, bottom + 16, label, "middle")
 
 
-def _text(x: float, y: float, text: str, anchor: str) -> str:
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{escape(text)}</text>'
-
-
-def _svg(title: str, height: float, parts: Sequence[str]) -> str:
-    return (
-        f'<figure><figcaption>{escape(title)}</figcaption><svg viewBox="0 0 {_WIDTH} {height}" '
-        f'role="img" aria-label="{escape(title)}">{"".join(parts)}</svg></figure>'
+def _text(x: float, y: float, text: str, anchor: str) -> Markup:
+    return Markup('<text x="{:.1f}" y="{:.1f}" text-anchor="{}">{}</text>').format(
+        x, y, anchor, text
     )
+
+
+def _svg(title: str, height: float, parts: Sequence[Markup]) -> Markup:
+    return Markup(
+        '<figure><figcaption>{}</figcaption><svg viewBox="0 0 {} {}" role="img" aria-label="{}">{}'
+        "</svg></figure>"
+    ).format(title, _WIDTH, height, title, Markup().join(parts))

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.errors import FileProblem
+from fieldmon.errors import FileProblem, ObservationError
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.tables import read_text_table
 from fieldmon.io.options import ReadOptions
-from fieldmon.studies.thesis.chapter5.mapped_plots import PlantMap
+from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.travel import Aisles
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,8 +25,48 @@ _CLEAN = frozenset({"", "0", "n", "no", "na", "nan", "none"})
 _MOST_PLANTS = 1_000_000
 
 
+@dataclass(frozen=True, eq=False)
+class PlantMap:
+    """A mapped plot, every plant's state at one date or several.
+
+    Parameters
+    ----------
+    name
+        What it is called.
+    dates
+        ``(d,)`` as the file writes them, in order.
+    infested
+        ``(d, n)`` plants row by row.
+    n_rows, n_plants
+        Rows, and plants in each.
+    row_m, plant_m
+        Distances between rows and between plants.
+    """
+
+    name: str
+    dates: tuple[str, ...]
+    infested: NDArray[np.bool_]
+    n_rows: int
+    n_plants: int
+    row_m: float
+    plant_m: float
+
+    def __post_init__(self) -> None:
+        shape = (len(self.dates), self.n_rows * self.n_plants)
+        if self.infested.shape != shape:
+            raise ObservationError(
+                f"The map {self.name} must have one entry a plant and date {shape}, "
+                f"but it has {self.infested.shape}."
+            )
+
+    def aisles(self) -> Aisles:
+        """Return its plants and the ways between them."""
+        planting = Planting(row_spacing_m=self.row_m, plant_spacing_m=self.plant_m)
+        return Aisles.of(rectangle(self.n_rows, self.n_plants, planting))
+
+
 @dataclass(frozen=True)
-class Layout:
+class MapColumns:
     """Which columns of a map file hold what, and how far its plants stand apart.
 
     Parameters
@@ -47,14 +88,14 @@ class Layout:
     part: str = ""
 
 
-LAYOUTS = {
+PUBLIC_MAPS = {
     # distances as published with the data
-    "citrus_ctv_IVI3and4.csv": Layout("y", "x", "i", 6.0, 2.0, date="t"),
-    "hop_viruses_HpLV.csv": Layout("x", "y", "i", 2.1, 1.8, date="t"),
+    "citrus_ctv_IVI3and4.csv": MapColumns("y", "x", "i", 6.0, 2.0, date="t"),
+    "hop_viruses_HpLV.csv": MapColumns("x", "y", "i", 2.1, 1.8, date="t"),
     # the distances of these are ours: our source gives none
-    "gumpertz.pepper.txt": Layout("row", "quadrat", "disease", 1.0, 1.0, part="field"),
-    "beall.webworms.txt": Layout("row", "col", "y", 1.0, 1.0),
-    "DidymellaWatermelon.csv": Layout("EW_row", "NS_col", "severity", 2.0, 1.0, date="dap"),
+    "gumpertz.pepper.txt": MapColumns("row", "quadrat", "disease", 1.0, 1.0, part="field"),
+    "beall.webworms.txt": MapColumns("row", "col", "y", 1.0, 1.0),
+    "DidymellaWatermelon.csv": MapColumns("EW_row", "NS_col", "severity", 2.0, 1.0, date="dap"),
 }
 """Public maps by file name."""
 
@@ -63,39 +104,39 @@ def read_plant_maps(folder: Path) -> list[PlantMap]:
     """Return the maps of a folder and its folders, by file name; raise `FileProblem` if none."""
     if not folder.is_dir():
         raise FileProblem(f"The folder of maps {folder} must exist, but it does not.")
-    files = sorted(path for path in folder.rglob("*") if path.name in LAYOUTS)
+    files = sorted(path for path in folder.rglob("*") if path.name in PUBLIC_MAPS)
     if not files:
         raise FileProblem(
-            f"The folder {folder} must hold a map of plants, one of {', '.join(LAYOUTS)}, "
+            f"The folder {folder} must hold a map of plants, one of {', '.join(PUBLIC_MAPS)}, "
             "but it holds none."
         )
-    return [each for path in files for each in read_plant_map(path, LAYOUTS[path.name])]
+    return [each for path in files for each in read_plant_map(path, PUBLIC_MAPS[path.name])]
 
 
-def read_plant_map(path: Path, layout: Layout) -> list[PlantMap]:
+def read_plant_map(path: Path, columns: MapColumns) -> list[PlantMap]:
     """Return the plots of one file, each with all its dates."""
     try:
         layer = read_text_table(path, path.name, ReadOptions())
     except OSError as error:
         raise FileProblem(f"{path} must be readable, but it is not ({error.strerror}).") from error
-    needed = [name for name in vars(layout).values() if isinstance(name, str) and name]
+    needed = [name for name in vars(columns).values() if isinstance(name, str) and name]
     missing = [name for name in needed if name not in layer.columns]
     if missing:
         raise FileProblem(
             f"{path.name} must have the columns {', '.join(needed)}, "
             f"but {', '.join(missing)} is missing."
         )
-    parts = _texts(layer, layout.part)
-    named = path.stem if layout.part == "" else f"{path.stem} "
+    parts = _texts(layer, columns.part)
+    named = path.stem if columns.part == "" else f"{path.stem} "
     return [
-        _map(named + part, layer.take(parts == part), layout, path.name)
+        _map(named + part, layer.take(parts == part), columns, path.name)
         for part in np.unique(parts).tolist()
     ]
 
 
-def _map(name: str, layer: Layer, layout: Layout, file: str) -> PlantMap:
-    row, plant = (_numbers(layer, column, file) for column in (layout.row, layout.plant))
-    dates, date = np.unique(_texts(layer, layout.date), return_inverse=True)
+def _map(name: str, layer: Layer, columns: MapColumns, file: str) -> PlantMap:
+    row, plant = (_numbers(layer, column, file) for column in (columns.row, columns.plant))
+    dates, date = np.unique(_texts(layer, columns.date), return_inverse=True)
     n_rows, n_plants = int(row.max()), int(plant.max())
     if n_rows * n_plants > _MOST_PLANTS:
         raise FileProblem(
@@ -103,7 +144,7 @@ def _map(name: str, layer: Layer, layout: Layout, file: str) -> PlantMap:
             f"{n_plants}."
         )
     infested = np.zeros((len(dates), n_rows * n_plants), np.bool_)
-    state = np.array([value.lower() not in _CLEAN for value in _texts(layer, layout.state)])
+    state = np.array([value.lower() not in _CLEAN for value in _texts(layer, columns.state)])
     infested[date, (row - 1) * n_plants + plant - 1] = state
     order = sorted(range(len(dates)), key=lambda k: (len(dates[k]), dates[k]))
     return PlantMap(
@@ -112,8 +153,8 @@ def _map(name: str, layer: Layer, layout: Layout, file: str) -> PlantMap:
         infested=infested[order],
         n_rows=n_rows,
         n_plants=n_plants,
-        row_m=layout.row_m,
-        plant_m=layout.plant_m,
+        row_m=columns.row_m,
+        plant_m=columns.plant_m,
     )
 
 

@@ -1,6 +1,7 @@
-"""A real server and a real browser, on this machine only."""
+"""Sessions of the app without a browser; a real server and a real browser, on this machine only."""
 
 import os
+import shutil
 import socket
 import subprocess
 import sys
@@ -9,10 +10,50 @@ import urllib.request
 from pathlib import Path
 
 import pytest
+import streamlit as st
 
+from fieldmon.monitoring import Season
+from tests.app.driving import begun, opened
 from tests.paths import SHARED
 
 SHOTS = Path(__file__).with_name("screenshots")
+
+
+@pytest.fixture
+def app():
+    """Return a new session on the sample estate."""
+    return opened()
+
+
+@pytest.fixture(scope="session")
+def begun_file(tmp_path_factory):
+    """Begin a season in the app, once; return its file."""
+    folder = tmp_path_factory.mktemp("begun")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("FIELDMON_SEASONS", str(folder))
+        assert "has begun" in begun(opened()).success[0].value
+    return folder / "Gate 2026.gpkg"
+
+
+@pytest.fixture
+def season_app(begun_file, seasons_folder):
+    """Return a new session in a season of its own that has just begun."""
+    shutil.copy(begun_file, seasons_folder)
+    return opened("Gate 2026")
+
+
+@pytest.fixture
+def season(seasons_folder):
+    """Return what opens that season, as another program would."""
+    return lambda: Season(seasons_folder / "Gate 2026.gpkg")
+
+
+@pytest.fixture
+def session(monkeypatch):
+    """Return a session's state without a page."""
+    state = {}
+    monkeypatch.setattr(st, "session_state", state)
+    return state
 
 
 @pytest.fixture(scope="session")

@@ -12,8 +12,8 @@ import pytest
 from rasterio.io import MemoryFile
 from rasterio.transform import from_bounds
 
-from app import texts
-from tests.app.app_driving import PAGES, begun, go, opened
+from app.words import texts
+from tests.app.driving import PAGES, begun, go, opened
 
 CLICKS = int(os.environ.get("FIELDMON_MONKEY", "80"))
 # a comparison of 500 seasons or a table of the thesis takes minutes, as it should
@@ -29,7 +29,7 @@ NASTY = [
     "<b>1</b>",
     "9" * 400,
 ]
-RASTERS = {"canopy_file": 1.0, "risk_file": 0.1, "ground_file": 9.0}
+RASTERS = {"missing_plants_file": 1.0, "risk_file": 0.1, "backdrop_file": 9.0}
 
 
 def raster(value):
@@ -60,7 +60,7 @@ CHOICES = {
     "one_result": [0, 1, 2],
     "layers": list(texts.LAYER_NAMES),
     "map_layers": list(texts.MAP_LAYERS),
-    "arms": list(texts.SAMPLERS),
+    "strategy_samplers": list(texts.SAMPLERS),
     "compared": list(texts.SAMPLERS),
 }
 DAYS = [date(2026, 11, 16), date(2026, 11, 17), date(2026, 12, 24), date(2026, 11, 20)]

@@ -88,7 +88,7 @@ def serve():
     from streamlit.runtime.scriptrunner.script_runner import ScriptRunner
     from streamlit.runtime.scriptrunner_utils.script_run_context import ScriptRunContext
 
-    from app import serve as app_server
+    from app.startup import serve as app_server
     from fieldmon.infestation import prior
     from fieldmon.planning import plan as plan_module
 
@@ -246,7 +246,7 @@ def acts(page):
         page.keyboard.press("ArrowDown")
 
     close = functools.partial(page.keyboard.press, "Escape")
-    link = page.get_by_role("link", name="DayPlan", exact=True)
+    link = page.get_by_role("link", name="Today", exact=True)
     return [
         Act("opening Today", link.hover, link.click),
         *map(picked, SAMPLERS),

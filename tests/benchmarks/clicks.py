@@ -30,7 +30,7 @@ from tests.conftest import CHROMIUM, FLAGS
 
 SIZES = (8_281, 100_000)
 N_RECORDS = 2_000
-PAGES = ("DayPlan", "Map", "Season", "Compare", "Plot & records", "Report")
+PAGES = ("Today", "Map", "Season", "Compare", "Plot & records", "Report")
 # when the last press was, when the last question was sent, and when the page was at rest after it
 WATCH = """
 const send = WebSocket.prototype.send;
@@ -135,7 +135,7 @@ def pressing(page, name: str, what: str) -> Click:
 
 def unsaved(page):
     """Return the clicks on a plot that was brought."""
-    today, field = turning(page, "DayPlan"), turning(page, "Map")
+    today, field = turning(page, "Today"), turning(page, "Map")
     month = page.get_by_role("spinbutton", name="month").first
     slider = page.get_by_role("slider", name="Working hours").first
     return [
@@ -199,7 +199,7 @@ def measure(playwright, n_plants: int) -> None:
         sys.stdout.write(f"{plants:,} plants, load of this machine {os.getloadavg()[0]:.1f}\n")
         clicks = unsaved(page)
         told([[timed(page, server, click) for click in clicks] for _ in range(2)], clicks)
-        page.get_by_role("link", name="DayPlan", exact=True).click()
+        page.get_by_role("link", name="Today", exact=True).click()
         page.get_by_role("button", name="Begin the season").click()
         page.get_by_text("has begun").wait_for(timeout=240_000)
         clicks = kept(page)

@@ -17,14 +17,15 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread, night
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
+from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.studies.thesis.chapter4 import draws, listings
 from fieldmon.studies.thesis.chapter4.listing_errors import AS_PUBLISHED
-from fieldmon.studies.thesis.chapter4.trial import Strategy, Trial, night_of, walk_of
+from fieldmon.studies.thesis.chapter4.trial import NoPriorTrial, ThesisStrategy, night_of, walk_of
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS
 from tests.benchmarks.scale import best_of, told
 
@@ -82,7 +83,7 @@ def nights():
 def published():
     """Run the published simulator, two of its slips put right, here and in Octave."""
     field, runs = SCENARIOS["C"], 200
-    trial = Trial(field, Strategy(1), 3, rules=AS_PUBLISHED)
+    trial = NoPriorTrial(field, ThesisStrategy(1), 3, rules=AS_PUBLISHED)
     slips = AS_PUBLISHED.without("night_other_face", "phantom_infections")
     walk, dark = walk_of(trial, slips), night_of(trial, slips)
     keys = draws.keys(RandomStreams(1), runs, trial.hours.days)
@@ -169,7 +170,7 @@ def routes():
     n = len(scene.chance)
     sys.stdout.write(f"a day of {ROUTE_HOURS:g} h on {n} plants, most expected finds\n")
     for name in SAMPLERS:
-        seconds, work = best_of(lambda name=name: plan_day(scene, sampler(name)), 50)
+        seconds, work = best_of(lambda name=name: plan_work(scene, sampler(name)), 50)
         finds = scene.chance[work.plant].sum()
         best = max(best, finds)
         say(f"  {name}", seconds, f"{finds:.2f} expected on {len(work)} stops")

@@ -18,23 +18,26 @@ from pathlib import Path
 
 import numpy as np
 
-from app import maps
+from app.show.maps import colours, deck, plant_layers, route_layers
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.belief import IndependentPlants, Pairs, overnight, pairs
+from fieldmon.infestation.independent import IndependentPlants, overnight
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
+from fieldmon.infestation.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.io.writers.geojson import RouteNotes, write_route
-from fieldmon.monitoring import Season, SeasonSetup
+from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import Planting, lay
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 from tests.benchmarks.test_bench_grid import crooked_plot
 
 SIZES = (100, 1_000, 10_000, 100_000, 1_000_000)
@@ -80,13 +83,15 @@ def measure(n_plants):
     took["a night of the chance map"], _ = best_of(lambda: overnight(chance, grid, spread))
     last = np.full(n, NEVER, np.int32)
     # as the app, the commands and a season plan: with what is believed of plants side by side
-    took["what is believed of neighbours"], pair_chance = best_of(lambda: pairs(chance, grid))
+    took["what is believed of neighbours"], pair_chance = best_of(
+        lambda: pair_chances(chance, grid)
+    )
     scene = Scene(
         aisles, Robot(), chance, last, seconds_left=Robot().day_s, pair_chance=pair_chance
     )
     for name in SAMPLERS:
         took[f"a day's plan and route: {name}"], _ = best_of(
-            lambda name=name: route_of(scene, plan_day(scene, sampler(name)))
+            lambda name=name: route_of(scene, plan_work(scene, sampler(name)))
         )
     start = Start(start_infested(chance, 0.02, RandomStreams(1).of("start")), chance)
     for name in THESIS:
@@ -97,9 +102,9 @@ def measure(n_plants):
     return {"plants": n, "took": took, "memory_mb": memory_mb()}
 
 
-def season(aisles, name, start, believe=Pairs.of):
+def season(aisles, name, start, believe=PairApproximation.of):
     settings = SeasonSettings(n_days=25, spread=Spread(0.1), believe=believe)
-    walk = days(aisles, Robot(), sampler(name), start, settings, RandomStreams(2))
+    walk = simulated_days(aisles, Robot(), sampler(name), start, settings, RandomStreams(2))
     return [day.detection_pct for day in walk]
 
 
@@ -113,16 +118,16 @@ def files_and_map(plot, chance, observations):
         took["writing the route"], _ = best_of(
             lambda: write_route(to / "route.geojson", today.route, notes)
         )
-        setup = SeasonSetup(date(2026, 5, 20))
+        setup = MonitoringSettings(date(2026, 5, 20))
         took["beginning a season's file"], _ = best_of(
             lambda: Season.create(to / "season.gpkg", plot, observations, setup), 1
         )
         took["opening a season's file"], _ = best_of(lambda: Season(to / "season.gpkg"))
 
     def first_map():
-        plants = maps.plants(plot.grid, maps.by_chance(chance), maps.unsaid)
-        layers = [plants, *maps.route(today.route)]
-        return maps.deck(plot.grid, layers).to_json()
+        plants = plant_layers.plants(plot.grid, colours.by_chance(chance), plant_layers.unsaid)
+        layers = [plants, *route_layers.route(today.route)]
+        return deck.deck(plot.grid, layers).to_json()
 
     took["the first map, as sent to the browser"], _ = best_of(first_map)
     return took
@@ -142,7 +147,7 @@ def per_visit_and_night():
     visits = {}
     for name in THESIS:
         scene = Scene(aisles, Robot(), chance, last, seconds_left=Robot().day_s)
-        took, work = best_of(lambda scene=scene, name=name: plan_day(scene, sampler(name)), 200)
+        took, work = best_of(lambda scene=scene, name=name: plan_work(scene, sampler(name)), 200)
         visits[name] = took / len(work) * 1e9
     infested = np.random.default_rng(1).random(n) < 0.1
     nights = {
@@ -172,7 +177,7 @@ def seasons():
     start = Start(start_infested(chance, 0.02, RandomStreams(1).of("start")), chance)
     took = {}
     for name in (*THESIS, "adaptive"):
-        for how, believe in (("pairs", Pairs.of), ("one by one", IndependentPlants)):
+        for how, believe in (("pairs", PairApproximation.of), ("one by one", IndependentPlants)):
             took[f"a season on 91 x 91 plants: {name}, {how}"], _ = best_of(
                 lambda name=name, believe=believe: season(aisles, name, start, believe), 50
             )

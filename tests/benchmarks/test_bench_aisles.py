@@ -25,13 +25,13 @@ def skewed():
 def test_aisles_of_a_rectangle(benchmark, n):
     grid = rectangle(n, n)
     aisles = benchmark.pedantic(Aisles.of, (grid,), rounds=5, warmup_rounds=1)
-    assert len(aisles.ground.between_m) == 2 * n + 1
+    assert len(aisles.travel.between_m) == 2 * n + 1
 
 
 def test_aisles_of_a_slanted_plot_in_two_parts(benchmark):
     grid = skewed()
     aisles = benchmark.pedantic(Aisles.of, (grid,), rounds=5, warmup_rounds=1)
-    assert aisles.ways.end.shape == (grid.n_rows, 2)
+    assert aisles.roads.end.shape == (grid.n_rows, 2)
 
 
 @pytest.mark.parametrize("n", [91, 1000])

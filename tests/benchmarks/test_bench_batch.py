@@ -56,25 +56,25 @@ def test_a_thousand_plots_are_planned_in_one_command(benchmark, parcels):
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_study_of_seasons(benchmark, tmp_path, workers):
     """Two workers take 1 / 1.8 of one's time or less (workers warmed up, cores free)."""
+    from distributed import default_client
+
     from fieldmon.infestation.observations import Observations
     from fieldmon.plot.plot import planting_of
     from fieldmon.simulation import executor
-    from fieldmon.simulation.design import Design, Site, chunks
-    from fieldmon.simulation.worker import run_chunk
+    from fieldmon.simulation.design import Design, StudyPlot, study_of
+    from fieldmon.simulation.experiment import run
+    from fieldmon.simulation.results import StudyFolder
+    from fieldmon.simulation.worker import simulate_chunk
 
     (field,) = (f for f in read_plots(ESTATE).value if f.name == "Gate")
-    sites = (Site(field, planting_of(field), Observations.none(), np.datetime64("2026-11-02")),)
-    with executor.cluster(workers=workers) as client:
-        warm = next(chunks(sites, Design(n_days=1, n_seeds=1)))
-        client.run(run_chunk, warm)
+    plots = [StudyPlot(field, planting_of(field), Observations.none(), np.datetime64("2026-11-02"))]
+    with executor.cluster(workers=workers) as ready:
+        warm = (plots[0], Design().combinations[0])
+        default_client().run(simulate_chunk, warm, range(1, 2), 1)
 
         def study():
-            executor.run(
-                client,
-                tmp_path / str(time.monotonic_ns()),
-                sites,
-                Design(n_seeds=400),
-                lambda *_: None,
-            )
+            asked = Design(n_seeds=400)
+            folder = StudyFolder(tmp_path / str(time.monotonic_ns()), plots, asked)
+            run(study_of(plots, asked), ready, folder)
 
         benchmark.pedantic(study, rounds=1)

@@ -5,14 +5,14 @@ import pytest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
 from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS
-from fieldmon.studies.thesis.chapter5.seasons import Luck, Trial, play
+from fieldmon.studies.thesis.chapter5.seasons import PriorTrial, SeedKeys, play
 from fieldmon.studies.thesis.chapter5.sites import square
 from fieldmon.studies.thesis.chapter5.study import run_prior
 
 
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_season_of_chapter_5_in_scenario_c(benchmark, name):
-    trial, luck = Trial(name, CALIBRATED, 10.0), Luck.of(RandomStreams(1))
+    trial, luck = PriorTrial(name, CALIBRATED, 10.0), SeedKeys.of(RandomStreams(1))
     assert len(benchmark(play, square(10.0), trial, luck)) == 25
 
 

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import start_infested
-from fieldmon.monitoring import Results, Season, SeasonSetup
-from fieldmon.planning.workday import outcomes
+from fieldmon.monitoring import MonitoringSettings, Season
+from fieldmon.planning.workday import draw_detections
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.plot import Plot
@@ -24,7 +25,7 @@ def plot_of(n_rows, n_plants):
 
 
 def season_of(path, plot, n_days):
-    project = Season.create(path, plot, Observations.none(), SeasonSetup(BEGINS))
+    project = Season.create(path, plot, Observations.none(), MonitoringSettings(BEGINS))
     infested = start_infested(project.morning(BEGINS), 0.02, RandomStreams(1).of("start"))
     for day in range(n_days):
         work(project, day, infested)
@@ -34,8 +35,9 @@ def season_of(path, plot, n_days):
 def work(project, day, infested):
     on = BEGINS + timedelta(days=day)
     plants = project.plan(on).route.plant
-    found = outcomes(infested, 0.84, RandomStreams(1).key("inspect", day))[plants]
-    project.record(Results.of(plants, found, np.datetime64(on, "D")), f"day {day}")
+    key = RandomStreams(1).key("inspect", day)
+    found = draw_detections(infested, np.array([0.84]), key)[plants] > 0
+    project.record(Inspections.of(plants, found, np.datetime64(on, "D")), f"day {day}")
 
 
 @pytest.fixture(scope="module", params=[(91, 91, 25), (317, 317, 5)], ids=["8k25d", "100k5d"])
@@ -67,7 +69,7 @@ def test_recording_a_day(benchmark, season):
     plants = project.plan(on).route.plant
 
     def record():
-        project.record(Results.of(plants, plants % 50 == 0, np.datetime64(on, "D")), "today")
+        project.record(Inspections.of(plants, plants % 50 == 0, np.datetime64(on, "D")), "today")
 
     benchmark.pedantic(record, setup=lambda: undone(project), rounds=5)
 

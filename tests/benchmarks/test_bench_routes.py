@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.planning.routes.best import best
+from fieldmon.planning.routes.best_route import best
 from fieldmon.planning.routes.ladder import best_walk, full_budget
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.robot import Robot

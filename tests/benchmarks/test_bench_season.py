@@ -6,12 +6,14 @@ import pytest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import NEVER, SAMPLERS, Scene, sampler
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 
 AISLES = Aisles.of(rectangle(91, 91))
 N = len(AISLES.grid)
@@ -23,7 +25,7 @@ def test_season_of_scenario_c(benchmark, name):
     settings = SeasonSettings(n_days=25, spread=Spread(0.1))
 
     def season():
-        walk = days(AISLES, Robot(), sampler(name), start, settings, RandomStreams(2))
+        walk = simulated_days(AISLES, Robot(), sampler(name), start, settings, RandomStreams(2))
         return [day.detection_pct for day in walk]
 
     assert len(benchmark(season)) == 25
@@ -38,7 +40,7 @@ def test_plan_and_route_of_a_day_on_scenario_c(benchmark, name):
         last_inspected=np.full(N, NEVER, np.int32),
         seconds_left=Robot().day_s,
     )
-    route = benchmark(lambda: route_of(scene, plan_day(scene, sampler(name))))
+    route = benchmark(lambda: route_of(scene, plan_work(scene, sampler(name))))
     assert len(route) > 300
 
 

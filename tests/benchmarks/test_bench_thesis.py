@@ -4,13 +4,13 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.studies.thesis.chapter4 import draws, listings
 from fieldmon.studies.thesis.chapter4.listing_errors import AS_PUBLISHED
 from fieldmon.studies.thesis.chapter4.study import run_no_prior
-from fieldmon.studies.thesis.chapter4.trial import Strategy, Trial, night_of, walk_of
+from fieldmon.studies.thesis.chapter4.trial import NoPriorTrial, ThesisStrategy, night_of, walk_of
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS
 
 
 def test_one_published_replicate_of_three_days_in_scenario_c(benchmark):
     """Under 1 ms once compiled, random numbers included."""
-    trial = Trial(SCENARIOS["C"], Strategy(6), 1)
+    trial = NoPriorTrial(SCENARIOS["C"], ThesisStrategy(6), 1)
     walk, night = walk_of(trial, AS_PUBLISHED), night_of(trial, AS_PUBLISHED)
     keys = draws.keys(RandomStreams(1), 1, 3)
     days, _ = benchmark(listings.repeat, walk, night, trial.START, 0, keys)

@@ -14,7 +14,6 @@ from shapely import MultiPolygon
 
 from fieldmon.plot.field import Field
 from fieldmon.plot.projection import Frame
-from tests.cli.test_main import run  # noqa: F401 - a fixture
 from tests.parcels import many, write_geojson
 
 FRAME = Frame(5.0, 45.0)
@@ -58,7 +57,7 @@ def properties(path):
     return json.loads(path.read_text(encoding="utf-8"))["features"][0]["properties"]
 
 
-def test_every_plot_is_planned_and_those_that_cannot_be_are_named(run, parcels, summary):  # noqa: F811
+def test_every_plot_is_planned_and_those_that_cannot_be_are_named(run, parcels, summary):
     code, out, err, _ = run("plan", parcels, "--all", "-o", "routes", "--date", "2026-11-02")
     assert code == 0, err
     rows = summary()
@@ -84,7 +83,7 @@ def test_every_plot_is_planned_and_those_that_cannot_be_are_named(run, parcels, 
     assert seconds == pytest.approx(35.0 * int(rows["Plot 3"]["stops"]))
 
 
-def test_a_plot_planned_in_the_crowd_is_planned_as_it_is_alone(run, parcels, summary):  # noqa: F811
+def test_a_plot_planned_in_the_crowd_is_planned_as_it_is_alone(run, parcels, summary):
     words = ["plan", parcels, "--date", "2026-11-02"]
     assert run(*words, "--all", "-o", "routes", "--hours", 2)[0] == 0
     assert run(*words, "--feature", "Plot 5", "-o", "one.geojson", "--hours", 2)[0] == 0
@@ -92,7 +91,7 @@ def test_a_plot_planned_in_the_crowd_is_planned_as_it_is_alone(run, parcels, sum
     assert together.read_bytes() == (parcels.parent / "one.geojson").read_bytes()
 
 
-def test_what_is_finished_is_not_planned_again_unless_something_changed(run, parcels, summary):  # noqa: F811
+def test_what_is_finished_is_not_planned_again_unless_something_changed(run, parcels, summary):
     words = ["plan", parcels, "--all", "-o", "routes", "--hours", 2]
     run(*words)
     first = summary()
@@ -132,7 +131,7 @@ def test_a_run_that_is_stopped_keeps_what_is_finished_and_goes_on(tmp_path, summ
 
 
 @pytest.mark.parametrize("words", [["--feature", "1"], ["--gate", "5,45"]])
-def test_what_is_of_one_plot_only_is_refused(run, parcels, words):  # noqa: F811
+def test_what_is_of_one_plot_only_is_refused(run, parcels, words):
     code, _, err, made = run("plan", parcels, "--all", *words)
     assert (code, made) == (2, set())
     assert "--all plans every plot" in err

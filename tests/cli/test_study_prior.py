@@ -1,18 +1,11 @@
-"""`fieldmon study prior` and `fieldmon study calibrate`, as a person runs them."""
-
-import csv
+"""`fieldmon study prior`, as a person runs it."""
 
 import pytest
 
-from tests.cli.test_main import MITES, ZIP, run  # noqa: F401 - a fixture
+from tests.cli.estate import MITES, ZIP, table
 
 
-def table(path):
-    with path.open(encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
-def test_a_scenario_is_made_again_beside_its_figures(run, tmp_path):  # noqa: F811
+def test_a_scenario_is_made_again_beside_its_figures(run, tmp_path):
     code, out, err, made = run("study", "prior", "--scenario", "A", "--seeds", 3)
     assert code == 0, err
     names = {"prior_A.csv", "prior_A_published.csv", "prior_A.html"}
@@ -25,7 +18,7 @@ def test_a_scenario_is_made_again_beside_its_figures(run, tmp_path):  # noqa: F8
     assert "<svg" in (tmp_path / "prior_A.html").read_text(encoding="utf-8")
 
 
-def test_sweeps_and_scenarios_can_be_combined(run, tmp_path):  # noqa: F811
+def test_sweeps_and_scenarios_can_be_combined(run, tmp_path):
     code, out, err, _ = run(
         *["study", "prior", "--scenario", "A", "--sweep", "spread", "--seeds", 2, "-o", tmp_path]
     )
@@ -34,7 +27,7 @@ def test_sweeps_and_scenarios_can_be_combined(run, tmp_path):  # noqa: F811
     assert len({row["rate"] for row in table(tmp_path / "prior_A_spread.csv")}) >= 3
 
 
-def test_mapped_plants_are_inspected(run, tmp_path):  # noqa: F811
+def test_mapped_plants_are_inspected(run, tmp_path):
     lines = ["x,y,t,i", *(f"{x},{y},1991,{int(x == y)}" for x in range(1, 9) for y in range(1, 9))]
     (tmp_path / "citrus_ctv_IVI3and4.csv").write_text("\n".join(lines), encoding="utf-8")
     code, out, err, made = run("study", "prior", "--maps", tmp_path, "--seeds", 2)
@@ -46,7 +39,7 @@ def test_mapped_plants_are_inspected(run, tmp_path):  # noqa: F811
     }
 
 
-def test_an_own_plot_is_played_from_its_records(run, tmp_path):  # noqa: F811
+def test_an_own_plot_is_played_from_its_records(run, tmp_path):
     words = ["study", "prior", "--plot", ZIP, "--feature", "Nursery", "--seeds", 2]
     code, out, err, made = run(*words, "--observations", MITES)
     assert code == 0, err
@@ -58,16 +51,6 @@ def test_an_own_plot_is_played_from_its_records(run, tmp_path):  # noqa: F811
     assert seeded != table(tmp_path / "prior_plot.csv")
 
 
-def test_a_search_tells_its_best_and_writes_what_it_tried(run, tmp_path):  # noqa: F811
-    code, out, err, _ = run(
-        *["study", "calibrate", "--drawn", 2, "--kept", 1, "--steps", 0, "--seeds", 2]
-    )
-    assert code == 0, err
-    assert "Best joint fit" in out
-    assert "Best fit of C alone" in out
-    assert len(table(tmp_path / "prior_calibration.csv")) >= 1
-
-
 @pytest.mark.parametrize(
     ("words", "says"),
     [
@@ -77,10 +60,9 @@ def test_a_search_tells_its_best_and_writes_what_it_tried(run, tmp_path):  # noq
         (["prior", "--maps", "none"], "none"),
         (["prior", "--plot", ZIP], "--feature"),
         (["prior", "-o", "none"], "must exist"),
-        (["calibrate", "-o", "none"], "must exist"),
     ],
 )
-def test_bad_words_are_a_sentence(run, words, says):  # noqa: F811
+def test_bad_words_are_a_sentence(run, words, says):
     code, _, err, made = run("study", *words)
     assert (code, made) == (2, set())
     assert says in err

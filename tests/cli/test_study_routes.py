@@ -2,10 +2,8 @@
 
 import csv
 
-from tests.cli.test_main import run  # noqa: F401 - a fixture
 
-
-def test_a_matrix_is_played_by_all_methods(run, tmp_path):  # noqa: F811
+def test_a_matrix_is_played_by_all_methods(run, tmp_path):
     (tmp_path / "plot.csv").write_text("1,0,3\n0,2,2\n5,0,0\n")
     budgets = ("--budget", 0.4, "--budget", 1)
     code, out, err, made = run("study", "routes", tmp_path / "plot.csv", *budgets, "--milp")
@@ -20,7 +18,7 @@ def test_a_matrix_is_played_by_all_methods(run, tmp_path):  # noqa: F811
     assert max(exact.values()) == 13
 
 
-def test_what_cannot_be_read_or_played_is_said_in_a_sentence(run, tmp_path):  # noqa: F811
+def test_what_cannot_be_read_or_played_is_said_in_a_sentence(run, tmp_path):
     (tmp_path / "bad.csv").write_text("1,x\n")
     for words, said in (
         ((tmp_path / "bad.csv",), "must hold numbers"),

@@ -3,12 +3,12 @@
 import pytest
 
 from fieldmon.simulation import results
-from tests.cli.test_main import ZIP, run  # noqa: F401 - a fixture
+from tests.cli.estate import ZIP
 
 FEW = ["--seeds", 3, "--days", 2, "--workers", 1, "--date", "2026-11-02"]
 
 
-def test_samplers_are_compared_on_a_plot_and_the_seasons_kept(run, tmp_path):  # noqa: F811
+def test_samplers_are_compared_on_a_plot_and_the_seasons_kept(run, tmp_path):
     words = ["study", "run", ZIP, "--feature", "Nursery", "--hours", 2, "--hours", 4, *FEW]
     code, out, err, _ = run(*words, "--sampler", "naive", "--sampler", "dynamic", "-o", "mine")
     assert code == 0, err
@@ -27,7 +27,7 @@ def test_samplers_are_compared_on_a_plot_and_the_seasons_kept(run, tmp_path):  #
         (["--date", "today"], "YYYY-MM-DD"),
     ],
 )
-def test_bad_words_are_a_sentence(run, words, says):  # noqa: F811
+def test_bad_words_are_a_sentence(run, words, says):
     code, _, err, made = run("study", "run", ZIP, *words)
     assert (code, made) == (2, set())
     assert says in err

@@ -14,20 +14,20 @@ LOOK = np.array([27], np.int32)
 
 def test_the_fields_have_the_chances_they_were_drawn_from():
     chance = np.linspace(0.05, 0.6, 64)
-    belief = Ensemble.of(GRID, chance, company=0.0)
+    belief = Ensemble.of(GRID, chance, clustering=0.0)
     assert belief.chance == pytest.approx(chance, abs=0.12)
     assert belief.chance.mean() == pytest.approx(chance.mean(), abs=0.02)
 
 
 def test_a_clean_look_follows_bayes_rule():
-    belief = Ensemble.of(GRID, np.full(64, 0.4), company=0.0)
+    belief = Ensemble.of(GRID, np.full(64, 0.4), clustering=0.0)
     p = belief.fields[:, 27].mean()
     after = belief.learn(LOOK, np.array([False]), Learning(detection=0.84))
     assert after.fields[:, 27].mean() == pytest.approx(p * 0.16 / (1 - 0.84 * p), abs=0.06)
 
 
 def test_a_find_is_certain_until_treated_and_raises_its_neighbours():
-    belief = Ensemble.of(GRID, np.full(64, 0.2), company=0.6)
+    belief = Ensemble.of(GRID, np.full(64, 0.2), clustering=0.6)
     flagged = belief.learn(LOOK, np.array([True]), Learning(treated=False))
     assert flagged.fields[:, 27].all()
     treated = belief.learn(LOOK, np.array([True]), Learning())
@@ -42,9 +42,9 @@ def test_a_night_adds_infested_plants_and_takes_none():
     assert after.chance.sum() > 1.5 * belief.chance.sum()
 
 
-def test_the_outlook_counts_the_fields():
+def test_the_estimate_counts_the_fields():
     belief = Ensemble.of(GRID, np.full(64, 0.1))
-    ahead = belief.outlook()
+    ahead = belief.estimate()
     counts = belief.fields.sum(axis=1)
     assert ahead.expected == pytest.approx(counts.mean())
     assert np.mean((counts >= ahead.low) & (counts <= ahead.high)) >= 0.9

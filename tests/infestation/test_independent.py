@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import Learning, learn, overnight
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.independent import learn, overnight
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.plot.layout import rectangle
 
@@ -68,9 +68,3 @@ def test_after_one_night_from_independent_plants_the_map_is_the_simulated_share(
         axis=0,
     )
     assert overnight(start, GRID, spread) == pytest.approx(share, abs=0.025)
-
-
-@pytest.mark.parametrize("bad", [{"detection": 2}, {"beside_find": -1}])
-def test_impossible_settings_are_refused(bad):
-    with pytest.raises(SettingError, match=r"in 0\.\.1"):
-        Learning(**bad)

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.belief import IndependentPlants, Learning, Pairs
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.plot.layout import rectangle
 
@@ -33,7 +35,7 @@ def chain(p, pair_chance):
 @pytest.mark.parametrize("found", [True, False])
 @pytest.mark.parametrize("plant", [0, 2, 4])
 def test_in_a_row_what_a_look_teaches_is_bayes_rule_for_the_whole_row(plant, found):
-    belief = Pairs.of(ROW, np.full(5, 0.1), company=0.5)
+    belief = PairApproximation.of(ROW, np.full(5, 0.1), clustering=0.5)
     states = chain(0.1, belief.pair_chance[0])
     said = {1: 0.84 if found else 0.16, 0: 0.0 if found else 1.0}
     after = {state: chance * said[state[plant]] for state, chance in states.items()}
@@ -50,7 +52,7 @@ def test_in_a_row_what_a_look_teaches_is_bayes_rule_for_the_whole_row(plant, fou
 
 def test_a_clean_look_lowers_the_plants_about_it_and_a_find_raises_them():
     grid = rectangle(9, 9)
-    belief = Pairs.of(grid, np.full(81, 0.05))
+    belief = PairApproximation.of(grid, np.full(81, 0.05))
     for found, sign in ((True, 1), (False, -1)):
         after = belief.learn(np.array([40], np.int32), np.array([found]), Learning())
         change = (after.chance - belief.chance) * sign
@@ -61,7 +63,7 @@ def test_a_clean_look_lowers_the_plants_about_it_and_a_find_raises_them():
 
 def test_a_treated_find_is_clean():
     grid = rectangle(9, 9)
-    after = Pairs.of(grid, np.full(81, 0.05)).learn(
+    after = PairApproximation.of(grid, np.full(81, 0.05)).learn(
         np.array([40], np.int32), np.array([True]), Learning()
     )
     assert after.chance[40] < 1e-5
@@ -80,7 +82,7 @@ def test_after_one_night_from_independent_plants_the_map_is_the_simulated_share(
         ],
         axis=0,
     )
-    after = Pairs.of(grid, start, company=0.0).overnight(spread)
+    after = PairApproximation.of(grid, start, clustering=0.0).overnight(spread)
     assert after.chance == pytest.approx(share, abs=0.025)
 
 
@@ -102,7 +104,7 @@ def test_a_lone_infestation_grows_as_fast_as_simulated_ones(rate, to):
     unknown = np.full(n, 1.0 / n)
     sizes = {}
     for name, belief in (
-        ("pairs", Pairs.of(grid, unknown, 0.0)),
+        ("pairs", PairApproximation.of(grid, unknown, 0.0)),
         ("mean field", IndependentPlants(grid, np.maximum(unknown, known))),
     ):
         for _ in range(6):
@@ -114,7 +116,7 @@ def test_a_lone_infestation_grows_as_fast_as_simulated_ones(rate, to):
 
 def test_many_nights_of_fast_spread_end_with_every_plant_infested_and_no_chance_outside_0_to_1():
     grid = rectangle(15, 15)
-    belief = Pairs.of(grid, np.full(225, 0.01))
+    belief = PairApproximation.of(grid, np.full(225, 0.01))
     for _ in range(40):
         belief = belief.overnight(Spread(0.8, "each", arrivals_per_day=0.001))
         assert ((belief.chance > 0) & (belief.chance < 1)).all()
@@ -124,7 +126,7 @@ def test_many_nights_of_fast_spread_end_with_every_plant_infested_and_no_chance_
 
 def test_finds_that_stand_alone_teach_that_infested_plants_do():
     grid = rectangle(30, 30)
-    belief = Pairs.of(grid, np.full(900, 0.05))
+    belief = PairApproximation.of(grid, np.full(900, 0.05))
     alone = np.zeros(900, bool)
     alone[np.arange(3, 900, 47)] = True
     plants = np.arange(600, dtype=np.int32)
@@ -138,7 +140,7 @@ def test_finds_that_stand_alone_teach_that_infested_plants_do():
 
 def test_beliefs_stay_as_they_were():
     grid = rectangle(9, 9)
-    belief = Pairs.of(grid, np.full(81, 0.05))
+    belief = PairApproximation.of(grid, np.full(81, 0.05))
     chance, pair_chance = belief.chance.copy(), belief.pair_chance.copy()
     belief.learn(np.array([40], np.int32), np.array([True]), Learning()).overnight(Spread())
     assert (belief.chance == chance).all()

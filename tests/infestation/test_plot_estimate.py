@@ -8,8 +8,8 @@ from scipy.stats import binom
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import Pairs, pairs
-from fieldmon.infestation.plot_estimate import outlook
+from fieldmon.infestation.pairs import PairApproximation, pair_chances
+from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.plot.layout import rectangle
 
 GRID = rectangle(20, 20)
@@ -17,7 +17,7 @@ GRID = rectangle(20, 20)
 
 def test_for_independent_plants_it_is_the_binomial():
     chance = np.full(400, 0.03)
-    ahead = outlook(GRID, chance, pairs(chance, GRID, company=0.0))
+    ahead = estimate_plot(GRID, chance, pair_chances(chance, GRID, clustering=0.0))
     assert ahead.expected == pytest.approx(12.0)
     assert ahead.low == pytest.approx(binom.ppf(0.05, 400, 0.03), abs=1)
     assert ahead.high == pytest.approx(binom.ppf(0.95, 400, 0.03), abs=1)
@@ -26,7 +26,7 @@ def test_for_independent_plants_it_is_the_binomial():
 
 def test_for_a_row_of_plants_the_chance_of_clean_is_that_of_the_chain():
     row = rectangle(1, 5)
-    belief = Pairs.of(row, np.full(5, 0.2), company=0.6)
+    belief = PairApproximation.of(row, np.full(5, 0.2), clustering=0.6)
     pair_chance = belief.pair_chance[0]
     total = 0.0
     for state in itertools.product([0, 1], repeat=5):
@@ -40,15 +40,15 @@ def test_for_a_row_of_plants_the_chance_of_clean_is_that_of_the_chain():
             }
             p *= table[one, other] / (0.2 if one else 0.8)
         total += p * (sum(state) == 0)
-    assert outlook(row, belief.chance, belief.pair_chance).chance_clean == pytest.approx(
+    assert estimate_plot(row, belief.chance, belief.pair_chance).chance_clean == pytest.approx(
         total, rel=1e-6
     )
 
 
 def test_plants_that_stand_together_make_the_number_less_sure_and_clean_more_likely():
     chance = np.full(400, 0.01)
-    alone = outlook(GRID, chance, pairs(chance, GRID, company=0.0))
-    together = outlook(GRID, chance, pairs(chance, GRID, company=0.7))
+    alone = estimate_plot(GRID, chance, pair_chances(chance, GRID, clustering=0.0))
+    together = estimate_plot(GRID, chance, pair_chances(chance, GRID, clustering=0.7))
     assert together.expected == alone.expected
     assert together.high - together.low > alone.high - alone.low
     assert together.chance_clean > 2 * alone.chance_clean
@@ -57,13 +57,13 @@ def test_plants_that_stand_together_make_the_number_less_sure_and_clean_more_lik
 def test_the_same_key_gives_the_same_answer_and_a_surer_interval_is_wider():
     chance = np.full(400, 0.05)
     key = RandomStreams(3).key("outlook")
-    assert outlook(GRID, chance, key=key) == outlook(GRID, chance, key=key)
-    sure, rough = outlook(GRID, chance, sure=0.99), outlook(GRID, chance, sure=0.5)
+    assert estimate_plot(GRID, chance, key=key) == estimate_plot(GRID, chance, key=key)
+    sure, rough = estimate_plot(GRID, chance, sure=0.99), estimate_plot(GRID, chance, sure=0.5)
     assert sure.low < rough.low <= rough.high < sure.high
 
 
 def test_it_says_so_in_a_sentence():
-    ahead = outlook(GRID, np.full(400, 0.05))
+    ahead = estimate_plot(GRID, np.full(400, 0.05))
     assert "About 20 plants" in ahead.sentence()
     assert f"between {ahead.low} and {ahead.high}" in ahead.sentence()
 
@@ -71,4 +71,4 @@ def test_it_says_so_in_a_sentence():
 @pytest.mark.parametrize("sure", [0.0, 1.0, -2.0])
 def test_an_impossible_sureness_is_refused(sure):
     with pytest.raises(SettingError, match="between 0 and 1"):
-        outlook(GRID, np.full(400, 0.05), sure=sure)
+        estimate_plot(GRID, np.full(400, 0.05), sure=sure)

@@ -6,12 +6,12 @@ import numpy as np
 from shapely import MultiPolygon, box
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import start_infested
 from fieldmon.infestation.spread import night
-from fieldmon.monitoring import Results, Season, SeasonSetup
-from fieldmon.planning.workday import outcomes
+from fieldmon.monitoring import MonitoringSettings, Season
+from fieldmon.planning.workday import draw_detections
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting
 from fieldmon.plot.plot import Plot
@@ -36,35 +36,53 @@ def some_records(plot):
 
 def a_season(path, plot=None, **choices):
     plot = plot or a_plot()
-    setup = SeasonSetup(BEGINS, **({"robot": ROBOT} | choices))
-    return Season.create(path, plot, some_records(plot), setup)
+    settings = MonitoringSettings(BEGINS, **({"robot": ROBOT} | choices))
+    return Season.create(path, plot, some_records(plot), settings)
 
 
 class Insects:
     """The truth of a season: what an inspection would find, and what a night does."""
 
-    def __init__(self, project, seed=1):
-        self.project, self.chance = project, RandomStreams(seed)
-        begin = start_infested(project.morning(BEGINS), 0.1, self.chance.of("start"))
-        self.infested = begin[project.plot.grid.vine]
+    def __init__(self, season, seed=1):
+        self.season, self.chance = season, RandomStreams(seed)
+        begin = start_infested(season.morning(BEGINS), 0.1, self.chance.of("start"))
+        self.infested = begin[season.plot.grid.vine]
 
     def look(self, day, plants):
         """Return the results of inspecting plants on a day, and let the night come."""
-        grid, setup = self.project.plot.grid, self.project.setup
-        finds = outcomes(self.infested, setup.robot.detects, self.chance.key("inspect", day))
-        found = finds[plants]
+        grid, settings = self.season.plot.grid, self.season.settings
+        detects = np.array([settings.robot.detects])
+        finds = draw_detections(self.infested, detects, self.chance.key("inspect", day))
+        found = finds[plants] > 0
         self.infested = self.infested.copy()
         self.infested[plants[found]] = False
         self.infested = night(
-            grid, self.infested, setup.beliefs.spread, self.chance.key("spread", day)
+            grid, self.infested, settings.belief.spread, self.chance.key("spread", day)
         )
         on = np.datetime64(BEGINS + timedelta(days=day), "D")
-        return Results.of(plants, np.where(found, FOUND, CLEAN), on)
+        return Inspections.of(plants, np.where(found, FOUND, CLEAN), on)
 
 
-def some_results(project, n=5, day=0, found=()):
+def some_results(season, n=5, day=0, found=()):
     """Return results of the first n plants of the day's route."""
     on = BEGINS + timedelta(days=day)
-    plants = project.plan(on, keep=False).route.plant[:n]
+    plants = season.plan(on, keep=False).route.plant[:n]
     result = np.where(np.isin(np.arange(n), found), FOUND, CLEAN)
-    return Results.of(plants, result, np.datetime64(on, "D"))
+    return Inspections.of(plants, result, np.datetime64(on, "D"))
+
+
+def state(path):
+    """Return what counts of a season: it must hold together."""
+    season = Season(path)
+    season.store.check()
+    assert season.verify() == ()
+    with season.store.reading() as db:
+        inspections = db.execute("SELECT digest FROM inspections ORDER BY fid").fetchall()
+        batches = db.execute("SELECT rows FROM batches WHERE kind = 'findings'").fetchall()
+        days = db.execute("SELECT sum(inspected) FROM days").fetchone()[0]
+        routes = db.execute("SELECT fid, stops FROM routes").fetchall()
+        stops = dict(db.execute("SELECT route, count(*) FROM stops GROUP BY route").fetchall())
+    assert sum(n for (n,) in batches) == len(inspections)
+    assert days == len(inspections)
+    assert stops == {route: n for route, n in routes if n}
+    return len(inspections)

@@ -9,11 +9,12 @@ from shapely import MultiPolygon, box
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, ObservationError, SettingError
-from fieldmon.infestation.inspections import FOUND, SKIPPED
-from fieldmon.monitoring import Remark, Results, Season, SeasonSetup
-from fieldmon.monitoring.history import Beliefs
+from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
+from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
+from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.samplers import sampler
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 from tests.monitoring.seasons import (
     BEGINS,
     ROBOT,
@@ -37,7 +38,7 @@ def on(day):
 def test_a_season_comes_back_bit_for_bit(tmp_path):
     plot = a_plot(faces=2)
     records = some_records(plot)
-    setup = SeasonSetup(
+    settings = MonitoringSettings(
         BEGINS,
         starts=time(5, 30),
         robot=ROBOT,
@@ -45,11 +46,13 @@ def test_a_season_comes_back_bit_for_bit(tmp_path):
         sampler_settings={"every": 2},
         seed=9,
     )
-    said = Remark("mites.csv", "guessed", "row 3", "A date was read as day-month.", "--date-order")
-    Season.create(tmp_path / "s.gpkg", plot, records, setup, [said])
+    said = KeptMessage(
+        "mites.csv", "guessed", "row 3", "A date was read as day-month.", "--date-order"
+    )
+    Season.create(tmp_path / "s.gpkg", plot, records, settings, [said])
     again = Season(tmp_path / "s.gpkg")
-    assert again.setup == setup
-    assert again.remarks() == (said,)
+    assert again.settings == settings
+    assert again.messages() == (said,)
     for name in (each.name for each in fields(plot.grid)):
         value, other = getattr(plot.grid, name), getattr(again.plot.grid, name)
         same = np.array_equal(value, other) if isinstance(value, np.ndarray) else value == other
@@ -59,7 +62,7 @@ def test_a_season_comes_back_bit_for_bit(tmp_path):
     assert again.plot.field.gate == plot.field.gate
     assert np.array_equal(again.observations.lonlat, records.lonlat)
     assert np.array_equal(again.observations.day, records.day, equal_nan=True)
-    assert np.array_equal(again.plot.aisles.ground.between_m, plot.aisles.ground.between_m)
+    assert np.array_equal(again.plot.aisles.travel.between_m, plot.aisles.travel.between_m)
 
 
 def test_a_new_season_never_replaces_a_file(tmp_path):
@@ -74,16 +77,16 @@ def test_a_new_season_never_replaces_a_file(tmp_path):
 @pytest.mark.parametrize("name", ["naive", "bouncy", "dynamic", "random"])
 def test_ten_days_on_disk_are_ten_days_of_the_simulator(tmp_path, name):
     """The same insects, the same belief and the same stops, digit for digit."""
-    project = a_season(tmp_path / "s.gpkg", sampler=name)
-    setup, plot = project.setup, project.plot
-    truth = Insects(project)
-    start = Start(truth.infested, project.morning(BEGINS))
-    settings = SeasonSettings(n_days=10, spread=setup.beliefs.spread)
-    simulated = days(
-        plot.aisles, setup.robot, sampler(name), start, settings, RandomStreams(setup.seed)
+    season = a_season(tmp_path / "s.gpkg", sampler=name)
+    settings, plot = season.settings, season.plot
+    truth = Insects(season)
+    start = Start(truth.infested, season.morning(BEGINS))
+    simulator = SeasonSettings(n_days=10, spread=settings.belief.spread)
+    simulated = simulated_days(
+        plot.aisles, settings.robot, sampler(name), start, simulator, RandomStreams(settings.seed)
     )
     for day in simulated:
-        today = Season(project.path)  # as on a new morning
+        today = Season(season.path)  # as on a new morning
         assert np.array_equal(today.morning(on(day.number)), day.chance)
         # re-planned after every find, as the simulator's sampler does within its day
         results = truth.look(day.number, day.work.plant)
@@ -91,8 +94,8 @@ def test_ten_days_on_disk_are_ten_days_of_the_simulator(tmp_path, name):
         if not day.work.found.any():
             assert np.array_equal(today.plan(on(day.number)).route.plant, day.work.plant)
         today.record(results, "robot")
-    assert len(project.history.inspections) > 200
-    assert project.verify() == ()
+    assert len(season.history.inspections) > 200
+    assert season.verify() == ()
 
 
 def test_the_same_results_twice_change_nothing(season):
@@ -119,7 +122,7 @@ def test_a_find_raises_its_neighbours_and_a_clean_look_lowers(season):
     before = season.evening(BEGINS)
     grid, find, clean = season.plot.grid, 100, 300
     on_day = np.datetime64(BEGINS, "D")
-    season.record(Results.of(np.array([find, clean]), np.array([FOUND, 0]), on_day), "x")
+    season.record(Inspections.of(np.array([find, clean]), np.array([FOUND, 0]), on_day), "x")
     after = season.evening(BEGINS)
     start, plant = grid.adjacent
     beside = plant[start[find] : start[find + 1]]
@@ -189,8 +192,8 @@ def test_planning_half_way_starts_where_the_robot_stands_with_the_hours_that_are
 
 def test_the_time_of_the_last_result_is_the_time_of_day(season):
     results = some_results(season, n=3)
-    timed = Results.of(
-        results.plant, results.result, results.day[0], second=np.array([22000.0, 21700.0, 21900.0])
+    timed = Inspections.of(
+        results.plant, results.result, results.date[0], second=np.array([22000.0, 21700.0, 21900.0])
     )
     season.record(timed, "phone")
     rest = season.plan(BEGINS)
@@ -200,9 +203,9 @@ def test_the_time_of_the_last_result_is_the_time_of_day(season):
 
 def test_a_plant_that_could_not_be_inspected_is_left_alone_today_and_comes_back(season):
     results = some_results(season, n=2)
-    season.record(Results.of(results.plant[:1], np.array([0]), results.day[0]), "phone")
+    season.record(Inspections.of(results.plant[:1], np.array([0]), results.date[0]), "phone")
     before = season.evening(BEGINS)[results.plant[1]]
-    season.record(Results.of(results.plant[1:], np.array([SKIPPED]), results.day[0]), "phone")
+    season.record(Inspections.of(results.plant[1:], np.array([SKIPPED]), results.date[0]), "phone")
     assert season.evening(BEGINS)[results.plant[1]] == before
     assert season.history.states(0)[results.plant[1]] == -1
     assert results.plant[1] not in season.plan(BEGINS).route.plant
@@ -247,13 +250,13 @@ def test_an_impossible_spraying_is_a_sentence(season, area, efficacy, says):
 
 
 def test_finds_that_are_only_flagged_stay_infested(tmp_path):
-    season = a_season(tmp_path / "s.gpkg", beliefs=Beliefs(treated=False))
+    season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
     results = some_results(season, found=[0])
     season.record(results, "x")
     assert season.evening(BEGINS)[results.plant[0]] > 0.99
     status = season.status(BEGINS)
     assert status.found == 1
-    assert status.outlook.expected < season.evening(BEGINS).sum() - 0.9  # found is not out there
+    assert status.estimate.expected < season.evening(BEGINS).sum() - 0.9  # found is not out there
 
 
 def test_the_status_counts(season):
@@ -263,8 +266,8 @@ def test_the_status_counts(season):
     assert (status.day, status.inspected_today, status.found_today) == (2, 4, 0)
     assert status.found == 2
     assert status.plants == len(season.plot.grid)
-    assert status.outlook.low <= status.outlook.expected <= status.outlook.high
-    assert status.detection_pct == pytest.approx(100 * 2 / (2 + status.outlook.expected))
+    assert status.estimate.low <= status.estimate.expected <= status.estimate.high
+    assert status.detection_pct == pytest.approx(100 * 2 / (2 + status.estimate.expected))
     rows = season.plot.grid.row
     done = season.history.inspections
     assert status.days_since[rows[done.plant[-1]]] == 0
@@ -274,19 +277,19 @@ def test_the_status_counts(season):
 
 
 def test_settings_can_be_changed_and_the_old_ones_stay_in_the_file(season):
-    seen = season.setup
+    seen = season.settings
     season.record(some_results(season), "x")
-    season.change(SeasonSetup(BEGINS, robot=ROBOT.with_hours(2.0), sampler="naive"), seen)
-    assert Season(season.path).setup.sampler == "naive"
+    season.change(MonitoringSettings(BEGINS, robot=ROBOT.with_hours(2.0), sampler="naive"), seen)
+    assert Season(season.path).settings.sampler == "naive"
     with season.store.reading() as db:
         assert db.execute("SELECT count(*) FROM settings WHERE name = 'robot'").fetchone() == (2,)
     with pytest.raises(FileProblem, match="another window"):
-        season.change(SeasonSetup(BEGINS, sampler="bouncy"), seen)
-    assert season.setup.sampler == "naive"
+        season.change(MonitoringSettings(BEGINS, sampler="bouncy"), seen)
+    assert season.settings.sampler == "naive"
 
 
 def test_changes_are_taken_back_one_after_the_other_and_nothing_is_deleted(season):
-    begun = season.setup
+    begun = season.settings
     assert season.before_change() is None
     with pytest.raises(SettingError, match="there is none"):
         season.undo_change()
@@ -299,7 +302,7 @@ def test_changes_are_taken_back_one_after_the_other_and_nothing_is_deleted(seaso
     season.change(second, first)
     assert season.before_change() == first
     assert season.undo_change() == first
-    assert Season(season.path).setup == first
+    assert Season(season.path).settings == first
     assert season.undo_change() == begun
     assert season.plan(tomorrow, keep=False).route.plant.tolist() == planned
     with pytest.raises(SettingError, match="there is none"):
@@ -339,7 +342,8 @@ def test_results_that_do_not_fit_are_a_sentence_and_leave_no_trace(
 ):
     with pytest.raises((ObservationError, SettingError), match=says):
         season.record(
-            Results.of(np.array([plant]), np.array([result]), np.datetime64(day), **columns), "x"
+            Inspections.of(np.array([plant]), np.array([result]), np.datetime64(day), **columns),
+            "x",
         )
     assert season.batches() == ()
     assert len(season.history.inspections) == 0

@@ -4,27 +4,30 @@ from datetime import timedelta
 
 import numpy as np
 
-from fieldmon.monitoring import Results, Season
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import Season
 from tests.monitoring.seasons import BEGINS
 
 
 def one_by_one(path, who, rounds):
     """Record one result after another, each of its own plant."""
-    project = Season(path)
-    n = len(project.plot.grid)
+    season = Season(path)
+    n = len(season.plot.grid)
     for k in range(rounds):
         plant = np.array([(k * 2 + who) % n])
         on = np.datetime64(BEGINS + timedelta(days=1), "D")
-        project.record(Results.of(plant, np.array([0]), on, who=np.array([str(who)])), f"{who}-{k}")
+        season.record(
+            Inspections.of(plant, np.array([0]), on, who=np.array([str(who)])), f"{who}-{k}"
+        )
 
 
 def day_by_day(path):
     """Plan and record day after day, without end."""
-    project = Season(path)
+    season = Season(path)
     day = 0
     while True:
         on = BEGINS + timedelta(days=day % 300)
-        plants = project.plan(on).route.plant[:20]
+        plants = season.plan(on).route.plant[:20]
         found = (plants % 7 == 0).astype(np.int8)
-        project.record(Results.of(plants, found, np.datetime64(on, "D")), f"day {day}")
+        season.record(Inspections.of(plants, found, np.datetime64(on, "D")), f"day {day}")
         day += 1

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from fieldmon.planning.explain import explain
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import rectangle
-from fieldmon.samplers import NEVER, Adaptive
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import NEVER
 from tests.scenes import scene_on
 
 GRID = rectangle(40, 30)
@@ -26,7 +27,7 @@ def counts(said):
 
 def test_every_stop_is_told_once():
     scene = day()
-    work = plan_day(scene, Adaptive())
+    work = plan_work(scene, Adaptive())
     finds = work.plant[[3, len(work) // 2]].astype(np.int32)
     assert counts(explain(scene, work)) == len(work)
     assert counts(explain(scene, work, finds, ["Monday", "Tuesday"])) == len(work)
@@ -34,7 +35,7 @@ def test_every_stop_is_told_once():
 
 def test_stops_near_a_find_are_told_by_its_day_row_and_plant():
     scene = day()
-    work = plan_day(scene, Adaptive())
+    work = plan_work(scene, Adaptive())
     find = work.plant[:1].astype(np.int32)
     said = explain(scene, work, find, ["Tuesday"])[0]
     row, number = int(find[0]) // 30 + 1, int(find[0]) % 30 + 1
@@ -43,7 +44,7 @@ def test_stops_near_a_find_are_told_by_its_day_row_and_plant():
 
 def test_many_finds_are_told_together_the_most_plants_first():
     scene = day()
-    work = plan_day(scene, Adaptive())
+    work = plan_work(scene, Adaptive())
     finds = work.plant[::4].astype(np.int32)
     said = explain(scene, work, finds)
     assert counts(said) == len(work)
@@ -54,14 +55,15 @@ def test_many_finds_are_told_together_the_most_plants_first():
 
 
 def test_rows_are_told_by_how_long_they_were_not_inspected():
-    never = explain(day(), plan_day(day(), Adaptive()))
+    never = explain(day(), plan_work(day(), Adaptive()))
     assert all(sentence.endswith("never inspected yet.") for sentence in never)
     scene = day(last=3)
-    assert all("not inspected for 9 days" in s for s in explain(scene, plan_day(scene, Adaptive())))
+    said = explain(scene, plan_work(scene, Adaptive()))
+    assert all("not inspected for 9 days" in s for s in said)
 
 
 def test_a_day_without_stops_says_so():
     scene = day(hours=0.001)
-    assert explain(scene, plan_day(scene, Adaptive())) == [
+    assert explain(scene, plan_work(scene, Adaptive())) == [
         "No plant can be reached in the hours left."
     ]

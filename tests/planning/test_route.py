@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError
 from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import Planting, lay
 from fieldmon.plot.travel import crosses_rows
 from fieldmon.samplers import SAMPLERS, sampler
@@ -38,7 +38,7 @@ def check(scene, work):
 @pytest.mark.parametrize("seed", range(2))
 def test_the_route_is_the_day_as_charged(name, grid, seed):
     scene = scene_on(grid, hours=2.0, seed=seed)
-    check(scene, plan_day(scene, sampler(name)))
+    check(scene, plan_work(scene, sampler(name)))
 
 
 @given(field=crooked_fields(), seed=st.integers(0, 1000))
@@ -48,17 +48,17 @@ def test_on_crooked_fields_too(field, seed):
         scene = scene_on(lay(field, Planting()), hours=2.0, seed=seed)
     except PlotError:
         return
-    check(scene, plan_day(scene, sampler("dynamic")))
+    check(scene, plan_work(scene, sampler("dynamic")))
 
 
 def test_a_route_that_returns_ends_where_it_starts():
     scene = scene_on(GRIDS["rectangle"], seed=1)
-    route = route_of(scene, plan_day(scene, sampler("naive")))
+    route = route_of(scene, plan_work(scene, sampler("naive")))
     assert route.line_m[0] == pytest.approx(route.line_m[-1])
 
 
 def test_a_route_without_stops_is_empty():
     scene = scene_on(GRIDS["rectangle"], hours=0.005)
-    route = route_of(scene, plan_day(scene, sampler("naive")))
+    route = route_of(scene, plan_work(scene, sampler("naive")))
     assert (len(route), route.drive_m, route.end_s) == (0, 0.0, 0.0)
     assert route.line_lonlat().shape == (0, 2)

@@ -44,7 +44,8 @@ def test_places_are_as_far_from_each_other_as_their_metres_say(frame, xy_m):
 
 @given(frames, on_a_plot)
 def test_metres_come_back_from_degrees(frame, xy_m):
-    assert frame.xy_m(frame.lonlat(xy_m)) == pytest.approx(xy_m, abs=1e-4)
+    # PROJ takes what is within 0.64 mm of the centre (1e-10 of the earth's radius) for the centre
+    assert frame.xy_m(frame.lonlat(xy_m)) == pytest.approx(xy_m, abs=1e-3)
 
 
 @given(frames, on_a_plot, st.floats(0, 360))

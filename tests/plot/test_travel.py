@@ -7,7 +7,7 @@ import numba as nb
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
@@ -130,11 +130,11 @@ def test_compiled_loops_drive_as_far():
     aisles = Aisles.of(SHAPES["hole"])
 
     @nb.njit
-    def one(ground, i, j):
-        return drive_m(ground, i, j)
+    def one(travel, i, j):
+        return drive_m(travel, i, j)
 
     for i, j in [(0, 100), (100, 0), (-1, 7), (7, -1), (3, 3), (3, 5), (-1, -1)]:
-        assert one(aisles.ground, i, j) == aisles.distance_m(i, j)
+        assert one(aisles.travel, i, j) == aisles.distance_m(i, j)
 
 
 def test_both_faces_of_an_aisle_are_inspected_from_one_lane():
@@ -208,21 +208,57 @@ def test_paths_stay_on_the_plot_unless_parts_must_be_joined(grid, seed):
 @given(crooked_grids(max_radius_m=60))
 @settings(max_examples=40)
 def test_no_detour_is_shorter_than_the_way(grid):
-    between_m = Aisles.of(grid).ground.between_m
+    between_m = Aisles.of(grid).travel.between_m
     assert (between_m == between_m.T).all()
     for via in range(len(between_m)):
         assert (between_m <= between_m[:, via, None] + between_m[None, via] + 1e-9).all()
 
 
+def lane_ends(grid):
+    """Return where the lanes end, ``(2 r, 2)``, numbered as in the table of travel."""
+    ends = np.stack([grid.lane_x_m, np.stack([grid.lane_y_m] * 2, axis=1)], axis=2)
+    return ends.reshape(-1, 2)
+
+
+def least_m(grid, points):
+    """Return what no way between points can be shorter than.
+
+    On one part of the plot that is the shortest way on it, or else the way to another part and
+    back; from part to part, where a robot may leave the plot, the straight line.
+    """
+    parts = shapely.get_parts(grid.drivable_m)
+    home = shapely.STRtree(parts).nearest(shapely.points(points))
+    others = np.array([shapely.union_all(np.delete(parts, k)) for k in range(len(parts))])
+    away_m = np.nan_to_num(shapely.distance(shapely.points(points), others[home]), nan=np.inf)
+    on_it_m = np.minimum(shortest_m(grid, points), away_m[:, None] + away_m)
+    straight_m = np.hypot(*(points[:, None] - points).transpose(2, 0, 1))
+    return np.where(home[:, None] == home, on_it_m, straight_m)
+
+
+def notched_beside_another():
+    """Return a plot with a notch, over which the straight ways to its other part lead."""
+    whole = Polygon([(22.0, 0.0), (0.0, 5.5), (-11.124, -8.082), (19.602, -9.988)])
+    notch = Polygon([(14.575, 3.3), (12.5125, 4.4908), (10.45, -1.4631)])
+    other = Polygon([(46.75, 0.0), (42.625, 2.3816), (42.625, -2.3816)])
+    planting = Planting(93.5491417517679, row_spacing_m=1.5, plant_spacing_m=1.0, headland_m=1.0)
+    return laid(whole.difference(notch), other, planting=planting)
+
+
 @given(crooked_grids(max_radius_m=40))
 @settings(max_examples=25)
+@example(notched_beside_another())
 def test_lane_ends_are_never_nearer_than_the_shortest_way_there(grid):
-    between_m = Aisles.of(grid).ground.between_m[:-1, :-1]
-    ends = np.stack([grid.lane_x_m, np.stack([grid.lane_y_m] * 2, axis=1)], axis=2)
-    truth_m = shortest_m(grid, ends.reshape(-1, 2))
-    # what the plain graph cannot reach lies on another part of the plot
-    reached = np.isfinite(truth_m)
-    assert (between_m[reached] >= truth_m[reached] - 0.05).all()
+    between_m = Aisles.of(grid).travel.between_m[:-1, :-1]
+    assert (between_m >= least_m(grid, lane_ends(grid)) - 0.05).all()
+
+
+def test_a_way_to_another_part_is_no_short_cut_over_a_notch():
+    grid = notched_beside_another()
+    aisles = Aisles.of(grid)
+    left, right = (int(np.argmin(np.hypot(*(grid.xy_m - at).T))) for at in ((-9, 2.3), (-4, 2.3)))
+    assert aisles.distance_m(left, right) > 8.0
+    plot = shapely.buffer(grid.drivable_m, 0.01, join_style="mitre")
+    assert shapely.covers(plot, shapely.linestrings(aisles.path(left, right)))
 
 
 @pytest.mark.parametrize(
@@ -230,9 +266,8 @@ def test_lane_ends_are_never_nearer_than_the_shortest_way_there(grid):
 )
 def test_lane_ends_are_hardly_farther_than_the_shortest_way_there(name, factor):
     grid = SHAPES[name]
-    between_m = Aisles.of(grid).ground.between_m[:-1, :-1]
-    ends = np.stack([grid.lane_x_m, np.stack([grid.lane_y_m] * 2, axis=1)], axis=2)
-    truth_m = shortest_m(grid, ends.reshape(-1, 2))
+    between_m = Aisles.of(grid).travel.between_m[:-1, :-1]
+    truth_m = shortest_m(grid, lane_ends(grid))
     # the truth touches the rows' last plants, the robot keeps clear of them
     assert between_m.sum() <= factor * truth_m.sum()
     assert (between_m <= 1.5 * truth_m + 1e-6).all()
@@ -304,5 +339,5 @@ def test_no_line_crosses_no_row(line):
 
 def test_what_aisles_hold_cannot_be_changed():
     aisles = Aisles.of(SHAPES["rectangle"])
-    for values in (*aisles.ground, aisles.stop_m, aisles.ways.xy_m):
+    for values in (*aisles.travel, aisles.stop_m, aisles.roads.xy_m):
         assert not values.flags.writeable

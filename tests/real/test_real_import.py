@@ -13,7 +13,7 @@ from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.read import read_lines, read_plants, read_plots, read_records
 from fieldmon.io.readers.nearby import distance_m
-from fieldmon.io.readers.places import Places, Plants
+from fieldmon.io.readers.places import NamedPlaces, Plants
 from fieldmon.plot.grid import plant_at
 from fieldmon.plot.layout import rectangle
 
@@ -176,7 +176,7 @@ def test_aphid_counts_lie_on_the_fields_they_name_and_six_names_are_unknown(shar
     fields = read_plots(folder / "Arlington.geojson").value
     options = RecordOptions().naming(count="SweepsPeaAphids")
     path = folder / "parasitism-2011-2019.csv"
-    read = read_records(path, options, places=Places(fields))
+    read = read_records(path, options, places=NamedPlaces(fields))
     (unknown,) = [f.sentence for f in read.messages if "that are not known" in f.sentence]
     assert "6 plot(s)" in unknown
     assert unknown.endswith(": 110/110, 2110, 349_Clover, 4110, 635S, N1902.")
@@ -190,7 +190,9 @@ def test_aphid_counts_lie_on_the_fields_they_name_and_six_names_are_unknown(shar
 def test_moth_counts_hang_in_the_traps_they_name(shared):
     folder = shared / "pistachio_traps"
     traps = read_plants(folder / "mwoolf-farmsense-expt-2020-07-01.kml").value
-    read = read_records(folder / "y20_farmsense_wingtrap_counts.csv", places=Places(plants=traps))
+    read = read_records(
+        folder / "y20_farmsense_wingtrap_counts.csv", places=NamedPlaces(plants=traps)
+    )
     assert len(read.value) == 357
     assert any("by their digits alone" in f.sentence for f in read.messages)
     (third,) = traps.lonlat[traps.plant == "Block1-3"]
@@ -204,7 +206,7 @@ def test_mite_counts_sit_on_their_patches_with_the_day_first(shared):
     patches = Plants(lonlat, np.full(9, ""), np.array(names))
     options = RecordOptions(where="MP=Hom1").naming(plant="P", count="AvgFem")
     path = shared / "mite_patches/tetranychus_patches.csv"
-    read = read_records(path, options, places=Places(plants=patches)).value
+    read = read_records(path, options, places=NamedPlaces(plants=patches)).value
     np.testing.assert_array_equal(read.lonlat[1], lonlat[names.index("A2")])
     assert read.count[1] == pytest.approx(5.666667)
     assert str(read.day[1]) == "2011-05-10"
@@ -230,7 +232,9 @@ def test_counts_by_row_and_plant_stand_on_the_plants_they_name(
     options = (
         RecordOptions(where=where).naming(row=row, plant=plant, plot="").choose("columns", role)
     )
-    read = read_records(shared / "plant_maps" / file, options, places=Places.of((), grid)).value
+    read = read_records(
+        shared / "plant_maps" / file, options, places=NamedPlaces.of((), grid)
+    ).value
     spots = np.unique(np.round(read.lonlat, 9), axis=0)
     assert len(spots) == size[0] * size[1]
     i, line, number, value = record or (0, 1, 1, 0)
@@ -243,7 +247,7 @@ def test_severities_of_a_watermelon_field_stand_on_its_plants(shared):
     grid = rectangle(16, 12)
     path = shared / "banana_fusarium/DidymellaWatermelon.csv"
     options = RecordOptions(where="dap=50").naming(row="EW_row", plant="NS_col", count="severity")
-    read = read_records(path, options, places=Places.of((), grid)).value
+    read = read_records(path, options, places=NamedPlaces.of((), grid)).value
     assert len(read) == 192
     np.testing.assert_allclose(
         read.lonlat[1], grid.lonlat(np.array([plant_at(grid, 2, 1)]))[0], atol=1e-12

@@ -5,8 +5,8 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.plot.robot import Robot
+from fieldmon.simulation.statistics import summary_statistics
 from fieldmon.studies.plant_maps import read_plant_maps
-from fieldmon.studies.thesis.chapter4.measures import spread_of
 from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
 from fieldmon.studies.thesis.chapter5.mapped_plots import SHARES_PCT, MapRules, inspect, run_maps
 from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS
@@ -51,7 +51,7 @@ def gap(plants, one, other, seeds=40):
         ]
         for name in (one, other)
     ]
-    return spread_of(np.subtract(*found))
+    return summary_statistics(np.subtract(*found))
 
 
 @pytest.mark.parametrize(

@@ -7,14 +7,17 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import Pairs
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread
-from fieldmon.planning.workday import looks_of, luck, plan_day, work_day
+from fieldmon.planning.workday import plan_work, work_day
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import Adaptive, Dynamic, Naive
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.dynamic import Dynamic
+from fieldmon.samplers.sweeps import Naive
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 from tests.scenes import GRIDS, scene_on
 
 GRID = rectangle(30, 30)
@@ -23,7 +26,7 @@ N = len(GRID)
 
 def scene_with(chance, hours=2.0, company=0.0):
     plain = scene_on(GRID, hours=hours)
-    belief = Pairs.of(GRID, chance, company)
+    belief = PairApproximation.of(GRID, chance, company)
     return replace(plain, chance=belief.chance, pair_chance=belief.pair_chance)
 
 
@@ -32,7 +35,7 @@ def test_it_expects_more_finds_than_dynamic_and_naive(seed):
     scene = replace(scene_on(GRID, hours=3.0, seed=seed), pair_chance=None)
     chance = scene.chance
     expected = {
-        type(s).__name__: chance[plan_day(scene, s).plant].sum()
+        type(s).__name__: chance[plan_work(scene, s).plant].sum()
         for s in (Adaptive(spares=0.0, beside_find=0.0), Dynamic(), Naive())
     }
     assert expected["Adaptive"] > 1.1 * expected["Dynamic"]
@@ -41,14 +44,14 @@ def test_it_expects_more_finds_than_dynamic_and_naive(seed):
 
 def test_where_nothing_is_known_and_plants_are_independent_the_day_is_a_sweep():
     scene = scene_with(np.full(N, 0.2))
-    work, sweep = plan_day(scene, Adaptive()), plan_day(scene, Naive())
+    work, sweep = plan_work(scene, Adaptive()), plan_work(scene, Naive())
     assert len(work) >= 0.97 * len(sweep)
     rows = GRID.row[work.plant]
     assert np.count_nonzero(np.diff(rows)) <= len(np.unique(rows)) + 1
 
 
 def test_after_a_clean_look_the_plant_beside_it_can_wait():
-    apart = plan_day(scene_with(np.full(N, 0.02), company=0.6), Adaptive())
+    apart = plan_work(scene_with(np.full(N, 0.02), company=0.6), Adaptive())
     in_first_row = apart.plant[GRID.row[apart.plant] == GRID.row[apart.plant[0]]]
     assert np.median(np.abs(np.diff(in_first_row))) > 1
 
@@ -57,7 +60,7 @@ def test_a_hot_spot_is_driven_to_across_the_plot():
     chance = np.full(N, 0.001)
     hot = np.array([25 * 30 + 20, 25 * 30 + 21, 26 * 30 + 20])
     chance[hot] = 0.6
-    work = plan_day(scene_with(chance, hours=0.5), Adaptive())
+    work = plan_work(scene_with(chance, hours=0.5), Adaptive())
     assert set(hot) <= set(work.plant.tolist())
 
 
@@ -65,47 +68,38 @@ def test_of_several_looks_the_suspected_plant_gets_the_long_one_and_the_others_s
     chance = np.full(N, 0.02)
     hot = np.arange(3 * 30, 3 * 30 + 10)
     chance[hot] = 0.6
-    work = plan_day(scene_with(chance, hours=3.0), Adaptive(chooses_look=True))
+    work = plan_work(scene_with(chance, hours=3.0), Adaptive(chooses_time=True))
     suspected = np.isin(work.plant, hot)
     assert (work.detects[suspected] == 0.84).all()
     assert (work.detects[~suspected] < 0.84).mean() > 0.5
     assert work.stop_s[work.detects == 0.5] == pytest.approx(20.0)
-    fixed = plan_day(scene_with(chance, hours=3.0), Adaptive())
+    fixed = plan_work(scene_with(chance, hours=3.0), Adaptive())
     found, found_fixed = (chance[w.plant] @ w.detects for w in (work, fixed))
     assert found > found_fixed
-
-
-def test_a_look_finds_what_a_shorter_one_finds_and_no_more_than_its_share():
-    infested = np.ones(20_000, bool)
-    looks = looks_of(Robot(), Adaptive(chooses_look=True))
-    first = luck(infested, looks, np.uint64(5))
-    for k, detects in enumerate(looks.detects):
-        assert np.mean((first > 0) & (first <= k + 1)) == pytest.approx(detects, abs=0.01)
-    assert not luck(~infested, looks, np.uint64(5)).any()
 
 
 def test_what_a_look_finds_depends_on_which_look_it_was():
     chance = np.full(N, 0.02)
     scene = scene_with(chance, hours=1.0)
     only_long = np.full(N, 5, np.uint8)  # nothing is seen in less than the longest look
-    work = work_day(scene, Adaptive(chooses_look=True), only_long)
+    work = work_day(scene, Adaptive(chooses_time=True), only_long)
     assert (work.found == (work.detects == 0.84)).all()
     assert not work.found.all()
 
 
 def test_a_robot_whose_detection_is_given_outright_has_no_looks_to_choose_from():
     with pytest.raises(SettingError, match="what each time of looking detects"):
-        looks_of(Robot(detection=0.7), Adaptive(chooses_look=True))
+        Adaptive(chooses_time=True).inspection_times(Robot(detection=0.7))
 
 
 def test_a_season_learns_from_short_looks_less_than_from_long_ones():
     grid = rectangle(20, 20)
     start = Start(np.zeros(400, bool), np.full(400, 0.05))
     settings = SeasonSettings(n_days=2, spread=Spread(0.0, arrivals_per_day=0.0))
-    season = days(
+    season = simulated_days(
         Aisles.of(grid),
         Robot(hours=1.5),
-        Adaptive(chooses_look=True),
+        Adaptive(chooses_time=True),
         start,
         settings,
         RandomStreams(1),
@@ -124,13 +118,13 @@ def test_a_plant_that_is_hardly_suspected_is_not_worth_a_long_way():
     chance = np.full(N, 1e-6)
     chance[:60] = 0.1
     chance[29 * 30 + 29] = 0.001
-    work = plan_day(scene_with(chance, hours=0.6), Adaptive())
+    work = plan_work(scene_with(chance, hours=0.6), Adaptive())
     assert 29 * 30 + 29 not in work.plant
 
 
 def test_the_plants_beside_finds_are_inspected_those_in_their_row_at_once():
     scene = scene_with(np.full(N, 0.01), company=0.6)
-    calm = plan_day(scene, Adaptive())
+    calm = plan_work(scene, Adaptive())
     k = len(calm) // 3
     find = int(calm.plant[k])
     found = np.zeros(N, bool)
@@ -164,4 +158,4 @@ def test_impossible_settings_are_refused(bad):
 
 def test_one_plant_is_visited():
     scene = scene_on(GRIDS["one plant"], hours=1.0)
-    assert plan_day(scene, Adaptive()).plant.tolist() == [0]
+    assert plan_work(scene, Adaptive()).plant.tolist() == [0]

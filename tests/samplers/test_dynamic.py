@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
-from fieldmon.planning.workday import plan_day, work_day
-from fieldmon.samplers import GATE, NEVER, Dynamic, Scene
+from fieldmon.planning.workday import plan_work, work_day
+from fieldmon.plot.travel import GATE
+from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.samplers.dynamic import Dynamic
 from tests.scenes import GRIDS, charged_s, scene_on
 
 GRID = GRIDS["rectangle"]
@@ -31,7 +33,7 @@ def test_the_nearest_open_plant_is_always_next():
     scene = scene_with([])
     room = int(scene.seconds_left // scene.robot.visit_s)
     open_plants, at = set(range(min(room, len(GRID)))), GATE
-    for plant in plan_day(scene, Dynamic()).plant.tolist():
+    for plant in plan_work(scene, Dynamic()).plant.tolist():
         best_s = min(charged_s(scene, at, other) for other in open_plants)
         assert charged_s(scene, at, plant) == pytest.approx(best_s)
         open_plants.remove(plant)
@@ -40,14 +42,14 @@ def test_the_nearest_open_plant_is_always_next():
 
 def test_suspicious_plants_come_before_all_others():
     suspicious = [20, 21, 22, 90, 150]
-    plants = plan_day(scene_with(suspicious), Dynamic()).plant.tolist()
+    plants = plan_work(scene_with(suspicious), Dynamic()).plant.tolist()
     assert set(plants[:5]) == set(suspicious)
     assert len(plants) > 5
 
 
 def test_after_a_find_the_plants_beside_it_are_inspected_while_near():
     scene = scene_with(list(range(17 * 5, 17 * 6)), hours=1.0)
-    calm = plan_day(scene, Dynamic())
+    calm = plan_work(scene, Dynamic())
     found = np.zeros(len(GRID), bool)
     find = int(calm.plant[3])
     found[find] = True

@@ -6,10 +6,17 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.robot import Robot
-from fieldmon.samplers import NEVER, Neighbor, NeighborRandom, RandomShare, Snake, SnakeRandom
+from fieldmon.samplers.base import NEVER
+from fieldmon.samplers.without_prior import (
+    Neighbor,
+    NeighborRandom,
+    RandomShare,
+    Snake,
+    SnakeRandom,
+)
 from tests.scenes import charged_s, scene_on
 
 # the thesis's vineyard in small: 4 vine rows, outer faces not inspected, so 6 sides of 8 plants
@@ -21,7 +28,7 @@ def day(sampler, hours=24.0, grid=VINEYARD, **changes):
     scene = scene_on(grid, hours=hours)
     robot = Robot(hours=hours, returns=False)
     scene = replace(scene, robot=robot, **changes)
-    return scene, plan_day(scene, sampler)
+    return scene, plan_work(scene, sampler)
 
 
 def after(scene, work, day=1, **changes):
@@ -95,7 +102,7 @@ def test_the_next_day_goes_on_where_the_last_one_ended(sampler):
     _, whole = day(sampler)
     scene, first = day(sampler, hours=0.25)
     tomorrow = after(scene, first, seconds_left=24 * 3600.0)
-    second = plan_day(tomorrow, sampler)
+    second = plan_work(tomorrow, sampler)
     k = len(first)
     assert 2 < k < 24
     ahead, expected = second.plant[:6], whole.plant[k : k + 6]
@@ -108,7 +115,7 @@ def test_a_sweep_on_its_way_back_goes_on_backwards():
     scene, first = day(Snake(every=2), hours=0.55)
     places = [VINEYARD.snake.tolist().index(p) for p in first.plant]
     assert places[-1] < places[-2], "the day must end on the way back for this test"
-    second = plan_day(after(scene, first), Snake(every=2))
+    second = plan_work(after(scene, first), Snake(every=2))
     assert VINEYARD.snake.tolist().index(second.plant[0]) == places[-1] - 2
 
 
@@ -130,7 +137,7 @@ def test_the_random_share_is_drawn_anew_every_day_and_visited_in_order():
     order = [VINEYARD.snake.tolist().index(p) for p in work.plant]
     assert len(order) == 6 * P // 4
     assert order == sorted(order)
-    other = plan_day(after(scene, work, key=np.uint64(9)), RandomShare(every=4))
+    other = plan_work(after(scene, work, key=np.uint64(9)), RandomShare(every=4))
     assert set(other.plant.tolist()) != set(work.plant.tolist())
 
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from fieldmon.simulation.metrics import SeasonFigures, figures
+from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
 from tests.simulation.test_season import season
 
 
 def by_hand(detection):
     zeros = np.zeros(len(detection), int)
-    return SeasonFigures(np.array(detection), zeros, zeros, zeros, zeros, zeros)
+    return SeasonMetrics(np.array(detection), zeros, zeros, zeros, zeros, zeros)
 
 
 @pytest.mark.parametrize(("level", "day"), [(30, 2), (50, 3), (80, None), (100, None)])
@@ -19,16 +19,16 @@ def test_d_levels_count_days_from_one(level, day):
 
 def test_infested_plant_days_are_counted_in_the_evening():
     days = season("naive")
-    assert figures(days).infested_plant_days == sum(day.left for day in days)
+    assert season_metrics(days).infested_plant_days == sum(day.left for day in days)
 
 
 def test_the_columns_are_those_of_the_days():
     days = season("bouncy")
-    columns = figures(iter(days))
+    columns = season_metrics(iter(days))
     assert columns.detection_pct.tolist() == [day.detection_pct for day in days]
     assert columns.found.sum() == days[-1].ever_found
     assert columns.new.sum() == days[-1].ever_infested
 
 
 def test_no_days_have_no_figures():
-    assert len(figures([]).found) == 0
+    assert len(season_metrics([]).found) == 0

@@ -12,7 +12,8 @@ from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import SAMPLERS, sampler
-from fieldmon.simulation.season import SeasonSettings, Start, days
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 
 AISLES = Aisles.of(rectangle(20, 20))
 N = 400
@@ -27,7 +28,11 @@ def start(share=0.02, seed=3):
 def season(name="naive", robot=None, settings=None, seed=3, first=None):
     robot = robot or Robot(hours=2.0)
     settings = settings or SeasonSettings(n_days=6, spread=Spread(0.2))
-    return list(days(AISLES, robot, sampler(name), first or start(), settings, RandomStreams(seed)))
+    return list(
+        simulated_days(
+            AISLES, robot, sampler(name), first or start(), settings, RandomStreams(seed)
+        )
+    )
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -103,7 +108,9 @@ def test_a_robot_that_stays_out_goes_on_where_it_stopped():
 
 def test_a_season_can_be_left_half_way():
     settings = SeasonSettings(n_days=10**9)
-    walk = days(AISLES, Robot(hours=1.0), sampler("naive"), start(), settings, RandomStreams(1))
+    walk = simulated_days(
+        AISLES, Robot(hours=1.0), sampler("naive"), start(), settings, RandomStreams(1)
+    )
     assert [next(walk).number for _ in range(3)] == [0, 1, 2]
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.studies.plant_maps import LAYOUTS, Layout, read_plant_map, read_plant_maps
+from fieldmon.studies.plant_maps import PUBLIC_MAPS, MapColumns, read_plant_map, read_plant_maps
 
-DATED = Layout("row", "plant", "state", 4.0, 3.0, date="year")
+DATED = MapColumns("row", "plant", "state", 4.0, 3.0, date="year")
 
 
 def write(path, *lines):
@@ -36,9 +36,9 @@ def test_dates_that_are_numbers_are_in_their_order(tmp_path):
 
 
 def test_several_plots_in_a_file_are_several_maps(tmp_path):
-    layout = Layout("row", "plant", "state", 1.0, 1.0, part="field")
+    columns = MapColumns("row", "plant", "state", 1.0, 1.0, part="field")
     rows = ["F1\t1\t1\tY", "F1\t1\t2\tN", "F2\t1\t1\tN"]
-    made = read_plant_map(write(tmp_path / "p.txt", "field\trow\tplant\tstate", *rows), layout)
+    made = read_plant_map(write(tmp_path / "p.txt", "field\trow\tplant\tstate", *rows), columns)
     assert [each.name for each in made] == ["p F1", "p F2"]
     assert [each.infested.tolist() for each in made] == [[[True, False]], [[False]]]
 
@@ -66,7 +66,7 @@ def test_a_folder_without_maps_is_refused(tmp_path):
 
 def test_known_maps_are_found_by_name_in_folders(tmp_path):
     (tmp_path / "deep").mkdir()
-    name = next(iter(LAYOUTS))
+    name = next(iter(PUBLIC_MAPS))
     write(tmp_path / "deep" / name, "x,y,t,i", "1,1,1991,1", "2,1,1991,0")
     write(tmp_path / "other.csv", "a", "b")
     (made,) = read_plant_maps(tmp_path)

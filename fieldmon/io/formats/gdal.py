@@ -24,20 +24,20 @@ _UNREADABLE = (DataSourceError, DataLayerError, RuntimeError, ValueError, OSErro
 _BYTE_FOR_BYTE = "ISO-8859-1"
 
 
-class Listed(NamedTuple):
+class GdalLayer(NamedTuple):
     """A layer by name, with the type of its geometry (None for a plain table)."""
 
     name: str
     geometry_type: str | None
 
 
-def list_layers(path: Path, name: str) -> list[Listed]:
+def list_layers(path: Path, name: str) -> list[GdalLayer]:
     """Return the layers of a staged file."""
     try:
         listed = pyogrio.list_layers(path)
     except _UNREADABLE as bad:
         raise _unreadable(name, bad) from bad
-    return [Listed(str(layer), kind) for layer, kind in listed]
+    return [GdalLayer(str(layer), kind) for layer, kind in listed]
 
 
 def read_layer(path: Path, name: str, layer: str | None, encoding: str | None = None) -> Layer:

@@ -52,8 +52,8 @@ def read_geojson(path: Path, name: str, encoding: str | None) -> Layer:
     geometry, more = _geometries(features, name)
     properties = [_properties(feature) for feature in features]
     columns = _columns(properties, name)
-    crs, crs_findings = _crs(root)
-    return Layer(name, columns, geometry, crs, (*messages, *more, *crs_findings))
+    crs, crs_messages = _crs(root)
+    return Layer(name, columns, geometry, crs, (*messages, *more, *crs_messages))
 
 
 @contextmanager

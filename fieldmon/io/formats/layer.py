@@ -31,7 +31,7 @@ class Layer:
         ``(n,)`` shapely geometries or None, in the file's coordinates; None for a table.
     crs
         As the file states it (authority code, WKT or PROJJSON); None where it does not.
-    findings
+    messages
         What reading it had to say.
     """
 
@@ -58,7 +58,7 @@ class Layer:
         )
 
     def saying(self, *more: ImportMessage) -> Layer:
-        """Return the same layer with more findings."""
+        """Return the same layer with more messages."""
         return replace(self, messages=(*self.messages, *more))
 
     def checked(self) -> Layer:

@@ -12,7 +12,7 @@ from fieldmon.errors import FileProblem
 HEAD_BYTES = 4096
 
 
-class Kind(StrEnum):
+class FileKind(StrEnum):
     """The kinds of files that can be read; the value is the ending a staged copy gets."""
 
     SHAPEFILE = ".shp"
@@ -32,34 +32,34 @@ class Kind(StrEnum):
 
 VECTOR = frozenset(
     {
-        Kind.SHAPEFILE,
-        Kind.GEOPACKAGE,
-        Kind.GEODATABASE,
-        Kind.GEOJSON,
-        Kind.FLATGEOBUF,
-        Kind.PARQUET,
-        Kind.KML,
-        Kind.GML,
-        Kind.GPX,
+        FileKind.SHAPEFILE,
+        FileKind.GEOPACKAGE,
+        FileKind.GEODATABASE,
+        FileKind.GEOJSON,
+        FileKind.FLATGEOBUF,
+        FileKind.PARQUET,
+        FileKind.KML,
+        FileKind.GML,
+        FileKind.GPX,
     }
 )
-TABULAR = frozenset({Kind.WORKBOOK, Kind.TABLE})
+TABULAR = frozenset({FileKind.WORKBOOK, FileKind.TABLE})
 READABLE = (
     "a shapefile (zipped or with its .dbf, .shx and .prj), GeoPackage, GeoJSON, KML or KMZ, GML, "
     "GPX, FlatGeobuf, GeoParquet, a zipped file geodatabase, CSV or an Excel workbook (.xlsx)"
 )
 
 _MAGIC = (
-    (b"SQLite format 3\x00", Kind.GEOPACKAGE),
-    (b"PK\x03\x04", Kind.ARCHIVE),
-    (b"PK\x05\x06", Kind.ARCHIVE),
-    (b"fgb", Kind.FLATGEOBUF),
-    (b"PAR1", Kind.PARQUET),
-    (b"\x00\x00\x27\x0a", Kind.SHAPEFILE),
-    (b"II*\x00", Kind.RASTER),
-    (b"MM\x00*", Kind.RASTER),
-    (b"II+\x00", Kind.RASTER),
-    (b"MM\x00+", Kind.RASTER),
+    (b"SQLite format 3\x00", FileKind.GEOPACKAGE),
+    (b"PK\x03\x04", FileKind.ARCHIVE),
+    (b"PK\x05\x06", FileKind.ARCHIVE),
+    (b"fgb", FileKind.FLATGEOBUF),
+    (b"PAR1", FileKind.PARQUET),
+    (b"\x00\x00\x27\x0a", FileKind.SHAPEFILE),
+    (b"II*\x00", FileKind.RASTER),
+    (b"MM\x00*", FileKind.RASTER),
+    (b"II+\x00", FileKind.RASTER),
+    (b"MM\x00+", FileKind.RASTER),
 )
 _REFUSED_MAGIC = (
     (b"\x1f\x8b", "is packed with gzip. Unpack it and choose the file inside"),
@@ -74,9 +74,9 @@ _REFUSED_MAGIC = (
 _BOMS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
 _TAG = re.compile(rb"<\s*(?:[\w.-]+:)?([A-Za-z][\w.-]*)")
 _XML_ROOTS = {
-    b"kml": Kind.KML,
-    b"gpx": Kind.GPX,
-    b"featurecollection": Kind.GML,
+    b"kml": FileKind.KML,
+    b"gpx": FileKind.GPX,
+    b"featurecollection": FileKind.GML,
 }
 _REFUSED_ROOTS = {
     b"ogrvrtdatasource": "only points at other files (VRT). Choose the files themselves",
@@ -96,7 +96,7 @@ _REFUSED_ENDINGS = {
 }
 
 
-def kind_of(head: bytes, name: str) -> Kind:
+def kind_of(head: bytes, name: str) -> FileKind:
     """Return the kind of a file from its first bytes; raise `FileProblem` for what is unreadable.
 
     Only for plain text does the ending of the name count.
@@ -117,7 +117,7 @@ def kind_of(head: bytes, name: str) -> Kind:
     return _text_kind(head, name)
 
 
-def _text_kind(head: bytes, name: str) -> Kind:
+def _text_kind(head: bytes, name: str) -> FileKind:
     text = head
     for bom in _BOMS:
         text = text.removeprefix(bom)
@@ -125,15 +125,15 @@ def _text_kind(head: bytes, name: str) -> Kind:
         text = text.replace(b"\x00", b"")
     start = text.lstrip()
     if start.startswith((b"{", b"[", b"\x1e{")):
-        return Kind.GEOJSON
+        return FileKind.GEOJSON
     if start.startswith(b"<"):
         return _xml_kind(start, name)
     if b"\x00" in text:
         raise FileProblem(f"{name} must be {READABLE}, but it is none of them.")
-    return Kind.TABLE
+    return FileKind.TABLE
 
 
-def _xml_kind(start: bytes, name: str) -> Kind:
+def _xml_kind(start: bytes, name: str) -> FileKind:
     bare = re.sub(rb"<!--.*?(-->|$)|<\?.*?(\?>|$)", b"", start, flags=re.DOTALL)
     # map files have no DTD of their own; whatever stands in one is there to be expanded
     if b"<!ENTITY" in bare or re.search(rb"<!DOCTYPE[^>\[]*\[", bare):
@@ -148,7 +148,7 @@ def _xml_kind(start: bytes, name: str) -> Kind:
     if root in _REFUSED_ROOTS:
         raise FileProblem(f"{name} {_REFUSED_ROOTS[root]}.")
     if b"opengis.net/gml" in start:
-        return Kind.GML
+        return FileKind.GML
     raise FileProblem(
         f"{name} must be KML, GML or GPX where it is XML, but it begins with "
         f"{f'<{root.decode()}>' if root else 'something else'}. Export it as GeoPackage or GeoJSON."

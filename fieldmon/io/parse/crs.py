@@ -44,7 +44,7 @@ _MOST_OFFERED = 8
 _NEAR_KM = 300.0
 
 
-class Candidate(NamedTuple):
+class CrsCandidate(NamedTuple):
     """A coordinate system that could be meant, and where the data would land with it."""
 
     code: str
@@ -55,7 +55,7 @@ class Candidate(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Way:
+class Transformation:
     """How coordinates of one system become degrees WGS84.
 
     Parameters
@@ -67,7 +67,7 @@ class Way:
     transformer
         Always x, y in; longitude, latitude out. None: they are degrees WGS84 already.
     missing_grid
-        File that a better way would need and that is not on this machine.
+        File that a better one would need and that is not on this machine.
     """
 
     code: str
@@ -92,12 +92,12 @@ class Way:
             if self.accuracy_m is None
             else f"PROJ states {self.accuracy_m:g} m for this"
         )
-        way = f"Positions were transformed from {self.name} ({self.code}); {stated}."
+        how = f"Positions were transformed from {self.name} ({self.code}); {stated}."
         if self.missing_grid is None:
-            return [seen(way)]
+            return [seen(how)]
         return [
             doubtful(
-                f"{way} A better transformation needs the grid file {self.missing_grid}, which "
+                f"{how} A better transformation needs the grid file {self.missing_grid}, which "
                 "is not on this machine: add it to PROJ's data folder if that is too coarse."
             )
         ]
@@ -117,16 +117,16 @@ def system(text: str) -> pyproj.CRS:
         ) from None
 
 
-def way_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Way:
-    """Return the best way on this machine from a system to degrees, for data around a centre."""
+def transformation_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Transformation:
+    """Return the best transformation on this machine to degrees, for data around a centre."""
     flat = _horizontal(crs)
     code, name = code_of(flat), flat.name
     if flat.equals(pyproj.CRS(WGS84), ignore_axis_order=True):
-        return Way(code, name)
+        return Transformation(code, name)
     try:
         rough = pyproj.Transformer.from_crs(flat, WGS84, always_xy=True).transform(*centre)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # a missing grid is a finding of ours
+            warnings.simplefilter("ignore", UserWarning)  # a missing grid is a message of ours
             group = TransformerGroup(flat, WGS84, always_xy=True, area_of_interest=_around(*rough))
     except ProjError as bad:
         raise FileProblem(
@@ -140,7 +140,7 @@ def way_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Way:
         grids = group.unavailable_operations[0].grids
         missing = next((grid.short_name for grid in grids if not grid.available), None)
     accuracy = best.accuracy if best.accuracy >= 0 else None
-    return Way(code, name, accuracy, best, missing)
+    return Transformation(code, name, accuracy, best, missing)
 
 
 def code_of(crs: pyproj.CRS) -> str:
@@ -171,16 +171,16 @@ def candidates(
     centre: tuple[float, float],
     country: str | None = None,
     near: tuple[float, float] | None = None,
-) -> list[Candidate]:
+) -> list[CrsCandidate]:
     """Return the systems in which coordinates would land where the system is used, best first."""
-    found: list[Candidate] = []
+    found: list[CrsCandidate] = []
     if abs(centre[0]) <= 180 and abs(centre[1]) <= 90:
-        found.append(Candidate("EPSG:4326", "WGS 84", *centre, _km(near, *centre)))
+        found.append(CrsCandidate("EPSG:4326", "WGS 84", *centre, _km(near, *centre)))
     for info in _possible(centre, country, near):
         landed = _landing(info, centre)
         if landed is not None:
             code = f"{info.auth_name}:{info.code}"
-            found.append(Candidate(code, info.name, *landed, _km(near, *landed)))
+            found.append(CrsCandidate(code, info.name, *landed, _km(near, *landed)))
     if near is not None:
         found.sort(key=lambda c: round(c.km_away))
         found = [c for c in found if c.km_away < _NEAR_KM] or found
@@ -188,8 +188,8 @@ def candidates(
 
 
 def _exactly(
-    rough: Candidate, centre: tuple[float, float], near: tuple[float, float] | None
-) -> Candidate:
+    rough: CrsCandidate, centre: tuple[float, float], near: tuple[float, float] | None
+) -> CrsCandidate:
     """Return a candidate with its datum taken into account, which takes a hundred times longer."""
     way = pyproj.Transformer.from_crs(rough.code, WGS84, always_xy=True)
     bare = centre if rough.code == "EPSG:4326" else _without_zone(_projected()[rough.code], centre)
@@ -263,9 +263,9 @@ def _without_zone(info: CRSInfo, centre: tuple[float, float]) -> tuple[float, fl
     return centre
 
 
-def _distinct(found: list[Candidate]) -> list[Candidate]:
+def _distinct(found: list[CrsCandidate]) -> list[CrsCandidate]:
     """Return the candidates without those that land within 300 m of a likelier one."""
-    kept: list[Candidate] = []
+    kept: list[CrsCandidate] = []
     for one in found:
         if all(_km((other.lon, other.lat), one.lon, one.lat) > 0.3 for other in kept):
             kept.append(one)

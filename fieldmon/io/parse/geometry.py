@@ -79,7 +79,7 @@ def _measured(geometry: shapely.Geometry) -> _Measured:
     return _Measured(*of_polygon)
 
 
-class Sorted(NamedTuple):
+class GeometryKinds(NamedTuple):
     """Masks ``(n,)`` of features by what they are; none of them for a missing geometry."""
 
     areas: NDArray[np.bool_]
@@ -87,11 +87,11 @@ class Sorted(NamedTuple):
     points: NDArray[np.bool_]
 
 
-def sort_out(geometry: NDArray[np.object_]) -> Sorted:
+def geometry_kinds(geometry: NDArray[np.object_]) -> GeometryKinds:
     """Return which features are areas, lines or points; a collection is the most it holds."""
     there = ~shapely.is_missing(geometry) & ~shapely.is_empty(geometry)
     dimensions = np.where(there, shapely.get_dimensions(geometry), -1)
-    return Sorted(dimensions == 2, dimensions == 1, dimensions == 0)
+    return GeometryKinds(dimensions == 2, dimensions == 1, dimensions == 0)
 
 
 def closed_lines(geometry: NDArray[np.object_]) -> NDArray[np.bool_]:

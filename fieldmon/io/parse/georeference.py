@@ -10,7 +10,7 @@ import shapely
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, repaired, seen
-from fieldmon.io.parse.crs import ask_for_crs, km_between, system, utm_zone, way_from
+from fieldmon.io.parse.crs import ask_for_crs, km_between, system, transformation_from, utm_zone
 
 if TYPE_CHECKING:
     import pyproj
@@ -24,7 +24,7 @@ _LOOKED_AT = 5_000
 
 
 @dataclass(frozen=True, eq=False)
-class Placed:
+class Georeferenced:
     """Coordinates on the earth.
 
     Parameters
@@ -33,7 +33,7 @@ class Placed:
         ``(n, 2)`` degrees WGS84.
     step_m
         Coarsest step that all coordinates of the file are whole multiples of: how they are rounded.
-    findings
+    messages
         What was found on the way.
     """
 
@@ -52,7 +52,7 @@ def place_geometry(
     return moved, placed.messages
 
 
-def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> Placed:
+def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> Georeferenced:
     """Return degrees WGS84 for a file's coordinates ``(n, 2)``; ask where they cannot be known."""
     messages: list[ImportMessage] = []
     if not np.isfinite(xy).all():
@@ -70,12 +70,12 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
     crs = system(wanted)
     _check_range(xy, crs, options)
     xy, more = _without_zone(xy, crs)
-    way = way_from(crs, _middle(xy))
-    lonlat = way.lonlat(xy)
+    through = transformation_from(crs, _middle(xy))
+    lonlat = through.lonlat(xy)
     _check_landing(lonlat, crs)
     step_m = _step(xy) * (_DEGREE_M if crs.is_geographic else 1.0)
-    found = (*messages, *more, *way.messages(), *_distance(lonlat, options))
-    return Placed(lonlat, step_m, found)
+    found = (*messages, *more, *through.messages(), *_distance(lonlat, options))
+    return Georeferenced(lonlat, step_m, found)
 
 
 def _middle(xy: NDArray[np.float64]) -> tuple[float, float]:

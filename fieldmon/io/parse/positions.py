@@ -22,18 +22,26 @@ from fieldmon.io.import_report import (
     repaired,
     seen,
 )
+from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.geometry import sort_out
+from fieldmon.io.parse.geometry import geometry_kinds
 from fieldmon.io.parse.georeference import place
 from fieldmon.io.parse.values import (
     all_degrees,
     hemispheres,
     is_missing,
     numbers,
-    pairs,
     plain_numbers,
+    positions_in_cells,
 )
-from fieldmon.io.readers.places import Named, Places, by_plant, by_plot
+from fieldmon.io.readers.places import (
+    NamedPlaces,
+    PlacedByName,
+    by_plant,
+    by_plot,
+    by_plot_and_plant,
+    plots_called,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -47,7 +55,7 @@ _COARSE_M = 1.5
 
 
 @dataclass(frozen=True, eq=False)
-class Located:
+class LocatedFeatures:
     """The features of a layer that have a position.
 
     Parameters
@@ -58,29 +66,34 @@ class Located:
         ``(n, 2)`` degrees.
     accuracy_m
         ``(n,)`` what the way of writing positions leaves open; NaN where that is nothing.
-    findings
+    messages
         What was found on the way.
+    plot
+        ``(n,)`` name of the plot that each is on by its own words; None where they name none.
     """
 
     layer: Layer
     lonlat: NDArray[np.float64]
     accuracy_m: NDArray[np.float64]
     messages: tuple[ImportMessage, ...]
+    plot: NDArray[np.str_] | None = None
 
 
-def located(layer: Layer, options: ReadOptions, places: Places | None = None) -> Located:
+def located(
+    layer: Layer, options: ReadOptions, places: NamedPlaces | None = None
+) -> LocatedFeatures:
     """Return the features of a layer that have a position, or name a place that has one."""
     if layer.geometry is not None:
         return _points(layer, options)
     way = _way(layer, options)
     if way is not None:
         return _by_coordinates(layer, options, *way)
-    return _by_name(layer, options, places or Places())
+    return _by_name(layer, options, places or NamedPlaces())
 
 
-def _points(layer: Layer, options: ReadOptions) -> Located:
+def _points(layer: Layer, options: ReadOptions) -> LocatedFeatures:
     geometry = layer.geometry
-    areas, lines, points = sort_out(np.asarray(geometry))
+    areas, lines, points = geometry_kinds(np.asarray(geometry))
     if geometry is None or not points.any():
         raise FileProblem(
             f"{layer.name} must hold points, but it holds {int(areas.sum())} area(s) and "
@@ -94,7 +107,7 @@ def _points(layer: Layer, options: ReadOptions) -> Located:
     kept = layer.take(np.flatnonzero(points)[index])
     placed = place(shapely.get_coordinates(single), layer.crs, options)
     accuracy, coarse = _rounding(placed.step_m, len(kept))
-    return Located(kept, placed.lonlat, accuracy, (*messages, *placed.messages, *coarse))
+    return LocatedFeatures(kept, placed.lonlat, accuracy, (*messages, *placed.messages, *coarse))
 
 
 def _way(layer: Layer, options: ReadOptions) -> tuple[str, tuple[str, ...]] | None:
@@ -118,7 +131,7 @@ def _way(layer: Layer, options: ReadOptions) -> tuple[str, tuple[str, ...]] | No
 
 def _holds_pairs(layer: Layer, name: str) -> bool:
     some = [text(v) for v in layer.column(name)[:50] if not is_missing(v)]
-    return bool(some) and bool(np.isfinite(pairs(some).values).any())
+    return bool(some) and bool(np.isfinite(positions_in_cells(some).values).any())
 
 
 def _are_numbers_of_plants(layer: Layer, names: tuple[str, ...]) -> bool:
@@ -130,7 +143,7 @@ def _are_numbers_of_plants(layer: Layer, names: tuple[str, ...]) -> bool:
 
 def _by_coordinates(
     layer: Layer, options: ReadOptions, how: str, names: tuple[str, ...]
-) -> Located:
+) -> LocatedFeatures:
     shown = " and ".join(repr(name) for name in names)
     xy, crs, messages = _coordinates(layer, options, how, names)
     stated, more = _stated_crs(layer, options)
@@ -150,7 +163,7 @@ def _by_coordinates(
     placed = place(xy[there], stated or crs, options)
     accuracy, coarse = _rounding(placed.step_m, int(there.sum()))
     found = (seen(f"Positions are in column(s) {shown}."), *messages, *more)
-    return Located(
+    return LocatedFeatures(
         layer.take(np.flatnonzero(there)),
         placed.lonlat,
         accuracy,
@@ -165,12 +178,12 @@ def _finite(xy: NDArray[np.float64]) -> NDArray[np.bool_]:
 def _coordinates(
     layer: Layer, options: ReadOptions, how: str, names: tuple[str, ...]
 ) -> tuple[NDArray[np.float64], str | None, list[ImportMessage]]:
-    """Return what the columns hold ``(n, 2)``, its coordinate system if that is sure, findings."""
+    """Return what the columns hold ``(n, 2)``, its coordinate system if that is sure, messages."""
     columns = [layer.column(name) for name in names]
     if how == "metres":
         return np.stack([numbers(c, options.decimal) for c in columns], axis=1), None, []
     if how == "together":
-        read = pairs([text(v) for v in columns[0]])
+        read = positions_in_cells([text(v) for v in columns[0]])
         return read.values, _WGS84, _order_of(read.is_certain, names[0])
     xy = np.stack([all_degrees(c, options.decimal) for c in columns], axis=1)
     if _letters_are_crossed(layer, names):
@@ -240,19 +253,19 @@ def _known_system(value: str) -> str | None:
     return known
 
 
-def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
+def _by_name(layer: Layer, options: ReadOptions, places: NamedPlaces) -> LocatedFeatures:
     """Return the records that name a plant or a plot, at the place they name."""
     row = options.column("row") or find("row", layer.columns)
     taken = frozenset({row} if row else ())
     plant = options.column("plant") or find("plant", layer.columns, taken)
     told = options.column("plot")  # "" says that no column names a plot
     plot = find("plot", layer.columns) if told is None else told
-    if plant and (row or not plot) and (places.plants or not plot):
-        rows = None if row is None else layer.column(row)
-        _check_one_plot(layer, plot)
-        named = by_plant(rows, layer.column(plant), places)
+    # where plots are known but no plants, a record is somewhere on the plot that it names
+    no_plants = places.plants is None and not places.plants_of
+    if plant and (row or not plot) and not (plot and places.plots and no_plants):
+        named = _by_plant(layer, (plot, row, plant), options, places)
     elif plot and places.plants is not None and not places.plots:
-        named = by_plant(None, layer.column(plot), places)
+        named = by_plant(None, layer.column(plot), places.plants)
     elif plot:
         named = by_plot(layer.column(plot), places)
     else:
@@ -264,6 +277,44 @@ def _by_name(layer: Layer, options: ReadOptions, places: Places) -> Located:
             tuple(layer.columns),
         )
     return _kept(layer, named)
+
+
+def _by_plant(
+    layer: Layer,
+    names: tuple[str | None, str | None, str],
+    options: ReadOptions,
+    places: NamedPlaces,
+) -> PlacedByName:
+    """Return where records lie that name plants, on the plot that they name or on the only one.
+
+    `names` are those of the columns of plots, rows and plants.
+    """
+    if places.plants is None and not places.plants_of:
+        raise _plants_needed(layer, names[0])
+    row, plant = None if names[1] is None else layer.column(names[1]), layer.column(names[2])
+    by_hand = options.plot if isinstance(options, RecordOptions) else None
+    if names[0]:
+        plot = layer.column(names[0])
+        if places.plants is None or plots_called({text(v) for v in plot}, places.plots):
+            return by_plot_and_plant(plot, row, plant, places)
+    elif by_hand is not None:
+        plot = np.full(len(layer), by_hand, dtype=object)
+        return by_plot_and_plant(plot, row, plant, places)
+    if places.plants is None:
+        raise _plants_needed(layer, names[0])
+    _check_one_plot(layer, names[0])
+    return by_plant(row, plant, places.plants)
+
+
+def _plants_needed(layer: Layer, plot: str | None) -> ChoiceNeeded:
+    """Return the question for the plants that records name, with the plots they name."""
+    plots = sorted({text(v) for v in layer.column(plot)} - {""}) if plot else []
+    return ChoiceNeeded(
+        "The records name plants instead of positions. Give the plants they name: the plot's "
+        "own rows and numbers, or a file with their positions.",
+        "plants",
+        tuple(plots),
+    )
 
 
 def _check_one_plot(layer: Layer, plot: str | None) -> None:
@@ -281,18 +332,19 @@ def _check_one_plot(layer: Layer, plot: str | None) -> None:
         )
 
 
-def _kept(layer: Layer, named: Named) -> Located:
+def _kept(layer: Layer, named: PlacedByName) -> LocatedFeatures:
     there = _finite(named.lonlat)
     if not there.any():
         said = " ".join(message.sentence for message in named.messages)
         raise FileProblem(
             f"Records of {layer.name} must name places that are known, but none does. {said}"
         )
-    return Located(
+    return LocatedFeatures(
         layer.take(np.flatnonzero(there)),
         named.lonlat[there],
         named.accuracy_m[there],
         named.messages,
+        None if named.plot is None else named.plot[there],
     )
 
 

@@ -93,7 +93,7 @@ def numbers(column: NDArray[np.object_], decimal: str | None = None) -> Float:
     return np.array([np.nan if c.casefold() in MISSING else number(c, mark) for c in cells])
 
 
-class Counted(NamedTuple):
+class CellCount(NamedTuple):
     """What a cell for a count says: how many, and whether there is anything."""
 
     number: float
@@ -105,38 +105,38 @@ _BOUND = re.compile(r"^(<=|>=|<|>|~|≈|≤|≥|ca\.?|about|approx\.?)?\s*([\d.,
 _RANGE = re.compile(r"^([\d.,]+)\s*(?:-|–|to|bis|a)\s*([\d.,]+)$")
 
 
-def counted(cell: str, decimal: str = ".") -> Counted:
+def counted(cell: str, decimal: str = ".") -> CellCount:
     """Return what a cell for a count says; zero is absence, a missing cell is nothing known."""
     word = cell.strip().casefold()
     if word in MISSING:
-        return Counted(np.nan, UNKNOWN, is_rough=False)
+        return CellCount(np.nan, UNKNOWN, is_rough=False)
     value = number(cell, decimal)
     if np.isfinite(value):
         if value < 0:
-            return Counted(np.nan, UNKNOWN, is_rough=True)
-        return Counted(value, PRESENT if value > 0 else ABSENT, is_rough=False)
+            return CellCount(np.nan, UNKNOWN, is_rough=True)
+        return CellCount(value, PRESENT if value > 0 else ABSENT, is_rough=False)
     if word in _NO:
-        return Counted(0.0, ABSENT, is_rough=False)
+        return CellCount(0.0, ABSENT, is_rough=False)
     if word in _YES:
-        return Counted(np.nan, PRESENT, is_rough=False)
+        return CellCount(np.nan, PRESENT, is_rough=False)
     return _roughly(word, decimal)
 
 
-def _roughly(word: str, decimal: str) -> Counted:
+def _roughly(word: str, decimal: str) -> CellCount:
     between = _RANGE.match(word)
     if between:
         low, high = (number(part, decimal) for part in between.groups())
-        return Counted((low + high) / 2, PRESENT if high > 0 else ABSENT, is_rough=True)
+        return CellCount((low + high) / 2, PRESENT if high > 0 else ABSENT, is_rough=True)
     bound = _BOUND.match(word)
     if not bound:
-        return Counted(np.nan, UNKNOWN, is_rough=True)
+        return CellCount(np.nan, UNKNOWN, is_rough=True)
     sign, digits, _ = bound.groups()
     value = number(digits, decimal)
     if sign in {"<", "<=", "≤"}:
         # fewer than 5 were seen, so some were; fewer than 1 may be none
         some = value > 1 or (sign != "<" and value >= 1)
-        return Counted(np.nan, PRESENT if some else UNKNOWN, is_rough=True)
-    return Counted(value, PRESENT if value > 0 else UNKNOWN, is_rough=True)
+        return CellCount(np.nan, PRESENT if some else UNKNOWN, is_rough=True)
+    return CellCount(value, PRESENT if value > 0 else UNKNOWN, is_rough=True)
 
 
 def presence(cell: str) -> int:
@@ -210,7 +210,7 @@ def hemispheres(cells: Iterable[str]) -> set[str]:
     return {(m.group(1) or m.group(4)).upper() for m in found if m}
 
 
-class Pairs(NamedTuple):
+class CellPositions(NamedTuple):
     """Positions that stand in one cell: ``(n, 2)`` lon, lat; NaN for none; is their order sure."""
 
     values: NDArray[np.float64]
@@ -220,7 +220,7 @@ class Pairs(NamedTuple):
 _WKT_POINT = re.compile(r"^POINT\s*Z?M?\s*\(\s*(\S+)\s+([^\s)]+).*\)$", re.IGNORECASE)
 
 
-def pairs(cells: list[str]) -> Pairs:
+def positions_in_cells(cells: list[str]) -> CellPositions:
     """Return positions from cells that hold both coordinates.
 
     WKT is longitude, latitude; letters say which is which; else latitude comes first, as people
@@ -234,7 +234,7 @@ def pairs(cells: list[str]) -> Pairs:
     if (np.abs(values[read & ~sure, 1]) > 90).any():
         values[~sure] = values[~sure][:, ::-1]
         sure[:] = True
-    return Pairs(values, bool(sure[read].all()))
+    return CellPositions(values, bool(sure[read].all()))
 
 
 def _pair(cell: str) -> tuple[tuple[float, float], bool]:
@@ -300,7 +300,7 @@ _EXCEL_ZERO = date(1899, 12, 30)
 _EXCEL_RANGE = (20_000, 80_000)  # 1954 to 2119: what a serial number of a day can be here
 
 
-class Dated(NamedTuple):
+class DatedColumn(NamedTuple):
     """A column of dates: the days, and what is unclear about them."""
 
     day: NDArray[np.datetime64]
@@ -311,7 +311,7 @@ class Dated(NamedTuple):
     n_serial: int
 
 
-def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> Dated:
+def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> DatedColumn:
     """Return a column as days; NaT where missing or no date.
 
     The order of day and month is the one told; else the only one that fits all of the column. Where
@@ -330,10 +330,10 @@ def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> Dated:
     broken = [c for c in cells if known[c] is None and c.casefold() not in MISSING]
     serial = sum(known[c] is not None and _is_serial(c) for c in cells)
     some = tuple(dict.fromkeys(broken))[:5]
-    return Dated(days, used if numeric else None, ambiguous, len(broken), some, serial)
+    return DatedColumn(days, used if numeric else None, ambiguous, len(broken), some, serial)
 
 
-def dates_of_parts(year: Float, month: Float, day: Float) -> Dated:
+def dates_of_parts(year: Float, month: Float, day: Float) -> DatedColumn:
     """Return days from three columns of numbers; NaT where they name none."""
     days, broken = [], []
     for parts in np.stack([year, month, day], axis=1).tolist():
@@ -343,7 +343,7 @@ def dates_of_parts(year: Float, month: Float, day: Float) -> Dated:
             broken.append("-".join(f"{part:g}" for part in parts))
         days.append(found or "NaT")
     named = np.array(days, dtype="datetime64[D]")
-    return Dated(named, None, False, len(broken), tuple(dict.fromkeys(broken))[:5], 0)
+    return DatedColumn(named, None, False, len(broken), tuple(dict.fromkeys(broken))[:5], 0)
 
 
 def _is_serial(cell: str) -> bool:

@@ -17,10 +17,17 @@ from rasterio.errors import RasterioError
 from rasterio.windows import Window
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.formats.signatures import Kind
+from fieldmon.io.formats.signatures import FileKind
 from fieldmon.io.import_report import ImportMessage, Remedy, guessed, seen
 from fieldmon.io.options import source_name
-from fieldmon.io.parse.crs import Way, ask_for_crs, code_of, km_between, system, way_from
+from fieldmon.io.parse.crs import (
+    Transformation,
+    ask_for_crs,
+    code_of,
+    km_between,
+    system,
+    transformation_from,
+)
 from fieldmon.io.rasters.values import Affine, map_xy, pixel_xy, projected
 from fieldmon.io.sandbox import limits
 from fieldmon.io.sandbox.unpack import Workroom, choose_member, members
@@ -52,7 +59,7 @@ _MOST_TEXT = 20_000
 _UNREADABLE = (RasterioError, CPLE_BaseError, ValueError, OSError, OverflowError)
 
 
-class Part(NamedTuple):
+class RasterPart(NamedTuple):
     """The part of a raster that is read, and the pixels ``(h, w)`` it is read to."""
 
     window: Window
@@ -73,23 +80,23 @@ class Part(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Opened:
+class OpenRaster:
     """A raster that is open, and where it lies."""
 
     tif: DatasetReader
     name: str
     to_map: Affine
     crs: pyproj.CRS
-    way: Way
+    transformation: Transformation
     messages: tuple[ImportMessage, ...]
 
 
 @contextmanager
-def open_raster(folder: str, source: Source, options: RasterOptions) -> Iterator[Opened]:
+def open_raster(folder: str, source: Source, options: RasterOptions) -> Iterator[OpenRaster]:
     """Open the one raster of a source; whatever GDAL says against it becomes a `FileProblem`."""
     room = Workroom(Path(folder))
     found = members(source, room)
-    rasters = tuple(member for member in found if member.kind is Kind.RASTER)
+    rasters = tuple(member for member in found if member.kind is FileKind.RASTER)
     if not rasters:
         raise FileProblem(f"{source_name(source)} must be a GeoTIFF, but it is not. Choose one.")
     member = choose_member(rasters, options.member, source_name(source))
@@ -110,7 +117,7 @@ def open_raster(folder: str, source: Source, options: RasterOptions) -> Iterator
             ) from bad
 
 
-def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -> Opened:
+def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -> OpenRaster:
     _check_shape(tif, name)
     to_map = _to_map(tif, name)
     size = np.array([[tif.width / 2, tif.height / 2]])
@@ -124,8 +131,8 @@ def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -
         raise ask_for_crs(
             middle[None], options, f"{name} says {crs.name}, in degrees, but it lies nowhere so."
         )
-    way = way_from(crs, (float(middle[0]), float(middle[1])))
-    if not np.isfinite(way.lonlat(middle[None])).all():
+    through = transformation_from(crs, (float(middle[0]), float(middle[1])))
+    if not np.isfinite(through.lonlat(middle[None])).all():
         raise FileProblem(
             f"{name} must lie where {crs.name} is defined, but it does not. Name the right "
             "coordinate system."
@@ -136,7 +143,7 @@ def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -
         messages.append(seen(f"The raster is turned by {turn:.4g} degrees; positions follow it."))
     elif e > 0:
         messages.append(seen("The raster's first line lies in the south; positions follow it."))
-    return Opened(tif, name, to_map, crs, way, (*messages, *way.messages()))
+    return OpenRaster(tif, name, to_map, crs, through, (*messages, *through.messages()))
 
 
 def _check_shape(tif: DatasetReader, name: str) -> None:
@@ -213,7 +220,7 @@ def _text(path: Path) -> str:
         return file.read(_MOST_TEXT).decode("utf-8", "replace")
 
 
-def band_named(opened: Opened, wanted: str) -> int:
+def band_named(opened: OpenRaster, wanted: str) -> int:
     """Return the number of the band that is named; raise `ChoiceNeeded` where there is none."""
     tif = opened.tif
     text = wanted.strip()
@@ -229,7 +236,7 @@ def band_named(opened: Opened, wanted: str) -> int:
     )
 
 
-def part_of(opened: Opened, bounds: Bounds | None, most: int, n_bands: int = 1) -> Part:
+def part_of(opened: OpenRaster, bounds: Bounds | None, most: int, n_bands: int = 1) -> RasterPart:
     """Return what is read: within bounds or all, not more pixels than `most`."""
     window = _window(opened, bounds)
     step = max(1.0, math.sqrt(window.width * window.height / most))
@@ -247,21 +254,21 @@ def part_of(opened: Opened, bounds: Bounds | None, most: int, n_bands: int = 1) 
             f"{limits.size(decoded)}. Cut it to the plot, or save it as a Cloud Optimised GeoTIFF, "
             "which holds smaller copies of itself."
         )
-    return Part(window, shape)
+    return RasterPart(window, shape)
 
 
-def _window(opened: Opened, bounds: Bounds | None) -> Window:
+def _window(opened: OpenRaster, bounds: Bounds | None) -> Window:
     whole = Window(0, 0, opened.tif.width, opened.tif.height)
     if bounds is None:
         return whole
-    places = pixel_xy(opened.to_map, projected(opened.way, _around(bounds)))
+    places = pixel_xy(opened.to_map, projected(opened.transformation, _around(bounds)))
     places = places[np.isfinite(places).all(axis=1)]
     if len(places):
         low = np.clip(np.floor(places.min(axis=0)), 0, (whole.width, whole.height)).astype(int)
         high = np.clip(np.ceil(places.max(axis=0)), 0, (whole.width, whole.height)).astype(int)
         if (high > low).all():
             return Window(*(int(n) for n in (*low, *(high - low))))
-    middle = opened.way.lonlat(
+    middle = opened.transformation.lonlat(
         map_xy(opened.to_map, np.array([[whole.width / 2, whole.height / 2]]))
     )[0]
     plot = ((bounds[0] + bounds[2]) / 2, (bounds[1] + bounds[3]) / 2)
@@ -288,9 +295,9 @@ def _around(bounds: Bounds) -> Float:
 
 
 def without_value(
-    opened: Opened,
+    opened: OpenRaster,
     bands: tuple[int, ...],
-    part: Part,
+    part: RasterPart,
     raw: NDArray[Any],
     nodata: str | None,
 ) -> tuple[NDArray[np.bool_], list[ImportMessage]]:
@@ -334,12 +341,14 @@ def _undeclared(raw: NDArray[Any], missing: NDArray[np.bool_]) -> list[ImportMes
     ]
 
 
-def what_was_read(opened: Opened, bands: tuple[int, ...], part: Part) -> ImportMessage:
+def what_was_read(opened: OpenRaster, bands: tuple[int, ...], part: RasterPart) -> ImportMessage:
     """Return what the raster is, and how much of it was read."""
     tif = opened.tif
     window = part.window
     middle = np.array([window.col_off + window.width / 2, window.row_off + window.height / 2])
-    ends = opened.way.lonlat(map_xy(opened.to_map, middle + np.array([[0.0, 0.0], [1.0, 0.0]])))
+    ends = opened.transformation.lonlat(
+        map_xy(opened.to_map, middle + np.array([[0.0, 0.0], [1.0, 0.0]]))
+    )
     metres = 1000 * km_between(*((float(lon), float(lat)) for lon, lat in ends))
     listed = f"band{'s' if len(bands) > 1 else ''} {', '.join(map(str, bands))} of {tif.count}"
     shrunk = f"; read at every {part.step:.3g}th pixel" if part.step > 1.001 else ""

@@ -13,7 +13,7 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
 from fieldmon.io.rasters.opening import (
     M_PER_DEGREE,
-    Part,
+    RasterPart,
     band_named,
     open_raster,
     part_of,
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.options import Source
-    from fieldmon.io.rasters.opening import Opened
+    from fieldmon.io.rasters.opening import OpenRaster
     from fieldmon.io.rasters.values import RasterOptions
 
     Float = NDArray[np.float64]
@@ -46,7 +46,7 @@ def backdrop(
     with open_raster(folder, source, options) as opened:
         bands = _shown(opened, options.band)
         part = part_of(opened, bounds, _SIDE * _SIDE, len(bands))
-        part = Part(part.window, _within_side(part.shape))
+        part = RasterPart(part.window, _within_side(part.shape))
         colours = _colours(opened, bands)
         kinds = {opened.tif.dtypes[band - 1] for band in bands}
         smooth = kinds <= {"uint8", "uint16"} and colours is None
@@ -69,7 +69,7 @@ def backdrop(
         return Imported(Backdrop(*_encoded(image, missing), corners), messages)
 
 
-def _shown(opened: Opened, wanted: str | None) -> tuple[int, ...]:
+def _shown(opened: OpenRaster, wanted: str | None) -> tuple[int, ...]:
     """Return the one or three bands that make the picture."""
     if wanted is not None:
         bands = tuple(band_named(opened, one) for one in wanted.split(","))
@@ -91,7 +91,7 @@ def _within_side(shape: tuple[int, int]) -> tuple[int, int]:
     return max(1, round(shape[0] * shrink)), max(1, round(shape[1] * shrink))
 
 
-def _colours(opened: Opened, bands: tuple[int, ...]) -> NDArray[np.uint8] | None:
+def _colours(opened: OpenRaster, bands: tuple[int, ...]) -> NDArray[np.uint8] | None:
     """Return the colour table of a band of classes, ``(k, 4)``, or None."""
     if len(bands) != 1 or opened.tif.colorinterp[bands[0] - 1] != ColorInterp.palette:
         return None
@@ -126,20 +126,20 @@ def _stretched(
     return image, [seen(f"Contrast is stretched over the middle 96 %: {'; '.join(spans)}.")]
 
 
-def _corners(opened: Opened, part: Part) -> tuple[Float, list[ImportMessage]]:
+def _corners(opened: OpenRaster, part: RasterPart) -> tuple[Float, list[ImportMessage]]:
     """Return the corners ``(4, 2)`` in degrees, and how far off the map the picture is between.
 
     A map draws the picture as two flat triangles between its corners; the projection bends it.
     """
     to_map = part.to_map(opened.to_map)
     size = np.array(part.shape[::-1])
-    corners = opened.way.lonlat(map_xy(to_map, _CORNERS * size))
+    corners = opened.transformation.lonlat(map_xy(to_map, _CORNERS * size))
     steps = np.linspace(0.0, 1.0, 9)
     u, v = (axis.ravel()[:, None] for axis in np.meshgrid(steps, steps))
     bottom_left, top_left, top_right, bottom_right = _mercator(corners)
     lower = top_left + u * (bottom_right - bottom_left) + v * (bottom_left - top_left)
     upper = top_right + (u - 1) * (top_right - top_left) + v * (bottom_right - top_right)
-    lonlat = opened.way.lonlat(map_xy(to_map, np.concatenate([u, v], axis=1) * size))
+    lonlat = opened.transformation.lonlat(map_xy(to_map, np.concatenate([u, v], axis=1) * size))
     if not (np.isfinite(lonlat).all() and (np.abs(lonlat[:, 1]) < 85.0).all()):
         raise FileProblem(
             f"{opened.name} must lie where a web map reaches, but it does not. Cut it to the plot."

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.options import Source
-    from fieldmon.io.rasters.opening import Opened
+    from fieldmon.io.rasters.opening import OpenRaster
     from fieldmon.io.rasters.values import RasterOptions
 
     Float = NDArray[np.float64]
@@ -51,7 +51,7 @@ def raster(
         return Imported(value, tuple(messages))
 
 
-def _band(opened: Opened, wanted: str | None) -> int:
+def _band(opened: OpenRaster, wanted: str | None) -> int:
     """Return the number of the band with the values; ask where several could be it."""
     tif = opened.tif
     bands = [b for b in range(1, tif.count + 1) if tif.colorinterp[b - 1] != ColorInterp.alpha]
@@ -73,7 +73,7 @@ def _band(opened: Opened, wanted: str | None) -> int:
     )
 
 
-def _scaled(opened: Opened, band: int, values: NDArray[np.floating]) -> list[ImportMessage]:
+def _scaled(opened: OpenRaster, band: int, values: NDArray[np.floating]) -> list[ImportMessage]:
     """Apply the scale and offset that a band declares, in place."""
     scale, offset = opened.tif.scales[band - 1], opened.tif.offsets[band - 1]
     if (scale, offset) == (1.0, 0.0):

@@ -12,7 +12,7 @@ import numpy as np
 
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.options import ReadOptions
-from fieldmon.io.parse.crs import Way, system, way_from
+from fieldmon.io.parse.crs import Transformation, system, transformation_from
 from fieldmon.io.rasters.smooth import smoothly
 
 if TYPE_CHECKING:
@@ -88,15 +88,15 @@ class Raster:
         self.values.setflags(write=False)
 
     @cached_property
-    def way(self) -> Way:
+    def transformation(self) -> Transformation:
         """Return how its coordinates become degrees."""
         rows, columns = self.values.shape
         middle = map_xy(self.to_map, np.array([[columns / 2, rows / 2]]))[0]
-        return way_from(system(self.crs), (float(middle[0]), float(middle[1])))
+        return transformation_from(system(self.crs), (float(middle[0]), float(middle[1])))
 
     def pixels(self, lonlat: Float) -> Float:
         """Return column and row of positions ``(n, 2)``, pixel (0, 0) reaching from 0 to 1."""
-        return pixel_xy(self.to_map, projected(self.way, lonlat))
+        return pixel_xy(self.to_map, projected(self.transformation, lonlat))
 
     def at(self, lonlat: Float, how: How = "nearest") -> Float:
         """Return the values at positions ``(n, 2)``, ``(n,)``; NaN where there is none.
@@ -200,11 +200,11 @@ def pixel_xy(to_map: Affine, xy: Float) -> Float:
     return np.stack([(e * x - b * y) / turn, (a * y - d * x) / turn], axis=1)
 
 
-def projected(way: Way, lonlat: Float) -> Float:
-    """Return degrees ``(n, 2)`` in the system that a way comes from."""
-    if way.transformer is None:
+def projected(through: Transformation, lonlat: Float) -> Float:
+    """Return degrees ``(n, 2)`` in the system that a transformation comes from."""
+    if through.transformer is None:
         return lonlat
-    x, y = way.transformer.transform(lonlat[:, 0], lonlat[:, 1], direction="INVERSE")
+    x, y = through.transformer.transform(lonlat[:, 0], lonlat[:, 1], direction="INVERSE")
     return np.stack([x, y], axis=1)
 
 

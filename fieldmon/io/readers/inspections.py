@@ -1,32 +1,29 @@
-"""Findings that come back from the field, looked up on the plot: which plant, what, when, by whom.
+"""Inspections that come back from the field, looked up on the plot: which plant, what, when, who.
 
 Decisions
 ---------
 - A plant is known by its number in the grid, as every file given out has it (column ``plant``);
   else by row and number in it, as people count; else by position. Where a file has a row but no
   number in it, ``plant`` is read as that number.
-- What was not filled in stays unknown: blank records are no findings. "Could not inspect" is one,
-  and is kept with its note.
+- What was not filled in stays unknown: blank records are no inspections. "Could not inspect" is
+  one, and is kept with its note.
 - A position is snapped to the nearest plant. It is doubtful where, within its accuracy, another
   plant could be the nearest, or where it lies further than half the spacing from the nearest,
-  along the row or across. Doubtful findings are listed and left out unless one asks for them.
+  along the row or across. Doubtful records are listed and left out unless one asks for them.
 - Where both faces of a plant are inspected and a file does not say which, it is the first face,
   and the import says so.
-- Two findings are the same if plant, time (or day, where there is no clock time), result, count
-  and who are: see `Findings.digest`. Notes and the order of a file do not count, so a file that
-  comes twice, sorted anew or filled in further, brings only what is new.
+- Of two inspections of one file that are the same but for their notes, one is taken. What a season
+  holds already is told there (`fieldmon.monitoring.inspection_table`).
 """
 
 from __future__ import annotations
 
-import hashlib
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.import_report import (
     Imported,
@@ -37,81 +34,29 @@ from fieldmon.io.import_report import (
     guessed,
     seen,
 )
-from fieldmon.io.read import read_reported
-from fieldmon.io.readers.reported import FindingsOptions, Reported
+from fieldmon.io.read import read_inspection_rows
+from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.options import Source
+    from fieldmon.io.readers.inspection_file.rows import InspectionRows
     from fieldmon.plot.grid import PlantGrid
 
 _RESULTS = {PRESENT: FOUND, ABSENT: CLEAN, UNKNOWN: SKIPPED}
-_LISTED = 20  # doubtful findings that are named one by one
+_LISTED = 20  # doubtful records that are named one by one
 _NEIGHBOURS = 13  # plants among which the nearest and its rivals are: two rings, or both faces
 _FARTHEST_DEG = 1.0
 _TOUCH_M = 1e-3
 _TAKE = Remedy("take_doubtful", "yes", "Take it all the same")
 
 
-@dataclass(frozen=True, eq=False)
-class Findings:
-    """What was seen on plants, one entry a finding, ``(k,)`` each, in the file's order.
-
-    Parameters
-    ----------
-    plant
-        int32, number in the grid.
-    result
-        int8: `FOUND`, `CLEAN` or `SKIPPED` (could not be inspected).
-    count
-        Pests counted; NaN where they were not.
-    when
-        datetime64[s], local time; NaT where the file has no clock time.
-    day
-        datetime64[D]: of `when`, else as the file or the options say; NaT where nothing does.
-    who, notes
-        Text; empty where there is none.
-    source_row
-        Which record of the file, from 1.
-    digest
-        32 hexadecimal digits, equal for the same finding whichever file it comes from.
-    """
-
-    plant: NDArray[np.int32]
-    result: NDArray[np.int8]
-    count: NDArray[np.float64]
-    when: NDArray[np.datetime64]
-    day: NDArray[np.datetime64]
-    who: NDArray[np.str_]
-    notes: NDArray[np.str_]
-    source_row: NDArray[np.int64]
-    digest: NDArray[np.str_]
-
-    def __post_init__(self) -> None:
-        for values in vars(self).values():
-            values.setflags(write=False)
-
-    def __len__(self) -> int:
-        """Return the number of findings."""
-        return len(self.plant)
-
-    @property
-    def second(self) -> NDArray[np.float64]:
-        """Return the seconds since local midnight, ``(k,)``; NaN where there is no clock time."""
-        since = (self.when - self.when.astype("datetime64[D]")) / np.timedelta64(1, "s")
-        return np.asarray(since, dtype=np.float64)
-
-    def take(self, which: NDArray[np.generic]) -> Findings:
-        """Return the findings at the given indices or mask."""
-        return Findings(**{name: values[which].copy() for name, values in vars(self).items()})
-
-
-def read_findings(
-    source: Source, grid: PlantGrid, options: FindingsOptions | None = None
-) -> Imported[Findings]:
-    """Return the findings that a file brings for a plot, and all there is to say about them.
+def read_inspections(
+    source: Source, grid: PlantGrid, options: InspectionOptions | None = None
+) -> Imported[Inspections]:
+    """Return the inspections that a file brings for a plot, and all there is to say about them.
 
     CSV, TSV, Excel, GeoJSON, GeoPackage, shapefile, GPX and KML: with plants by number, by row and
     number in it, or by position; also the route files given out, filled in. In a file that has
@@ -124,28 +69,28 @@ def read_findings(
     ChoiceNeeded
         Where the file leaves open which layer or column is meant.
     """
-    chosen = options or FindingsOptions()
-    reported = read_reported(source, chosen)
-    found, more = look_up(reported.value, grid, chosen)
-    return reported.having(found, more)
+    chosen = options or InspectionOptions()
+    rows = read_inspection_rows(source, chosen)
+    inspections, more = look_up(rows.value, grid, chosen)
+    return rows.having(inspections, more)
 
 
 def look_up(
-    reported: Reported, grid: PlantGrid, options: FindingsOptions
-) -> tuple[Findings, tuple[ImportMessage, ...]]:
-    """Return what was reported with its plants, and what was left out or guessed on the way."""
-    named = _by_number(reported, grid)
+    rows: InspectionRows, grid: PlantGrid, options: InspectionOptions
+) -> tuple[Inspections, tuple[ImportMessage, ...]]:
+    """Return what a file says with its plants, and what was left out or guessed on the way."""
+    named = _by_number(rows, grid)
     plant, problems, doubts = named.plant, named.problems, named.doubts
-    labelled = _by_label(reported, grid, plant < 0)
+    labelled = _by_label(rows, grid, plant < 0)
     plant = np.where(labelled.plant >= 0, labelled.plant, plant)
     problems |= labelled.problems
-    doubts = _misplaced(reported, grid, plant) | doubts
-    open_yet = (plant < 0) & np.isfinite(reported.lonlat).all(axis=1)
-    open_yet &= ~np.isin(np.arange(len(reported)), list(problems))
-    snapped = _by_position(reported, grid, np.flatnonzero(open_yet), options)
+    doubts = _misplaced(rows, grid, plant) | doubts
+    open_yet = (plant < 0) & np.isfinite(rows.lonlat).all(axis=1)
+    open_yet &= ~np.isin(np.arange(len(rows)), list(problems))
+    snapped = _by_position(rows, grid, np.flatnonzero(open_yet), options)
     plant = np.where(snapped.plant >= 0, snapped.plant, plant)
     problems |= snapped.problems
-    doubts = doubts | snapped.doubts | _own_doubts(reported)
+    doubts = doubts | snapped.doubts | _own_doubts(rows)
     for i in np.flatnonzero(plant < 0).tolist():
         problems.setdefault(i, "it names no plant and has no position")
     taken = plant >= 0
@@ -153,20 +98,20 @@ def look_up(
         taken[list(doubts)] = False
     taken[list(problems)] = False
     said = [
-        *_listed(reported, problems, "cannot be placed", None),
+        *_listed(rows, problems, "cannot be placed", None),
         *_listed(
-            reported,
+            rows,
             {i: why for i, why in doubts.items() if i not in problems},
             "is doubtful" + (" and was taken as asked" if options.take_doubtful else ""),
             None if options.take_doubtful else _TAKE,
         ),
-        *_about_faces(reported, grid, plant, taken),
-        *_about_accuracy(reported, options, open_yet & taken),
+        *_about_faces(rows, grid, plant, taken),
+        *_about_accuracy(rows, options, open_yet & taken),
     ]
-    findings = _findings(reported, plant, np.flatnonzero(taken))
-    once = _once_each(findings)
-    if len(once) < len(findings):
-        n_again = len(findings) - len(once)
+    inspections = _inspections(rows, plant, np.flatnonzero(taken))
+    once = _once_each(inspections)
+    if len(once) < len(inspections):
+        n_again = len(inspections) - len(once)
         said.append(seen(f"{n_again} record(s) say again what another one says; taken once."))
     return once, tuple(said)
 
@@ -179,9 +124,9 @@ class _Placed(NamedTuple):
     doubts: dict[int, str]
 
 
-def _by_number(reported: Reported, grid: PlantGrid) -> _Placed:
+def _by_number(rows: InspectionRows, grid: PlantGrid) -> _Placed:
     """Place records that name the plant's number, and hold it against whatever else they say."""
-    stated = reported.plant
+    stated = rows.plant
     plant = np.where((stated >= 0) & (stated < len(grid)), stated, -1)
     problems = {
         i: f"plant {stated[i]} is none of 0 to {len(grid) - 1} on this plot"
@@ -190,7 +135,7 @@ def _by_number(reported: Reported, grid: PlantGrid) -> _Placed:
     doubts = {}
     here = np.flatnonzero(plant >= 0)
     label = row_label(grid, plant[here])
-    line, number = reported.line[here], reported.number[here]
+    line, number = rows.line[here], rows.number[here]
     other = (line > 0) & ((label.line != line) | (label.number != number))
     for k in np.flatnonzero(other).tolist():
         doubts[int(here[k])] = (
@@ -200,12 +145,12 @@ def _by_number(reported: Reported, grid: PlantGrid) -> _Placed:
     return _Placed(plant, problems, doubts)
 
 
-def _misplaced(reported: Reported, grid: PlantGrid, plant: NDArray[np.int64]) -> dict[int, str]:
+def _misplaced(rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64]) -> dict[int, str]:
     """Return which records name a plant ``(m,)`` that stands elsewhere than their position."""
     here = np.flatnonzero(plant >= 0)
-    far_m = _away_m(reported, grid, here, plant[here])
+    far_m = _away_m(rows, grid, here, plant[here])
     spacing_m = max(grid.row_spacing_m, grid.plant_spacing_m)
-    reach_m = spacing_m + 3 * np.nan_to_num(reported.accuracy_m[here])
+    reach_m = spacing_m + 3 * np.nan_to_num(rows.accuracy_m[here])
     return {
         int(here[k]): f"{_label(grid, plant[here[k]])} is {far_m[k]:.1f} m from the record's "
         "position: is it a file for another plot?"
@@ -214,10 +159,10 @@ def _misplaced(reported: Reported, grid: PlantGrid, plant: NDArray[np.int64]) ->
 
 
 def _away_m(
-    reported: Reported, grid: PlantGrid, rows: NDArray[np.intp], plant: NDArray[np.int64]
+    rows: InspectionRows, grid: PlantGrid, records: NDArray[np.intp], plant: NDArray[np.int64]
 ) -> NDArray[np.float64]:
     """Return how far records lie from plants, NaN without a position, infinity beyond a degree."""
-    lonlat = reported.lonlat[rows]
+    lonlat = rows.lonlat[records]
     near = _is_near(lonlat, grid)
     away_m = np.where(np.isfinite(lonlat).all(axis=1), np.inf, np.nan)
     if near.any():
@@ -232,23 +177,23 @@ def _is_near(lonlat: NDArray[np.float64], grid: PlantGrid) -> NDArray[np.bool_]:
         return np.asarray((off < _FARTHEST_DEG).all(axis=1), dtype=bool)
 
 
-def _by_label(reported: Reported, grid: PlantGrid, wanted: NDArray[np.bool_]) -> _Placed:
+def _by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) -> _Placed:
     """Place records that name a row and a number in it."""
-    plant = np.full(len(reported), -1, np.int64)
-    rows = np.flatnonzero(wanted & (reported.line > 0) & (reported.number > 0))
-    if not len(rows):
+    plant = np.full(len(rows), -1, np.int64)
+    records = np.flatnonzero(wanted & (rows.line > 0) & (rows.number > 0))
+    if not len(records):
         return _Placed(plant, {}, {})
     label = row_label(grid)
     known, first_face = np.unique(_key(label.line, label.number), return_index=True)
-    wished = _key(reported.line[rows], reported.number[rows])
+    wished = _key(rows.line[records], rows.number[records])
     at = np.minimum(np.searchsorted(known, wished), len(known) - 1)
     is_there = known[at] == wished
     first = first_face[at]
-    second = (reported.face[rows] == 2) & (grid.twin[first] >= 0)
-    plant[rows] = np.where(is_there, np.where(second, grid.twin[first], first), -1)
+    second = (rows.face[records] == 2) & (grid.twin[first] >= 0)
+    plant[records] = np.where(is_there, np.where(second, grid.twin[first], first), -1)
     problems = {
-        i: f"there is no plant {reported.number[i]} in row {reported.line[i]} on this plot"
-        for i in rows[~is_there].tolist()
+        i: f"there is no plant {rows.number[i]} in row {rows.line[i]} on this plot"
+        for i in records[~is_there].tolist()
     }
     return _Placed(plant, problems, {})
 
@@ -260,35 +205,35 @@ def _key(line: NDArray[np.int64], number: NDArray[np.int64]) -> NDArray[np.int64
 
 
 def _by_position(
-    reported: Reported, grid: PlantGrid, rows: NDArray[np.intp], options: FindingsOptions
+    rows: InspectionRows, grid: PlantGrid, records: NDArray[np.intp], options: InspectionOptions
 ) -> _Placed:
     """Snap records to the nearest plant, and tell where that is doubtful.
 
     Another plant could be the nearest if the line halfway between the two is closer to the
     position than its accuracy.
     """
-    plant = np.full(len(reported), -1, np.int64)
-    near = _is_near(reported.lonlat[rows], grid)
-    problems = dict.fromkeys(rows[~near].tolist(), "it lies far from the plot")
-    rows = rows[near]
-    if not len(rows):
+    plant = np.full(len(rows), -1, np.int64)
+    near = _is_near(rows.lonlat[records], grid)
+    problems = dict.fromkeys(records[~near].tolist(), "it lies far from the plot")
+    records = records[near]
+    if not len(records):
         return _Placed(plant, problems, {})
-    xy_m = grid.frame.xy_m(reported.lonlat[rows])
+    xy_m = grid.frame.xy_m(rows.lonlat[records])
     first, rival, margin_m = _nearest(grid, xy_m)
-    plant[rows] = first
+    plant[records] = first
     step = np.abs(xy_m - grid.xy_m[first])
     half = np.array([grid.plant_spacing_m, grid.row_spacing_m]) / 2 + _TOUCH_M
-    stated = reported.accuracy_m[rows]
+    stated = rows.accuracy_m[records]
     told = 0.0 if options.accuracy_m is None else options.accuracy_m
     accuracy_m = np.where(np.isnan(stated), told, stated)
     doubts = {}
     for k in np.flatnonzero(margin_m <= accuracy_m + _TOUCH_M).tolist():
-        doubts[int(rows[k])] = (
+        doubts[int(records[k])] = (
             f"with an accuracy of {accuracy_m[k]:.2g} m it may be {_label(grid, first[k])} or "
             f"{_label(grid, rival[k])}"
         )
     for k in np.flatnonzero((step > half).any(axis=1)).tolist():
-        doubts[int(rows[k])] = (
+        doubts[int(records[k])] = (
             f"it lies {np.hypot(*step[k]):.1f} m from the nearest plant, {_label(grid, first[k])}, "
             "which is more than half the spacing"
         )
@@ -317,29 +262,29 @@ def _label(grid: PlantGrid, plant: int) -> str:
     return f"row {label.line[0]}, number {label.number[0]}"
 
 
-def _own_doubts(reported: Reported) -> dict[int, str]:
-    return {i: str(reported.doubt[i]) for i in np.flatnonzero(reported.doubt != "").tolist()}
+def _own_doubts(rows: InspectionRows) -> dict[int, str]:
+    return {i: str(rows.doubt[i]) for i in np.flatnonzero(rows.doubt != "").tolist()}
 
 
 def _listed(
-    reported: Reported, why: dict[int, str], verdict: str, remedy: Remedy | None
+    rows: InspectionRows, why: dict[int, str], verdict: str, remedy: Remedy | None
 ) -> list[ImportMessage]:
-    """Return a finding for each of the first records, and one for the rest."""
+    """Return a message for each of the first records, and one for the rest."""
     make = dropped if verdict.startswith("cannot") else doubtful
-    rows = sorted(why)
-    findings = [
-        make(f"It {verdict}: {why[i]}.", f"record {reported.source_row[i]}", remedy)
-        for i in rows[:_LISTED]
+    records = sorted(why)
+    messages = [
+        make(f"It {verdict}: {why[i]}.", f"record {rows.source_row[i]}", remedy)
+        for i in records[:_LISTED]
     ]
-    if len(rows) > _LISTED:
-        findings.append(make(f"{len(rows) - _LISTED} more record(s) are so.", None, remedy))
-    return findings
+    if len(records) > _LISTED:
+        messages.append(make(f"{len(records) - _LISTED} more record(s) are so.", None, remedy))
+    return messages
 
 
 def _about_faces(
-    reported: Reported, grid: PlantGrid, plant: NDArray[np.int64], taken: NDArray[np.bool_]
+    rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64], taken: NDArray[np.bool_]
 ) -> list[ImportMessage]:
-    unsaid = taken & (reported.plant < 0) & (reported.face == 0)
+    unsaid = taken & (rows.plant < 0) & (rows.face == 0)
     unsaid[unsaid] = grid.twin[plant[unsaid]] >= 0
     if not unsaid.any():
         return []
@@ -348,9 +293,9 @@ def _about_faces(
 
 
 def _about_accuracy(
-    reported: Reported, options: FindingsOptions, snapped: NDArray[np.bool_]
+    rows: InspectionRows, options: InspectionOptions, snapped: NDArray[np.bool_]
 ) -> list[ImportMessage]:
-    unsaid = snapped & np.isnan(reported.accuracy_m)
+    unsaid = snapped & np.isnan(rows.accuracy_m)
     if options.accuracy_m is not None or not unsaid.any():
         return []
     said = f"{int(unsaid.sum())} position(s) state no accuracy and were taken as exact."
@@ -359,52 +304,39 @@ def _about_accuracy(
     ]
 
 
-def _findings(reported: Reported, plant: NDArray[np.int64], rows: NDArray[np.intp]) -> Findings:
+def _inspections(
+    rows: InspectionRows, plant: NDArray[np.int64], records: NDArray[np.intp]
+) -> Inspections:
+    """Return what rows say about plants they were placed at."""
     # a clean plant has none of them; what could not be inspected was not counted
-    result = np.array([_RESULTS[int(code)] for code in reported.result[rows]], dtype=np.int8)
-    count = np.where(result == FOUND, reported.count[rows], np.nan)
+    result = np.array([_RESULTS[int(code)] for code in rows.result[records]], dtype=np.int8)
+    count = np.where(result == FOUND, rows.count[records], np.nan)
     count[count == 0] = np.nan
-    return Findings(
-        plant=plant[rows].astype(np.int32),
-        result=result,
+    when, date = rows.when[records], rows.day[records]
+    since_midnight = when - when.astype("datetime64[D]")
+    return Inspections.of(
+        plant[records],
+        result,
+        date,
+        second=since_midnight / np.timedelta64(1, "s"),
         count=count,
-        when=reported.when[rows],
-        day=reported.day[rows],
-        who=reported.who[rows],
-        notes=reported.notes[rows],
-        source_row=reported.source_row[rows],
-        digest=digests(
-            plant[rows],
-            np.where(
-                np.isnat(reported.when[rows]),
-                reported.day[rows].astype(np.str_),
-                reported.when[rows].astype(np.str_),
-            ),
-            result,
-            count,
-            reported.who[rows],
-        ),
+        who=rows.who[records],
+        notes=rows.notes[records],
     )
 
 
-def digests(
-    plant: NDArray[np.integer],
-    time: NDArray[np.str_],
-    result: NDArray[np.int8],
-    count: NDArray[np.float64],
-    who: NDArray[np.str_],
-) -> NDArray[np.str_]:
-    """Return 32 hexadecimal digits for each finding ``(k,)``.
-
-    ``time`` is ISO 8601 to the second, or the day alone where there is no clock time, or ``NaT``.
-    """
+def _once_each(inspections: Inspections) -> Inspections:
+    """Return the first of each that are the same but for their notes."""
     columns = zip(
-        plant.tolist(), time.tolist(), result.tolist(), count.tolist(), who.tolist(), strict=True
+        inspections.plant.tolist(),
+        inspections.date.astype(np.int64).tolist(),  # a day that is no time is one number too
+        np.nan_to_num(inspections.second, nan=-1.0).tolist(),
+        inspections.result.tolist(),
+        [f"{count:.9g}" for count in inspections.count.tolist()],
+        [who.strip() for who in inspections.who],
+        strict=True,
     )
-    texts = ("\x1f".join((str(p), t, str(r), f"{c:.9g}", w.strip())) for p, t, r, c, w in columns)
-    return np.array([hashlib.sha256(t.encode()).hexdigest()[:32] for t in texts], dtype="U32")
-
-
-def _once_each(findings: Findings) -> Findings:
-    _, first = np.unique(findings.digest, return_index=True)
-    return findings.take(np.sort(first))
+    first: dict[tuple[object, ...], int] = {}
+    for number, same in enumerate(columns):
+        first.setdefault(same, number)
+    return inspections.take(np.array([*first.values()], np.intp))

@@ -27,7 +27,7 @@ NEARBY_M = 100.0
 
 
 @dataclass(frozen=True, eq=False)
-class Apart:
+class RecordsNearPlot:
     """Records on a plot or close by, and those elsewhere.
 
     Parameters
@@ -57,17 +57,17 @@ class Apart:
         ]
 
 
-def apart(observations: Observations, field: Field) -> Apart:
-    """Return records on a plot or close by apart from those elsewhere."""
+def near_plot(observations: Observations, field: Field) -> RecordsNearPlot:
+    """Return records on a plot or close by, and those elsewhere."""
     away = distance_m(observations.lonlat, field)
     reach = np.fmax(NEARBY_M, 2 * observations.accuracy_m)
     near = away <= reach
-    return Apart(observations.take(near), observations.take(~near), away[~near])
+    return RecordsNearPlot(observations.take(near), observations.take(~near), away[~near])
 
 
 def of_plot(observations: Observations, field: Field) -> tuple[Observations, list[ImportMessage]]:
     """Return the records of one plot; ask or refuse where not one is there."""
-    split = apart(observations, field)
+    split = near_plot(observations, field)
     if len(split.inside):
         messages = split.messages(field.name) + _questioned(split.outside, field)
         return split.inside, messages

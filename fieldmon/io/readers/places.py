@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -18,7 +18,7 @@ from fieldmon.io.parse.values import is_missing
 from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable, Mapping
 
     from numpy.typing import NDArray
 
@@ -54,7 +54,7 @@ class Plants:
 
 
 @dataclass(frozen=True, eq=False)
-class Places:
+class NamedPlaces:
     """What records may name.
 
     Parameters
@@ -63,24 +63,45 @@ class Places:
         A record that names one of them lies somewhere on it.
     plants
         A record that names a row and a plant, or a plant alone, lies there.
+    plants_of
+        The plants of plots by the plots' names, for records that name their plot too.
     """
 
     plots: tuple[Field, ...] = ()
     plants: Plants | None = None
+    plants_of: Mapping[str, Plants] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, plots: tuple[Field, ...], grid: PlantGrid, measured: Plants | None = None) -> Self:
-        """Return plots by name, and plants by the labels of their file or as the grid counts."""
-        if measured is not None and (measured.plant != "").all():
-            return cls(plots, measured)
-        label = np.stack(row_label(grid), axis=1)
-        once, first = np.unique(label, axis=0, return_index=True)
-        names = once.astype(np.str_)
-        return cls(plots, Plants(grid.lonlat(first), names[:, 0], names[:, 1]))
+    def of(
+        cls,
+        plots: tuple[Field, ...],
+        grid: PlantGrid,
+        measured: Plants | None = None,
+        plot: str | None = None,
+    ) -> Self:
+        """Return plots by name, and the plants of one `plot` (its name, if it is one of them)."""
+        plants = labelled(grid, measured)
+        return cls(plots, plants, {} if plot is None else {plot: plants})
+
+
+def labelled(grid: PlantGrid, measured: Plants | None = None) -> Plants:
+    """Return a plot's plants by the labels of their file, or as the grid counts."""
+    if measured is not None and (measured.plant != "").all():
+        return measured
+    label = np.stack(row_label(grid), axis=1)
+    once, first = np.unique(label, axis=0, return_index=True)
+    names = once.astype(np.str_)
+    return Plants(grid.lonlat(first), names[:, 0], names[:, 1])
+
+
+def plots_called(names: Iterable[str], plots: tuple[Field, ...]) -> tuple[Field, ...]:
+    """Return which plots are meant by names, however these are written."""
+    match, _ = _join(list(names), [plot.name for plot in plots])
+    return tuple(plots[i] for i in np.unique(match[match >= 0]))
 
 
 @dataclass(frozen=True, eq=False)
-class Named:
+class PlacedByName:
     """Where records lie that name a place.
 
     Parameters
@@ -89,24 +110,22 @@ class Named:
         ``(n, 2)`` degrees; NaN where the name is unknown.
     accuracy_m
         ``(n,)`` how far from there the record may be; NaN where that is not known.
-    findings
+    messages
         What the join had to say.
+    plot
+        ``(n,)`` name of the plot that each is on by its own words; None where they name none.
     """
 
     lonlat: NDArray[np.float64]
     accuracy_m: NDArray[np.float64]
     messages: tuple[ImportMessage, ...]
+    plot: NDArray[np.str_] | None = None
 
 
-def by_plant(row: NDArray[np.object_] | None, plant: NDArray[np.object_], places: Places) -> Named:
+def by_plant(
+    row: NDArray[np.object_] | None, plant: NDArray[np.object_], plants: Plants
+) -> PlacedByName:
     """Return where records lie that name a plant, or a row and a plant in it."""
-    plants = places.plants
-    if plants is None:
-        raise ChoiceNeeded(
-            "The records name plants instead of positions. Give the plants they name: the plot's "
-            "own rows and numbers, or a file with their positions.",
-            "places",
-        )
     if row is None:
         known, wanted = list(plants.plant), _names(plant)
     else:
@@ -116,15 +135,51 @@ def by_plant(row: NDArray[np.object_] | None, plant: NDArray[np.object_], places
     match, how = _join(wanted, known)
     lonlat = np.where(match[:, None] >= 0, plants.lonlat[match], np.nan)
     messages = (*how, *_unmatched(wanted, match, "plant"))
-    return Named(lonlat, np.full(len(wanted), np.nan), messages)
+    return PlacedByName(lonlat, np.full(len(wanted), np.nan), messages)
 
 
-def by_plot(names: NDArray[np.object_], places: Places) -> Named:
+def by_plot_and_plant(
+    plot: NDArray[np.object_],
+    row: NDArray[np.object_] | None,
+    plant: NDArray[np.object_],
+    places: NamedPlaces,
+) -> PlacedByName:
+    """Return where records lie that name a plot, and a row and a plant on it.
+
+    Records on plots whose plants are not known have no place: they are not asked for.
+    """
+    names = [known.name for known in places.plots]
+    wanted = _names(plot)
+    match, how = _join(wanted, names)
+    lonlat = np.full((len(wanted), 2), np.nan)
+    of = np.array([names[i] if i >= 0 else "" for i in match], dtype=np.str_)
+    messages = [*how, *_unmatched(wanted, match, "plot"), *_elsewhere(of, places)]
+    for name, plants in places.plants_of.items():
+        which = of == name
+        if not which.any():
+            continue
+        there = by_plant(None if row is None else row[which], plant[which], plants)
+        lonlat[which] = there.lonlat
+        about = name if len(places.plants_of) > 1 else None
+        messages += [replace(message, feature=about) for message in there.messages]
+    return PlacedByName(lonlat, np.full(len(wanted), np.nan), tuple(messages), of)
+
+
+def _elsewhere(plot: NDArray[np.str_], places: NamedPlaces) -> list[ImportMessage]:
+    """Return what to say of records on plots that are known, but not their plants."""
+    others = [name for name in plot.tolist() if name and name not in places.plants_of]
+    if not others:
+        return []
+    named = sorted(set(others))
+    return [dropped(f"{len(others)} record(s) are of {len(named)} other plot(s): {_some(named)}.")]
+
+
+def by_plot(names: NDArray[np.object_], places: NamedPlaces) -> PlacedByName:
     """Return where records lie that name a plot: at its middle, as far off as the plot is wide."""
     if not places.plots:
         raise ChoiceNeeded(
             "The records name plots instead of positions. Give the file with the plots they name.",
-            "places",
+            "plots",
         )
     wanted = _names(names)
     match, how = _join(wanted, [field.name for field in places.plots])
@@ -139,7 +194,7 @@ def by_plot(names: NDArray[np.object_], places: Places) -> Named:
         f"{int(there.sum())} record(s) name a plot and lie somewhere on it: they were put at its "
         "middle, with the plot's radius as their accuracy."
     )
-    return Named(lonlat, accuracy, (*how, said, *_unmatched(wanted, match, "plot")))
+    return PlacedByName(lonlat, accuracy, (*how, said, *_unmatched(wanted, match, "plot")))
 
 
 def _names(column: NDArray[np.object_]) -> list[str]:
@@ -179,12 +234,17 @@ def _unmatched(wanted: list[str], match: NDArray[np.int64], what: str) -> list[I
     named = sorted({name for name in missing if name})
     messages = []
     if named:
-        shown = ", ".join(named[:_MOST_NAMED]) + (", ..." if len(named) > _MOST_NAMED else "")
         n = sum(bool(name) for name in missing)
         messages.append(
-            dropped(f"{n} record(s) name {len(named)} {what}(s) that are not known: {shown}.")
+            dropped(
+                f"{n} record(s) name {len(named)} {what}(s) that are not known: {_some(named)}."
+            )
         )
     if len(missing) > sum(bool(name) for name in missing):
         n = sum(not name for name in missing)
         messages.append(dropped(f"{n} record(s) name no {what} at all."))
     return messages
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:_MOST_NAMED]) + (", ..." if len(names) > _MOST_NAMED else "")

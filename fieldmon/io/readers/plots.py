@@ -14,7 +14,7 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, dropped, guessed, seen
 from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.geometry import boundary, closed_lines, filled, sort_out
+from fieldmon.io.parse.geometry import boundary, closed_lines, filled, geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
 from fieldmon.io.readers.known_rows import with_known_rows
@@ -31,13 +31,13 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     if layer.geometry is None:
         return _plot_of_corners(layer, options)
     areas, messages = _areas(layer)
-    names, name_findings = plot_names(areas, options.name_column)
+    names, name_messages = plot_names(areas, options.name_column)
     chosen = _chosen(names, options.feature)
-    placed, place_findings = place_geometry(_shapes(areas)[chosen], layer.crs, options)
-    fields, shape_findings = _fields(placed, [names[i] for i in chosen])
-    fields, row_findings = with_known_rows(fields, areas, names)
-    found = (*layer.messages, *messages, *name_findings, *place_findings, *shape_findings)
-    return Imported(fields, (*found, *row_findings))
+    placed, place_messages = place_geometry(_shapes(areas)[chosen], layer.crs, options)
+    fields, shape_messages = _fields(placed, [names[i] for i in chosen])
+    fields, row_messages = with_known_rows(fields, areas, names)
+    found = (*layer.messages, *messages, *name_messages, *place_messages, *shape_messages)
+    return Imported(fields, (*found, *row_messages))
 
 
 def named_areas(layer: Layer, options: PlotOptions) -> tuple[Layer, list[str]]:
@@ -84,10 +84,10 @@ def _told_apart(names: list[str]) -> list[str]:
 def _areas(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     """Return the features that have an area; offer lines and points for what they can be."""
     messages: list[ImportMessage] = []
-    areas, lines, points = sort_out(_shapes(layer))
+    areas, lines, points = geometry_kinds(_shapes(layer))
     if not areas.any() and lines.any():
         layer, messages = _outlines(layer)
-        areas, lines, points = sort_out(_shapes(layer))
+        areas, lines, points = geometry_kinds(_shapes(layer))
     if not areas.any():
         _refuse_without_areas(layer, int(lines.sum()), int(points.sum()))
     missing = len(layer) - int((areas | lines | points).sum())

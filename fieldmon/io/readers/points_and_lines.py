@@ -12,7 +12,7 @@ from fieldmon.errors import FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import Imported, doubtful, dropped, seen
 from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.geometry import sort_out
+from fieldmon.io.parse.geometry import geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
 from fieldmon.io.readers.places import Plants
@@ -58,7 +58,7 @@ def lines_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:
     """Return the lines of a layer, lon/lat."""
     if layer.geometry is None:
         raise FileProblem(f"{layer.name} must hold lines, but it is a plain table.")
-    areas, lines, points = sort_out(layer.geometry)
+    areas, lines, points = geometry_kinds(layer.geometry)
     if not lines.any():
         raise FileProblem(
             f"{layer.name} must hold lines, but it holds {int(areas.sum())} area(s) and "

@@ -39,22 +39,38 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.options import RecordOptions
-    from fieldmon.io.parse.values import Dated
-    from fieldmon.io.readers.places import Places
+    from fieldmon.io.parse.values import DatedColumn
+    from fieldmon.io.readers.places import NamedPlaces
 
 _LOOKED_AT = 200
 
 
 def records_of(
-    layer: Layer, options: RecordOptions, places: Places | None = None
+    layer: Layer, options: RecordOptions, places: NamedPlaces | None = None
 ) -> Imported[Observations]:
     """Return the records of a layer, each with a position."""
+    return _records_and_plots(layer, options, places)[0]
+
+
+def records_by_plot(
+    layer: Layer, options: RecordOptions, places: NamedPlaces
+) -> Imported[dict[str, Observations]]:
+    """Return the records of a layer that name their plot, and a row and a plant on it, by plot."""
+    read, plot = _records_and_plots(layer, options, places)
+    named = [] if plot is None else sorted(set(plot.tolist()))
+    return read.having({name: read.value.take(plot == name) for name in named})
+
+
+def _records_and_plots(
+    layer: Layer, options: RecordOptions, places: NamedPlaces | None
+) -> tuple[Imported[Observations], NDArray[np.str_] | None]:
+    """Return the records of a layer, and the plot that each names, if they do."""
     if len(layer) == 0:
         raise ObservationError(f"{layer.name} must hold records, but it holds none.")
     layer, repeated = _once_each(layer)
     found = located(layer, options, places)
     table = _Table(found.layer, options)
-    day, day_findings = _days(table)
+    day, day_messages = _days(table)
     counts = _counts(table)
     stated_m = table.numbers("accuracy")
     observations = Observations.of(
@@ -67,8 +83,9 @@ def records_of(
         stage=table.texts("stage"),
         leaves_sampled=table.numbers("leaves"),
     )
-    messages = (*layer.messages, *repeated, *found.messages, *day_findings, *counts.messages)
-    return Imported(observations, (*messages, *_species(table), *_same_visit(observations)))
+    messages = (*layer.messages, *repeated, *found.messages, *day_messages, *counts.messages)
+    more = (*_species(table), *_same_visit(observations))
+    return Imported(observations, (*messages, *more)), found.plot
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +158,7 @@ def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[ImportMessage]]:
     return read.day, [seen(f"Dates are in column(s) {where}."), *_about_dates(read, where)]
 
 
-def _about_dates(read: Dated, where: str) -> list[ImportMessage]:
+def _about_dates(read: DatedColumn, where: str) -> list[ImportMessage]:
     messages = []
     if read.is_ambiguous:
         messages.append(

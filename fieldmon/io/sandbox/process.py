@@ -114,7 +114,7 @@ def own_path() -> str:
     return os.pathsep.join([here, *filter(None, [os.environ.get("PYTHONPATH")])])
 
 
-class Reader:
+class ReadingProcess:
     """One reading process; it loads `modules` before its first file."""
 
     def __init__(self, *modules: str) -> None:
@@ -196,20 +196,20 @@ class _Idle:
     """Readers that wait for the next file."""
 
     def __init__(self) -> None:
-        self._readers: list[Reader] = []
+        self._readers: list[ReadingProcess] = []
         self._lock = threading.Lock()
         atexit.register(self.stop)
 
-    def borrow(self, *modules: str) -> Reader:
+    def borrow(self, *modules: str) -> ReadingProcess:
         with self._lock:
             while self._readers:
                 reader = self._readers.pop()
                 if reader.is_alive:
                     return reader
                 reader.stop()
-        return Reader(*modules)
+        return ReadingProcess(*modules)
 
-    def give_back(self, reader: Reader) -> None:
+    def give_back(self, reader: ReadingProcess) -> None:
         with self._lock:
             if reader.is_alive and reader.uses < _USES and not self._readers:
                 self._readers.append(reader)

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.readers.crews import crews_of
+from fieldmon.io.readers.inspection_file.rows import InspectionRows, rows_of
 from fieldmon.io.readers.plots import named_areas, plots_of
 from fieldmon.io.readers.points_and_lines import lines_of, plants_of
-from fieldmon.io.readers.records import records_of
-from fieldmon.io.readers.reported import Reported, reported_of
+from fieldmon.io.readers.records import records_by_plot, records_of
 from fieldmon.io.sandbox.unpack import Workroom
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
     from fieldmon.io.readers.crews import Crew
-    from fieldmon.io.readers.places import Places, Plants
-    from fieldmon.io.readers.reported import FindingsOptions
+    from fieldmon.io.readers.inspection_options import InspectionOptions
+    from fieldmon.io.readers.places import NamedPlaces, Plants
     from fieldmon.plot.field import Field
 
 
@@ -45,10 +45,18 @@ def crews(
 
 
 def records(
-    folder: str, source: Source, options: RecordOptions, places: Places | None
+    folder: str, source: Source, options: RecordOptions, places: NamedPlaces | None
 ) -> Imported[Observations]:
     """Return the records of a source."""
     return records_of(open_layer(source, options, Workroom(Path(folder))), options, places)
+
+
+def plot_records(
+    folder: str, source: Source, options: RecordOptions, places: NamedPlaces
+) -> Imported[dict[str, Observations]]:
+    """Return the records of a source that name their plots, by plot."""
+    layer = open_layer(source, options, Workroom(Path(folder)))
+    return records_by_plot(layer, options, places)
 
 
 def plants(folder: str, source: Source, options: ReadOptions) -> Imported[Plants]:
@@ -61,6 +69,8 @@ def lines(folder: str, source: Source, options: ReadOptions) -> Imported[MultiLi
     return lines_of(open_layer(source, options, Workroom(Path(folder))), options)
 
 
-def reported(folder: str, source: Source, options: FindingsOptions) -> Imported[Reported]:
+def inspection_rows(
+    folder: str, source: Source, options: InspectionOptions
+) -> Imported[InspectionRows]:
     """Return what a file says of plants that were inspected."""
-    return reported_of(source, options, Workroom(Path(folder)))
+    return rows_of(source, options, Workroom(Path(folder)))

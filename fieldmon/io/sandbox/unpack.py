@@ -18,7 +18,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO, TYPE_CHECKING
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.formats.signatures import HEAD_BYTES, READABLE, Kind, kind_of
+from fieldmon.io.formats.signatures import HEAD_BYTES, READABLE, FileKind, kind_of
 from fieldmon.io.options import Source, Upload, source_name
 from fieldmon.io.sandbox import limits
 
@@ -34,7 +34,7 @@ _DAMAGE = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeErro
 
 
 @dataclass(frozen=True)
-class Entry:
+class FileEntry:
     """One file that could be read: its name with folders, its size, and how to open it."""
 
     name: str
@@ -57,8 +57,8 @@ class Member:
     """One data set: its main file first, then the files that belong to it."""
 
     name: str
-    kind: Kind
-    entries: tuple[Entry, ...]
+    kind: FileKind
+    entries: tuple[FileEntry, ...]
 
     @property
     def stem(self) -> str:
@@ -79,7 +79,7 @@ class Workroom:
         self.n_staged += 1
         room = self.folder / f"{self.n_staged:03d}"
         room.mkdir()
-        if member.kind is Kind.GEODATABASE:
+        if member.kind is FileKind.GEODATABASE:
             inside = room / "data.gdb"
             inside.mkdir()
             for entry in member.entries:
@@ -92,14 +92,14 @@ class Workroom:
             self._copy(entry, room / f"data{entry.path.suffix.lower()}")
         return main
 
-    def unpack(self, entry: Entry) -> IO[bytes]:
-        """Return an entry of an archive as a file that can be sought in."""
+    def unpack(self, entry: FileEntry) -> Path:
+        """Copy an archive, which may lie in another, to where it can be sought in."""
         self.n_staged += 1
         path = self.folder / f"{self.n_staged:03d}.zip"
         self._copy(entry, path)
-        return path.open("rb")
+        return path
 
-    def _copy(self, entry: Entry, to: Path) -> None:
+    def _copy(self, entry: FileEntry, to: Path) -> None:
         with _opened(entry) as source, to.open("wb") as target:
             while piece := source.read(1 << 20):
                 self.bytes_left -= len(piece)
@@ -112,7 +112,7 @@ class Workroom:
 
 
 @contextmanager
-def _opened(entry: Entry) -> Iterator[IO[bytes]]:
+def _opened(entry: FileEntry) -> Iterator[IO[bytes]]:
     """Open an entry; whatever reading it may raise becomes a `FileProblem`."""
     try:
         with entry.open() as file:
@@ -157,7 +157,7 @@ def choose_member(found: tuple[Member, ...], wanted: str | None, name: str) -> M
     )
 
 
-def _entries(source: Source) -> list[Entry]:
+def _entries(source: Source) -> list[FileEntry]:
     if isinstance(source, Upload):
         source = (source,)
     if isinstance(source, tuple):
@@ -183,16 +183,16 @@ def _belongings(path: Path) -> list[Path]:
     ]
 
 
-def _of_upload(upload: Upload) -> Entry:
+def _of_upload(upload: Upload) -> FileEntry:
     name = PurePosixPath(upload.name.replace("\\", "/")).name or "upload"
     _check_size(name, len(upload.data))
-    return Entry(name, len(upload.data), lambda: io.BytesIO(upload.data))
+    return FileEntry(name, len(upload.data), lambda: io.BytesIO(upload.data))
 
 
-def _of_path(path: Path, name: str) -> Entry:
+def _of_path(path: Path, name: str) -> FileEntry:
     n_bytes = path.stat().st_size
     _check_size(name, n_bytes)
-    return Entry(name, n_bytes, lambda: path.open("rb"))
+    return FileEntry(name, n_bytes, lambda: path.open("rb"))
 
 
 def _check_size(name: str, n_bytes: int) -> None:
@@ -203,7 +203,7 @@ def _check_size(name: str, n_bytes: int) -> None:
         )
 
 
-def _of_folder(folder: Path) -> list[Entry]:
+def _of_folder(folder: Path) -> list[FileEntry]:
     base = folder.parent if folder.suffix.lower() == ".gdb" else folder
     entries = []
     for path in sorted(folder.rglob("*")):
@@ -217,12 +217,12 @@ def _of_folder(folder: Path) -> list[Entry]:
     return entries
 
 
-def _is_decoy(entry: Entry) -> bool:
+def _is_decoy(entry: FileEntry) -> bool:
     parts = [part.lower() for part in entry.path.parts]
     return any(part in _DECOYS or part.startswith(".") for part in parts)
 
 
-def _expand(entries: Iterable[Entry], workroom: Workroom, depth: int) -> Iterator[Entry]:
+def _expand(entries: Iterable[FileEntry], workroom: Workroom, depth: int) -> Iterator[FileEntry]:
     """Yield the entries, those of archives in their place."""
     for entry in entries:
         if _is_decoy(entry):
@@ -241,15 +241,17 @@ def _expand(entries: Iterable[Entry], workroom: Workroom, depth: int) -> Iterato
         elif depth == 0:
             yield from _expand(inner, workroom, depth + 1)
         else:
-            prefixed = (Entry(f"{entry.name}/{one.name}", one.n_bytes, one.open) for one in inner)
+            prefixed = (
+                FileEntry(f"{entry.name}/{one.name}", one.n_bytes, one.open) for one in inner
+            )
             yield from _expand(prefixed, workroom, depth + 1)
 
 
-def _is_archive(entry: Entry) -> bool:
+def _is_archive(entry: FileEntry) -> bool:
     return entry.head()[:4] in {b"PK\x03\x04", b"PK\x05\x06"}
 
 
-def _zip_entries(archive: Entry, workroom: Workroom) -> list[Entry]:
+def _zip_entries(archive: FileEntry, workroom: Workroom) -> list[FileEntry]:
     try:
         packed = zipfile.ZipFile(workroom.unpack(archive))
         infos = packed.infolist()
@@ -260,7 +262,9 @@ def _zip_entries(archive: Entry, workroom: Workroom) -> list[Entry]:
         ) from bad
     _check_archive(archive, infos)
     return [
-        Entry(info.filename.replace("\\", "/").lstrip("/"), info.file_size, _opener(packed, info))
+        FileEntry(
+            info.filename.replace("\\", "/").lstrip("/"), info.file_size, _opener(packed, info)
+        )
         for info in infos
         if not info.is_dir()
     ]
@@ -270,7 +274,7 @@ def _opener(packed: zipfile.ZipFile, info: zipfile.ZipInfo) -> Callable[[], IO[b
     return lambda: packed.open(info)
 
 
-def _check_archive(archive: Entry, infos: list[zipfile.ZipInfo]) -> None:
+def _check_archive(archive: FileEntry, infos: list[zipfile.ZipInfo]) -> None:
     """Refuse what no honest archive does, before anything is unpacked."""
     name = archive.name
     if len(infos) > limits.ARCHIVE_ENTRIES:
@@ -305,12 +309,12 @@ def _check_archive(archive: Entry, infos: list[zipfile.ZipInfo]) -> None:
             raise FileProblem(f"{name} is locked with a password. Pack it again without one.")
 
 
-def _group(entries: list[Entry]) -> tuple[list[Member], list[FileProblem]]:
+def _group(entries: list[FileEntry]) -> tuple[list[Member], list[FileProblem]]:
     """Put together what belongs together; keep the reasons why the rest cannot be read."""
     found = _geodatabases(entries)
     taken = {entry.name for member in found for entry in member.entries}
     rest = [entry for entry in entries if entry.name not in taken]
-    by_place: dict[tuple[str, str], dict[str, Entry]] = {}
+    by_place: dict[tuple[str, str], dict[str, FileEntry]] = {}
     for entry in rest:
         place = (str(entry.path.parent), entry.path.stem.lower())
         by_place.setdefault(place, {})[entry.path.suffix.lower()] = entry
@@ -325,21 +329,23 @@ def _group(entries: list[Entry]) -> tuple[list[Member], list[FileProblem]]:
         except FileProblem as problem:
             problems.append(problem)
             continue
-        if kind is Kind.ARCHIVE:
-            kind = Kind.WORKBOOK
-        parts = {Kind.SHAPEFILE: _SHAPEFILE_PARTS[1:], Kind.RASTER: _RASTER_PARTS}.get(kind, ())
+        if kind is FileKind.ARCHIVE:
+            kind = FileKind.WORKBOOK
+        parts = {FileKind.SHAPEFILE: _SHAPEFILE_PARTS[1:], FileKind.RASTER: _RASTER_PARTS}.get(
+            kind, ()
+        )
         belongings = tuple(beside[part] for part in parts if part in beside)
         found.append(Member(entry.name, kind, (entry, *belongings)))
     return found, problems
 
 
-def _geodatabases(entries: list[Entry]) -> list[Member]:
-    folders: dict[str, list[Entry]] = {}
+def _geodatabases(entries: list[FileEntry]) -> list[Member]:
+    folders: dict[str, list[FileEntry]] = {}
     for entry in entries:
         if entry.path.parent.suffix.lower() == ".gdb":
             folders.setdefault(str(entry.path.parent), []).append(entry)
     return [
-        Member(name, Kind.GEODATABASE, tuple(files))
+        Member(name, FileKind.GEODATABASE, tuple(files))
         for name, files in folders.items()
         if any(f.path.suffix.lower() == ".gdbtable" for f in files)
     ]

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from datetime import timedelta
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -16,8 +16,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.writers.geojson import RouteNotes
-    from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantGrid
+    from fieldmon.plot.travel import Aisles
+
+    Floats = NDArray[np.float64]
 
 #: decimals of a degree in every file: about a millimetre
 DECIMALS = 8
@@ -47,10 +49,100 @@ class Stop(NamedTuple):
     vertex: int
 
     @property
+    def plant_label(self) -> str:
+        """Return the plant's number in its row, with its face where it has two: ``17``, ``17b``."""
+        return f"{self.number}{'ab'[self.face - 1] if self.face else ''}"
+
+    @property
     def label(self) -> str:
         """Return a short name that a handheld shows, and that reads back: ``012 R3/17``."""
-        face = "ab"[self.face - 1] if self.face else ""
-        return f"{self.order:03d} R{self.row}/{self.number}{face}"
+        return f"{self.order:03d} R{self.row}/{self.plant_label}"
+
+
+class DrivenRoute(Protocol):
+    """What files tell of a route; see `fieldmon.planning.route.Route`, which is one."""
+
+    @property
+    def aisles(self) -> Aisles:
+        """Return the plot it runs through."""
+        ...
+
+    @property
+    def plant(self) -> NDArray[np.int32]:
+        """Return plants in order, ``(k,)``."""
+        ...
+
+    @property
+    def arrive_s(self) -> Floats:
+        """Return seconds since the start on arrival at each, ``(k,)``."""
+        ...
+
+    @property
+    def leave_s(self) -> Floats:
+        """Return seconds since the start on leaving each, ``(k,)``."""
+        ...
+
+    @property
+    def chance(self) -> Floats:
+        """Return believed chance of infestation at each stop, ``(k,)``."""
+        ...
+
+    @property
+    def line_m(self) -> Floats:
+        """Return the driven line, metres of the plot's frame, ``(m, 2)``."""
+        ...
+
+    @property
+    def line_stop(self) -> NDArray[np.int64]:
+        """Return vertex of the line at which each stop is made, ``(k,)``."""
+        ...
+
+    @property
+    def line_s(self) -> Floats:
+        """Return seconds since the start at each vertex of the line, ``(m,)``."""
+        ...
+
+    @property
+    def end_s(self) -> float:
+        """Return seconds at the end of the line."""
+        ...
+
+    @property
+    def drive_m(self) -> float:
+        """Return length of the driven line."""
+        ...
+
+    @property
+    def expected_finds(self) -> float:
+        """Return infested plants on the route, as believed."""
+        ...
+
+    @property
+    def expected_found(self) -> float:
+        """Return infested plants that would be found on the route, as believed."""
+        ...
+
+    @property
+    def found_bound(self) -> float | None:
+        """Return what no route of these hours can expect to find; None if it is not known."""
+        ...
+
+    @property
+    def bound_sentence(self) -> str:
+        """Return for people what is expected and what no other route can exceed, or ""."""
+        ...
+
+    def __len__(self) -> int:
+        """Return the number of stops."""
+        ...
+
+    def line_lonlat(self) -> Floats:
+        """Return the driven line in degrees, ``(m, 2)``."""
+        ...
+
+    def stops_lonlat(self) -> Floats:
+        """Return the plants' own positions in degrees, ``(k, 2)``."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +158,7 @@ class HandoffPlan:
         Name of the plot, who chose the plants, local date and time of the start.
     """
 
-    route: Route
+    route: DrivenRoute
     notes: RouteNotes
 
     @property
@@ -79,6 +171,11 @@ class HandoffPlan:
         """Return what to call the day: the plot, and the date where it is known."""
         start = self.notes.start
         return plain_text(self.notes.plot if start is None else f"{self.notes.plot} {start:%F}")
+
+    @property
+    def bound(self) -> str:
+        """Return what is expected and what no other route can exceed, in a sentence, or ""."""
+        return self.route.bound_sentence
 
     @property
     def has_faces(self) -> bool:

@@ -5,46 +5,26 @@ One HTML file that asks for nothing from outside, to be printed on A4.
 
 from __future__ import annotations
 
-from html import escape
-from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
+from markupsafe import Markup
 
+from fieldmon.io.html import page
 from fieldmon.io.writers.day_file import plain_text
 from fieldmon.io.writers.geojson import summary
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.io.writers.day_file import HandoffPlan, Stop
+    from fieldmon.io.writers.day_file import HandoffPlan
 
     Float = NDArray[np.float64]
 
 _WIDE_MM, _HIGH_MM = 186.0, 88.0
 _MARGIN_MM = 5.0
 _MOST_NUMBERS = 60  # stops whose numbers the map shows; of more, every fifth, tenth...
-_STYLE = """
-@page { size: A4; margin: 12mm; }
-* { box-sizing: border-box; }
-body { font: 9pt/1.15 sans-serif; color: #000; background: #fff; margin: 0 auto; max-width: 186mm; }
-section { break-after: page; } section:last-of-type { break-after: auto; }
-h1 { font-size: 14pt; margin: 0 0 1mm; } p { margin: 0 0 1.5mm; }
-.blank { display: inline-block; width: 40mm; border-bottom: 0.3mm solid #000; }
-svg { display: block; width: 100%; height: auto; border: 0.2mm solid #999; break-inside: avoid; }
-.legend { margin: 1.5mm 0; }
-.stops { columns: 3; column-gap: 5mm; }
-table { border-collapse: collapse; width: 100%; }
-thead { display: table-header-group; } th { font-weight: normal; font-size: 7pt; color: #555; }
-tr { break-inside: avoid; }
-td, th { border-bottom: 0.1mm solid #bbb; padding: 0.35mm 0.6mm; text-align: end; }
-td.n { color: #555; } td.p { font-weight: bold; } td.c { width: 11mm; }
-tr.row td { border-top: 0.4mm solid #000; }
-i { display: inline-block; width: 3.2mm; height: 3.2mm; border: 0.3mm solid #000; margin: 0 0.5mm;
-vertical-align: -0.4mm; }
-i.found { border-radius: 50%; } i.not { border-style: dashed; }
-"""
 
 
 class _Map(NamedTuple):
@@ -79,49 +59,17 @@ def route_sheet(plan: HandoffPlan) -> bytes:
     if when:
         hours += f" ({plan.clock(0.0)[11:16]} to {plan.clock(plan.route.end_s)[11:16]})"
     told = f"{figures['stops']} plants, {figures['drive_m'] / 1000:.2f} km, {hours}."
-    rows = "".join(
-        _line(stop, is_first=k == 0)
-        for _, stops in groupby(plan.stops, key=lambda stop: stop.row)
-        for k, stop in enumerate(stops)
-    )
-    page = f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width">
-<title>{escape(plan.title)}</title>
-<style>{_STYLE}</style>
-</head>
-<body>
-<section>
-<h1><bdi>{escape(plain_text(plan.notes.plot))}</bdi> {when}</h1>
-<p>{told} Inspected by <span class="blank"></span> on <span class="blank"></span></p>
-{_svg(plan)}
-<p class="legend">Tick one: <i></i> clean <i class="found"></i> found, and write how many
-<i class="not"></i> could not be inspected. Without a tick, a plant counts as not inspected.</p>
-<div class="stops"><table>
-<thead><tr><th></th><th>row</th><th>plant</th><th>time</th><th></th><th>how many</th></tr></thead>
-<tbody>{rows}</tbody>
-</table></div>
-</section>
-</body>
-</html>
-"""
-    return page.encode()
+    return page(
+        "fieldmon/io/writers/field_sheet.html.j2",
+        plan=plan,
+        plot=plain_text(plan.notes.plot),
+        date=when,
+        told=f"{told} {plan.bound}".strip(),
+        map=_svg(plan),
+    ).encode()
 
 
-def _line(stop: Stop, *, is_first: bool) -> str:
-    """Return the table's line of one plant, with its boxes."""
-    face = "ab"[stop.face - 1] if stop.face else ""
-    return (
-        f'<tr data-plant="{stop.plant}"{" class=row" if is_first else ""}>'
-        f'<td class="n">{stop.order}</td><td>{stop.row}</td><td class="p">{stop.number}{face}</td>'
-        f"<td>{stop.arrive[11:16]}</td>"
-        '<td><i></i><i class="found"></i><i class="not"></i></td><td class="c"></td></tr>'
-    )
-
-
-def _svg(plan: HandoffPlan) -> str:
+def _svg(plan: HandoffPlan) -> Markup:
     grid = plan.grid
     placed, size = _map_of(plan)
     first, last = grid.row_start[:-1], grid.row_start[1:] - 1
@@ -130,14 +78,17 @@ def _svg(plan: HandoffPlan) -> str:
         for a, b in zip(first.tolist(), last.tolist(), strict=True)
     )
     line = _path(placed(plan.route.line_m)) if len(plan.route.line_m) > 1 else ""
-    return (
-        f'<svg viewBox="0 0 {size[0]:.1f} {size[1]:.1f}" role="img" aria-label="map">'
-        f'<path d="{_area(plan, placed)}" fill="#f4f4ee" stroke="#888" stroke-width="0.3" '
-        'fill-rule="evenodd"/>'
-        f'<path d="{rows}" stroke="#9c9" stroke-width="0.4" stroke-linecap="round"/>'
-        f'<path d="{line}" fill="none" stroke="#c50" stroke-width="0.35" stroke-linejoin="round"/>'
-        f"{_row_numbers(plan, placed)}{_marks(plan, placed)}"
-        f"{_north(plan, placed, size)}{_scale_bar(placed.scale, size)}</svg>"
+    return Markup(
+        '<svg viewBox="0 0 {:.1f} {:.1f}" role="img" aria-label="map">'
+        '<path d="{}" fill="#f4f4ee" stroke="#888" stroke-width="0.3" fill-rule="evenodd"/>'
+        '<path d="{}" stroke="#9c9" stroke-width="0.4" stroke-linecap="round"/>'
+        '<path d="{}" fill="none" stroke="#c50" stroke-width="0.35" stroke-linejoin="round"/>'
+        "{}{}{}{}</svg>"
+    ).format(
+        *size,
+        *(_area(plan, placed), rows, line),
+        *(_row_numbers(plan, placed), _marks(plan, placed)),
+        *(_north(plan, placed, size), _scale_bar(placed.scale, size)),
     )
 
 
@@ -156,20 +107,21 @@ def _map_of(plan: HandoffPlan) -> tuple[_Map, Float]:
     return _Map(turned, low, scale, corner), np.array([_WIDE_MM, span[1] * scale + 2 * _MARGIN_MM])
 
 
-def _row_numbers(plan: HandoffPlan, placed: _Map) -> str:
+def _row_numbers(plan: HandoffPlan, placed: _Map) -> Markup:
     """Return the numbers of the rows at their low ends, as far as there is room."""
     grid = plan.grid
     lines, first = np.unique(grid.row_line, return_index=True)
     gap_mm = grid.row_spacing_m * placed.scale
     every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 10**9) if k * gap_mm >= 2.5)
     ends = placed(np.stack([grid.lane_x_m[first, 0], grid.xy_m[grid.row_start[first], 1]], axis=1))
-    texts = "".join(
-        f'<text x="{x:.2f}" y="{y:.2f}" text-anchor="middle">{line + 1}</text>'
+    texts = [
+        Markup('<text x="{:.2f}" y="{:.2f}" text-anchor="middle">{}</text>').format(x, y, line + 1)
         for line, (x, y) in zip(lines.tolist(), ends.tolist(), strict=True)
         if line == 0 or (line + 1) % every == 0
-    )
-    style = 'font-size="2.4" font-family="sans-serif" fill="#363" dominant-baseline="central"'
-    return f"<g {style}>{texts}</g>"
+    ]
+    return Markup(
+        '<g font-size="2.4" font-family="sans-serif" fill="#363" dominant-baseline="central">{}</g>'
+    ).format(Markup().join(texts))
 
 
 def _area(plan: HandoffPlan, placed: _Map) -> str:
@@ -177,47 +129,48 @@ def _area(plan: HandoffPlan, placed: _Map) -> str:
     return "".join(_path(placed(shapely.get_coordinates(ring))) + "Z" for ring in rings)
 
 
-def _marks(plan: HandoffPlan, placed: _Map) -> str:
+def _marks(plan: HandoffPlan, placed: _Map) -> Markup:
     """Return a dot for each stop, with its number as far as there is room."""
     if not plan.stops:
-        return ""
+        return Markup()
     every = next(k for k in (1, 5, 10, 20, 50, 100, 10**9) if len(plan.stops) / k <= _MOST_NUMBERS)
     places = placed(plan.grid.xy_m[plan.route.plant])
     marks = []
     for stop, (x, y) in zip(plan.stops, places.tolist(), strict=True):
-        marks.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="0.7"/>')
+        marks.append(Markup('<circle cx="{:.2f}" cy="{:.2f}" r="0.7"/>').format(x, y))
         if stop.order == 1 or stop.order % every == 0:
-            marks.append(f'<text x="{x + 0.9:.2f}" y="{y - 0.6:.2f}">{stop.order}</text>')
+            number = Markup('<text x="{:.2f}" y="{:.2f}">{}</text>')
+            marks.append(number.format(x + 0.9, y - 0.6, stop.order))
     x, y = placed(plan.route.line_m[0])[0].tolist()
-    marks.append(f'<rect x="{x - 1:.2f}" y="{y - 1:.2f}" width="2" height="2" fill="#c50"/>')
-    return f'<g font-size="2.6" font-family="sans-serif">{"".join(marks)}</g>'
+    begin = Markup('<rect x="{:.2f}" y="{:.2f}" width="2" height="2" fill="#c50"/>')
+    marks.append(begin.format(x - 1, y - 1))
+    return Markup('<g font-size="2.6" font-family="sans-serif">{}</g>').format(Markup().join(marks))
 
 
-def _north(plan: HandoffPlan, placed: _Map, size: Float) -> str:
+def _north(plan: HandoffPlan, placed: _Map, size: Float) -> Markup:
     """Return an arrow to true north in the upper right corner."""
     frame = plan.grid.frame
     ahead = frame.xy_m(np.array([[frame.lon, frame.lat + 1e-4]]))
     step = placed(ahead)[0] - placed(np.zeros(2))[0]
     step = step / np.hypot(*step) * 4.0
-    x, y = size[0] - 8.0, 10.0
     angle = np.degrees(np.arctan2(step[0], -step[1]))
-    return (
-        f'<g transform="translate({x:.1f} {y:.1f}) rotate({angle:.1f})" class="north">'
+    return Markup(
+        '<g transform="translate({:.1f} 10.0) rotate({:.1f})" class="north">'
         '<path d="M0 5V-5M-1.6 -2.4L0 -5L1.6 -2.4" fill="none" stroke="#000" stroke-width="0.4"/>'
         '<text y="-5.6" font-size="3" text-anchor="middle">N</text></g>'
-    )
+    ).format(size[0] - 8.0, angle)
 
 
-def _scale_bar(scale: float, size: Float) -> str:
+def _scale_bar(scale: float, size: Float) -> Markup:
     """Return a bar of a round number of metres, about a fifth of the drawing."""
     wish = size[0] / 5 / scale
     decade = 10 ** np.floor(np.log10(wish))
     metres = decade * max(k for k in (1, 2, 5) if k * decade <= wish)
-    x, y = 4.0, size[1] - 2.0
-    return (
-        f'<path d="M{x} {y:.2f}h{metres * scale:.2f}" stroke="#000" stroke-width="0.6"/>'
-        f'<text x="{x}" y="{y - 1:.2f}" font-size="2.6" class="scale">{metres:g} m</text>'
-    )
+    y = size[1] - 2.0
+    return Markup(
+        '<path d="M4.0 {:.2f}h{:.2f}" stroke="#000" stroke-width="0.6"/>'
+        '<text x="4.0" y="{:.2f}" font-size="2.6" class="scale">{:g} m</text>'
+    ).format(y, metres * scale, y - 1, metres)
 
 
 def _path(xy: Float) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.planning.route import Route
+    from fieldmon.io.writers.day_file import DrivenRoute, HandoffPlan
 
 # RFC 7946 positions are degrees; 8 decimals are about a millimetre
 _DECIMALS = 8
@@ -42,8 +43,8 @@ class RouteNotes:
     start: datetime | None = None
 
 
-def summary(route: Route, notes: RouteNotes) -> dict[str, Any]:
-    """Return the figures of a route: stops, seconds, metres, expected finds."""
+def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
+    """Return the figures of a route: stops, seconds, metres, expected finds, their bound."""
     return {
         "plot": notes.plot,
         "sampler": notes.sampler,
@@ -52,12 +53,24 @@ def summary(route: Route, notes: RouteNotes) -> dict[str, Any]:
         "drive_m": round(route.drive_m, 3),
         "inspect_s": round(float((route.leave_s - route.arrive_s).sum()), 3),
         "infested_expected": round(route.expected_finds, 3),
+        **_bound(route),
         **({} if notes.start is None else {"start": _clock(notes.start, 0.0)}),
         **({} if notes.start is None else {"end": _clock(notes.start, route.end_s)}),
     }
 
 
-def route_geojson(route: Route, notes: RouteNotes) -> str:
+def _bound(route: DrivenRoute) -> dict[str, Any]:
+    """Return what is expected to be found and what no other route can exceed, if it is known."""
+    if route.found_bound is None:
+        return {}
+    return {
+        "finds_expected": round(route.expected_found, 3),
+        "finds_bound": math.ceil(1000.0 * route.found_bound) / 1000.0,
+        "bound": route.bound_sentence,
+    }
+
+
+def route_geojson(route: DrivenRoute, notes: RouteNotes) -> str:
     """Return a route as GeoJSON text: first the driven line, then a point for every stop.
 
     A stop lies at its plant; its ``line_vertex`` tells where on the line the robot stands for it.
@@ -72,13 +85,18 @@ def route_geojson(route: Route, notes: RouteNotes) -> str:
     return json.dumps(collection, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
 
 
-def write_route(path: str | Path, route: Route, notes: RouteNotes) -> None:
+def handed_geojson(plan: HandoffPlan) -> bytes:
+    """Return a day to hand off as GeoJSON; see `route_geojson`."""
+    return route_geojson(plan.route, plan.notes).encode()
+
+
+def write_route(path: str | Path, route: DrivenRoute, notes: RouteNotes) -> None:
     """Write a route's GeoJSON file, whole or not at all; raise `FileProblem` if it cannot be."""
     write_whole(path, route_geojson(route, notes).encode())
 
 
 def _line_feature(
-    route: Route, notes: RouteNotes, line_lonlat: NDArray[np.float64]
+    route: DrivenRoute, notes: RouteNotes, line_lonlat: NDArray[np.float64]
 ) -> dict[str, Any]:
     # a line needs two positions; a day without stops has no line
     line = line_lonlat.tolist() if len(line_lonlat) > 1 else None
@@ -94,7 +112,7 @@ def _line_feature(
     }
 
 
-def _stop_features(route: Route, notes: RouteNotes) -> list[dict[str, Any]]:
+def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]]:
     label = row_label(route.aisles.grid, route.plant)
     columns = zip(
         route.stops_lonlat().round(_DECIMALS).tolist(),

@@ -1,7 +1,12 @@
-"""The one door: a planned day into a file of the format that its name tells, or that is asked."""
+"""The one door: a planned day into a file of the format that its name tells, or that is asked.
+
+A new format is a file beside this one, with a function from a `HandoffPlan` to bytes, and a line in
+`FORMATS`.
+"""
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -9,105 +14,60 @@ from fieldmon.errors import SettingError
 from fieldmon.io.atomic_write import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from fieldmon.io.writers.day_file import HandoffPlan
 
-    #: file contents by what is put after the stem of the name: ``{".geojson": b"..."}``
-    Made = dict[str, bytes]
 
-
-class Format(NamedTuple):
+class HandoffFormat(NamedTuple):
     """A format that can be handed off.
 
     Parameters
     ----------
-    make
-        Returns the contents by ending, the main file first.
+    writer
+        Module beside this one and its function, as ``"gpx:route_gpx"``; it is imported when a file
+        is made, as some need libraries that take a while to load. It takes a `HandoffPlan` and
+        returns the file's bytes.
     endings
         That tell it; the first is the usual one.
     reader
         Who reads it, in a few words.
     several
-        Whether it takes several files.
+        Whether it takes several files; the function then returns their bytes by ending, the main
+        one first.
     """
 
-    make: Callable[[HandoffPlan], Made]
+    writer: str
     endings: tuple[str, ...]
     reader: str
     several: bool = False
 
-
-def _geojson(plan: HandoffPlan) -> Made:
-    from fieldmon.io.writers.geojson import route_geojson  # noqa: PLC0415 - see FORMATS
-
-    return {".geojson": route_geojson(plan.route, plan.notes).encode()}
-
-
-def _csv(plan: HandoffPlan) -> Made:
-    from fieldmon.io.writers.csv import route_csv  # noqa: PLC0415
-
-    return {".csv": route_csv(plan)}
+    def make(self, plan: HandoffPlan) -> dict[str, bytes]:
+        """Return file contents by what is put after the stem of the name, the main file first."""
+        module, _, name = self.writer.partition(":")
+        made = getattr(import_module(f"{__package__}.{module}"), name)(plan)
+        return dict(made) if self.several else {self.endings[0]: made}
 
 
-def _gpx(plan: HandoffPlan) -> Made:
-    from fieldmon.io.writers.gpx import route_gpx  # noqa: PLC0415
-
-    return {".gpx": route_gpx(plan)}
-
-
-def _kml(plan: HandoffPlan) -> Made:
-    from fieldmon.io.writers.kml import route_kml  # noqa: PLC0415
-
-    return {".kml": route_kml(plan)}
-
-
-def _gpkg(plan: HandoffPlan) -> Made:
-    from fieldmon.io.writers.gis import route_gpkg  # noqa: PLC0415
-
-    return {".gpkg": route_gpkg(plan)}
-
-
-def _shapefile(plan: HandoffPlan) -> Made:
-    from fieldmon.io.writers.gis import route_shapefile  # noqa: PLC0415
-
-    return {".zip": route_shapefile(plan)}
-
-
-def _nav2(plan: HandoffPlan) -> Made:
-    from fieldmon.io.writers import nav2  # noqa: PLC0415
-
-    return {
-        ".nav2.geojson": nav2.route_graph(plan),
-        ".datum.yaml": nav2.datum_yaml(plan),
-        ".waypoints.yaml": nav2.waypoints_yaml(plan),
-    }
-
-
-def _waypoints(plan: HandoffPlan) -> Made:
-    from fieldmon.io.writers import nav2  # noqa: PLC0415
-
-    return {".yaml": nav2.waypoints_yaml(plan)}
-
-
-def _sheet(plan: HandoffPlan) -> Made:
-    from fieldmon.io.writers.field_sheet import route_sheet  # noqa: PLC0415
-
-    return {".html": route_sheet(plan)}
-
-
-#: by name; one whose ending ends another's comes later. Each is imported when it is written, as
-#: some need libraries that take a while to load
+#: by name; one whose ending ends another's comes later
 FORMATS = {
-    "nav2": Format(_nav2, (".nav2.geojson",), "robots with Nav2 (ROS 2)", several=True),
-    "waypoints": Format(_waypoints, (".waypoints.yaml", ".yaml", ".yml"), "robots of any kind"),
-    "geojson": Format(_geojson, (".geojson", ".json"), "QGIS, phones, web maps"),
-    "gpkg": Format(_gpkg, (".gpkg",), "QGIS, QField, ArcGIS"),
-    "shapefile": Format(_shapefile, (".shp.zip", ".zip"), "older map programs and consoles"),
-    "csv": Format(_csv, (".csv",), "spreadsheets"),
-    "kml": Format(_kml, (".kml",), "Google Earth, map apps on phones"),
-    "gpx": Format(_gpx, (".gpx",), "GPS handhelds and hiking apps"),
-    "sheet": Format(_sheet, (".html", ".htm"), "a printer: a scout without a phone"),
+    "nav2": HandoffFormat(
+        "nav2:nav2_files", (".nav2.geojson",), "robots with Nav2 (ROS 2)", several=True
+    ),
+    "waypoints": HandoffFormat(
+        "nav2:waypoints_yaml", (".waypoints.yaml", ".yaml", ".yml"), "robots of any kind"
+    ),
+    "geojson": HandoffFormat(
+        "geojson:handed_geojson", (".geojson", ".json"), "QGIS, phones, web maps"
+    ),
+    "gpkg": HandoffFormat("gis:route_gpkg", (".gpkg",), "QGIS, QField, ArcGIS"),
+    "shapefile": HandoffFormat(
+        "gis:route_shapefile", (".shp.zip", ".zip"), "older map programs and consoles"
+    ),
+    "csv": HandoffFormat("csv:route_csv", (".csv",), "spreadsheets"),
+    "kml": HandoffFormat("kml:route_kml", (".kml",), "Google Earth, map apps on phones"),
+    "gpx": HandoffFormat("gpx:route_gpx", (".gpx",), "GPS handhelds and hiking apps"),
+    "sheet": HandoffFormat(
+        "field_sheet:route_sheet", (".html", ".htm"), "a printer: a scout without a phone"
+    ),
 }
 
 
@@ -146,7 +106,7 @@ def write_handoff(
     return paths
 
 
-def _format_of(target: Path, name: str | None) -> Format:
+def _format_of(target: Path, name: str | None) -> HandoffFormat:
     if name is not None:
         if name.lower() not in FORMATS:
             raise SettingError(

@@ -38,7 +38,7 @@ _GRID_M = 1e-3  # coordinates are written to the millimetre
 _MOST_NODES = 2**16 - 1
 
 
-class Graph(NamedTuple):
+class RouteGraph(NamedTuple):
     """The driven line as a network, in metres of the datum's frame.
 
     Parameters
@@ -54,6 +54,15 @@ class Graph(NamedTuple):
     xy_m: Float
     pair: Int
     of_vertex: Int
+
+
+def nav2_files(plan: HandoffPlan) -> dict[str, bytes]:
+    """Return what a robot with Nav2 needs of a day: route graph, datum and waypoints, by ending."""
+    return {
+        ".nav2.geojson": route_graph(plan),
+        ".datum.yaml": datum_yaml(plan),
+        ".waypoints.yaml": waypoints_yaml(plan),
+    }
 
 
 def route_graph(plan: HandoffPlan) -> bytes:
@@ -143,7 +152,7 @@ def waypoints_yaml(plan: HandoffPlan) -> bytes:
     return "\n".join([*lines, ""]).encode()
 
 
-def graph_of(plan: HandoffPlan) -> Graph:
+def graph_of(plan: HandoffPlan) -> RouteGraph:
     """Return the driven line as a network; raise `SettingError` for a day without a way."""
     line_m = plan.route.line_m
     ways = shapely.linestrings(np.stack([line_m[:-1], line_m[1:]], axis=1))
@@ -171,7 +180,7 @@ def graph_of(plan: HandoffPlan) -> Graph:
     there = np.unique(np.sort(there, axis=1), axis=0)
     both = np.stack([there, there[:, ::-1]], axis=1).reshape(-1, 2)
     xy_m = _east_north(plan.grid.frame, places[order])
-    return Graph(xy_m, both, rank[of_vertex])
+    return RouteGraph(xy_m, both, rank[of_vertex])
 
 
 def _steps(part: shapely.Geometry) -> Float:
@@ -185,7 +194,7 @@ def _east_north(frame: Frame, xy_m: Float) -> Float:
     return frame.turned(90.0).xy_m(frame.lonlat(xy_m)).round(3) + 0.0  # no minus zero
 
 
-def _stops_by_node(plan: HandoffPlan, graph: Graph) -> dict[int, dict[str, Any]]:
+def _stops_by_node(plan: HandoffPlan, graph: RouteGraph) -> dict[int, dict[str, Any]]:
     found: dict[int, dict[str, Any]] = {}
     for stop in plan.stops:
         node = int(graph.of_vertex[stop.vertex])
@@ -196,7 +205,7 @@ def _stops_by_node(plan: HandoffPlan, graph: Graph) -> dict[int, dict[str, Any]]
     return found
 
 
-def _yaws(plan: HandoffPlan, graph: Graph) -> Float:
+def _yaws(plan: HandoffPlan, graph: RouteGraph) -> Float:
     """Return the heading at each stop, radians from east to the left: the way the robot came.
 
     Where it has not moved yet, it is the way it goes on.

@@ -80,43 +80,43 @@ class _Rungs(NamedTuple):
 
 def ladder_below(aisles: Aisles) -> Ladder:
     """Return a ladder on which no way is longer than the true one."""
-    rungs = _rungs(aisles.ground)
+    rungs = _rungs(aisles.travel)
     order = _order(aisles, rungs)
     apart_m = rungs.apart_m[:, :, order][:, :, :, order]
     gate = int(np.flatnonzero(order == len(order) - 1)[0])
     across_m = np.append(rungs.high - rungs.low, np.inf)[order]
     left, right, links = _fitted(apart_m, across_m, gate)
     stub_m = np.array([_stub(left, apart_m[0, 0], gate), _stub(right, apart_m[1, 1], gate)])
-    return _assembled(aisles.ground, rungs, order, (left, right), (links, across_m, stub_m))
+    return _assembled(aisles.travel, rungs, order, (left, right), (links, across_m, stub_m))
 
 
-def _rungs(ground: TravelTable) -> _Rungs:
+def _rungs(travel: TravelTable) -> _Rungs:
     """Join rows that are inspected from one aisle."""
-    n_aisles = int(ground.corridor.max()) + 1
+    n_aisles = int(travel.corridor.max()) + 1
     first, last = np.full(n_aisles, np.inf), np.full(n_aisles, -np.inf)
-    np.minimum.at(first, ground.corridor, ground.end_x_m[:, 0])
-    np.maximum.at(last, ground.corridor, ground.end_x_m[:, 1])
+    np.minimum.at(first, travel.corridor, travel.end_x_m[:, 0])
+    np.maximum.at(last, travel.corridor, travel.end_x_m[:, 1])
     # metres that a lane ends short of the longest lane of its aisle
     short = np.stack(
         [
-            first[ground.corridor] - ground.end_x_m[:, 0],
-            ground.end_x_m[:, 1] - last[ground.corridor],
+            first[travel.corridor] - travel.end_x_m[:, 0],
+            travel.end_x_m[:, 1] - last[travel.corridor],
         ]
     )
     while True:
-        apart_m = _between_aisles(ground, short)
+        apart_m = _between_aisles(travel, short)
         least = np.array([apart_m[side].min(axis=(0, 2))[:-1] for side in range(2)])
-        bad = (least < 0.0) & _some_short(short, ground.corridor, n_aisles)
+        bad = (least < 0.0) & _some_short(short, travel.corridor, n_aisles)
         if not bad.any():
             break
         # ends of such an aisle count as one place: the innermost
         for side in range(2):
-            short[side, bad[side][ground.corridor]] = 0.0
-            rows = np.flatnonzero(bad[side][ground.corridor])
+            short[side, bad[side][travel.corridor]] = 0.0
+            rows = np.flatnonzero(bad[side][travel.corridor])
             inner = (first, last)[side]
             inner[bad[side]] = (-np.inf, np.inf)[side]
             pick = np.maximum if side == 0 else np.minimum
-            pick.at(inner, ground.corridor[rows], ground.end_x_m[rows, side])
+            pick.at(inner, travel.corridor[rows], travel.end_x_m[rows, side])
     middle = (first + last) / 2
     crossed = first > last
     first[crossed] = last[crossed] = middle[crossed]
@@ -130,10 +130,10 @@ def _some_short(short: Float, corridor: NDArray[np.int32], n_aisles: int) -> NDA
     return some
 
 
-def _between_aisles(ground: TravelTable, short: Float) -> Float:
+def _between_aisles(travel: TravelTable, short: Float) -> Float:
     """Return the least metres from aisle end to aisle end, and to the gate."""
-    n_rows, n_aisles = len(ground.end_x_m), int(ground.corridor.max()) + 1
-    owner = np.append(ground.corridor, n_aisles)
+    n_rows, n_aisles = len(travel.end_x_m), int(travel.corridor.max()) + 1
+    owner = np.append(travel.corridor, n_aisles)
     by = np.argsort(owner, kind="stable")
     start = np.searchsorted(owner[by], np.arange(n_aisles + 1))
     apart_m = np.empty((2, 2, n_aisles + 1, n_aisles + 1))
@@ -141,7 +141,7 @@ def _between_aisles(ground: TravelTable, short: Float) -> Float:
         here = np.append(2 * np.arange(n_rows) + a, 2 * n_rows)
         for b in range(2):
             there = np.append(2 * np.arange(n_rows) + b, 2 * n_rows)
-            metres = ground.between_m[np.ix_(here, there)]
+            metres = travel.between_m[np.ix_(here, there)]
             metres += np.append(short[a], 0.0)[:, None] + np.append(short[b], 0.0)
             metres = np.minimum.reduceat(metres[by], start, axis=0)
             apart_m[a, b] = np.minimum.reduceat(metres[:, by], start, axis=1)
@@ -153,7 +153,7 @@ def _between_aisles(ground: TravelTable, short: Float) -> Float:
 def _order(aisles: Aisles, rungs: _Rungs) -> Int:
     """Return the aisles and the gate (the last) in order up the plot."""
     y = np.zeros(len(rungs.low))
-    y[aisles.ground.corridor] = aisles.grid.lane_y_m
+    y[aisles.travel.corridor] = aisles.grid.lane_y_m
     order = np.lexsort((rungs.low, np.round(y, 3)))
     return np.insert(order, np.searchsorted(y[order], aisles.gate_m[1]), len(y))
 
@@ -232,7 +232,7 @@ def _stub(place: Float, apart_m: Float, gate: int) -> float:
 
 
 def _assembled(
-    ground: TravelTable,
+    travel: TravelTable,
     rungs: _Rungs,
     order: Int,
     places: tuple[Float, Float],
@@ -243,8 +243,8 @@ def _assembled(
     n_aisles = len(rungs.low)
     rank = np.empty(n_aisles + 1, np.int64)
     rank[order] = np.arange(len(order))
-    aisle = ground.corridor[ground.row]
-    x = np.clip(ground.x_m, rungs.low[aisle], rungs.high[aisle])
+    aisle = travel.corridor[travel.row]
+    x = np.clip(travel.x_m, rungs.low[aisle], rungs.high[aisle])
     in_m = x - rungs.low[aisle]
     plant = np.lexsort((in_m, rank[aisle]))
     count = np.bincount(rank[aisle], minlength=len(order))
@@ -262,6 +262,6 @@ def _assembled(
         plant,
         np.concatenate([[0], np.cumsum(count)]),
         in_m[plant],
-        ground.side[ground.row[plant]] > 0,
+        travel.side[travel.row[plant]] > 0,
         len(links),
     )

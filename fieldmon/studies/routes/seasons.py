@@ -13,19 +13,21 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.planning.routes.best import best
+from fieldmon.planning.routes.best_route import best
 from fieldmon.plot.travel import travel_s
-from fieldmon.samplers import Adaptive, Scene, Stops
-from fieldmon.simulation.metrics import figures
-from fieldmon.simulation.season import days
-from fieldmon.studies.samplers.seasons import Contender
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import Sampler, Scene, Stops
+from fieldmon.simulation.metrics import season_metrics
+from fieldmon.simulation.season import simulated_days
+from fieldmon.studies.samplers.contenders import Contender
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
-    from fieldmon.studies.samplers.scenarios import Cell
+    from fieldmon.samplers.base import WouldFind
+    from fieldmon.studies.samplers.scenarios import Scenario
 
     Float = NDArray[np.float64]
 
@@ -34,7 +36,7 @@ _SPARES = 0.5
 AS_IT_IS, MORNING, BEST = "adaptive", "adaptive, morning's plan", "best route, morning's plan"
 
 
-class Season(NamedTuple):
+class PairedSeason(NamedTuple):
     """Infested plant-days and plants found, of one season."""
 
     who: str
@@ -43,18 +45,18 @@ class Season(NamedTuple):
     found: int
 
 
-class MorningAdaptive:
+class MorningAdaptive(Sampler):
     """Adaptive bound to the plan it makes before anything is found."""
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the day."""
         return Adaptive(_SPARES).walk(scene, np.zeros(len(would_find), np.bool_))
 
 
-class BestRouteSampler:
+class BestRouteSampler(Sampler):
     """Follow the best route for the finds expected, each worth what Adaptive takes it to be."""
 
-    def walk(self, scene: Scene, would_find: NDArray[np.bool_]) -> Stops:
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the day; what they find changes nothing before tomorrow."""
         reward = np.where(scene.last_inspected == scene.day, 0.0, worth(scene))
         route = best(scene.aisles, reward, scene.robot, scene.seconds_left)
@@ -71,7 +73,7 @@ def worth(scene: Scene) -> Float:
     return scene.chance * scene.robot.detects * (1.0 + spared)
 
 
-def seasons(cell: Cell, seeds: range, hours: float = 12.0) -> Iterator[Season]:
+def seasons(scenario: Scenario, seeds: range, hours: float = 12.0) -> Iterator[PairedSeason]:
     """Yield the seasons of all three for one seed after the other, on days of so many hours."""
     contenders = (
         Contender(AS_IT_IS, Adaptive(_SPARES)),
@@ -79,16 +81,20 @@ def seasons(cell: Cell, seeds: range, hours: float = 12.0) -> Iterator[Season]:
         Contender(BEST, BestRouteSampler()),
     )
     for seed in seeds:
-        chance = RandomStreams(seed)
-        start = cell.begin(chance)
+        streams = RandomStreams(seed)
+        start = scenario.draw_start(streams)
         for who in contenders:
-            settings = replace(cell.settings, believe=who.believe)
-            robot = cell.robot.with_hours(hours)
-            made = figures(days(cell.aisles, robot, who.sampler, start, settings, chance))
-            yield Season(who.name, seed, float(made.infested_plant_days), int(made.found.sum()))
+            settings = replace(scenario.settings, believe=who.believe)
+            robot = scenario.robot.with_hours(hours)
+            made = season_metrics(
+                simulated_days(scenario.aisles, robot, who.sampler, start, settings, streams)
+            )
+            yield PairedSeason(
+                who.name, seed, float(made.infested_plant_days), int(made.found.sum())
+            )
 
 
-def told(made: list[Season]) -> list[str]:
+def told(made: list[PairedSeason]) -> list[str]:
     """Return the means, and the difference from Adaptive with its 95 % interval."""
     by = {
         who: np.array([one.infested_plant_days for one in made if one.who == who])
@@ -109,7 +115,7 @@ def _arrivals(scene: Scene, plant: NDArray[np.int32], n: int) -> Float:
     """Return the seconds at arrival."""
     arrive_s, now_s, at = np.empty(min(len(plant), n)), 0.0, scene.at
     for k, stop in enumerate(plant.tolist()):
-        now_s += travel_s(scene.aisles.ground, scene.clock, at, stop)
+        now_s += travel_s(scene.aisles.travel, scene.clock, at, stop)
         arrive_s[k] = now_s
         now_s, at = now_s + scene.robot.visit_s, stop
     return arrive_s

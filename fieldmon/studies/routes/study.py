@@ -24,7 +24,7 @@ _MILP_PLANTS = 400
 _SAME = 1e-9
 
 
-class Line(NamedTuple):
+class MethodOutcome(NamedTuple):
     """One method on one instance at one budget; `bound` is None where the method knows none."""
 
     instance: str
@@ -41,7 +41,7 @@ class Line(NamedTuple):
 
 def run(
     instance: Instance, shares: Sequence[float], methods: Sequence[str], solver_s: float = 10.0
-) -> Iterator[Line]:
+) -> Iterator[MethodOutcome]:
     """Yield a line for each method and share of the full budget; the exact sweep serves all.
 
     Its seconds are those of the whole sweep and of the walk. A heuristic that is found to be
@@ -62,7 +62,7 @@ def run(
         if abs(most - walk.reward) > _SAME * max(total, 1.0) or checked.steps > budget:
             raise AssertionError("the exact walk must cost and hold what it says")
         about = instance.name, budget, share
-        yield Line(*about, EXACT, most, most / total, checked.steps, took_s, most, True)
+        yield MethodOutcome(*about, EXACT, most, most / total, checked.steps, took_s, most, True)
         for method in methods:
             if method == MILP:
                 if reward.size <= _MILP_PLANTS:
@@ -80,21 +80,23 @@ def run(
             if checked.steps > budget or checked.reward > most + _SAME * max(total, 1.0):
                 raise AssertionError(f"{method} must keep to the budget and not exceed the best")
             held = checked.reward
-            yield Line(
+            yield MethodOutcome(
                 *about, method, held, held / total, checked.steps, took_s, None, held >= most
             )
 
 
-def _by_milp(about: tuple[str, int, float], instance: Instance, solver_s: float) -> Line:
+def _by_milp(about: tuple[str, int, float], instance: Instance, solver_s: float) -> MethodOutcome:
     began = time.perf_counter()
     found = milp.solve(instance.reward, about[1], solver_s)
     took_s = time.perf_counter() - began
     total = float(instance.reward.sum())
     of_all = found.reward / total
-    return Line(*about, MILP, found.reward, of_all, about[1], took_s, found.bound, found.proved)
+    return MethodOutcome(
+        *about, MILP, found.reward, of_all, about[1], took_s, found.bound, found.proved
+    )
 
 
-def csv_text(lines: Sequence[Line]) -> str:
+def csv_text(lines: Sequence[MethodOutcome]) -> str:
     """Return the table: instance, budget, method, reward, cost, seconds, bound, proved."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -118,9 +120,9 @@ def csv_text(lines: Sequence[Line]) -> str:
     return text.getvalue()
 
 
-def sentences(lines: Sequence[Line]) -> list[str]:
+def sentences(lines: Sequence[MethodOutcome]) -> list[str]:
     """Return one line a budget and instance: shares of all reward, and the gain of the best."""
-    groups: dict[tuple[str, float], list[Line]] = {}
+    groups: dict[tuple[str, float], list[MethodOutcome]] = {}
     for line in lines:
         groups.setdefault((line.instance, line.share), []).append(line)
     told = []

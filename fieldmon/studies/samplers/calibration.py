@@ -5,18 +5,21 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from functools import partial
-from html import escape
-from typing import TYPE_CHECKING
+from itertools import chain
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.belief import IndependentPlants, Pairs
 from fieldmon.infestation.ensemble import Ensemble
-from fieldmon.infestation.plot_estimate import PlotEstimate, outlook
-from fieldmon.simulation.season import days
+from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.plot_estimate import PlotEstimate, estimate_plot
+from fieldmon.io.html import page
+from fieldmon.simulation import executor
+from fieldmon.simulation.experiment import Experiment, Memory, run
+from fieldmon.simulation.season import simulated_days
 from fieldmon.studies.charts import Line, line_chart
-from fieldmon.studies.samplers.report import STYLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -26,15 +29,15 @@ if TYPE_CHECKING:
     from fieldmon.infestation.belief import Belief, Learning
     from fieldmon.infestation.spread import Spread
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.samplers import Sampler
-    from fieldmon.studies.samplers.scenarios import Cell
+    from fieldmon.samplers.base import Sampler
+    from fieldmon.studies.samplers.scenarios import Scenario
 
     Believe = Callable[[PlantGrid, NDArray[np.float64]], Belief]
 
 BELIEFS: dict[str, Believe] = {
     "independent plants": IndependentPlants,
-    "pairs": Pairs.of,
-    "pairs, clustering known": partial(Pairs.of, company=0.65),
+    "pairs": PairApproximation.of,
+    "pairs, clustering known": partial(PairApproximation.of, clustering=0.65),
     "ensemble": Ensemble.of,
 }
 EDGES = (0.0, 0.001, 0.01, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0)
@@ -89,16 +92,16 @@ class _Watched:
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
     ) -> _Watched:
         """Learn, and note the time."""
-        began = time.process_time()
+        began = time.thread_time()
         after = self._belief.learn(plants, found, learning)
-        self._seconds.append(time.process_time() - began)
+        self._seconds.append(time.thread_time() - began)
         return _Watched(after, self._mornings, self._seconds)
 
     def overnight(self, spread: Spread) -> _Watched:
         """Pass a night, and note the morning and the time."""
-        began = time.process_time()
+        began = time.thread_time()
         after = self._belief.overnight(spread)
-        self._seconds.append(time.process_time() - began)
+        self._seconds.append(time.thread_time() - began)
         self._mornings.append(after)
         return _Watched(after, self._mornings, self._seconds)
 
@@ -107,56 +110,84 @@ class _Watched:
         return _Watched(self._belief.treated(left), self._mornings, self._seconds)
 
 
+class _Mornings(NamedTuple):
+    """What was believed on the mornings of seasons, and what was so.
+
+    Parameters
+    ----------
+    chances, truths
+        A map a morning, ``(n,)`` each: chance of infestation, and who was infested.
+    ahead
+        What was believed of the whole plot.
+    seconds
+        Spent by the belief.
+    """
+
+    chances: list[NDArray[np.float64]]
+    truths: list[NDArray[np.bool_]]
+    ahead: list[PlotEstimate]
+    seconds: list[float]
+
+
 def calibration(
-    cells: Sequence[Cell], sampler: Sampler, believe: Believe, seeds: int, n_days: int = 12
+    scenarios: Sequence[Scenario],
+    sampler: Sampler,
+    believe: Believe,
+    seeds: int,
+    n_days: int = 12,
 ) -> Calibration:
-    """Return how well a belief is calibrated over the mornings of the seasons of some cells."""
-    chances, truths, ahead, counts = [], [], [], []
+    """Return how well a belief is calibrated over the mornings of the seasons of some scenarios."""
+
+    def simulate(scenario: Scenario, seeds: range) -> _Mornings:
+        return _mornings(scenario, sampler, believe, seeds.start, n_days)
+
+    experiment = Experiment(scenarios, range(seeds), simulate, lambda _: 1)
+    made: Memory[_Mornings] = Memory()
+    with executor.threads() as workers:
+        run(experiment, workers, made)
+    parts = [made[chunk.key] for chunk in experiment.chunks()]
+    return _compared(_Mornings(*(list(chain(*each)) for each in zip(*parts, strict=True))))
+
+
+def _mornings(
+    scenario: Scenario, sampler: Sampler, believe: Believe, seed: int, n_days: int
+) -> _Mornings:
+    """Return the mornings of one season."""
+    believed: list[Belief] = []
     seconds: list[float] = []
-    for cell in cells:
-        for seed in range(seeds):
-            mornings: list[Belief] = []
 
-            def watched(
-                grid: PlantGrid,
-                chance: NDArray[np.float64],
-                mornings: list[Belief] = mornings,
-            ) -> Belief:
-                mornings.append(believe(grid, chance))
-                return _Watched(mornings[0], mornings, seconds)
+    def watched(grid: PlantGrid, chance: NDArray[np.float64]) -> Belief:
+        believed.append(believe(grid, chance))
+        return _Watched(believed[0], believed, seconds)
 
-            settings = replace(cell.settings, n_days=n_days, believe=watched)
-            start, chance = cell.begin(RandomStreams(seed)), RandomStreams(seed)
-            season = list(days(cell.aisles, cell.robot, sampler, start, settings, chance))
-            # a blind sampler has not asked: all mornings are worked out now, for the last one
-            season[-1].belief  # noqa: B018
-            for belief, day in zip(mornings, season, strict=True):
-                truth = day.infested
-                chances.append(belief.chance)
-                truths.append(truth)
-                ahead.append(_outlook(belief, cell.aisles.grid))
-                counts.append(np.count_nonzero(truth))
-    return _compared(chances, truths, (ahead, np.array(counts)), sum(seconds) / len(counts))
+    settings = replace(scenario.settings, n_days=n_days, believe=watched)
+    start, streams = scenario.draw_start(RandomStreams(seed)), RandomStreams(seed)
+    aisles = scenario.aisles
+    season = list(simulated_days(aisles, scenario.robot, sampler, start, settings, streams))
+    # a blind sampler has not asked: all mornings are worked out now, for the last one
+    season[-1].belief  # noqa: B018
+    return _Mornings(
+        [belief.chance for belief in believed],
+        [day.infested for day in season],
+        [_estimate(belief, aisles.grid) for belief in believed],
+        seconds,
+    )
 
 
-def _outlook(belief: Belief, grid: PlantGrid) -> PlotEstimate:
+def _estimate(belief: Belief, grid: PlantGrid) -> PlotEstimate:
     if isinstance(belief, Ensemble):
-        return belief.outlook()
+        return belief.estimate()
     if belief.pair_chance is not None:
-        return outlook(grid, belief.chance, belief.pair_chance)
+        return estimate_plot(grid, belief.chance, belief.pair_chance)
     start, other = grid.adjacent
-    return outlook(
+    return estimate_plot(
         grid, belief.chance, np.repeat(belief.chance, np.diff(start)) * belief.chance[other]
     )
 
 
-def _compared(
-    chances: list[NDArray[np.float64]],
-    truths: list[NDArray[np.bool_]],
-    plots: tuple[list[PlotEstimate], NDArray[np.int64]],
-    seconds_a_day: float,
-) -> Calibration:
-    ahead, counts = plots
+def _compared(mornings: _Mornings) -> Calibration:
+    chances, truths, ahead, seconds = mornings
+    counts = np.array([np.count_nonzero(truth) for truth in truths])
     p = np.clip(np.concatenate(chances), _LEAST, 1.0 - _LEAST)
     y = np.concatenate(truths)
     suspicious = np.concatenate([c >= _SUSPICIOUS * c.max() for c in chances])
@@ -170,7 +201,7 @@ def _compared(
         _log_score(np.clip(classes, _LEAST, 1.0 - _LEAST), y),
         float(np.mean(inside)),
         *_reliability(clean, counts == 0, CLEAN_EDGES),
-        seconds_a_day,
+        sum(seconds) / len(counts),
     )
 
 
@@ -195,12 +226,6 @@ def _reliability(
 
 def report_html(made: dict[str, Calibration], about: str) -> str:
     """Return the calibrations of some beliefs as one HTML document."""
-    rows = "".join(
-        f'<tr><th scope="row">{escape(name)}</th><td>{c.brier:.5f}</td><td>{c.log_score:.4f}</td>'
-        f"<td>{c.suspicious_log_score:.4f}</td><td>{c.covered:.0%}</td>"
-        f"<td>{1000 * c.seconds_a_day:.0f}</td></tr>"
-        for name, c in made.items()
-    )
     lines = [Line("as often as said", (0.0, 1.0), (0.0, 1.0))]
     clean = list(lines)
     for name, c in made.items():
@@ -208,15 +233,12 @@ def report_html(made: dict[str, Calibration], about: str) -> str:
         lines.append(Line(name, c.said[some].tolist(), c.was[some].tolist()))
         clean.append(Line(name, c.clean_said[told].tolist(), c.clean_was[told].tolist()))
     axes = ("chance said", "share that was so")
-    return (
-        '<!doctype html><html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>Beliefs compared</title><style>{STYLE}</style></head><body>"
-        f"<h1>Beliefs compared</h1><p>{escape(about)}</p>"
-        '<div class="wide" tabindex="0"><table><thead><tr><th scope="col">belief</th>'
-        '<th scope="col">Brier score</th><th scope="col">log score</th>'
-        '<th scope="col">as suspicious or not</th><th scope="col">90 % interval holds</th>'
-        f'<th scope="col">ms a day</th></tr></thead><tbody>{rows}</tbody></table></div>'
-        f"{line_chart(f'Plants ({_FEW} mornings or more a dot)', lines, axes)}"
-        f"{line_chart('The plot is clean', clean, axes)}</body></html>\n"
+    return page(
+        "fieldmon/studies/samplers/calibration.html.j2",
+        about=about,
+        made=made,
+        charts=[
+            line_chart(f"Plants ({_FEW} mornings or more a dot)", lines, axes),
+            line_chart("The plot is clean", clean, axes),
+        ],
     )

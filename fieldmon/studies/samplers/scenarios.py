@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import Learning, Pairs
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import PriorSettings, edge_chance, scaled, start_infested
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.simulation.season import SeasonSettings, Start
+from fieldmon.simulation.season import SeasonSettings
+from fieldmon.simulation.start import Start
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,12 +38,12 @@ _BELIEVED_RATE = {0.3: 0.8, 0.5: 0.1, 0.8: 0.3}
 
 
 @dataclass(frozen=True)
-class Cell:
+class Scenario:
     """One situation.
 
     Parameters
     ----------
-    scenario
+    plot
         "A", "B" or "C": the thesis's plots of 28, 64 and 91 plants a side.
     spread
         What the insects do at night.
@@ -57,14 +59,14 @@ class Cell:
         "records" (GPS error of 5 m, 1 sigma), the "detection" (0.84 believed, 0.5 true).
     """
 
-    scenario: str = "B"
+    plot: str = "B"
     spread: Spread = field(default_factory=lambda: Spread(0.3, "one"))
     start: str = "clusters"
     prior: str = "none"
     flaw: str = ""
 
     def __post_init__(self) -> None:
-        known = (("scenario", SIDES), ("start", STARTS), ("prior", PRIORS), ("flaw", FLAWS))
+        known = (("plot", SIDES), ("start", STARTS), ("prior", PRIORS), ("flaw", FLAWS))
         for name, values in known:
             if getattr(self, name) not in values:
                 raise SettingError(
@@ -74,15 +76,15 @@ class Cell:
 
     @property
     def name(self) -> str:
-        """Return the cell in words, unique."""
+        """Return the scenario in words, unique."""
         rate = f"spread {self.spread.rate_per_day:.0%} to {self.spread.to}"
-        words = f"{self.scenario}, {rate}, {self.start}, prior {self.prior}"
+        words = f"{self.plot}, {rate}, {self.start}, prior {self.prior}"
         return f"{words}, {self.flaw} wrong" if self.flaw else words
 
     @property
     def aisles(self) -> Aisles:
         """Return the plot."""
-        return _aisles(SIDES[self.scenario])
+        return _aisles(SIDES[self.plot])
 
     @property
     def robot(self) -> Robot:
@@ -99,11 +101,11 @@ class Cell:
         learning = Learning(detection=Robot().detects)
         return SeasonSettings(spread=self.spread, believed_spread=believed, learning=learning)
 
-    def begin(self, chance: RandomStreams) -> Start:
+    def draw_start(self, streams: RandomStreams) -> Start:
         """Draw the first morning and what is known of it."""
         grid = self.aisles.grid
-        infested = _infested(grid, self.start, chance.of("start"))
-        return Start(infested, _known(grid, self, infested, chance.of("records")))
+        infested = _infested(grid, self.start, streams.of("start"))
+        return Start(infested, _known(grid, self, infested, streams.of("records")))
 
 
 @cache
@@ -111,29 +113,29 @@ def _aisles(side: int) -> Aisles:
     return Aisles.of(rectangle(side, side))
 
 
-def usual_cells() -> list[Cell]:
-    """Return the cells of the study: one thing changed at a time in B and C, and A."""
-    cells = [Cell("A")]
-    for scenario in ("B", "C"):
-        cells += [Cell(scenario, Spread(rate, "one")) for rate in (0.3, 0.5, 0.8)]
-        cells += [Cell(scenario, Spread(rate, "each")) for rate in (0.3, 0.5)]
-        cells += [Cell(scenario, start=start) for start in STARTS[1:]]
-        cells += [Cell(scenario, start="edge", prior="edge")]
-        cells += [Cell(scenario, prior=prior) for prior in PRIORS[2:]]
-    cells += [Cell(flaw="spread"), Cell(flaw="detection")]
-    return [*cells, Cell(prior="records 5 %", flaw="records")]
+def usual_scenarios() -> list[Scenario]:
+    """Return the scenarios of the study: one thing changed at a time in B and C, and A."""
+    made = [Scenario("A")]
+    for plot in ("B", "C"):
+        made += [Scenario(plot, Spread(rate, "one")) for rate in (0.3, 0.5, 0.8)]
+        made += [Scenario(plot, Spread(rate, "each")) for rate in (0.3, 0.5)]
+        made += [Scenario(plot, start=start) for start in STARTS[1:]]
+        made += [Scenario(plot, start="edge", prior="edge")]
+        made += [Scenario(plot, prior=prior) for prior in PRIORS[2:]]
+    made += [Scenario(flaw="spread"), Scenario(flaw="detection")]
+    return [*made, Scenario(prior="records 5 %", flaw="records")]
 
 
-def all_cells() -> list[Cell]:
-    """Return every combination of scenario, spread, start and prior, and the flaws."""
-    grid = [
-        Cell(scenario, Spread(rate, "one"), start, prior)
-        for scenario in SIDES
+def all_scenarios() -> list[Scenario]:
+    """Return every combination of plot, spread, start and prior, and the flaws."""
+    crossed = [
+        Scenario(plot, Spread(rate, "one"), start, prior)
+        for plot in SIDES
         for rate in (0.3, 0.5, 0.8)
         for start in STARTS
         for prior in PRIORS
     ]
-    return list(dict.fromkeys([*usual_cells(), *grid]))
+    return list(dict.fromkeys([*usual_scenarios(), *crossed]))
 
 
 def _infested(grid: PlantGrid, start: str, rng: np.random.Generator) -> NDArray[np.bool_]:
@@ -168,24 +170,24 @@ def _grow(
 
 
 def _known(
-    grid: PlantGrid, cell: Cell, infested: NDArray[np.bool_], rng: np.random.Generator
+    grid: PlantGrid, scenario: Scenario, infested: NDArray[np.bool_], rng: np.random.Generator
 ) -> NDArray[np.float64]:
     """Return the chance map of the first morning, ``(n,)``."""
     flat = np.full(len(grid), _SHARE)
-    if cell.prior == "edge":
+    if scenario.prior == "edge":
         return scaled(1.0 - (1.0 - 0.002) * (1.0 - edge_chance(grid, PriorSettings())), _SHARE)
-    if cell.prior == "wrong":
+    if scenario.prior == "wrong":
         x, y = grid.xy_m.T
         suspected = (x < np.median(x)) & (y < np.median(y))
         return scaled(np.where(suspected, 0.1, 0.01), _SHARE)
-    if not cell.prior.startswith("records"):
+    if not scenario.prior.startswith("records"):
         return flat
-    share = 0.05 if cell.prior == "records 5 %" else 0.01
+    share = 0.05 if scenario.prior == "records 5 %" else 0.01
     at = rng.choice(len(grid), round(share * len(grid)), replace=False)
     found = infested[at] & (rng.random(len(at)) < Robot().detects)
-    if cell.flaw == "records":
+    if scenario.flaw == "records":
         away = grid.xy_m[at] + rng.normal(0.0, _GPS_M, (len(at), 2))
         at = np.array([int(np.argmin(((grid.xy_m - xy) ** 2).sum(axis=1))) for xy in away])
     plants = at.astype(np.int32)
     learning = Learning(detection=Robot().detects, treated=False)
-    return Pairs.of(grid, flat).learn(plants, found, learning).chance
+    return PairApproximation.of(grid, flat).learn(plants, found, learning).chance

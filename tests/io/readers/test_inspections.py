@@ -11,13 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem, SettingError
+from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 from fieldmon.io.formats.layer import Layer
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
-from fieldmon.io.readers.inspections import look_up, read_findings
-from fieldmon.io.readers.reported import FindingsOptions, reported_in
+from fieldmon.io.readers.inspection_file.rows import rows_in
+from fieldmon.io.readers.inspection_options import InspectionOptions
+from fieldmon.io.readers.inspections import look_up, read_inspections
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.layout import Planting, lay, rectangle
@@ -30,7 +31,14 @@ def upload(text, name="found.csv"):
 
 
 def read(text, options=None, grid=GRID, name="found.csv"):
-    return read_findings(upload(text, name), grid, options)
+    return read_inspections(upload(text, name), grid, options)
+
+
+def when(inspections):
+    """Return local times, datetime64[s]; NaT where there is none."""
+    since = np.where(np.isnan(inspections.second), 0, inspections.second).astype("timedelta64[s]")
+    noted = inspections.date.astype("datetime64[s]") + since
+    return np.where(np.isnan(inspections.second), np.datetime64("NaT"), noted)
 
 
 def two_faced():
@@ -39,52 +47,11 @@ def two_faced():
     return lay(field, Planting(faces=2, row_spacing_m=3.0, plant_spacing_m=2.0))
 
 
-@pytest.mark.parametrize(
-    ("word", "result"),
-    [
-        *((w, FOUND) for w in ("yes", "TRUE", "1", "found", "x", "✓", "ja", "sí", "oui", "כן")),
-        *((w, FOUND) for w in ("+", "+3", "7", "<5", "3-5", "befall", "נגוע", "gefunden", "many")),
-        *(
-            (w, CLEAN)
-            for w in ("no", "False", "0", "clean", "nein", "לא", "נקי", "ok", "not found")
-        ),
-        *((w, SKIPPED) for w in ("not inspected", "could_not_inspect", "skipped", "לא נבדק")),
-    ],
-)
-def test_results_are_read_in_many_spellings(word, result):
-    findings = read(f"plant,found\n7,{word}\n8,clean\n").value
-    assert findings.plant.tolist() == [7, 8]
-    assert findings.result.tolist() == [result, CLEAN]
-
-
-@pytest.mark.parametrize("blank", ["", "  ", "NA", "?", "nan", "-"])
-def test_what_is_not_filled_in_stays_unknown(blank):
-    imported = read(f"plant,found,count\n7,{blank},\n8,no,\n")
-    assert imported.value.plant.tolist() == [8]
-    assert any("1 of 2 record(s) are not filled in" in f.sentence for f in imported.messages)
-
-
-def test_a_minus_is_clean_only_beside_a_plus():
-    assert read("plant,found\n7,-\n8,+\n").value.result.tolist() == [CLEAN, FOUND]
-    assert read("plant,found\n7,-\n8,x\n").value.plant.tolist() == [8]
-
-
-def test_a_word_that_says_nothing_is_named_and_left_unknown():
-    imported = read("plant,found\n7,maybe\n8,no\n")
-    assert imported.value.plant.tolist() == [8]
-    assert any("'maybe'" in f.sentence for f in imported.of(Severity.DOUBTFUL))
-
-
 def test_counts_alone_say_whether_and_how_many():
     findings = read("plant,count\n1,0\n2,4\n3,<5\n4,\n5,2-6\n").value
     assert findings.plant.tolist() == [1, 2, 3, 5]
     assert findings.result.tolist() == [CLEAN, FOUND, FOUND, FOUND]
     np.testing.assert_array_equal(findings.count, [np.nan, 4, np.nan, np.nan])
-
-
-def test_a_count_in_the_column_for_results_is_a_count_but_one_is_yes():
-    findings = read("plant,found,count\n1,7,\n2,1,\n3,+2,\n4,yes,9\n").value
-    np.testing.assert_array_equal(findings.count, [7, np.nan, 2, 9])
 
 
 def test_result_and_count_that_contradict_are_left_out_unless_one_asks():
@@ -95,7 +62,7 @@ def test_result_and_count_that_contradict_are_left_out_unless_one_asks():
     doubts = imported.of(Severity.DOUBTFUL)
     assert [f.feature for f in doubts] == ["record 1", "record 2", "record 3"]
     assert {f.remedy.option for f in doubts} == {"take_doubtful"}
-    taken = read(text, FindingsOptions().choose("take_doubtful", "yes")).value
+    taken = read(text, InspectionOptions().choose("take_doubtful", "yes")).value
     assert taken.result.tolist() == [FOUND, FOUND, CLEAN, SKIPPED, CLEAN, FOUND]
     np.testing.assert_array_equal(taken.count[:2], [4, np.nan])
 
@@ -131,7 +98,7 @@ def test_a_file_of_another_plot_is_noticed():
     text = f"plant,row,number,lon,lat,found\n7,1,8,{lon},{lat},x\n7,1,8,{lon + 0.001},{lat},x\n"
     text += f"7,3,8,{lon},{lat},x\n7,1,8,{lon + 90},{lat},x\n,2,8,{lon + 0.001},{lat},x\n"
     imported = read(text)
-    assert imported.value.source_row.tolist() == [1]
+    assert len(imported.value) == 1
     assert [f.feature for f in imported.of(Severity.DOUBTFUL)] == [
         f"record {i}" for i in range(2, 6)
     ]
@@ -159,10 +126,10 @@ def test_a_position_between_two_plants_is_doubtful_as_far_as_it_is_inaccurate():
         text = f"lon,lat,accuracy,found\n{lon:.9f},{lat:.9f},{accuracy_m},yes\n"
         imported = read(text)
         assert imported.value.plant.tolist() == ([12] if is_sure else [])
-        told = read(text, FindingsOptions(take_doubtful=True))
+        told = read(text, InspectionOptions(take_doubtful=True))
         assert told.value.plant.tolist() == [12]
         bare = f"lon,lat,found\n{lon:.9f},{lat:.9f},yes\n"
-        by_hand = read(bare, FindingsOptions(accuracy_m=accuracy_m))
+        by_hand = read(bare, InspectionOptions(accuracy_m=accuracy_m))
         assert by_hand.value.plant.tolist() == ([12] if is_sure else [])
     (doubt,) = read(text).of(Severity.DOUBTFUL)
     assert "row 2, number 3 or row 2, number 4" in doubt.sentence
@@ -175,7 +142,7 @@ def test_a_position_off_the_plants_is_doubtful_and_one_far_away_is_none():
     assert len(imported.value) == 0
     assert "more than half the spacing" in imported.of(Severity.DOUBTFUL)[0].sentence
     assert "far from the plot" in imported.of(Severity.DROPPED)[0].sentence
-    assert read(text, FindingsOptions(take_doubtful=True)).value.plant.tolist() == [0]
+    assert read(text, InspectionOptions(take_doubtful=True)).value.plant.tolist() == [0]
 
 
 def test_both_faces_of_a_plant_are_told_apart_by_number_or_by_face():
@@ -199,67 +166,18 @@ def test_both_faces_of_a_plant_are_told_apart_by_number_or_by_face():
 # --- times -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("head", "row", "when"),
-    [
-        ("time", "2026-11-18T08:30:05", "2026-11-18T08:30:05"),
-        ("time", "2026-11-18 08:30", "2026-11-18T08:30:00"),
-        ("date,time", "18.11.2026,08:30", "2026-11-18T08:30:00"),
-        ("date,hour", "18/11/2026 8:30 PM,", "2026-11-18T20:30:00"),
-        ("when", "45979.5", "2025-11-18T12:00:00"),
-        ("time", "2026-11-18T08:30:05+02:00", "2026-11-18T08:30:05"),
-        ("תאריך,שעה", "18.11.2026,7:05", "2026-11-18T07:05:00"),
-    ],
-)
-def test_times_are_read_as_people_write_them(head, row, when):
-    findings = read(f"plant,found,{head}\n7,x,{row}\n").value
-    assert str(findings.when[0]) == when
-    assert str(findings.day[0]) == when[:10]
-    midnight = np.datetime64(when[:10], "s")
-    assert findings.second[0] == (np.datetime64(when) - midnight).astype(int)
-
-
-def test_utc_times_become_local_where_the_zone_is_told():
-    text = "plant,found,time\n7,x,2026-11-18T22:30:00Z\n"
-    kept = read(text)
-    assert str(kept.value.when[0]) == "2026-11-18T22:30:00"
-    assert [f.remedy.option for f in kept.of(Severity.GUESSED)] == ["zone"]
-    for zone in ("Asia/Jerusalem", "+02:00"):
-        moved = read(text, FindingsOptions(zone=zone)).value
-        assert (str(moved.when[0]), str(moved.day[0])) == ("2026-11-19T00:30:00", "2026-11-19")
-
-
 def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
-    told = FindingsOptions(day=np.datetime64("2026-11-20"))
+    told = InspectionOptions(day=np.datetime64("2026-11-20"))
     planned = read("plant,arrive,found\n7,2026-11-18T08:30:00,x\n8,,x\n", told).value
-    assert np.isnat(planned.when).all()
-    assert planned.day.astype(str).tolist() == ["2026-11-18", "2026-11-20"]
-    assert np.isnat(read("plant,found\n7,x\n").value.day).all()
+    assert np.isnan(planned.second).all()
+    assert planned.date.astype(str).tolist() == ["2026-11-18", "2026-11-20"]
+    assert np.isnat(read("plant,found\n7,x\n").value.date).all()
     dated = read("plant,found,date\n7,x,17.11.2026\n", told).value
-    assert np.isnat(dated.when).all()
-    assert dated.day.astype(str).tolist() == ["2026-11-17"]
-
-
-def test_options_that_cannot_be_are_refused_in_a_sentence():
-    with pytest.raises(SettingError, match="time zone"):
-        FindingsOptions(zone="Paran")
-    with pytest.raises(SettingError, match="accuracy"):
-        FindingsOptions().choose("accuracy_m", "good")
-    with pytest.raises(SettingError, match="day"):
-        FindingsOptions().choose("day", "soon")
-    assert FindingsOptions().choose("day", "2026-11-18").day == np.datetime64("2026-11-18")
+    assert np.isnan(dated.second).all()
+    assert dated.date.astype(str).tolist() == ["2026-11-17"]
 
 
 # --- the same finding --------------------------------------------------------------------------
-
-
-def test_the_same_file_twice_or_sorted_anew_brings_the_same_digests():
-    rows = ["7,x,3,Noa,2026-11-18T08:30", "8,clean,,Noa,2026-11-18T08:31", "9,x,,,2026-11-18"]
-    head = "plant,found,count,who,time,notes\n"
-    once = read(head + "\n".join(rows)).value
-    anew = read(head + "\n".join(f"{row},later" for row in rows[::-1])).value
-    assert len(set(once.digest)) == 3
-    assert once.digest.tolist() == anew.digest.tolist()[::-1]
 
 
 @pytest.mark.parametrize(
@@ -275,9 +193,15 @@ def test_the_same_file_twice_or_sorted_anew_brings_the_same_digests():
         "7,x,3,Noa,",
     ],
 )
-def test_any_other_finding_has_another_digest(other):
-    findings = read(f"plant,found,count,who,time\n7,x,3,Noa,2026-11-18T08:30\n{other}\n").value
-    assert len(set(findings.digest)) == 2
+def test_any_other_inspection_is_another_one(other):
+    head = "plant,found,count,who,time\n"
+    assert len(read(f"{head}7,x,3,Noa,2026-11-18T08:30\n{other}\n").value) == 2
+
+
+def test_notes_and_blanks_make_no_other_inspection():
+    head = "plant,found,count,who,time,notes\n"
+    rows = "7,x,3,Noa,2026-11-18T08:30,leaf\n7,x,3.0, Noa ,2026-11-18T08:30:00,thorns\n"
+    assert read(head + rows).value.notes.tolist() == ["leaf"]
 
 
 def test_what_a_file_says_twice_is_taken_once():
@@ -311,8 +235,7 @@ def assert_table(findings):
     np.testing.assert_array_equal(findings.count, [3, np.nan, np.nan])
     assert findings.who.tolist() == ["נועה", "נועה", ""]
     assert findings.notes.tolist() == ["leaf", "", "thorns"]
-    assert findings.source_row.tolist() == [1, 2, 4]
-    assert findings.when.astype(str).tolist()[:2] == TABLE.time.tolist()[:2]
+    assert when(findings).astype(str).tolist()[:2] == TABLE.time.tolist()[:2]
 
 
 @pytest.mark.parametrize("ending", ["csv", "tsv", "xlsx", "geojson", "gpkg", "shp"])
@@ -324,9 +247,7 @@ def test_findings_come_in_from_every_format(tmp_path, ending):
         path.write_text(TABLE.to_csv(index=False, sep="," if ending == "csv" else "\t"))
     else:
         layer().to_file(path)
-    first = read_findings(path, GRID).value
-    assert_table(first)
-    assert read_findings(path, GRID).value.digest.tolist() == first.digest.tolist()
+    assert_table(read_inspections(path, GRID).value)
 
 
 def test_an_edited_layer_is_found_among_the_others_of_a_project(tmp_path):
@@ -335,9 +256,9 @@ def test_an_edited_layer_is_found_among_the_others_of_a_project(tmp_path):
     frame[["plant", "geometry"]].to_file(path, layer="rows")
     frame.assign(result=None, count=np.nan).to_file(path, layer="inspections")
     frame.to_crs(2039).to_file(path, layer="plants")
-    assert_table(read_findings(path, GRID).value)
-    named = FindingsOptions(layer="inspections")
-    unknown = read_findings(path, GRID, named)
+    assert_table(read_inspections(path, GRID).value)
+    named = InspectionOptions(layer="inspections")
+    unknown = read_inspections(path, GRID, named)
     assert len(unknown.value) == 0
     assert any("2 record(s) have a note, but no result" in f.sentence for f in unknown.messages)
 
@@ -365,21 +286,21 @@ def test_a_season_file_edited_in_qfield_gives_what_was_added_and_not_what_was_un
     bare.to_file(path, layer="plants")
     bare.to_file(path, layer="stops")
     gpd.GeoDataFrame(kept, geometry=shapes, crs=4326).to_file(path, layer="inspections")
-    findings = read_findings(path, GRID).value
+    findings = read_inspections(path, GRID).value
     assert findings.plant.tolist() == [7, 9]
-    assert findings.when.astype(str).tolist() == ["2026-11-18T08:30:00", "2026-11-19T09:15:00"]
+    assert when(findings).astype(str).tolist() == ["2026-11-18T08:30:00", "2026-11-19T09:15:00"]
     emptied = tmp_path / "emptied.gpkg"
     bare.to_file(emptied, layer="stops")
     gpd.GeoDataFrame(kept[:0], geometry=[], crs=4326).to_file(emptied, layer="inspections")
     bare.assign(result=["found", None, None]).to_file(emptied, layer="plants")
-    assert read_findings(emptied, GRID).value.plant.tolist() == [7]
+    assert read_inspections(emptied, GRID).value.plant.tolist() == [7]
 
 
 def test_a_table_without_shapes_is_read_where_it_is_named(tmp_path):
     path = tmp_path / "season.gpkg"
     layer()[["plant", "geometry"]].to_file(path, layer="plots")
     pyogrio.write_dataframe(TABLE, path, layer="inspections", append=True)
-    assert_table(read_findings(path, GRID).value)
+    assert_table(read_inspections(path, GRID).value)
 
 
 def test_waypoints_are_read_by_their_names():
@@ -391,14 +312,14 @@ def test_waypoints_are_read_by_their_names():
         for name, (lon, lat) in zip(names, xy, strict=True)
     )
     gpx = f'<gpx xmlns="http://www.topografix.com/GPX/1/1" version="1.1" creator="x">{points}</gpx>'
-    imported = read(gpx, FindingsOptions(zone="+02:00"), name="way.gpx")
+    imported = read(gpx, InspectionOptions(zone="+02:00"), name="way.gpx")
     findings = imported.value
     assert findings.plant.tolist() == [20, 21, 22, 23, 24, 25, 8, 29]
     assert findings.result.tolist() == [
         *(FOUND, CLEAN, FOUND, CLEAN, CLEAN, FOUND, FOUND, SKIPPED),
     ]
     np.testing.assert_array_equal(findings.count, [3, *[np.nan] * 5, 2, np.nan])
-    assert set(findings.when.astype(str)) == {"2026-11-18T08:30:00"}
+    assert set(when(findings).astype(str)) == {"2026-11-18T08:30:00"}
     assert any("2 of 10 record(s) carry no finding" in f.sentence for f in imported.messages)
 
 
@@ -406,7 +327,7 @@ def test_a_file_that_says_nothing_of_findings_asks_for_its_columns():
     with pytest.raises(ChoiceNeeded, match="what was found") as asked:
         read("plant,height\n7,3\n")
     assert (asked.value.option, asked.value.choices) == ("columns", ("plant", "height"))
-    named = FindingsOptions().choose("columns", "present=height")
+    named = InspectionOptions().choose("columns", "present=height")
     assert read("plant,height\n7,3\n", named).value.plant.tolist() == [7]
     with pytest.raises(ChoiceNeeded, match="which plants"):
         read("found,colour\nyes,red\n")
@@ -417,7 +338,7 @@ def test_a_file_that_says_nothing_of_findings_asks_for_its_columns():
 def test_any_bytes_end_in_findings_or_in_a_sentence(data):
     for start in (b"", b"plant,found\n", b'{"type":"FeatureCollection","features":['):
         try:
-            findings = read_findings(Upload("found.csv", start + data), GRID).value
+            findings = read_inspections(Upload("found.csv", start + data), GRID).value
         except (ChoiceNeeded, FileProblem):
             continue
         assert (findings.plant >= 0).all()
@@ -434,7 +355,7 @@ def test_geojson_properties_of_every_type_are_read():
         for plant, found, count in ((1, True, 2), ("2", False, None), (3.0, 1, None), (4, None, 0))
     ]
     text = json.dumps({"type": "FeatureCollection", "features": features})
-    findings = read(text, FindingsOptions(take_doubtful=True), name="a.geojson").value
+    findings = read(text, InspectionOptions(take_doubtful=True), name="a.geojson").value
     assert findings.plant.tolist() == [1, 2, 3, 4]
     assert findings.result.tolist() == [FOUND, CLEAN, FOUND, CLEAN]
 
@@ -459,9 +380,9 @@ COLUMNS = (
 @settings(max_examples=150)
 def test_whatever_stands_in_cells_ends_in_findings_or_in_a_sentence(columns, take_doubtful):
     cells = {name: np.array(values, dtype=object) for name, values in columns.items()}
-    options = FindingsOptions(zone="+02:00", take_doubtful=take_doubtful)
+    options = InspectionOptions(zone="+02:00", take_doubtful=take_doubtful)
     try:
-        reported = reported_in(Layer("cells", cells), options).value
+        reported = rows_in(Layer("cells", cells), options).value
         findings, said = look_up(reported, GRID, options)
     except FieldmonError:
         return

@@ -5,7 +5,7 @@ import numpy as np
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.io.import_report import Remedy, Severity, guessed
 from fieldmon.io.readers.nearby import on_plants
-from fieldmon.io.readers.places import Places, Plants
+from fieldmon.io.readers.places import NamedPlaces, Plants
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.layout import Planting, rectangle
 
@@ -34,7 +34,7 @@ def test_a_record_between_everything_lies_on_no_plant_unless_its_accuracy_reache
 
 
 def test_places_of_a_grid_carry_the_labels_that_people_count():
-    places = Places.of((), GRID)
+    places = NamedPlaces.of((), GRID)
     label = row_label(GRID)
     for line, number in ((1, 1), (3, 7), (6, 10)):
         (i,) = np.flatnonzero((label.line == line) & (label.number == number))
@@ -46,14 +46,14 @@ def test_places_of_a_grid_carry_the_labels_that_people_count():
 
 def test_both_faces_of_a_vine_have_one_place():
     faces = rectangle(6, 10, Planting(faces=2))
-    assert len(Places.of((), faces).plants) == 60
+    assert len(NamedPlaces.of((), faces).plants) == 60
 
 
 def test_measured_plants_keep_the_names_of_their_file():
     measured = Plants(np.zeros((2, 2)), np.array(["1", "1"]), np.array(["A", "B"]))
-    assert Places.of((), GRID, measured).plants is measured
+    assert NamedPlaces.of((), GRID, measured).plants is measured
     unnamed = Plants(np.zeros((2, 2)), np.array(["", ""]), np.array(["", ""]))
-    assert len(Places.of((), GRID, unnamed).plants) == 60
+    assert len(NamedPlaces.of((), GRID, unnamed).plants) == 60
 
 
 def test_a_remedy_is_printed_as_it_is_typed_and_offers_every_choice():

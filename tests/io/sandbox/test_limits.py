@@ -6,15 +6,15 @@ from fieldmon.errors import FileProblem
 from fieldmon.io.sandbox import limits
 from tests.paths import ROOT
 
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "plots_and_records.md").read_text(encoding="utf-8")
 
 
 def row(start):
-    (line,) = [line for line in README.splitlines() if line.startswith(f"| {start}")]
+    (line,) = [line for line in PAGE.splitlines() if line.startswith(f"| {start}")]
     return line.split("|")[2].strip()
 
 
-def test_the_readme_states_every_limit_as_it_is():
+def test_the_pages_state_every_limit_as_it_is():
     assert row("a file |") == limits.size(limits.FILE_BYTES)
     unpacked = limits.size(limits.UNPACKED_BYTES)
     ratio, above = limits.COMPRESSION_RATIO, limits.size(limits.RATIO_FROM_BYTES)

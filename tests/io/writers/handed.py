@@ -10,20 +10,20 @@ from shapely import MultiPolygon, Polygon
 from fieldmon.io.writers import HandoffPlan
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.planning.route import route_of
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, lay, rectangle
 from fieldmon.samplers import sampler
 from tests.scenes import scene_on
 
-START = datetime(2026, 11, 18, 7, 30)  # noqa: DTZ001 - people plan by the clock on the wall
+START = datetime(2026, 11, 18, 7, 30)
 METRES = np.array([96_200.0, 110_800.0])  # of a degree of longitude and latitude at 30 N, roughly
 
 
 def day(grid, hours=1.5, plot='ענבים & "Söhne" <1>', start=START, seed=1, by="dynamic"):
     """Return a planned day whose robot comes back to the gate."""
     scene = scene_on(grid, hours=hours, seed=seed)
-    route = route_of(scene, plan_day(scene, sampler(by)))
+    route = route_of(scene, plan_work(scene, sampler(by)))
     return HandoffPlan(route, RouteNotes(plot, by, start))
 
 

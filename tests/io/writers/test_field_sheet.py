@@ -1,52 +1,17 @@
 """The field sheet for paper: every plant in order with its boxes, a map true to scale."""
 
 import re
-from html.parser import HTMLParser
 
 import numpy as np
 import pytest
 
 from fieldmon.io.writers import write_handoff
 from fieldmon.plot.layout import rectangle
-from tests.io.writers.handed import DAYS, crooked, day, long, usual
+from tests.io.writers.handed import DAYS, START, crooked, day, long, usual
+from tests.pages import HOSTILE, Page, held
 
-_VOID = {"meta"}
-
-
-class Sheet(HTMLParser):
-    """What stands on a sheet."""
-
-    def __init__(self, path):
-        super().__init__()
-        self.rows, self.circles, self.attributes, self.open = [], [], [], []
-        self.text = ""
-        self.feed(path.read_text("utf-8"))
-
-    def handle_starttag(self, tag, attrs):
-        named = dict(attrs)
-        self.attributes += attrs
-        if tag not in _VOID:
-            self.open.append(tag)
-        if tag == "tr" and "data-plant" in named:
-            self.rows.append({"plant": int(named["data-plant"]), "cells": [], "boxes": 0})
-        if tag == "td":
-            self.rows[-1]["cells"].append("")
-        if tag == "i" and "td" in self.open:
-            self.rows[-1]["boxes"] += 1
-
-    def handle_startendtag(self, tag, attrs):
-        self.attributes += attrs
-        if tag == "circle":
-            named = dict(attrs)
-            self.circles.append((float(named["cx"]), float(named["cy"])))
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag  # every element is closed where it should be
-
-    def handle_data(self, data):
-        self.text += data
-        if "td" in self.open:
-            self.rows[-1]["cells"][-1] += data
+#: to tick for each plant: clean, found, could not be inspected
+BOXES = 3
 
 
 @pytest.fixture(params=DAYS)
@@ -56,43 +21,73 @@ def plan(request):
 
 def sheet_of(plan, folder):
     (path,) = write_handoff(plan, folder / "sheet.html")
-    return Sheet(path), path
+    return Page(path.read_text("utf-8")), path
 
 
 def test_every_plant_stands_in_order_with_three_boxes(tmp_path, plan):
     sheet, _ = sheet_of(plan, tmp_path)
-    assert sheet.open == []
-    assert [row["plant"] for row in sheet.rows] == plan.route.plant.tolist()
-    for row, stop in zip(sheet.rows, plan.stops, strict=True):
+    ((heads, *rows),) = sheet.tables
+    assert heads == ["", "row", "plant", "time", "", "how many"]
+    for cells, stop in zip(rows, plan.stops, strict=True):
         face = "ab"[stop.face - 1] if stop.face else ""
-        wanted = [
-            str(stop.order),
-            str(stop.row),
-            f"{stop.number}{face}",
-            stop.arrive[11:16],
-            "",
-            "",
-        ]
-        assert row["cells"] == wanted
-        assert row["boxes"] == 3
+        number = f"{stop.number}{face}"
+        assert cells == [str(stop.order), str(stop.row), number, stop.arrive[11:16], "", ""]
+    plants = [int(row["data-plant"]) for row in sheet.all("tr") if "data-plant" in row]
+    assert plants == plan.route.plant.tolist()
+    # those of the legend, and those of each plant
+    assert len(sheet.all("i")) == BOXES * (1 + len(plants))
+
+
+def test_a_thick_line_stands_over_each_new_row_of_plants(tmp_path, plan):
+    sheet, _ = sheet_of(plan, tmp_path)
+    lines = [row.get("class") == "row" for row in sheet.all("tr") if "data-plant" in row]
+    rows = np.array([stop.row for stop in plan.stops])
+    assert lines == [True, *(np.diff(rows) != 0).tolist()][: len(rows)]
+
+
+def test_the_head_says_plot_day_plants_and_hours(tmp_path):
+    plan = usual()
+    sheet, _ = sheet_of(plan, tmp_path)
+    assert sheet.headings == [f"{plan.notes.plot} {START:%Y-%m-%d}"]
+    ends = plan.clock(plan.route.end_s)[11:16]
+    assert f"{len(plan.route)} plants, {plan.route.drive_m / 1000:.2f} km" in sheet.text
+    assert f"(07:30 to {ends})" in sheet.text
 
 
 def test_the_sheet_asks_for_nothing_from_outside(tmp_path, plan):
     sheet, path = sheet_of(plan, tmp_path)
-    assert not {"src", "href", "data", "srcset"} & {name for name, _ in sheet.attributes}
+    assert sheet.asks_for == sheet.runs == []
     assert not re.search(r"<script|url\(|@import|https?:", path.read_text("utf-8"))
 
 
-def test_names_are_text_whatever_stands_in_them(tmp_path):
-    plan = day(rectangle(3, 4), plot='<img src="x">&amp;\x00')
-    sheet, _ = sheet_of(plan, tmp_path)
-    assert '<img src="x">&amp;' in sheet.text
-    assert "src" not in {name for name, _ in sheet.attributes}
+@pytest.mark.parametrize("name", [*HOSTILE, '<img src="x">&amp;\x00'])
+def test_names_are_text_whatever_stands_in_them(tmp_path, name):
+    plan = day(rectangle(3, 4), plot=name)
+    (path,) = write_handoff(plan, tmp_path / "sheet.html")
+    sheet = held(path.read_text("utf-8"), [name.strip("\x00")])
+    assert set(sheet.tags) <= {
+        *("html", "head", "meta", "title", "style", "body", "h1", "bdi", "p", "span", "i", "div"),
+        *(
+            "svg",
+            "g",
+            "path",
+            "circle",
+            "rect",
+            "text",
+            "table",
+            "thead",
+            "tbody",
+            "tr",
+            "th",
+            "td",
+        ),
+    }
 
 
 def test_the_map_is_true_to_scale_and_not_mirrored(tmp_path, plan):
     sheet, path = sheet_of(plan, tmp_path)
-    on_paper = np.array(sheet.circles).reshape(-1, 2)
+    circles = [(float(c["cx"]), float(c["cy"])) for c in sheet.all("circle")]
+    on_paper = np.array(circles).reshape(-1, 2)
     assert len(on_paper) == len(plan.route)
     if not len(on_paper):
         return
@@ -125,3 +120,13 @@ def test_on_paper_a_day_of_a_hundred_plants_has_one_page_and_no_line_is_cut(brow
     assert len(crooked().route) > 95
     assert pages[usual] == pages[crooked] == 1
     assert pages[long] <= 1 + len(long().route) // 120
+
+
+def test_a_sheet_is_white_in_a_dark_room_too(browser, tmp_path):
+    (path,) = write_handoff(usual(), tmp_path / "sheet.html")
+    page = browser.new_page(color_scheme="dark")
+    page.goto(path.as_uri())
+    colours = "getComputedStyle(document.body).{}"
+    assert page.evaluate(colours.format("backgroundColor")) == "rgb(255, 255, 255)"
+    assert page.evaluate(colours.format("color")) == "rgb(0, 0, 0)"
+    page.close()

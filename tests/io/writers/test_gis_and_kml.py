@@ -13,7 +13,7 @@ import pytest
 
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.options import Upload
-from fieldmon.io.readers.inspections import read_findings
+from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import write_handoff
 from fieldmon.plot.layout import rectangle
 from tests.io.writers.handed import DAYS, apart_m, crooked, day, usual
@@ -74,12 +74,12 @@ def test_the_geopackage_comes_back_edited(tmp_path):
     stops.loc[0, "time"] = np.datetime64("2026-11-18T09:12:00")
     pyogrio.write_dataframe(stops, edited, layer="stops")
     pyogrio.write_dataframe(pyogrio.read_dataframe(path, layer="route"), edited, layer="route")
-    findings = read_findings(edited, plan.grid).value
+    findings = read_inspections(edited, plan.grid).value
     assert findings.plant.tolist() == plan.route.plant[[0, 3]].tolist()
     assert findings.result.tolist() == [FOUND, CLEAN]
     assert findings.count[0] == 4
-    assert findings.when.astype(str).tolist() == ["2026-11-18T09:12:00", "NaT"]
-    assert findings.day.astype(str).tolist() == ["2026-11-18"] * 2
+    np.testing.assert_array_equal(findings.second, [9 * 3600 + 12 * 60, np.nan])
+    assert findings.date.astype(str).tolist() == ["2026-11-18"] * 2
 
 
 # --- zipped shapefile --------------------------------------------------------------------------
@@ -155,7 +155,7 @@ def test_the_shapefile_comes_back_filled_in(tmp_path):
     with zipfile.ZipFile(packed, "w") as archive:
         for part in folder.iterdir():
             archive.write(part, part.name)
-    findings = read_findings(Upload("route.zip", packed.getvalue()), plan.grid).value
+    findings = read_inspections(Upload("route.zip", packed.getvalue()), plan.grid).value
     assert findings.plant.tolist() == plan.route.plant[[1, 2]].tolist()
     assert findings.result.tolist() == [CLEAN, FOUND]
     assert findings.count[1] == 3

@@ -12,11 +12,10 @@ import pandas as pd
 import pyogrio
 import pytest
 
-from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.options import Upload
-from fieldmon.io.readers.inspections import read_findings
-from fieldmon.io.writers import FORMATS, write_handoff
+from fieldmon.io.readers.inspections import read_inspections
+from fieldmon.io.writers import write_handoff
 from fieldmon.plot.layout import rectangle
 from tests.io.writers.handed import DAYS, START, apart_m, crooked, day, usual
 
@@ -27,45 +26,6 @@ GPX = "{http://www.topografix.com/GPX/1/1}"
 @pytest.fixture(params=DAYS)
 def plan(request):
     return DAYS[request.param]()
-
-
-# --- the door ----------------------------------------------------------------------------------
-
-
-def test_the_ending_or_the_name_tells_the_format(tmp_path):
-    plan = usual()
-    (by_ending,) = write_handoff(plan, tmp_path / "a.CSV")
-    (by_name,) = write_handoff(plan, tmp_path / "a.txt", "csv")
-    assert by_ending.read_bytes() == by_name.read_bytes()
-    with pytest.raises(SettingError, match="must end in one of"):
-        write_handoff(plan, tmp_path / "a.docx")
-    with pytest.raises(SettingError, match=r"written as nav2, .* not as 'docx'"):
-        write_handoff(plan, tmp_path / "a.csv", "docx")
-
-
-def test_every_ending_tells_one_format_only():
-    endings = [ending for chosen in FORMATS.values() for ending in chosen.endings]
-    assert len(set(endings)) == len(endings)
-
-
-@pytest.mark.parametrize("name", FORMATS)
-def test_a_place_that_cannot_be_written_to_is_a_sentence(tmp_path, name):
-    with pytest.raises(FileProblem, match="must exist"):
-        write_handoff(usual(), tmp_path / "none" / f"a{FORMATS[name].endings[0]}")
-
-
-@pytest.mark.parametrize("name", FORMATS)
-def test_every_format_is_written_for_every_day(tmp_path, name, plan):
-    to = tmp_path / f"a{FORMATS[name].endings[0]}"
-    if name in {"nav2", "waypoints"} and not len(plan.route):
-        with pytest.raises(SettingError, match="drives nowhere"):
-            write_handoff(plan, to)
-        assert list(tmp_path.iterdir()) == []
-        return
-    paths = write_handoff(plan, to)
-    assert sorted(tmp_path.iterdir()) == sorted(paths)
-    assert all(path.stat().st_size for path in paths)
-    assert FORMATS[name].several == (len(paths) > 1)
 
 
 # --- GeoJSON: RFC 7946, rule by rule -----------------------------------------------------------
@@ -172,11 +132,11 @@ def test_the_csv_comes_back_filled_in(tmp_path, make):
     table.loc[0, ["found", "count"]] = "yes", 4
     table.loc[2, "found"] = "no"
     for data in (table.to_csv(index=False).encode(), table.to_csv(index=False, sep=";").encode()):
-        findings = read_findings(Upload("route.csv", data), plan.grid).value
+        findings = read_inspections(Upload("route.csv", data), plan.grid).value
         assert findings.plant.tolist() == plan.route.plant[[0, 2]].tolist()
         assert findings.result.tolist() == [FOUND, CLEAN]
-        assert findings.day.astype(str).tolist() == ["2026-11-18"] * 2
-        assert np.isnat(findings.when).all()
+        assert findings.date.astype(str).tolist() == ["2026-11-18"] * 2
+        assert np.isnan(findings.second).all()
 
 
 def test_the_geojson_comes_back_filled_in(tmp_path):
@@ -184,10 +144,10 @@ def test_the_geojson_comes_back_filled_in(tmp_path):
     root = geojson_of(plan, tmp_path)
     for feature, found in zip(root["features"][1:], [True, False, None, 3], strict=False):
         feature["properties"]["found"] = found
-    imported = read_findings(Upload("r.geojson", json.dumps(root).encode()), plan.grid)
+    imported = read_inspections(Upload("r.geojson", json.dumps(root).encode()), plan.grid)
     assert imported.value.plant.tolist() == plan.route.plant[[0, 1, 3]].tolist()
     assert imported.value.result.tolist() == [FOUND, CLEAN, FOUND]
-    assert imported.value.day.astype(str).tolist() == ["2026-11-18"] * 3
+    assert imported.value.date.astype(str).tolist() == ["2026-11-18"] * 3
 
 
 # --- GPX 1.1: the schema's rules ---------------------------------------------------------------
@@ -290,6 +250,6 @@ def test_waypoints_come_back_with_what_was_added_to_their_names(tmp_path):
     names = [w.find(f"{GPX}name") for w in tree.getroot().findall(f"{GPX}wpt")]
     for name, more in zip(names, [" +3", " -", "", " clean"], strict=False):
         name.text += more
-    findings = read_findings(Upload("r.gpx", ET.tostring(tree.getroot())), plan.grid).value
+    findings = read_inspections(Upload("r.gpx", ET.tostring(tree.getroot())), plan.grid).value
     assert findings.plant.tolist() == plan.route.plant[[0, 1, 3]].tolist()
     assert findings.result.tolist() == [FOUND, CLEAN, CLEAN]

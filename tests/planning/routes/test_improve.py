@@ -13,7 +13,7 @@ def used_s(aisles, robot, stops):
     if not len(stops):
         return 0.0
     places = np.concatenate([[GATE], stops, [GATE] if robot.returns else []]).astype(np.int64)
-    driving_s = driven_s(aisles.ground, robot_clock(robot, 1.0), places)
+    driving_s = driven_s(aisles.travel, robot_clock(robot, 1.0), places)
     return driving_s + len(stops) * robot.visit_s
 
 
@@ -26,7 +26,7 @@ def test_what_comes_out_fits_and_no_further_stop_does(faces, returns, seconds):
     n = len(aisles.grid)
     reward = rng.random(n)
     tour = Tour.of(rng.permutation(n)[: n // 2], n)
-    held = fit(aisles.ground, robot_clock(robot, seconds), tour, reward, 0.0)
+    held = fit(aisles.travel, robot_clock(robot, seconds), tour, reward, 0.0)
     stops = tour.stops
     assert len(np.unique(stops)) == len(stops)
     assert held == pytest.approx(reward[stops].sum())
@@ -43,7 +43,7 @@ def test_a_tour_in_a_bad_order_is_driven_in_a_better_one():
     n = len(aisles.grid)
     stops = rng.permutation(n)
     tour = Tour.of(stops, n)
-    fit(aisles.ground, robot_clock(robot, 1e6), tour, np.ones(n), 0.0)
+    fit(aisles.travel, robot_clock(robot, 1e6), tour, np.ones(n), 0.0)
     assert sorted(tour.stops.tolist()) == list(range(n))
     assert used_s(aisles, robot, tour.stops) < 0.7 * used_s(aisles, robot, stops)
 
@@ -53,5 +53,5 @@ def test_ruin_leaves_the_poorest_out():
     reward = np.append(np.ones(9), 0.001)
     tour = Tour.of(np.arange(10), 10)
     clock = robot_clock(Robot(), 1e6)
-    ruin(aisles.ground, clock, tour, reward, used_s(aisles, Robot(), np.arange(10)) - 1.0)
+    ruin(aisles.travel, clock, tour, reward, used_s(aisles, Robot(), np.arange(10)) - 1.0)
     assert tour.stops.tolist() == list(range(9))

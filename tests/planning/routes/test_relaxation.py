@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 from fieldmon.planning.routes.relaxation import ladder_below
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.travel import GATE, Aisles
-from tests.planning.routes.test_best import crooked_aisles
+from tests.planning.routes.test_best_route import crooked_aisles
 
 # weights of 0 would count as no way at all
 _LEAST = 1e-12

@@ -14,9 +14,9 @@ def best_of_all(aisles, reward, robot, seconds):
     k = len(plants)
     clock = robot_clock(robot, seconds)
     leg = np.array(
-        [[travel_s(aisles.ground, clock, int(a), int(b)) for b in plants] for a in plants]
+        [[travel_s(aisles.travel, clock, int(a), int(b)) for b in plants] for a in plants]
     )
-    out = np.array([travel_s(aisles.ground, clock, GATE, int(a)) for a in plants])
+    out = np.array([travel_s(aisles.travel, clock, GATE, int(a)) for a in plants])
     back = out if robot.returns else np.zeros(k)
     earliest = np.full((1 << k, k), np.inf)
     for a in range(k):

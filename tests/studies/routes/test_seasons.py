@@ -3,11 +3,11 @@
 import numpy as np
 
 from fieldmon.infestation.spread import Spread
-from fieldmon.planning.workday import plan_day
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import NEVER, Scene
+from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.studies.routes.seasons import (
     AS_IT_IS,
     BEST,
@@ -18,7 +18,7 @@ from fieldmon.studies.routes.seasons import (
     told,
     worth,
 )
-from fieldmon.studies.samplers.scenarios import Cell
+from fieldmon.studies.samplers.scenarios import Scenario
 
 
 def scene(seconds):
@@ -30,8 +30,8 @@ def scene(seconds):
 
 def test_the_best_route_is_worth_no_less_than_adaptives_and_fits_the_hours():
     morning = scene(2000.0)
-    found = plan_day(morning, BestRouteSampler())
-    other = plan_day(morning, MorningAdaptive())
+    found = plan_work(morning, BestRouteSampler())
+    other = plan_work(morning, MorningAdaptive())
     assert found.end_s <= 2000.0
     assert worth(morning)[found.plant].sum() >= worth(morning)[other.plant].sum()
 
@@ -45,7 +45,7 @@ def test_a_find_changes_nothing_before_tomorrow():
 
 
 def test_all_three_meet_the_same_insects_and_are_told_apart():
-    made = list(seasons(Cell("A", Spread(0.3, "one")), range(2), hours=1.0))
+    made = list(seasons(Scenario("A", Spread(0.3, "one")), range(2), hours=1.0))
     assert [one.who for one in made] == [AS_IT_IS, MORNING, BEST] * 2
     assert [one.seed for one in made] == [0, 0, 0, 1, 1, 1]
     sentences = told(made)

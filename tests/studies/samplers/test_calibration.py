@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.samplers import Naive
+from fieldmon.samplers.sweeps import Naive
 from fieldmon.studies.samplers.calibration import BELIEFS, EDGES, calibration, report_html
-from fieldmon.studies.samplers.scenarios import Cell
+from fieldmon.studies.samplers.scenarios import Scenario
 
 
 @pytest.fixture(scope="module")
 def made():
     return {
-        name: calibration([Cell("B")], Naive(), BELIEFS[name], seeds=3, n_days=8)
+        name: calibration([Scenario("B")], Naive(), BELIEFS[name], seeds=3, n_days=8)
         for name in ("independent plants", "pairs")
     }
 
@@ -47,10 +47,10 @@ def test_a_belief_that_never_learns_scores_as_the_share_it_says():
         def overnight(self, _):
             return self
 
-    cell = Cell("B")
-    blind = calibration([cell], Naive(), lambda _, chance: Stubborn(chance), seeds=1, n_days=2)
+    scenario = Scenario("B")
+    blind = calibration([scenario], Naive(), lambda _, chance: Stubborn(chance), seeds=1, n_days=2)
     assert blind.count.sum() == 2 * 4096
-    said = cell.begin(RandomStreams(0)).chance[0]
+    said = scenario.draw_start(RandomStreams(0)).chance[0]
     share = np.average(blind.was, weights=blind.count)
     assert blind.brier == pytest.approx(share * (1 - said) ** 2 + (1 - share) * said**2)
     assert blind.seconds_a_day < 0.01

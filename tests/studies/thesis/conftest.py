@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fieldmon.studies.thesis.chapter4.study import Study, run_no_prior
+from fieldmon.studies.thesis.chapter4.study import NoPriorStudy, run_no_prior
 from tests.paths import SHARED
 
 _REFERENCE = SHARED / "reference" / "no_prior"
@@ -21,6 +21,6 @@ def no_prior() -> Path:
 
 
 @pytest.fixture(scope="session")
-def everything() -> Study:
+def everything() -> NoPriorStudy:
     """Return all tables, made once for the tests of studies and report."""
     return run_no_prior("all", 30, 1)

@@ -29,7 +29,7 @@ def portable(seed: int, stream: int, n: int) -> NDArray[np.float64]:
     return numbers[20:] / _MODULUS
 
 
-def keys(chance: RandomStreams, replicates: int, days: int) -> NDArray[np.uint64]:
+def keys(streams: RandomStreams, replicates: int, days: int) -> NDArray[np.uint64]:
     """Return the names of each replicate's coin tables, ``(replicates, 2 + days)``.
 
     Columns: start, steps, then one a night. They hang on seed and replicate only, so every strategy
@@ -37,8 +37,8 @@ def keys(chance: RandomStreams, replicates: int, days: int) -> NDArray[np.uint64
     """
     table = np.empty((replicates, 2 + days), np.uint64)
     for replicate in range(replicates):
-        table[replicate, 0] = chance.key("thesis-start", replicate)
-        table[replicate, 1] = chance.key("thesis-steps", replicate)
+        table[replicate, 0] = streams.key("thesis-start", replicate)
+        table[replicate, 1] = streams.key("thesis-steps", replicate)
         for day in range(days):
-            table[replicate, 2 + day] = chance.key("thesis-night", replicate, day)
+            table[replicate, 2 + day] = streams.key("thesis-night", replicate, day)
     return table

@@ -17,7 +17,7 @@ from fieldmon.studies.thesis.chapter4.listing_errors import (
     NIGHT_CORRECTED,
     ListingErrors,
 )
-from fieldmon.studies.thesis.chapter4.trial import Strategy, Trial, night_of, walk_of
+from fieldmon.studies.thesis.chapter4.trial import NoPriorTrial, ThesisStrategy, night_of, walk_of
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS, infest
 
 _KEY = ("func", "scenario", "n", "vp", "severity", "seed", "crash")
@@ -55,7 +55,7 @@ class Difference:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class ExactRunsCheck:
     """What a file of exact runs said."""
 
     name: str
@@ -83,7 +83,7 @@ def golden_columns(days: int = 3) -> tuple[str, ...]:
     return (*_KEY, *daily, *totals, *last, "curvelen", "curvelast")
 
 
-def compare_golden(text: str, name: str, night: str | None = None) -> Comparison:
+def compare_golden(text: str, name: str, night: str | None = None) -> ExactRunsCheck:
     """Run every row of a file of exact runs and return the rows that differ.
 
     Parameters
@@ -110,7 +110,7 @@ def compare_golden(text: str, name: str, night: str | None = None) -> Comparison
     differences = [
         found for line, row in rows if (found := _difference(line, row, slips, name)) is not None
     ]
-    return Comparison(name, len(rows), night, tuple(differences))
+    return ExactRunsCheck(name, len(rows), night, tuple(differences))
 
 
 def _read(text: str, name: str) -> list[tuple[int, dict[str, str]]]:
@@ -137,7 +137,7 @@ def _read(text: str, name: str) -> list[tuple[int, dict[str, str]]]:
 
 def _trial(
     row: dict[str, str], slips: ListingErrors, where: str
-) -> tuple[Trial, ListingErrors, int]:
+) -> tuple[NoPriorTrial, ListingErrors, int]:
     """Return the trial, its slips and its seed that a row names."""
     function = row["func"].removesuffix(_ROW)
     by_pass = row["func"].endswith(_ROW)
@@ -157,16 +157,16 @@ def _trial(
     except ValueError:
         raise FileProblem(f"n, vp, severity and seed must be numbers in {where}.") from None
     if online:
-        strategy = Strategy(3 if function == "randomsnake" else 5)
+        strategy = ThesisStrategy(3 if function == "randomsnake" else 5)
     else:
-        strategy = Strategy(2 if function == "snake" else 4, every)
+        strategy = ThesisStrategy(2 if function == "snake" else 4, every)
     if by_pass:
         slips = slips.without("draw_every_stop")
-    trial = Trial(SCENARIOS[row["scenario"]], strategy, viewpoints, severity, slips)
+    trial = NoPriorTrial(SCENARIOS[row["scenario"]], strategy, viewpoints, severity, slips)
     return trial, slips, seed
 
 
-def portable_run(trial: Trial, slips: ListingErrors, seed: int) -> dict[str, float] | None:
+def portable_run(trial: NoPriorTrial, slips: ListingErrors, seed: int) -> dict[str, float] | None:
     """Return a run on portable random numbers by the files' columns; None where it is aborted."""
     field, days = trial.vineyard, trial.hours.days
     walk, night = walk_of(trial, slips), night_of(trial, slips)

@@ -11,9 +11,9 @@ from fieldmon.studies.thesis.chapter4.listing_errors import (
 )
 from fieldmon.studies.thesis.chapter4.trial import (
     TABLE_ROWS,
+    NoPriorTrial,
     Prose,
-    Strategy,
-    Trial,
+    ThesisStrategy,
     table_viewpoints,
 )
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS, VIEWPOINTS_S, Vineyard
@@ -32,45 +32,55 @@ TREND_DUNAM = (2, 4, 6, 8)
 """Ours: the grid of plots of the thesis's table 1 is not in our source."""
 
 
-def neighbor_every(every: int) -> Strategy:
+def neighbor_every(every: int) -> ThesisStrategy:
     """Return the neighbor strategy that skips to every N-th plant."""
-    return Strategy(6) if every == 1 else Strategy(4, every)
+    return ThesisStrategy(6) if every == 1 else ThesisStrategy(4, every)
 
 
-def snake_every(every: int) -> Strategy:
+def snake_every(every: int) -> ThesisStrategy:
     """Return the snake strategy that skips to every N-th plant."""
-    return Strategy(1) if every == 1 else Strategy(2, every)
+    return ThesisStrategy(1) if every == 1 else ThesisStrategy(2, every)
 
 
-def table_trials(letter: str, severity: float = 0.3) -> list[Trial]:
+def table_trials(letter: str, severity: float = 0.3) -> list[NoPriorTrial]:
     """Return the rows of a printed table."""
     return [
-        Trial(SCENARIOS[letter], strategy, table_viewpoints(strategy, AS_PUBLISHED), severity)
+        NoPriorTrial(
+            SCENARIOS[letter], strategy, table_viewpoints(strategy, AS_PUBLISHED), severity
+        )
         for strategy in TABLE_ROWS
     ]
 
 
-def bigger_trials() -> list[Trial]:
+def bigger_trials() -> list[NoPriorTrial]:
     """Return the random strategies on bigger fields."""
     vineyards = [
         Vineyard.from_size(row_m, dunam, BETWEEN_ROWS_M, BETWEEN_PLANTS_M)
         for row_m, dunam in BIGGER
     ]
     listed = [
-        Trial(vineyard, strategy, table_viewpoints(strategy, AS_PUBLISHED))
+        NoPriorTrial(vineyard, strategy, table_viewpoints(strategy, AS_PUBLISHED))
         for vineyard in vineyards
-        for strategy in (Strategy(3), Strategy(5))
+        for strategy in (ThesisStrategy(3), ThesisStrategy(5))
     ]
-    prose = (Strategy(3), Strategy(5), Strategy(7, 2), Strategy(7, 3), Strategy(7, 4))
+    prose = (
+        ThesisStrategy(3),
+        ThesisStrategy(5),
+        ThesisStrategy(7, 2),
+        ThesisStrategy(7, 3),
+        ThesisStrategy(7, 4),
+    )
     return listed + [
-        Trial(vineyard, strategy, 3, rules=Prose()) for vineyard in vineyards for strategy in prose
+        NoPriorTrial(vineyard, strategy, 3, rules=Prose())
+        for vineyard in vineyards
+        for strategy in prose
     ]
 
 
-def trend_trials() -> list[Trial]:
+def trend_trials() -> list[NoPriorTrial]:
     """Return the rows of the tables on a grid of plots."""
     return [
-        Trial(
+        NoPriorTrial(
             Vineyard.from_size(row_m, dunam, BETWEEN_ROWS_M, BETWEEN_PLANTS_M),
             strategy,
             table_viewpoints(strategy, AS_PUBLISHED),
@@ -82,10 +92,10 @@ def trend_trials() -> list[Trial]:
     ]
 
 
-def equal_trials() -> list[Trial]:
+def equal_trials() -> list[NoPriorTrial]:
     """Return snake and neighbor, one after the other, with the same viewpoints."""
     return [
-        Trial(SCENARIOS[letter], strategy, viewpoints, rules=rules)
+        NoPriorTrial(SCENARIOS[letter], strategy, viewpoints, rules=rules)
         for rules in (AS_PUBLISHED, NIGHT_CORRECTED, Prose())
         for letter in SCENARIOS
         for viewpoints in VIEWPOINTS_S
@@ -94,24 +104,24 @@ def equal_trials() -> list[Trial]:
     ]
 
 
-def everywhere_trials() -> list[Trial]:
+def everywhere_trials() -> list[NoPriorTrial]:
     """Return algorithm 6 on every field, with the night as listed, corrected and described."""
     bigger = [
         Vineyard.from_size(row_m, dunam, BETWEEN_ROWS_M, BETWEEN_PLANTS_M)
         for row_m, dunam in BIGGER
     ]
     return [
-        Trial(vineyard, Strategy(6), 1, rules=rules)
+        NoPriorTrial(vineyard, ThesisStrategy(6), 1, rules=rules)
         for vineyard in dict.fromkeys((*SCENARIOS.values(), *bigger))
         for rules in (AS_PUBLISHED, NIGHT_CORRECTED, Prose())
     ]
 
 
-def slip_trials() -> list[Trial]:
+def slip_trials() -> list[NoPriorTrial]:
     """Return the rows of table 4 with each slip put right alone."""
     variants: list[ListingErrors] = [AS_PUBLISHED, *(AS_PUBLISHED.without(name) for name in NAMES)]
     return [
-        Trial(SCENARIOS["C"], strategy, table_viewpoints(strategy, slips), rules=slips)
+        NoPriorTrial(SCENARIOS["C"], strategy, table_viewpoints(strategy, slips), rules=slips)
         for slips in (*variants, NIGHT_CORRECTED, ALL_PUT_RIGHT)
         for strategy in TABLE_ROWS
     ]

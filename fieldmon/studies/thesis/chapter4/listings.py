@@ -27,8 +27,11 @@ FIXED, EACH_STOP, EACH_PASS = range(3)
 _POSITION, _FORWARD, _ROW, _SKIP, _DRAWN, _TRACED, _FOUND = range(7)
 
 
-class Walk(NamedTuple):
-    """How a listing walks (see `ListingErrors` for the switches)."""
+class ListingWalk(NamedTuple):
+    """How a listing walks (see `ListingErrors` for the switches).
+
+    `skip` is N, `draws` says when it is drawn anew, from 1 to `most`.
+    """
 
     plants: int
     sides: int
@@ -48,7 +51,7 @@ class Walk(NamedTuple):
     reentry_by_index: bool
 
 
-class _Ground(NamedTuple):
+class _WalkState(NamedTuple):
     """What a walk changes: faces by number, and its own place in `at`."""
 
     infested: NDArray[np.bool_]
@@ -67,15 +70,15 @@ class _Curve(NamedTuple):
 
 
 @nb.njit(cache=True, nogil=True)
-def _draw(walk: Walk, ground: _Ground) -> None:
+def _draw(walk: ListingWalk, state: _WalkState) -> None:
     """Draw the next N."""
-    u = ground.steps[ground.at[_DRAWN]]
-    ground.at[_DRAWN] += 1
-    ground.at[_SKIP] = 1 + int(walk.most * u)
+    u = state.steps[state.at[_DRAWN]]
+    state.at[_DRAWN] += 1
+    state.at[_SKIP] = 1 + int(walk.most * u)
 
 
 @nb.njit(cache=True, nogil=True)
-def _face(walk: Walk, q: int) -> int:
+def _face(walk: ListingWalk, q: int) -> int:
     """Return the face (from 0) that stands at number `q` of the walk."""
     side, j = divmod(q - 1, walk.plants)
     block = side // 2 if walk.listing == NEIGHBOR else side
@@ -85,24 +88,24 @@ def _face(walk: Walk, q: int) -> int:
 
 
 @nb.njit(cache=True, nogil=True)
-def _visit(walk: Walk, ground: _Ground, q: int) -> None:
+def _visit(walk: ListingWalk, state: _WalkState, q: int) -> None:
     """Look at number `q`; clean that face if it is infested."""
     face = _face(walk, q)
-    ground.visits[q - 1] += 1
-    ground.today[q - 1] = True
-    if ground.infested[face]:
-        ground.infested[face] = False
-        ground.at[_FOUND] += 1
+    state.visits[q - 1] += 1
+    state.today[q - 1] = True
+    if state.infested[face]:
+        state.infested[face] = False
+        state.at[_FOUND] += 1
 
 
 @nb.njit(cache=True, nogil=True)
-def _note(walk: Walk, ground: _Ground, curve: _Curve, left_s: float) -> None:
+def _note(walk: ListingWalk, state: _WalkState, curve: _Curve, left_s: float) -> None:
     """Append a point to the detection curve: days worked, percent of the known insects found."""
-    k = ground.at[_TRACED]
+    k = state.at[_TRACED]
     if k < curve.points.shape[0]:
         curve.points[k, 0] = curve.day + 1 - left_s / walk.day_s
-        curve.points[k, 1] = 100.0 * ground.at[_FOUND] / curve.known if curve.known > 0 else np.nan
-        ground.at[_TRACED] += 1
+        curve.points[k, 1] = 100.0 * state.at[_FOUND] / curve.known if curve.known > 0 else np.nan
+        state.at[_TRACED] += 1
 
 
 @nb.njit(cache=True, nogil=True)
@@ -128,14 +131,14 @@ def _nearest_new(visits: NDArray[np.int64], from_end: bool) -> int:  # noqa: FBT
 
 
 @nb.njit(cache=True, nogil=True)
-def _reenter(walk: Walk, ground: _Ground, at_end: bool) -> None:  # noqa: FBT001 - a kernel
+def _reenter(walk: ListingWalk, state: _WalkState, at_end: bool) -> None:  # noqa: FBT001 - a kernel
     """Turn round at one end of the field and choose where to go on."""
-    at, n, last = ground.at, ground.at[_SKIP], ground.visits.size
+    at, n, last = state.at, state.at[_SKIP], state.visits.size
     if at_end or walk.listing == NEIGHBOR or not walk.reentry_by_index:
         # at the first face the snake listings leave this to their next pass
         at[_FORWARD] = 0 if at_end else 1
     if not walk.reentry_by_index:
-        fresh = _nearest_new(ground.visits, at_end)
+        fresh = _nearest_new(state.visits, at_end)
         if fresh > 0:
             at[_POSITION] = fresh
             at[_ROW] = (fresh - 1) // walk.plants + (2 if at_end else 1)
@@ -147,18 +150,18 @@ def _reenter(walk: Walk, ground: _Ground, at_end: bool) -> None:  # noqa: FBT001
         else:
             at[_POSITION] = here - 1 if here - 1 > 1 else here + 1
     elif at_end:
-        at[_POSITION] = _least_visited(ground.visits, last - n + 1, last, False)
+        at[_POSITION] = _least_visited(state.visits, last - n + 1, last, False)
     else:
-        at[_POSITION] = _least_visited(ground.visits, 1, n, walk.listing == NEIGHBOR)
+        at[_POSITION] = _least_visited(state.visits, 1, n, walk.listing == NEIGHBOR)
 
 
 @nb.njit(cache=True, nogil=True)
-def _travel_s(walk: Walk, ground: _Ground) -> float:
-    return walk.travel_s if walk.travel_once else walk.travel_s * ground.at[_SKIP]
+def _travel_s(walk: ListingWalk, state: _WalkState) -> float:
+    return walk.travel_s if walk.travel_once else walk.travel_s * state.at[_SKIP]
 
 
 @nb.njit(cache=True, nogil=True)
-def _side_change_s(walk: Walk, before: int, after: int) -> float:
+def _side_change_s(walk: ListingWalk, before: int, after: int) -> float:
     """Return the seconds between two numbers for the sides and aisles that lie between."""
     side, other = (before - 1) // walk.plants, (after - 1) // walk.plants
     if side == other:
@@ -168,53 +171,53 @@ def _side_change_s(walk: Walk, before: int, after: int) -> float:
 
 @nb.njit(cache=True, nogil=True)
 def _snake_pass(
-    walk: Walk,
-    ground: _Ground,
+    walk: ListingWalk,
+    state: _WalkState,
     curve: _Curve,
     left_s: float,
     forward: bool,  # noqa: FBT001 - a kernel
 ) -> float:
     """Walk one pass of a snake listing along a "row" of its counter; return the seconds left."""
-    at, last, n = ground.at, ground.visits.size, ground.at[_SKIP]
+    at, last, n = state.at, state.visits.size, state.at[_SKIP]
     # a counter, not the robot: it steps by the N of the pass's beginning, whatever is drawn later
     for k in range((walk.plants + n - 1) // n):
         counter = 1 + k * n if forward else walk.plants - k * n
         if walk.draws == EACH_STOP:
-            _draw(walk, ground)
-        cost_s = _travel_s(walk, ground) + walk.look_s
+            _draw(walk, state)
+        cost_s = _travel_s(walk, state) + walk.look_s
         if left_s - cost_s <= 0:
             break
         left_s -= cost_s
         here = at[_POSITION]
-        _visit(walk, ground, here)
+        _visit(walk, state, here)
         if walk.change_by_counter and counter == walk.plants:
             left_s -= walk.change_s
         there = here + at[_SKIP] if forward else here - at[_SKIP]
         if not 1 <= there <= last:
-            _reenter(walk, ground, forward)
+            _reenter(walk, state, forward)
             break
         at[_POSITION] = there
         if not walk.change_by_counter:
             left_s -= _side_change_s(walk, here, there)
-        _note(walk, ground, curve, left_s)
+        _note(walk, state, curve, left_s)
     return left_s
 
 
 @nb.njit(cache=True, nogil=True)
-def _snake_day(walk: Walk, ground: _Ground, curve: _Curve) -> float:
+def _snake_day(walk: ListingWalk, state: _WalkState, curve: _Curve) -> float:
     """Work one day of listing A.5 or A.7; return the seconds left."""
-    at, last = ground.at, ground.visits.size
+    at, last = state.at, state.visits.size
     left_s = walk.day_s
-    while left_s - (_travel_s(walk, ground) + walk.look_s + 10.0) > 0:
+    while left_s - (_travel_s(walk, state) + walk.look_s + 10.0) > 0:
         forward = at[_FORWARD] == 1
         for _ in range(walk.sides):
             if walk.draws == EACH_PASS:
-                _draw(walk, ground)
+                _draw(walk, state)
             there = at[_POSITION] + (at[_SKIP] if forward else -at[_SKIP])
             if not 1 <= there <= last:
                 at[_FORWARD] = 0 if forward else 1
                 break
-            left_s = _snake_pass(walk, ground, curve, left_s, forward)
+            left_s = _snake_pass(walk, state, curve, left_s, forward)
             # the listing leaves only the inner loop when it turns round: it may pass once more
             if (at[_FORWARD] == 1) != forward and not walk.reentry_by_index:
                 break
@@ -222,9 +225,9 @@ def _snake_day(walk: Walk, ground: _Ground, curve: _Curve) -> float:
 
 
 @nb.njit(cache=True, nogil=True)
-def _neighbor_step(walk: Walk, ground: _Ground, forward: bool) -> bool:  # noqa: FBT001 - a kernel
+def _neighbor_step(walk: ListingWalk, state: _WalkState, forward: bool) -> bool:  # noqa: FBT001 - a kernel
     """Move N on along the aisle, or into the next; return whether the aisle was left."""
-    at, plants = ground.at, walk.plants
+    at, plants = state.at, walk.plants
     here, n, row = at[_POSITION], at[_SKIP], at[_ROW]
     if forward and here + n <= row * plants:
         at[_POSITION] = here + n
@@ -232,42 +235,42 @@ def _neighbor_step(walk: Walk, ground: _Ground, forward: bool) -> bool:  # noqa:
     if not forward and here - n > (row - 2) * plants:
         at[_POSITION] = here - n
         return False
-    way = 1 if forward else -1
-    at[_POSITION] = here + way * (n + plants)
-    at[_ROW] = row + 2 * way
+    direction = 1 if forward else -1
+    at[_POSITION] = here + direction * (n + plants)
+    at[_ROW] = row + 2 * direction
     if walk.draws == EACH_PASS:
-        _draw(walk, ground)
+        _draw(walk, state)
     return True
 
 
 @nb.njit(cache=True, nogil=True)
-def _neighbor_day(walk: Walk, ground: _Ground, curve: _Curve) -> float:
+def _neighbor_day(walk: ListingWalk, state: _WalkState, curve: _Curve) -> float:
     """Work one day of listing A.6; return the seconds left."""
-    at, plants, last = ground.at, walk.plants, ground.visits.size
+    at, plants, last = state.at, walk.plants, state.visits.size
     left_s = walk.day_s
     while True:
         if walk.draws == EACH_STOP:
-            _draw(walk, ground)
-        cost_s = _travel_s(walk, ground) + 2 * walk.look_s + walk.turn_s
+            _draw(walk, state)
+        cost_s = _travel_s(walk, state) + 2 * walk.look_s + walk.turn_s
         if left_s - cost_s <= 0:
             return left_s
         left_s -= cost_s
         forward = at[_FORWARD] == 1
-        _visit(walk, ground, at[_POSITION])
-        _visit(walk, ground, at[_POSITION] + (plants if forward else -plants))
-        if _neighbor_step(walk, ground, forward):
+        _visit(walk, state, at[_POSITION])
+        _visit(walk, state, at[_POSITION] + (plants if forward else -plants))
+        if _neighbor_step(walk, state, forward):
             left_s -= walk.change_s
         if (forward and at[_POSITION] > last) or (not forward and at[_POSITION] - plants < 1):
-            _reenter(walk, ground, forward)
+            _reenter(walk, state, forward)
             if left_s - cost_s <= 0:
                 return left_s
         else:
-            _note(walk, ground, curve, left_s)
+            _note(walk, state, curve, left_s)
 
 
 @nb.njit(cache=True, nogil=True)
 def run(
-    walk: Walk,
+    walk: ListingWalk,
     night: Night,
     infested: NDArray[np.bool_],
     coins: NDArray[np.float64],
@@ -293,7 +296,7 @@ def run(
     in which the listing was aborted, from 1 (0: it was not).
     """
     days = np.zeros((walk.days, 8))
-    ground = _Ground(
+    state = _WalkState(
         infested.copy(),
         np.zeros(infested.size, np.int64),
         np.zeros(infested.size, np.bool_),
@@ -302,35 +305,35 @@ def run(
     )
     if walk.draws != FIXED:
         # whatever comes later, the first N is drawn from 1 to 4
-        ground.at[_SKIP] = 1 + int(4 * steps[0])
-        ground.at[_DRAWN] = 1
-    known = float(ground.infested.sum())
+        state.at[_SKIP] = 1 + int(4 * steps[0])
+        state.at[_DRAWN] = 1
+    known = float(state.infested.sum())
     if trace.shape[0] > 0:
         trace[0] = 0.0
-        ground.at[_TRACED] = 1
+        state.at[_TRACED] = 1
     for day in range(walk.days):
         row = days[day]
-        ground.today[:] = False
-        found = ground.at[_FOUND]
-        row[INFESTED] = ground.infested.sum()
+        state.today[:] = False
+        found = state.at[_FOUND]
+        row[INFESTED] = state.infested.sum()
         curve = _Curve(trace, day, known)
         if walk.listing == NEIGHBOR:
-            row[LEFT_S] = _neighbor_day(walk, ground, curve)
+            row[LEFT_S] = _neighbor_day(walk, state, curve)
         else:
-            row[LEFT_S] = _snake_day(walk, ground, curve)
-        row[VISITED] = ground.today.sum()
-        row[EVER] = (ground.visits > 0).sum()
-        row[FOUND] = ground.at[_FOUND] - found
-        row[END] = ground.at[_POSITION]
-        counted, true = spread(night, ground.infested, coins[day])
+            row[LEFT_S] = _snake_day(walk, state, curve)
+        row[VISITED] = state.today.sum()
+        row[EVER] = (state.visits > 0).sum()
+        row[FOUND] = state.at[_FOUND] - found
+        row[END] = state.at[_POSITION]
+        counted, true = spread(night, state.infested, coins[day])
         if counted == ABORTED:
-            return days, ground.at[_TRACED], day + 1
+            return days, state.at[_TRACED], day + 1
         row[NEW_COUNTED], row[NEW_TRUE] = counted, true
         known += counted
-    return days, ground.at[_TRACED], 0
+    return days, state.at[_TRACED], 0
 
 
-def most_draws(walk: Walk) -> int:
+def most_draws(walk: ListingWalk) -> int:
     """Return how many numbers a run can draw at most.
 
     One before the first day; then at most three for a stop (the stop's own, and two passes that
@@ -342,14 +345,14 @@ def most_draws(walk: Walk) -> int:
     return 1 + walk.days * (3 * stops + walk.sides)
 
 
-def most_points(walk: Walk) -> int:
+def most_points(walk: ListingWalk) -> int:
     """Return how many points a run's detection curve can have at most."""
     return 1 + walk.days * (int(walk.day_s / (walk.travel_s + walk.look_s)) + 2)
 
 
 @nb.njit(cache=True, nogil=True)
 def repeat(
-    walk: Walk, night: Night, start: float, draws: int, keys: NDArray[np.uint64]
+    walk: ListingWalk, night: Night, start: float, draws: int, keys: NDArray[np.uint64]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Run a listing once for each row of `keys`, ``(replicates, 2 + days)`` (see `draws.keys`).
 

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
-
-import numpy as np
-from scipy.special import stdtrit
 
 from fieldmon.studies.thesis.chapter4.listing_errors import (
     ALL_PUT_RIGHT,
@@ -21,15 +16,11 @@ from fieldmon.studies.thesis.chapter4.trial import Prose
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from numpy.typing import NDArray
-
-    from fieldmon.studies.thesis.chapter4.trial import Trial
+    from fieldmon.studies.thesis.chapter4.trial import NoPriorTrial
 
 
 @dataclass(frozen=True)
-class Cell:
+class NoPriorMeasure:
     """A row of the tidy table.
 
     Parameters
@@ -37,7 +28,7 @@ class Cell:
     table, field, faces, algorithm, n, strategy, severity, viewpoints, rules
         Which configuration; `rules` says which slips were in force.
     measure
-        See `runs.measures`.
+        See `replicates.measures`.
     mean, low, high
         Mean over the replicates and its 95 % interval (Student).
     sd, q05, q95, replicates, aborted
@@ -72,38 +63,7 @@ class Cell:
     note: str = ""
 
 
-@dataclass(frozen=True)
-class Spread:
-    """How the replicates of one measure lie."""
-
-    mean: float
-    low: float
-    high: float
-    sd: float
-    q05: float
-    q95: float
-    replicates: int
-
-
-def spread_of(values: NDArray[np.float64]) -> Spread:
-    """Return mean, 95 % interval and spread of the values that are not NaN, ``(replicates,)``."""
-    known = values[~np.isnan(values)]
-    n = known.size
-    if n == 0:
-        return Spread(math.nan, math.nan, math.nan, math.nan, math.nan, math.nan, 0)
-    mean = float(known.mean())
-    q05, q95 = (float(q) for q in np.quantile(known, (0.05, 0.95)))
-    if n == 1:
-        return Spread(mean, math.nan, math.nan, math.nan, q05, q95, 1)
-    if known.min() == known.max():
-        exact = float(known[0])
-        return Spread(exact, exact, exact, 0.0, exact, exact, n)
-    sd = float(known.std(ddof=1))
-    half = float(stdtrit(n - 1, 0.975)) * sd / math.sqrt(n)
-    return Spread(mean, mean - half, mean + half, sd, q05, q95, n)
-
-
-def rules_name(trial: Trial) -> str:
+def rules_name(trial: NoPriorTrial) -> str:
     """Return what rules a trial follows, in words."""
     rules = trial.rules
     if isinstance(rules, Prose):
@@ -122,27 +82,10 @@ def _changed(rules: ListingErrors | Prose, usual: ListingErrors | Prose) -> str:
     return ", ".join(name for name in ours if ours[name] != theirs[name])
 
 
-def field_name(trial: Trial) -> str:
+def field_name(trial: NoPriorTrial) -> str:
     """Return a trial's field: its scenario's letter, or rows x vines."""
     for letter, vineyard in SCENARIOS.items():
         if vineyard == trial.vineyard:
             return letter
     field = trial.vineyard
     return f"{field.vine_rows} rows x {field.plants} vines, {field.between_plants_m:g} m"
-
-
-def csv_text(cells: Iterable[Cell]) -> str:
-    """Return the tidy table as CSV, one row a cell; empty where there is no value."""
-    text = io.StringIO()
-    names = [column.name for column in fields(Cell)]
-    writer = csv.DictWriter(text, names, lineterminator="\n")
-    writer.writeheader()
-    for cell in cells:
-        writer.writerow({name: _plain(value) for name, value in asdict(cell).items()})
-    return text.getvalue()
-
-
-def _plain(value: float | str) -> float | str:
-    if isinstance(value, float):
-        return "" if math.isnan(value) else f"{value:.6g}"
-    return value

@@ -27,11 +27,15 @@ from fieldmon.studies.thesis.chapter4.vineyard import infest
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_STOP, _WAY, _DRAWN = range(3)
+_STOP, _DIRECTION, _DRAWN = range(3)
 
 
-class Way(NamedTuple):
-    """How a strategy goes about the field."""
+class ProseWalk(NamedTuple):
+    """How a strategy goes about the field.
+
+    `skip` is N; `stop_s` is all that a stop takes, `turn_s` and `change_s` what it takes to come to
+    the other side of an aisle and to the next one.
+    """
 
     plants: int
     sides: int
@@ -50,7 +54,7 @@ class Way(NamedTuple):
     one_coin: bool
 
 
-class _Field(NamedTuple):
+class _FieldState(NamedTuple):
     """What a day changes: faces, stops, and the robot's place in `at`."""
 
     infested: NDArray[np.bool_]
@@ -62,16 +66,16 @@ class _Field(NamedTuple):
 
 
 @nb.njit(cache=True, nogil=True)
-def _face(way: Way, stop: int) -> int:
+def _face(walk: ProseWalk, stop: int) -> int:
     """Return the face at a stop; for neighbor strategies that on the aisle's first side."""
-    block, j = divmod(stop, way.plants)
+    block, j = divmod(stop, walk.plants)
     if block % 2 == 1:
-        j = way.plants - 1 - j
-    return (2 * block if way.neighbor else block) * way.plants + j
+        j = walk.plants - 1 - j
+    return (2 * block if walk.neighbor else block) * walk.plants + j
 
 
 @nb.njit(cache=True, nogil=True)
-def _look(field: _Field, face: int) -> int:
+def _look(field: _FieldState, face: int) -> int:
     """Look at a face and clean it; return 1 if it was infested, else 0."""
     found = 1 if field.infested[face] else 0
     field.infested[face] = False
@@ -81,22 +85,22 @@ def _look(field: _Field, face: int) -> int:
 
 
 @nb.njit(cache=True, nogil=True)
-def _drive_s(way: Way, here: int, there: int) -> float:
+def _drive_s(walk: ProseWalk, here: int, there: int) -> float:
     """Return the seconds from stop to stop: every vine passed, every side or aisle left."""
     low, high = min(here, there), max(here, there)
-    seconds = (high - low) * way.plant_s
-    for block in range(low // way.plants, high // way.plants):
-        same_aisle = not way.neighbor and block % 2 == 0
-        seconds += way.turn_s if same_aisle else way.change_s
+    seconds = (high - low) * walk.plant_s
+    for block in range(low // walk.plants, high // walk.plants):
+        same_aisle = not walk.neighbor and block % 2 == 0
+        seconds += walk.turn_s if same_aisle else walk.change_s
     return seconds
 
 
 @nb.njit(cache=True, nogil=True)
-def _reentry(way: Way, field: _Field, here: int, n: int) -> int:
+def _reentry(walk: ProseWalk, field: _FieldState, here: int, n: int) -> int:
     """Return where to go on at an end of the field: the least visited stop, then the nearest."""
     stops = field.visits.size
     first, last = (0, n - 1) if here < stops // 2 else (stops - n, stops - 1)
-    if way.reenter_anywhere and field.visits.min() == 0:
+    if walk.reenter_anywhere and field.visits.min() == 0:
         first, last = 0, stops - 1
     best = first
     for stop in range(first, last + 1):
@@ -107,91 +111,91 @@ def _reentry(way: Way, field: _Field, here: int, n: int) -> int:
 
 
 @nb.njit(cache=True, nogil=True)
-def _next_stop(way: Way, field: _Field, here: int) -> int:
+def _next_stop(walk: ProseWalk, field: _FieldState, here: int) -> int:
     """Return the stop N further on, or where to turn round to."""
     at = field.at
-    n = way.skip
-    if way.online:
+    n = walk.skip
+    if walk.online:
         n = 1 + int(4 * field.steps[at[_DRAWN]])
         at[_DRAWN] += 1
-    there = int(here + at[_WAY] * n)
+    there = int(here + at[_DIRECTION] * n)
     if 0 <= there < field.visits.size:
         return there
-    at[_WAY] = -at[_WAY]
-    return _reentry(way, field, here, n)
+    at[_DIRECTION] = -at[_DIRECTION]
+    return _reentry(walk, field, here, n)
 
 
 @nb.njit(cache=True, nogil=True)
-def _sweep_day(way: Way, field: _Field) -> tuple[float, int]:
+def _sweep_day(walk: ProseWalk, field: _FieldState) -> tuple[float, int]:
     """Go on along the field for one day; return the seconds left and how many faces were found."""
-    at, left_s, found = field.at, way.day_s, 0
+    at, left_s, found = field.at, walk.day_s, 0
     here = at[_STOP]
     while True:
         there = at[_STOP]
-        cost_s = _drive_s(way, here, there) + way.stop_s
+        cost_s = _drive_s(walk, here, there) + walk.stop_s
         if cost_s > left_s:
             return left_s, found
         left_s -= cost_s
         here = there
         field.visits[here] += 1
-        face = _face(way, here)
+        face = _face(walk, here)
         found += _look(field, face)
-        if way.neighbor:
-            found += _look(field, face + way.plants)
-        at[_STOP] = _next_stop(way, field, here)
+        if walk.neighbor:
+            found += _look(field, face + walk.plants)
+        at[_STOP] = _next_stop(walk, field, here)
 
 
 @nb.njit(cache=True, nogil=True)
-def _scattered_day(way: Way, field: _Field) -> tuple[float, int]:
+def _scattered_day(walk: ProseWalk, field: _FieldState) -> tuple[float, int]:
     """Look at 1/N of the field, drawn anew, in the snake's order from its first face."""
     stops = field.visits.size
     deck = np.arange(stops)
-    chosen = stops // way.skip
+    chosen = stops // walk.skip
     for k in range(chosen):
         pick = k + int((stops - k) * field.steps[field.at[_DRAWN]])
         field.at[_DRAWN] += 1
         deck[k], deck[pick] = deck[pick], deck[k]
-    left_s, found, here = way.day_s, 0, 0
+    left_s, found, here = walk.day_s, 0, 0
     for there in np.sort(deck[:chosen]):
-        cost_s = _drive_s(way, here, there) + way.stop_s
+        cost_s = _drive_s(walk, here, there) + walk.stop_s
         if cost_s > left_s:
             break
         left_s -= cost_s
         here = there
         field.visits[here] += 1
-        found += _look(field, _face(way, here))
+        found += _look(field, _face(walk, here))
         field.at[_STOP] = here
     return left_s, found
 
 
 @nb.njit(cache=True, nogil=True)
-def spread(way: Way, infested: NDArray[np.bool_], coins: NDArray[np.float64]) -> int:
+def spread(walk: ProseWalk, infested: NDArray[np.bool_], coins: NDArray[np.float64]) -> int:
     """Let every infested face infect its row mates and its vine's other face, in place.
 
     `coins` ``(3, T)``: one row for the vine before, the vine after and the other face; the first
     row for all three where they share a coin. Return how many faces are new.
     """
     before = infested.copy()
-    plants = way.plants
+    plants = walk.plants
     for face in range(infested.size):
         if not before[face]:
             continue
         side, j = divmod(face, plants)
         other = face
-        if side % 2 == 1 and side < way.sides - 1:
+        if side % 2 == 1 and side < walk.sides - 1:
             other = face + plants
         elif side % 2 == 0 and side > 0:
             other = face - plants
         targets = (face - 1 if j > 0 else face, face + 1 if j < plants - 1 else face, other)
         for k in range(3):
-            if coins[0 if way.one_coin else k, face] < way.severity:
+            if coins[0 if walk.one_coin else k, face] < walk.severity:
                 infested[targets[k]] = True
     return int(infested.sum() - before.sum())
 
 
 @nb.njit(cache=True, nogil=True)
 def run(
-    way: Way,
+    walk: ProseWalk,
     infested: NDArray[np.bool_],
     coins: NDArray[np.float64],
     steps: NDArray[np.float64],
@@ -201,49 +205,51 @@ def run(
     `infested` ``(T,)`` is not changed; `coins` ``(days, 3, T)`` are the nights', `steps` the
     draws' uniform numbers (see `most_draws`).
     """
-    days = np.zeros((way.days, 8))
+    days = np.zeros((walk.days, 8))
     faces = infested.size
-    field = _Field(
+    field = _FieldState(
         infested.copy(),
         np.zeros(faces, np.bool_),
         np.zeros(faces, np.bool_),
-        np.zeros(faces // 2 if way.neighbor else faces, np.int64),
+        np.zeros(faces // 2 if walk.neighbor else faces, np.int64),
         np.array([0, 1, 0]),
         steps,
     )
-    for day in range(way.days):
+    for day in range(walk.days):
         row = days[day]
         field.today[:] = False
         row[INFESTED] = field.infested.sum()
-        if way.scattered:
-            row[LEFT_S], row[FOUND] = _scattered_day(way, field)
+        if walk.scattered:
+            row[LEFT_S], row[FOUND] = _scattered_day(walk, field)
         else:
-            row[LEFT_S], row[FOUND] = _sweep_day(way, field)
+            row[LEFT_S], row[FOUND] = _sweep_day(walk, field)
         row[VISITED], row[EVER] = field.today.sum(), field.seen.sum()
         row[END] = field.at[_STOP]
-        row[NEW_TRUE] = spread(way, field.infested, coins[day])
+        row[NEW_TRUE] = spread(walk, field.infested, coins[day])
         row[NEW_COUNTED] = row[NEW_TRUE]
     return days
 
 
-def most_draws(way: Way) -> int:
+def most_draws(walk: ProseWalk) -> int:
     """Return how many numbers a run can draw at most."""
-    if way.scattered:
-        return way.days * (way.plants * way.sides // way.skip)
-    return way.days * (int(way.day_s / way.stop_s) + 1) if way.online else 0
+    if walk.scattered:
+        return walk.days * (walk.plants * walk.sides // walk.skip)
+    return walk.days * (int(walk.day_s / walk.stop_s) + 1) if walk.online else 0
 
 
 @nb.njit(cache=True, nogil=True)
-def repeat(way: Way, start: float, draws: int, keys: NDArray[np.uint64]) -> NDArray[np.float64]:
+def repeat(
+    walk: ProseWalk, start: float, draws: int, keys: NDArray[np.uint64]
+) -> NDArray[np.float64]:
     """Run a strategy once for each row of `keys`; return the days' numbers ``(m, days, 8)``."""
     replicates = keys.shape[0]
-    faces, vines = way.sides * way.plants, (way.sides // 2 + 1) * way.plants
-    days = np.empty((replicates, way.days, 8))
-    coins = np.empty((way.days, 3, faces))
-    used = faces if way.one_coin else 3 * faces
+    faces, vines = walk.sides * walk.plants, (walk.sides // 2 + 1) * walk.plants
+    days = np.empty((replicates, walk.days, 8))
+    coins = np.empty((walk.days, 3, faces))
+    used = faces if walk.one_coin else 3 * faces
     for k in range(replicates):
-        infested = infest(way.plants, way.sides, coin_table(keys[k, 0], vines), start)
-        for day in range(way.days):
+        infested = infest(walk.plants, walk.sides, coin_table(keys[k, 0], vines), start)
+        for day in range(walk.days):
             coins[day].ravel()[:used] = coin_table(keys[k, 2 + day], used)
-        days[k] = run(way, infested, coins, coin_table(keys[k, 1], draws))
+        days[k] = run(walk, infested, coins, coin_table(keys[k, 1], draws))
     return days

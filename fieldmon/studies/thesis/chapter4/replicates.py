@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,17 +9,19 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams, coin_table
 from fieldmon.errors import SettingError
+from fieldmon.simulation import executor
+from fieldmon.simulation.experiment import Experiment, Memory, in_settings, run
 from fieldmon.studies.thesis.chapter4 import draws, listings, prose_model
 from fieldmon.studies.thesis.chapter4.listing_errors import ListingErrors
-from fieldmon.studies.thesis.chapter4.trial import Trial, night_of, walk_of, way_of
+from fieldmon.studies.thesis.chapter4.trial import NoPriorTrial, night_of, prose_walk_of, walk_of
 from fieldmon.studies.thesis.chapter4.vineyard import infest
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    Progress = Callable[[int, int], None]
+    from fieldmon.simulation.experiment import Progress
 
 THRESHOLDS = (30, 50, 80, 100)
 NEVER = 4
@@ -29,7 +29,7 @@ NEVER = 4
 
 
 @dataclass(frozen=True, eq=False)
-class Runs:
+class NoPriorRuns:
     """The replicates of a trial.
 
     Parameters
@@ -42,18 +42,18 @@ class Runs:
         ``(replicates,)``: the night in which the listing stopped with an error, from 1; 0 if not.
     """
 
-    trial: Trial
+    trial: NoPriorTrial
     days: NDArray[np.float64]
     aborted: NDArray[np.int64]
 
 
 def run_trials(
-    trials: Sequence[Trial],
+    trials: Sequence[NoPriorTrial],
     replicates: int,
     seed: int,
     progress: Progress | None = None,
     threads: int | None = None,
-) -> list[Runs]:
+) -> list[NoPriorRuns]:
     """Run every trial `replicates` times; the same replicate meets the same insects in all of them.
 
     The answer does not depend on `threads` (default: one a core). `progress` is called with the
@@ -65,27 +65,28 @@ def run_trials(
         return []
     most_days = max(trial.hours.days for trial in trials)
     keys = draws.keys(RandomStreams(seed), replicates, most_days)
-    results: list[Runs | None] = [None] * len(trials)
-    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
-        jobs = {pool.submit(_repeat, trial, keys): k for k, trial in enumerate(trials)}
-        for done, job in enumerate(as_completed(jobs), start=1):
-            results[jobs[job]] = job.result()
-            if progress is not None:
-                progress(done, len(trials))
-    return [runs for runs in results if runs is not None]
+
+    def simulate(trial: NoPriorTrial, seeds: range) -> NoPriorRuns:
+        return _repeat(trial, keys[seeds.start : seeds.stop])
+
+    experiment = Experiment(trials, range(replicates), simulate)
+    made: Memory[NoPriorRuns] = Memory()
+    with executor.threads(threads) as workers:
+        run(experiment, workers, made, in_settings(progress, replicates))
+    return [made[chunk.key] for chunk in experiment.chunks()]
 
 
-def _repeat(trial: Trial, keys: NDArray[np.uint64]) -> Runs:
+def _repeat(trial: NoPriorTrial, keys: NDArray[np.uint64]) -> NoPriorRuns:
     if isinstance(trial.rules, ListingErrors):
         walk, night = walk_of(trial, trial.rules), night_of(trial, trial.rules)
         days, aborted = listings.repeat(walk, night, trial.START, listings.most_draws(walk), keys)
-        return Runs(trial, days, aborted)
-    way = way_of(trial, trial.rules)
-    days = prose_model.repeat(way, trial.START, prose_model.most_draws(way), keys)
-    return Runs(trial, days, np.zeros(len(keys), np.int64))
+        return NoPriorRuns(trial, days, aborted)
+    prose = prose_walk_of(trial, trial.rules)
+    days = prose_model.repeat(prose, trial.START, prose_model.most_draws(prose), keys)
+    return NoPriorRuns(trial, days, np.zeros(len(keys), np.int64))
 
 
-def measures(runs: Runs) -> dict[str, NDArray[np.float64]]:
+def measures(runs: NoPriorRuns) -> dict[str, NDArray[np.float64]]:
     """Return every measure of the thesis for each replicate, ``(replicates,)`` each.
 
     NaN where a measure has no value: aborted runs, and 0/0. Percentages are 0..100; names are those
@@ -158,7 +159,7 @@ def _first_day(
 
 
 def detection_curve(
-    trial: Trial, replicates: int, seed: int, per_day: int = 24
+    trial: NoPriorTrial, replicates: int, seed: int, per_day: int = 24
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return working hours ``(m,)`` and the mean percentage of known insects found by then.
 
@@ -166,7 +167,9 @@ def detection_curve(
     """
     slips = trial.rules
     if not isinstance(slips, ListingErrors):
-        raise SettingError("A detection curve is drawn by the listings: choose Slips, not Prose.")
+        raise SettingError(
+            "A detection curve is drawn by the listings: choose ListingErrors, not Prose."
+        )
     field, days = trial.vineyard, trial.hours.days
     walk, night = walk_of(trial, slips), night_of(trial, slips)
     at_days = np.arange(days * per_day + 1) / per_day

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+from fieldmon.io.html import page
 from fieldmon.studies.charts import Line, Range, line_chart, range_chart
 from fieldmon.studies.thesis.chapter4.verdicts import AGREES, DIFFERS, EQUAL, MISPRINT, NEAR
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from fieldmon.studies.thesis.chapter4.measures import Cell
-    from fieldmon.studies.thesis.chapter4.study import Study, Table
+    from markupsafe import Markup
+
+    from fieldmon.studies.thesis.chapter4.measures import NoPriorMeasure
+    from fieldmon.studies.thesis.chapter4.study import NoPriorStudy, NoPriorTable
 
 _SIGNS = {EQUAL: "=", NEAR: "≈", DIFFERS: "≠", MISPRINT: "!"}
 _NEARNESS = (
@@ -49,89 +51,70 @@ _WORDS = {
 
 _LONG = 60
 
-STYLE = """
-:root { color-scheme: light dark; --ink: #1b1f24; --paper: #fff; --soft: #5b6570; --grid: #d5dae0;
-  --blue: #0b62b8; --red: #b3261e; --green: #1b6e3c; --violet: #7a3fb0; --brown: #8a5a00; }
-@media (prefers-color-scheme: dark) { :root { --ink: #e8eaed; --paper: #16191d; --soft: #a9b2bd;
-  --grid: #3a424c; --blue: #7db8f5; --red: #ff8a80; --green: #7fd6a0; --violet: #cfa6f2;
-  --brown: #e6b450; } }
-body { font: 16px/1.5 system-ui, sans-serif; color: var(--ink); background: var(--paper);
-  max-width: 76rem; margin: 0 auto; padding: 1rem; }
-dl { display: grid; grid-template-columns: 2rem auto; } dd { margin: 0; }
-.wide { overflow-x: auto; } table { border-collapse: collapse; font-size: 0.85rem; }
-th, td { border: 1px solid var(--grid); padding: 0.25rem 0.5rem; text-align: right;
-  vertical-align: top; font-variant-numeric: tabular-nums; }
-th:first-child, td:first-child { text-align: left; white-space: nowrap; }
-td small { display: block; color: var(--soft); white-space: nowrap; }
-.differs { color: var(--red); } .equal, .agrees { color: var(--green); }
-.misprint { color: var(--brown); } .near { color: var(--blue); }
-figure { margin: 1rem 0; } figcaption { font-weight: 600; } svg { width: 100%; max-width: 44rem; }
-svg text { font-size: 12px; fill: var(--ink); } .grid { stroke: var(--grid); }
-.range { stroke: var(--blue); stroke-width: 3; opacity: 0.5; } .mean { fill: var(--blue); }
-.other { stroke: var(--red); stroke-width: 2; } .line { fill: none; stroke-width: 2; }
-.c0 { stroke: var(--blue); } .c1 { stroke: var(--red); } .c2 { stroke: var(--green); }
-.c3 { stroke: var(--violet); } .c4 { stroke: var(--brown); } .dashed { stroke-dasharray: 5 4; }
-"""
+
+class _Entry(NamedTuple):
+    """What a table's cell shows: our mean and interval, and verdict and words of each beside it."""
+
+    ours: str
+    interval: str
+    beside: list[tuple[str, str]]
+    note: str
 
 
-def report_html(study: Study) -> str:
+class _Section(NamedTuple):
+    """A table as its section shows it: measures across, configurations down."""
+
+    table: NoPriorTable
+    charts: list[Markup]
+    heads: list[str]
+    rows: dict[str, list[_Entry | None]]
+    misprints: list[str]
+
+    @property
+    def is_long(self) -> bool:
+        """Return whether the table is folded away."""
+        return len(self.rows) > _LONG
+
+
+def report_html(study: NoPriorStudy) -> str:
     """Return the whole report as one HTML document."""
-    legend = "".join(f"<dt>{sign}</dt><dd>{escape(text)}</dd>" for sign, text in _MEANINGS)
-    sections = "".join(_section(table) for table in study.tables)
-    return (
-        '<!doctype html><html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>The thesis's samplers without prior information</title><style>{STYLE}</style>"
-        "</head><body><h1>The thesis's samplers without prior information</h1>"
-        "<p>A. Yehoshua (2023), chapter 4 and appendix A, run again by fieldmon: "
-        f"{study.replicates} replicates a configuration, seed {study.seed}. In each cell: our mean "
-        "and its 95 % interval, then what the thesis prints, then the reference (the thesis's "
-        "listings under GNU Octave, 400 replicates). Runs that the listing aborts are left out; "
-        "their share stands beside the strategy.</p>"
-        f"<dl>{legend}</dl>{sections}</body></html>\n"
+    return page(
+        "fieldmon/studies/thesis/chapter4/report.html.j2",
+        study=study,
+        meanings=_MEANINGS,
+        sections=[_section(table) for table in study.tables],
     )
 
 
-def _section(table: Table) -> str:
-    said = "".join(f"<li>{escape(sentence)}</li>" for sentence in table.summary)
+def _section(table: NoPriorTable) -> _Section:
+    measures = list(dict.fromkeys(cell.measure for cell in table.cells))
     names = _row_names(table.cells)
-    notes = dict.fromkeys(
+    rows: dict[str, dict[str, NoPriorMeasure]] = {}
+    for cell in table.cells:
+        rows.setdefault(names[cell], {})[cell.measure] = cell
+    return _Section(
+        table,
+        _charts(table),
+        [_WORDS.get(measure, measure) for measure in measures],
+        {
+            name: [_entry(row[measure]) if measure in row else None for measure in measures]
+            for name, row in rows.items()
+        },
+        _misprints(table.cells, names),
+    )
+
+
+def _misprints(cells: Sequence[NoPriorMeasure], names: dict[NoPriorMeasure, str]) -> list[str]:
+    """Return a sentence for each cell that the thesis is known to print wrongly, each once."""
+    said = dict.fromkeys(
         f"{names[cell]}, {_WORDS.get(cell.measure, cell.measure)}: {cell.note}."
-        for cell in table.cells
+        for cell in cells
         if cell.thesis_verdict == MISPRINT
     )
-    known = "".join(f"<li>{escape(note)}</li>" for note in notes)
-    misprints = f"<details><summary>Known misprints</summary><ul>{known}</ul></details>"
-    return (
-        f"<section><h2>{escape(table.title)}</h2><p>{escape(table.about)}</p><ul>{said}</ul>"
-        f"{_charts(table)}{_matrix(table.cells)}{misprints if known else ''}</section>"
-    )
+    return list(said)
 
 
-def _matrix(cells: Sequence[Cell]) -> str:
-    """Return the cells as a table: configurations down, measures across."""
-    measures = list(dict.fromkeys(cell.measure for cell in cells))
-    names = _row_names(cells)
-    rows: dict[str, dict[str, Cell]] = {}
-    for cell in cells:
-        rows.setdefault(names[cell], {})[cell.measure] = cell
-    head = "".join(f'<th scope="col">{escape(_WORDS.get(m, m))}</th>' for m in measures)
-    body = "".join(
-        f'<tr><th scope="row">{escape(name)}</th>'
-        + "".join(_td(row[m]) if m in row else "<td></td>" for m in measures)
-        + "</tr>"
-        for name, row in rows.items()
-    )
-    whole = (
-        f'<div class="wide" tabindex="0"><table><thead><tr><th scope="col">configuration</th>{head}'
-        f"</tr></thead><tbody>{body}</tbody></table></div>"
-    )
-    if len(rows) <= _LONG:
-        return whole
-    return f"<details><summary>All {len(rows)} configurations</summary>{whole}</details>"
-
-
-def _row_names(cells: Sequence[Cell]) -> dict[Cell, str]:
+def _row_names(cells: Sequence[NoPriorMeasure]) -> dict[NoPriorMeasure, str]:
     """Return what each cell's row is called: its strategy, and what differs within the table."""
     severities = {cell.severity for cell in cells}
     viewpoints = {cell.viewpoints for cell in cells}
@@ -152,35 +135,28 @@ def _row_names(cells: Sequence[Cell]) -> dict[Cell, str]:
     return names
 
 
-def _viewpoints(cell: Cell) -> str:
+def _viewpoints(cell: NoPriorMeasure) -> str:
     return f"{cell.viewpoints} viewpoint{'s' if cell.viewpoints > 1 else ''}"
 
 
-def _td(cell: Cell) -> str:
-    if cell.replicates == 0:
-        ours = "-"
-    elif math.isnan(cell.low) or cell.sd == 0:
-        ours = _short(cell.mean)
-    else:
-        ours = f"{_short(cell.mean)} <small>{_short(cell.low)} to {_short(cell.high)}</small>"
+def _entry(cell: NoPriorMeasure) -> _Entry:
+    interval, beside = "", []
+    if cell.replicates and not math.isnan(cell.low) and cell.sd != 0:
+        interval = f"{_short(cell.low)} to {_short(cell.high)}"
     if cell.thesis_verdict:
-        sign = _SIGNS[cell.thesis_verdict]
-        ours += f'<small class="{cell.thesis_verdict}">thesis {cell.thesis:g} {sign}</small>'
+        said = f"thesis {cell.thesis:g} {_SIGNS[cell.thesis_verdict]}"
+        beside.append((cell.thesis_verdict, said))
     if cell.reference_verdict:
         sign = "✓" if cell.reference_verdict == AGREES else "✗"
-        ours += (
-            f'<small class="{cell.reference_verdict}">reference {_short(cell.reference)} '
-            f"{sign}</small>"
-        )
-    note = f' title="{escape(cell.note)}"' if cell.note else ""
-    return f"<td{note}>{ours}</td>"
+        beside.append((cell.reference_verdict, f"reference {_short(cell.reference)} {sign}"))
+    return _Entry(_short(cell.mean) if cell.replicates else "-", interval, beside, cell.note)
 
 
 def _short(value: float) -> str:
     return f"{value:.1f}" if abs(value) >= 10 else f"{value:.2f}"
 
 
-def _charts(table: Table) -> str:
+def _charts(table: NoPriorTable) -> list[Markup]:
     parts = [
         range_chart(
             f"{_WORDS[measure]}: our mean, 5 to 95 % of runs, and the thesis's run (cross)",
@@ -206,14 +182,14 @@ def _charts(table: Table) -> str:
         parts += [_differences(table.cells, rules) for rules in _rules(table.cells)]
     if table.name in ("everywhere", "slips"):
         parts.append(_by_rules(table))
-    return "".join(parts)
+    return parts
 
 
-def _rules(cells: Iterable[Cell]) -> list[str]:
+def _rules(cells: Iterable[NoPriorMeasure]) -> list[str]:
     return list(dict.fromkeys(cell.rules for cell in cells))
 
 
-def _by_strategy(cells: Iterable[Cell], across: str, axis: str) -> str:
+def _by_strategy(cells: Iterable[NoPriorMeasure], across: str, axis: str) -> Markup:
     """Return the share detected in three days over one property of the trials."""
     lines: dict[str, dict[float, list[float]]] = {}
     for cell in cells:
@@ -227,7 +203,7 @@ def _by_strategy(cells: Iterable[Cell], across: str, axis: str) -> str:
     return line_chart(f"Detected in three days, by {axis}", drawn, (axis, "%"))
 
 
-def _differences(cells: Iterable[Cell], rules: str) -> str:
+def _differences(cells: Iterable[NoPriorMeasure], rules: str) -> Markup:
     rows = [
         Range(
             f"{c.field}, N = {c.n}, {_viewpoints(c)}",
@@ -242,7 +218,7 @@ def _differences(cells: Iterable[Cell], rules: str) -> str:
     return range_chart(title, rows, "percentage points; right of 0 the snake is ahead")
 
 
-def _by_rules(table: Table) -> str:
+def _by_rules(table: NoPriorTable) -> Markup:
     rows = [
         Range(f"{c.field}, {c.rules}", c.q05, c.mean, c.q95)
         for c in table.cells

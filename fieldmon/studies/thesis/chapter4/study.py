@@ -6,18 +6,22 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fieldmon.errors import SettingError
+from fieldmon.simulation.statistics import SummaryStatistics, summary_statistics
 from fieldmon.studies.thesis.chapter4 import experiments, published, summaries
 from fieldmon.studies.thesis.chapter4.measures import (
-    Cell,
-    Spread,
+    NoPriorMeasure,
     field_name,
     rules_name,
-    spread_of,
 )
-from fieldmon.studies.thesis.chapter4.replicates import Runs, detection_curve, measures, run_trials
+from fieldmon.studies.thesis.chapter4.replicates import (
+    NoPriorRuns,
+    detection_curve,
+    measures,
+    run_trials,
+)
 from fieldmon.studies.thesis.chapter4.trial import NAMES as STRATEGY_NAMES
-from fieldmon.studies.thesis.chapter4.trial import Strategy, Trial
-from fieldmon.studies.thesis.chapter4.verdicts import beside_table_5, beside_tables_2_to_4
+from fieldmon.studies.thesis.chapter4.trial import NoPriorTrial, ThesisStrategy
+from fieldmon.studies.thesis.chapter4.verdicts import judged_by_table_5, judged_by_tables_2_to_4
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS
 
 if TYPE_CHECKING:
@@ -26,7 +30,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.studies.thesis.chapter4.replicates import Progress
+    from fieldmon.simulation.experiment import Progress
 
 _DAY_MEASURES = ("PVV_ED1", "PCD_ED1", "PVV_ED2", "PCD_ED2", "PVV_ED3", "PCD_ED3")
 _WHOLE = ("PCD_ALL", "visited_all", "MD_before", "MD_after", "clear_pct")
@@ -40,7 +44,7 @@ Curve = tuple[str, "NDArray[np.float64]", "NDArray[np.float64]"]
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class NoPriorTable:
     """One experiment made again.
 
     Parameters
@@ -58,21 +62,21 @@ class Table:
     name: str
     title: str
     about: str
-    cells: tuple[Cell, ...]
+    cells: tuple[NoPriorMeasure, ...]
     summary: tuple[str, ...]
     curves: tuple[Curve, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
-class Study:
+class NoPriorStudy:
     """Tables made in one go."""
 
     replicates: int
     seed: int
-    tables: tuple[Table, ...]
+    tables: tuple[NoPriorTable, ...]
 
     @property
-    def cells(self) -> list[Cell]:
+    def cells(self) -> list[NoPriorMeasure]:
         """All cells of all tables."""
         return [cell for table in self.tables for cell in table.cells]
 
@@ -83,9 +87,9 @@ class _Plan:
 
     title: str
     about: str
-    trials: Callable[[], list[Trial]]
+    trials: Callable[[], list[NoPriorTrial]]
     measured: tuple[str, ...]
-    summarise: Callable[[list[Cell]], tuple[str, ...]]
+    summarise: Callable[[list[NoPriorMeasure]], tuple[str, ...]]
     curves: bool = False
 
 
@@ -96,7 +100,7 @@ def table_names() -> tuple[str, ...]:
 
 def run_no_prior(
     table: str, replicates: int = 400, seed: int = 1, progress: Progress | None = None
-) -> Study:
+) -> NoPriorStudy:
     """Make tables of the thesis's chapter 4 again.
 
     Parameters
@@ -120,10 +124,10 @@ def run_no_prior(
     results = run_trials(list(wanted), replicates, seed, progress)
     runs = dict(zip(wanted, results, strict=True))
     tables = tuple(_make(name, _PLANS[name], runs, seed) for name in chosen)
-    return Study(replicates, seed, tables)
+    return NoPriorStudy(replicates, seed, tables)
 
 
-def _make(name: str, plan: _Plan, runs: dict[Trial, Runs], seed: int) -> Table:
+def _make(name: str, plan: _Plan, runs: dict[NoPriorTrial, NoPriorRuns], seed: int) -> NoPriorTable:
     trials = plan.trials()
     cells = [cell for trial in trials for cell in _cells(name, runs[trial], plan.measured)]
     if name == "equal":
@@ -135,33 +139,35 @@ def _make(name: str, plan: _Plan, runs: dict[Trial, Runs], seed: int) -> Table:
             (_label(trial.strategy), *detection_curve(trial, min(replicates, 100), seed))
             for trial in trials
         )
-    return Table(name, plan.title, plan.about, tuple(cells), plan.summarise(cells), curves)
+    return NoPriorTable(name, plan.title, plan.about, tuple(cells), plan.summarise(cells), curves)
 
 
-def _label(strategy: Strategy) -> str:
+def _label(strategy: ThesisStrategy) -> str:
     return f"{strategy.algorithm} (N = {strategy.n})"
 
 
-def _cells(table: str, runs: Runs, measured: Iterable[str]) -> list[Cell]:
+def _cells(table: str, runs: NoPriorRuns, measured: Iterable[str]) -> list[NoPriorMeasure]:
     values = measures(runs)
     return [_cell(table, runs, measure, values) for measure in measured]
 
 
-def _cell(table: str, runs: Runs, measure: str, values: dict[str, NDArray[np.float64]]) -> Cell:
+def _cell(
+    table: str, runs: NoPriorRuns, measure: str, values: dict[str, NDArray[np.float64]]
+) -> NoPriorMeasure:
     """Return one measure of one configuration, beside what others have."""
     numbers = values[f"{measure}_true" if measure in _THRESHOLDS else measure]
-    cell = _bare(table, runs, measure, spread_of(numbers))
+    cell = _bare(table, runs, measure, summary_statistics(numbers))
     if table not in _COMPARED:
         return cell
     if measure in _THRESHOLDS:
-        return beside_table_5(cell, numbers)
-    return beside_tables_2_to_4(cell)
+        return judged_by_table_5(cell, numbers)
+    return judged_by_tables_2_to_4(cell)
 
 
-def _bare(table: str, runs: Runs, measure: str, spread: Spread) -> Cell:
+def _bare(table: str, runs: NoPriorRuns, measure: str, spread: SummaryStatistics) -> NoPriorMeasure:
     trial = runs.trial
     strategy = trial.strategy
-    return Cell(
+    return NoPriorMeasure(
         table=table,
         field=field_name(trial),
         faces=trial.vineyard.faces,
@@ -177,7 +183,9 @@ def _bare(table: str, runs: Runs, measure: str, spread: Spread) -> Cell:
     )
 
 
-def _pairs(table: str, trials: list[Trial], runs: dict[Trial, Runs]) -> list[Cell]:
+def _pairs(
+    table: str, trials: list[NoPriorTrial], runs: dict[NoPriorTrial, NoPriorRuns]
+) -> list[NoPriorMeasure]:
     """Return snake minus neighbor on the same insects, measure by measure."""
     cells = []
     for snake in trials:
@@ -189,7 +197,9 @@ def _pairs(table: str, trials: list[Trial], runs: dict[Trial, Runs]) -> list[Cel
         for measure in ("found_day1", "found_day2", "found_day3"):
             name = measure.replace("found", "curve_true")
             difference = ours[name] - theirs[name]
-            cell = _bare(table, runs[snake], f"snake - neighbor, {measure}", spread_of(difference))
+            cell = _bare(
+                table, runs[snake], f"snake - neighbor, {measure}", summary_statistics(difference)
+            )
             cells.append(replace(cell, strategy="snake - neighbor"))
     return cells
 

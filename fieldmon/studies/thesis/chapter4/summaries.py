@@ -9,13 +9,13 @@ from fieldmon.studies.thesis.chapter4.verdicts import AGREES, DIFFERS, EQUAL, MI
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS
 
 if TYPE_CHECKING:
-    from fieldmon.studies.thesis.chapter4.measures import Cell
+    from fieldmon.studies.thesis.chapter4.measures import NoPriorMeasure
 
 VISITED = ("PVV_ED1", "PVV_ED2", "PVV_ED3", "visited_all")
 _VERDICTS = (EQUAL, NEAR, MISPRINT, DIFFERS)
 
 
-def say_verdicts(cells: list[Cell]) -> tuple[str, ...]:
+def say_verdicts(cells: list[NoPriorMeasure]) -> tuple[str, ...]:
     """Count the verdicts on the thesis's cells, and on the reference."""
     said = [cell for cell in cells if cell.thesis_verdict]
     sentences = []
@@ -43,11 +43,11 @@ def say_verdicts(cells: list[Cell]) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def say_pairs(cells: list[Cell]) -> tuple[str, ...]:
+def say_pairs(cells: list[NoPriorMeasure]) -> tuple[str, ...]:
     """Say in how many pairs the snake finds at least as much as the neighbor strategy."""
     by_rules: dict[str, list[str]] = defaultdict(list)
     for day in (1, 2, 3):
-        pairs: dict[str, list[Cell]] = defaultdict(list)
+        pairs: dict[str, list[NoPriorMeasure]] = defaultdict(list)
         for cell in cells:
             if cell.measure == f"snake - neighbor, found_day{day}":
                 pairs[cell.rules].append(cell)
@@ -63,7 +63,7 @@ def say_pairs(cells: list[Cell]) -> tuple[str, ...]:
     )
 
 
-def say_everywhere(cells: list[Cell]) -> tuple[str, ...]:
+def say_everywhere(cells: list[NoPriorMeasure]) -> tuple[str, ...]:
     """Say what algorithm 6 finds on day 3 under each set of rules, field by field."""
     third = [cell for cell in cells if cell.measure == "PCD_ED3"]
     sentences = []
@@ -78,9 +78,9 @@ def say_everywhere(cells: list[Cell]) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def say_trend(cells: list[Cell]) -> tuple[str, ...]:
+def say_trend(cells: list[NoPriorMeasure]) -> tuple[str, ...]:
     """Say how each strategy's detection falls from the smallest plot to the biggest."""
-    lines: dict[str, list[Cell]] = defaultdict(list)
+    lines: dict[str, list[NoPriorMeasure]] = defaultdict(list)
     for cell in cells:
         if cell.measure == "PCD_ALL":
             lines[f"algorithm {cell.algorithm} (N = {cell.n})"].append(cell)
@@ -93,7 +93,7 @@ def say_trend(cells: list[Cell]) -> tuple[str, ...]:
     return (f"{falls}: {'; '.join(parts)}.",)
 
 
-def say_bigger(cells: list[Cell]) -> tuple[str, ...]:
+def say_bigger(cells: list[NoPriorMeasure]) -> tuple[str, ...]:
     """Say what each random strategy detects in three days, field by field."""
     found: dict[str, list[str]] = defaultdict(list)
     for cell in cells:
@@ -107,7 +107,7 @@ def say_bigger(cells: list[Cell]) -> tuple[str, ...]:
     )
 
 
-def say_slips(cells: list[Cell]) -> tuple[str, ...]:
+def say_slips(cells: list[NoPriorMeasure]) -> tuple[str, ...]:
     """Say which strategy each slip changes most, in percent detected over three days."""
     sentences = []
     for rules in dict.fromkeys(cell.rules for cell in cells):
@@ -122,7 +122,7 @@ def say_slips(cells: list[Cell]) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def _most_changed(cells: list[Cell], rules: str, measure: str) -> tuple[float, str]:
+def _most_changed(cells: list[NoPriorMeasure], rules: str, measure: str) -> tuple[float, str]:
     """Return the greatest change against the listings as published, and the strategy it meets."""
     means: dict[str, dict[str, float]] = defaultdict(dict)
     for cell in cells:

@@ -25,7 +25,7 @@ _NEIGHBOR = (4, 5, 6)
 
 
 @dataclass(frozen=True)
-class Strategy:
+class ThesisStrategy:
     """One of the thesis's seven algorithms.
 
     Parameters
@@ -66,16 +66,16 @@ class Strategy:
 
 
 TABLE_ROWS = (
-    Strategy(1),
-    Strategy(2, 2),
-    Strategy(2, 3),
-    Strategy(2, 4),
-    Strategy(3),
-    Strategy(6),
-    Strategy(4, 2),
-    Strategy(4, 3),
-    Strategy(4, 4),
-    Strategy(5),
+    ThesisStrategy(1),
+    ThesisStrategy(2, 2),
+    ThesisStrategy(2, 3),
+    ThesisStrategy(2, 4),
+    ThesisStrategy(3),
+    ThesisStrategy(6),
+    ThesisStrategy(4, 2),
+    ThesisStrategy(4, 3),
+    ThesisStrategy(4, 4),
+    ThesisStrategy(5),
 )
 """The rows of tables 2 to 5."""
 
@@ -106,7 +106,7 @@ class Prose:
 
 
 @dataclass(frozen=True)
-class Trial:
+class NoPriorTrial:
     """One configuration to be run again and again.
 
     Parameters
@@ -122,7 +122,7 @@ class Trial:
     """
 
     vineyard: Vineyard
-    strategy: Strategy
+    strategy: ThesisStrategy
     viewpoints: int = 3
     severity: float = 0.3
     rules: ListingErrors | Prose = AS_PUBLISHED
@@ -156,22 +156,22 @@ class Trial:
         return VIEWPOINTS_S[self.viewpoints]
 
 
-def table_viewpoints(strategy: Strategy, slips: ListingErrors) -> int:
+def table_viewpoints(strategy: ThesisStrategy, slips: ListingErrors) -> int:
     """Return how many viewpoints tables 2 to 5 gave a strategy."""
     return 1 if strategy.neighbor and slips.unequal_viewpoints else 3
 
 
-def _listing(strategy: Strategy) -> int:
+def _listing(strategy: ThesisStrategy) -> int:
     if strategy.neighbor:
         return nights.NEIGHBOR
     return nights.RANDOM_SNAKE if strategy.online else nights.SNAKE
 
 
-def walk_of(trial: Trial, slips: ListingErrors) -> listings.Walk:
+def walk_of(trial: NoPriorTrial, slips: ListingErrors) -> listings.ListingWalk:
     """Return what the kernel needs to walk as the listings do."""
     field, strategy, hours = trial.vineyard, trial.strategy, trial.hours
     online = listings.EACH_STOP if slips.draw_every_stop else listings.EACH_PASS
-    return listings.Walk(
+    return listings.ListingWalk(
         plants=field.plants,
         sides=field.sides,
         listing=_listing(strategy),
@@ -191,7 +191,7 @@ def walk_of(trial: Trial, slips: ListingErrors) -> listings.Walk:
     )
 
 
-def night_of(trial: Trial, slips: ListingErrors) -> nights.Night:
+def night_of(trial: NoPriorTrial, slips: ListingErrors) -> nights.Night:
     """Return what the kernel needs to let insects spread as the listings do."""
     return nights.Night(
         plants=trial.vineyard.plants,
@@ -204,13 +204,13 @@ def night_of(trial: Trial, slips: ListingErrors) -> nights.Night:
     )
 
 
-def way_of(trial: Trial, prose: Prose) -> prose_model.Way:
+def prose_walk_of(trial: NoPriorTrial, prose: Prose) -> prose_model.ProseWalk:
     """Return what the kernel needs to do as the prose describes."""
     field, strategy, hours = trial.vineyard, trial.strategy, trial.hours
     looks_s = trial.look_s
     if strategy.neighbor:
         looks_s += hours.turn_180_s + trial.look_s
-    return prose_model.Way(
+    return prose_model.ProseWalk(
         plants=field.plants,
         sides=field.sides,
         neighbor=strategy.neighbor,

@@ -13,7 +13,7 @@ from fieldmon.studies.thesis.chapter4 import published
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.studies.thesis.chapter4.measures import Cell
+    from fieldmon.studies.thesis.chapter4.measures import NoPriorMeasure
 
 EQUAL, NEAR, DIFFERS, MISPRINT = "equal", "near", "differs", "misprint"
 """Verdicts on the thesis's cell: equal to our mean as printed; near it (one unit of the last digit
@@ -28,7 +28,7 @@ _REFERENCE = published.reference_cells()
 _DAYS = published.reference_days()
 
 
-def beside_tables_2_to_4(cell: Cell) -> Cell:
+def judged_by_tables_2_to_4(cell: NoPriorMeasure) -> NoPriorMeasure:
     """Return the cell with what the thesis (severity 0.3) and the reference have, and verdicts."""
     key = (cell.field, str(cell.algorithm), cell.n, cell.measure)
     reference = _REFERENCE.get((key[0], cell.severity, *key[1:]))
@@ -47,7 +47,7 @@ def beside_tables_2_to_4(cell: Cell) -> Cell:
     return replace(cell, thesis=_THESIS[key], thesis_verdict=verdict, note=note)
 
 
-def beside_table_5(cell: Cell, days: NDArray[np.float64]) -> Cell:
+def judged_by_table_5(cell: NoPriorMeasure, days: NDArray[np.float64]) -> NoPriorMeasure:
     """Return the cell with the shares of days; the verdict goes by the most likely day.
 
     `days` ``(replicates,)`` is the day of each replicate, 4 for never, NaN where aborted.
@@ -78,7 +78,7 @@ def beside_table_5(cell: Cell, days: NDArray[np.float64]) -> Cell:
     )
 
 
-def thesis_verdict(cell: Cell, value: float, *, misprinted: bool) -> str:
+def thesis_verdict(cell: NoPriorMeasure, value: float, *, misprinted: bool) -> str:
     """Return how a printed value (a single run) compares with our mean."""
     if cell.replicates == 0 or math.isnan(value):
         return ""
@@ -92,7 +92,7 @@ def thesis_verdict(cell: Cell, value: float, *, misprinted: bool) -> str:
     return MISPRINT if misprinted else DIFFERS
 
 
-def reference_verdict(cell: Cell, reference: published.Reference) -> str:
+def reference_verdict(cell: NoPriorMeasure, reference: published.Reference) -> str:
     """Return whether our mean and the reference's are within three standard errors."""
     if cell.replicates < 2 or reference.replicates < 2 or math.isnan(reference.mean):
         return ""

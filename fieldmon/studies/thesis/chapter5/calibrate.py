@@ -13,7 +13,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
 from fieldmon.studies.thesis.chapter5.open_choices import OpenChoices, StartUp
 from fieldmon.studies.thesis.chapter5.published import FIGURES, PARTS
-from fieldmon.studies.thesis.chapter5.replicates import lucks, run_trials
+from fieldmon.studies.thesis.chapter5.replicates import run_trials, seed_keys
 from fieldmon.studies.thesis.chapter5.verdicts import misfit
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-    Progress = Callable[[int, int], None]
+    from fieldmon.simulation.experiment import Progress
 
 SPACE: dict[str, tuple[Any, ...]] = {
     "share": (0.002, 0.003, 0.005, 0.008, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3),
@@ -73,8 +73,8 @@ class Effort:
 
 
 @dataclass(frozen=True)
-class Candidate:
-    """Open choices and how far off each part is under them, in steps (see `beside.misfit`)."""
+class TriedChoices:
+    """Open choices and how far off each part is under them, in steps (see `verdicts.misfit`)."""
 
     choices: OpenChoices
     parts: tuple[tuple[str, float], ...]
@@ -91,7 +91,7 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class Calibration:
+class FittedChoices:
     """What a search found.
 
     Parameters
@@ -108,10 +108,10 @@ class Calibration:
         The finalists, best first.
     """
 
-    best: Candidate
-    per_part: dict[str, Candidate]
+    best: TriedChoices
+    per_part: dict[str, TriedChoices]
     conflicts: tuple[tuple[str, str, float, float], ...]
-    tried: tuple[Candidate, ...]
+    tried: tuple[TriedChoices, ...]
     stopped: bool = False
 
 
@@ -136,7 +136,7 @@ def values_of(choices: OpenChoices) -> dict[str, Any]:
 
 def calibrate(
     effort: Effort | None = None, seed: int = 1, progress: Progress | None = None
-) -> Calibration:
+) -> FittedChoices:
     """Search the open choices; Ctrl-C ends the search and keeps what was tried on all parts.
 
     Drawn evenly, the best are tried on all parts, then one choice after the other is changed in
@@ -149,8 +149,8 @@ def calibrate(
     except KeyboardInterrupt:
         if not search.all_parts:
             raise
-        return _calibration(search.all_parts, search.all_parts, stopped=True)
-    return _calibration(search.final, search.all_parts, stopped=False)
+        return _fitted(search.all_parts, search.all_parts, stopped=True)
+    return _fitted(search.final, search.all_parts, stopped=False)
 
 
 class _Search:
@@ -159,8 +159,8 @@ class _Search:
     def __init__(self, effort: Effort, seed: int, progress: Progress | None) -> None:
         self.effort, self.seed, self.progress = effort, seed, progress
         self.rng = RandomStreams(seed).of("calibrate")
-        self.all_parts: list[Candidate] = []
-        self.final: list[Candidate] = []
+        self.all_parts: list[TriedChoices] = []
+        self.final: list[TriedChoices] = []
         self.done = 0
         self.total = effort.drawn + 1 + effort.kept + effort.steps + effort.finalists
 
@@ -183,19 +183,19 @@ class _Search:
         for choices in _front(self.all_parts, effort.finalists):
             self.final.append(self._try(choices, PARTS, effort.final_seeds))
 
-    def _try(self, choices: OpenChoices, parts: Sequence[str], seeds: int) -> Candidate:
+    def _try(self, choices: OpenChoices, parts: Sequence[str], seeds: int) -> TriedChoices:
         cases = {
             case for figure in FIGURES if figure.fitted and figure.part in parts
             for case in figure.cases
         }  # fmt: skip
-        made = run_trials([case.trial(choices) for case in cases], lucks(seeds, self.seed))
+        made = run_trials([case.trial(choices) for case in cases], seed_keys(seeds, self.seed))
         if made.stopped:
             raise KeyboardInterrupt
         off = misfit(made.runs, choices)
         self.done += 1
         if self.progress is not None:
             self.progress(self.done, self.total)
-        return Candidate(choices, tuple((part, off[part]) for part in parts))
+        return TriedChoices(choices, tuple((part, off[part]) for part in parts))
 
 
 def _drawn(rng: np.random.Generator) -> OpenChoices:
@@ -210,11 +210,11 @@ def _changed(choices: OpenChoices, rng: np.random.Generator) -> OpenChoices:
     return choices_of(values)
 
 
-def _key(part: str | None) -> Callable[[Candidate], float]:
+def _key(part: str | None) -> Callable[[TriedChoices], float]:
     return (lambda each: each.joint) if part is None else (lambda each: each.off[part])
 
 
-def _front(tried: Iterable[Candidate], n: int) -> list[OpenChoices]:
+def _front(tried: Iterable[TriedChoices], n: int) -> list[OpenChoices]:
     """Return the best jointly (half) and the best for each part, `n` at most."""
     tried = list(tried)
     parts = tuple(tried[0].off)
@@ -224,15 +224,15 @@ def _front(tried: Iterable[Candidate], n: int) -> list[OpenChoices]:
     return list(dict.fromkeys([*best[: n - len(alone)], *alone, *best]))[:n]
 
 
-def _calibration(
-    finalists: list[Candidate], tried: list[Candidate], *, stopped: bool
-) -> Calibration:
+def _fitted(
+    finalists: list[TriedChoices], tried: list[TriedChoices], *, stopped: bool
+) -> FittedChoices:
     ranked = tuple(sorted(finalists, key=_key(None)))
     per_part = {part: min(ranked, key=_key(part)) for part in PARTS}
-    return Calibration(ranked[0], per_part, _conflicts(tried), ranked, stopped)
+    return FittedChoices(ranked[0], per_part, _conflicts(tried), ranked, stopped)
 
 
-def _conflicts(tried: list[Candidate]) -> tuple[tuple[str, str, float, float], ...]:
+def _conflicts(tried: list[TriedChoices]) -> tuple[tuple[str, str, float, float], ...]:
     best = {part: min(each.off[part] for each in tried) for part in PARTS}
     pairs = []
     for one, other in combinations(PARTS, 2):
@@ -243,7 +243,7 @@ def _conflicts(tried: list[Candidate]) -> tuple[tuple[str, str, float, float], .
     return tuple(sorted(pairs, key=lambda pair: pair[2] - pair[3]))
 
 
-def candidates_csv(tried: Sequence[Candidate]) -> str:
+def candidates_csv(tried: Sequence[TriedChoices]) -> str:
     """Return what was tried on all parts as CSV, best first: steps off, then the choices."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams, coin_table
-from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.belief import Learning, learn, overnight
+from fieldmon.errors import SettingError
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.independent import learn, overnight
 from fieldmon.infestation.prior import PriorSettings
-from fieldmon.planning.workday import outcomes
-from fieldmon.plot.layout import Planting, rectangle
-from fieldmon.plot.travel import Aisles
-from fieldmon.samplers import NEVER, Scene, sampler
-from fieldmon.studies.thesis.chapter4.measures import spread_of
+from fieldmon.planning.workday import draw_detections
+from fieldmon.samplers import sampler
+from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.simulation import executor
+from fieldmon.simulation.experiment import Experiment, Memory, in_settings, run
+from fieldmon.simulation.statistics import summary_statistics
 from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS
 
 if TYPE_CHECKING:
@@ -25,52 +27,15 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.spread import Spread
     from fieldmon.plot.robot import Robot
-    from fieldmon.studies.thesis.chapter5.replicates import Progress
+    from fieldmon.plot.travel import Aisles
+    from fieldmon.simulation.experiment import Progress
+    from fieldmon.studies.plant_maps import PlantMap
 
     Floats = NDArray[np.float64]
+    _MapAndSampler = tuple[PlantMap, Aisles, str]
 
 SHARES_PCT = np.arange(0.0, 101.0, 5.0)
 _LEAST = 0.01
-
-
-@dataclass(frozen=True, eq=False)
-class PlantMap:
-    """A mapped plot, every plant's state at one date or several.
-
-    Parameters
-    ----------
-    name
-        What it is called.
-    dates
-        ``(d,)`` as the file writes them, in order.
-    infested
-        ``(d, n)`` plants row by row.
-    n_rows, n_plants
-        Rows, and plants in each.
-    row_m, plant_m
-        Distances between rows and between plants.
-    """
-
-    name: str
-    dates: tuple[str, ...]
-    infested: NDArray[np.bool_]
-    n_rows: int
-    n_plants: int
-    row_m: float
-    plant_m: float
-
-    def __post_init__(self) -> None:
-        shape = (len(self.dates), self.n_rows * self.n_plants)
-        if self.infested.shape != shape:
-            raise ObservationError(
-                f"The map {self.name} must have one entry a plant and date {shape}, "
-                f"but it has {self.infested.shape}."
-            )
-
-    def aisles(self) -> Aisles:
-        """Return its plants and ways."""
-        planting = Planting(row_spacing_m=self.row_m, plant_spacing_m=self.plant_m)
-        return Aisles.of(rectangle(self.n_rows, self.n_plants, planting))
 
 
 @dataclass(frozen=True)
@@ -99,7 +64,7 @@ class MapRules:
 
 
 @dataclass(frozen=True)
-class MapRow:
+class MapMeasure:
     """Percent found of the infested plants of a date, after visiting a share of all plants.
 
     NaN where no day got that far.
@@ -122,40 +87,46 @@ def run_maps(
     seeds: int = 20,
     seed: int = 1,
     progress: Progress | None = None,
-) -> list[MapRow]:
+) -> list[MapMeasure]:
     """Inspect each map on one working day a date; all samplers meet the same luck in looking.
 
     What is found is taken out: later dates hold the map's infested plants without it.
     """
-    table = []
-    for done, each in enumerate(maps, start=1):
-        aisles = each.aisles()
-        for name in SAMPLERS:
-            found = np.stack(
-                [inspect(each, aisles, name, rules, RandomStreams(seed + k)) for k in range(seeds)]
-            )
-            table += _rows(each, name, found)
-        if progress is not None:
-            progress(done, len(maps))
-    return table
+    laid = [(each, each.aisles()) for each in maps]
+
+    def simulate(setting: _MapAndSampler, seeds: range) -> list[MapMeasure]:
+        plants, aisles, name = setting
+        found = [inspect(plants, aisles, name, rules, RandomStreams(k)) for k in seeds]
+        return _rows(plants, name, np.stack(found))
+
+    experiment = Experiment(
+        settings=[(*one, name) for one in laid for name in SAMPLERS],
+        seeds=range(seed, seed + seeds),
+        simulate=simulate,
+    )
+    made: Memory[list[MapMeasure]] = Memory()
+    with executor.threads() as workers:
+        run(experiment, workers, made, in_settings(progress, seeds))
+    return [row for chunk in experiment.chunks() for row in made[chunk.key]]
 
 
 def inspect(
-    plants: PlantMap, aisles: Aisles, name: str, rules: MapRules, chance: RandomStreams
+    plants: PlantMap, aisles: Aisles, name: str, rules: MapRules, streams: RandomStreams
 ) -> Floats:
     """Return percent found after each of `SHARES_PCT` visited, ``(d, shares)``; NaN if not reached.
 
     Of the plants infested on a date and not found on earlier ones; 100 if there are none.
     """
     robot, grid = rules.robot, aisles.grid
-    belief = _told(plants, aisles, rules, chance)
+    belief = _believed_from_records(plants, aisles, rules, streams)
     last = np.full(len(grid), NEVER, np.int32)
     gone = np.zeros(len(grid), np.bool_)
     curves = np.empty((len(plants.dates), len(SHARES_PCT)))
     trail = np.empty(0, np.int32)
     for day in range(len(plants.dates)):
         truth = plants.infested[day] & ~gone
-        would_find = outcomes(truth, robot.detects, chance.key("inspect", day))
+        key = streams.key("inspect", day)
+        would_find = draw_detections(truth, np.array([robot.detects]), key) > 0
         scene = Scene(
             aisles=aisles,
             robot=robot,
@@ -164,7 +135,7 @@ def inspect(
             day=day,
             seconds_left=robot.day_s,
             trail=trail,
-            key=chance.key("sampler", day),
+            key=streams.key("sampler", day),
         )
         trail = sampler(name).walk(scene, would_find).plant
         found = would_find[trail]
@@ -176,10 +147,12 @@ def inspect(
     return curves
 
 
-def _told(plants: PlantMap, aisles: Aisles, rules: MapRules, chance: RandomStreams) -> Floats:
+def _believed_from_records(
+    plants: PlantMap, aisles: Aisles, rules: MapRules, streams: RandomStreams
+) -> Floats:
     """Return what records of some plants of the first date make believed, ``(n,)``."""
     first = plants.infested[0]
-    told = first & (coin_table(chance.key("records"), len(first)) < rules.recorded_share)
+    told = first & (coin_table(streams.key("records"), len(first)) < rules.recorded_share)
     recorded = np.flatnonzero(told).astype(np.int32)
     base = np.full(len(first), _LEAST)
     finds = np.ones(len(recorded), np.bool_)
@@ -199,14 +172,14 @@ def _curve(found: NDArray[np.bool_], infested: int, n: int) -> Floats:
     return curve
 
 
-def _rows(plants: PlantMap, name: str, found: Floats) -> list[MapRow]:
+def _rows(plants: PlantMap, name: str, found: Floats) -> list[MapMeasure]:
     table = []
     for day, date in enumerate(plants.dates):
         infested = int(np.count_nonzero(plants.infested[day]))
         for k, share in enumerate(SHARES_PCT):
-            ours = spread_of(found[:, day, k])
+            ours = summary_statistics(found[:, day, k])
             table.append(
-                MapRow(
+                MapMeasure(
                     plants.name,
                     date,
                     infested,

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, cast
 
 import numpy as np
 
+from fieldmon.io.packaged import packaged_table
 from fieldmon.studies.thesis.chapter5.open_choices import (
     DETECTIONS,
     LOOKS_S,
@@ -18,19 +18,21 @@ from fieldmon.studies.thesis.chapter5.open_choices import (
     TIME_HA,
     OpenChoices,
 )
-from fieldmon.studies.thesis.chapter5.seasons import Trial
+from fieldmon.studies.thesis.chapter5.seasons import PriorTrial
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from fieldmon.studies.thesis.chapter5.replicates import Runs
+    from fieldmon.studies.thesis.chapter5.replicates import PriorRuns
 
     Floats = NDArray[np.float64]
 
-PERCENT, DAYS = 5.0, 1.0
-"""What a fit takes as one step off: 5 points, or 1 day."""
+Kind = Literal["is", "least", "above"]
+
+_TABLE = "fieldmon/studies/thesis/chapter5/data/published.csv"
+_MANY = "/"
 
 
 class Case(NamedTuple):
@@ -42,11 +44,11 @@ class Case(NamedTuple):
     detection: float | None = None
     rate: float | None = None
 
-    def trial(self, choices: OpenChoices) -> Trial:
+    def trial(self, choices: OpenChoices) -> PriorTrial:
         """Return the trial under given open choices."""
         if self.rate is not None:
             choices = replace(choices, spread=replace(choices.spread, rate_per_day=self.rate))
-        return Trial(self.sampler, choices, self.hectares, self.look_s, self.detection)
+        return PriorTrial(self.sampler, choices, self.hectares, self.look_s, self.detection)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +77,7 @@ class Published:
 
     part: str
     what: str
-    kind: Literal["is", "least", "above"]
+    kind: Kind
     value: float
     step: float
     cases: tuple[Case, ...]
@@ -99,199 +101,90 @@ def cases_of(part: str) -> tuple[Case, ...]:
 PARTS = (*SCENARIOS, "size", "spread", "time", "detection")
 
 
-def _end(runs: Runs) -> Floats:
+def _end(runs: PriorRuns) -> Floats:
     return runs.end_pct
 
 
-def _visited(runs: Runs) -> Floats:
-    return runs.visited_a_day_pct
-
-
-def _cleared(runs: Runs) -> Floats:
-    return runs.first_day(100.0)
-
-
-def _day_1(runs: Runs) -> Floats:
+def _day_1(runs: PriorRuns) -> Floats:
     return runs.detection_pct[:, 0]
 
 
-def _less(measure: Callable[[Runs], Floats]) -> Callable[[Runs, Runs], Floats]:
+def _less(measure: Callable[[PriorRuns], Floats]) -> Callable[[PriorRuns, PriorRuns], Floats]:
     """Return the first's measure less the second's, seed by seed."""
     return lambda one, other: measure(one) - measure(other)
 
 
-def _sooner(level_pct: float) -> Callable[[Runs, Runs], Floats]:
+def _sooner(level_pct: float) -> Callable[[PriorRuns, PriorRuns], Floats]:
+    """Return by how many days the first reaches a level before the second."""
     return lambda one, other: other.days_to(level_pct) - one.days_to(level_pct)
 
 
-def _fall(small: Runs, middle: Runs, big: Runs, biggest: Runs) -> Floats:
+def _early(one: PriorRuns, other: PriorRuns) -> Floats:
+    gap: Floats = (one.detection_pct - other.detection_pct)[:, :3].mean(axis=1)
+    return gap
+
+
+def _best_end(*runs: PriorRuns) -> Floats:
+    return max((each.end_pct for each in runs), key=np.mean)
+
+
+def _worst_end(*runs: PriorRuns) -> Floats:
+    return min((each.end_pct for each in runs), key=np.mean)
+
+
+def _fall(small: PriorRuns, middle: PriorRuns, big: PriorRuns, biggest: PriorRuns) -> Floats:
     """Return how much steeper detection falls between two sizes than between two bigger ones."""
     first = (small.end_pct - middle.end_pct) / (_ha(middle) - _ha(small))
     return first - (big.end_pct - biggest.end_pct) / (_ha(biggest) - _ha(big))
 
 
-def _ha(runs: Runs) -> float:
+def _ha(runs: PriorRuns) -> float:
     return runs.trial.hectares or np.nan
 
 
-def _scenarios() -> list[Published]:
-    said = []
-    for part, name, measure, value, step in (
-        *(("A", name, _end, 100.0, PERCENT) for name in SAMPLERS),
-        ("A", "naive", _cleared, 2.0, DAYS),
-        ("A", "dynamic", _cleared, 2.0, DAYS),
-        ("A", "bouncy", _cleared, 4.0, DAYS),
-        ("A", "naive", _visited, 67.0, PERCENT),
-        ("A", "dynamic", _visited, 53.0, PERCENT),
-        ("A", "bouncy", _visited, 47.0, PERCENT),
-        ("B", "dynamic", _end, 84.0, PERCENT),
-        ("B", "naive", _end, 68.0, PERCENT),
-        ("B", "bouncy", _end, 46.0, PERCENT),
-        ("B", "naive", _visited, 15.0, PERCENT),
-        ("B", "dynamic", _visited, 12.0, PERCENT),
-        ("C", "dynamic", _end, 49.0, PERCENT),
-        ("C", "naive", _end, 34.0, PERCENT),
-        ("C", "bouncy", _end, 22.0, PERCENT),
-    ):
-        words = {_end: "detection at the end, %", _visited: "visited a day, %"}
-        what = f"{name.capitalize()}: {words.get(measure, 'day on which 100 % are found')}"
-        case = Case(name, SCENARIOS[part])
-        said.append(Published(part, what, "is", value, step, (case,), measure))
-    return said
+MEASURES: dict[str, Callable[..., Floats]] = {
+    "end": _end,
+    "visited_a_day": lambda runs: runs.visited_a_day_pct,
+    "cleared": lambda runs: runs.first_day(100.0),
+    "day_1": _day_1,
+    "end_less": _less(_end),
+    "day_1_less": _less(_day_1),
+    "first_3_days_less": _early,
+    "sooner_50": _sooner(50.0),
+    "sooner_80": _sooner(80.0),
+    "sooner_100": _sooner(100.0),
+    "best_end": _best_end,
+    "worst_end": _worst_end,
+    "fall": _fall,
+}
+"""From the runs of a figure's seasons, in their order, to one value a seed, by name."""
 
 
-def _orderings() -> list[Published]:
-    said = []
-    for part, one, other in (
-        (part, *pair) for part in ("B", "C") for pair in (("dynamic", "naive"), ("naive", "bouncy"))
-    ):
-        what = f"{one.capitalize()} finds more than {other} by the end, points"
-        cases = tuple(Case(name, SCENARIOS[part]) for name in (one, other))
-        said.append(_looked_at(part, what, cases, _less(_end)))
-    for level in (50.0, 80.0, 100.0):
-        for other in ("naive", "bouncy"):
-            cases = tuple(Case(name, SCENARIOS["A"]) for name in ("dynamic", other))
-            what = f"Dynamic reaches {level:g} % sooner than {other}, days"
-            said.append(_looked_at("A", what, cases, _sooner(level)))
-    for small, big in pairwise(SIZES_HA):
-        cases = (Case("dynamic", small), Case("dynamic", big))
-        what = f"Dynamic finds more on {small:g} ha than on {big:g} ha, points"
-        said.append(_looked_at("size", what, cases, _less(_end)))
-    cases = tuple(Case("dynamic", size) for size in (7.0, 14.0, 14.0, 20.0))
-    what = "The fall between 7 and 14 ha is steeper than beyond, points a ha"
-    said.append(_looked_at("size", what, cases, _fall))
-    return said
+def _figure(row: dict[str, str]) -> Published:
+    return Published(
+        part=row["part"],
+        what=row["what"],
+        kind=cast("Kind", row["kind"]),
+        value=float(row["value"]),
+        step=float(row["step"]),
+        cases=_cases(row),
+        measure=MEASURES[row["measure"]],
+        fitted=row["fitted"] == "yes",
+    )
 
 
-def _looked_at(
-    part: str, what: str, cases: tuple[Case, ...], measure: Callable[..., Floats]
-) -> Published:
-    return Published(part, what, "above", 0.0, PERCENT, cases, measure, fitted=False)
+def _cases(row: dict[str, str]) -> tuple[Case, ...]:
+    """Return a figure's seasons: one for each value of the columns that hold several."""
+    columns = [row[name].split(_MANY) for name in Case._fields]
+    n = max(len(values) for values in columns)
+    seasons = zip(*(values * n if len(values) == 1 else values for values in columns), strict=True)
+    return tuple(
+        Case(
+            sampler,
+            **{k: float(v) for k, v in zip(Case._fields[1:], numbers, strict=True) if v},
+        )
+        for sampler, *numbers in seasons
+    )
 
 
-def _aim(
-    part: str, what: str, value: float, cases: tuple[Case, ...], measure: Callable[..., Floats]
-) -> Published:
-    return Published(part, what, "is", value, PERCENT, cases, measure)
-
-
-def _sweeps() -> list[Published]:
-    size = {ha: Case("dynamic", ha) for ha in SIZES_HA}
-    spread = {case.rate: case for case in cases_of("spread")}
-    time = {case.look_s: case for case in cases_of("time")}
-    detection = {case.detection: case for case in cases_of("detection")}
-    slow, fast, sure, unsure = spread[0.3], spread[0.8], detection[0.9], detection[0.4]
-
-    def early(one: Runs, other: Runs) -> Floats:
-        gap: Floats = (one.detection_pct - other.detection_pct)[:, :3].mean(axis=1)
-        return gap
-
-    def of_best(*runs: Runs) -> Floats:
-        best = max(runs, key=lambda each: float(each.end_pct.mean()))
-        return best.end_pct
-
-    def of_worst(*runs: Runs) -> Floats:
-        worst = min(runs, key=lambda each: float(each.end_pct.mean()))
-        return worst.end_pct
-
-    return [
-        _aim("size", "1 ha: detection at the end, %", 100.0, (size[1.0],), _end),
-        Published(
-            part="size",
-            what="1 ha: day on which 100 % are found (about a week)",
-            kind="is",
-            value=7.0,
-            step=DAYS,
-            cases=(size[1.0],),
-            measure=_cleared,
-            fitted=False,
-        ),
-        _aim(
-            "size",
-            "2 to 5 ha: best detection at the end (up to 90 %)",
-            90.0,
-            (size[2.0], size[3.0], size[5.0]),
-            of_best,
-        ),
-        _aim(
-            "spread",
-            "30 less 80 % a day: detection at the end, points",
-            0.0,
-            (slow, fast),
-            _less(_end),
-        ),
-        _aim(
-            "spread",
-            "30 less 80 % a day: detection on days 1 to 3, points",
-            5.0,
-            (slow, fast),
-            early,
-        ),
-        _aim("time", "20 s: detection on day 1, %", 21.0, (time[20.0],), _day_1),
-        _aim("time", "40 s: detection on day 1, %", 32.0, (time[40.0],), _day_1),
-        Published(
-            part="time",
-            what="least detection at the end at any time, %",
-            kind="least",
-            value=90.0,
-            step=PERCENT,
-            cases=tuple(time.values()),
-            measure=of_worst,
-        ),
-        _looked_at(
-            "time", "Day 1 at 40 s less at 20 s, points", (time[40.0], time[20.0]), _less(_day_1)
-        ),
-        _aim(
-            "detection",
-            "90 less 40 %: detection on day 1, points",
-            30.0,
-            (sure, unsure),
-            _less(_day_1),
-        ),
-        _aim(
-            "detection",
-            "90 less 40 %: detection at the end, points",
-            10.0,
-            (sure, unsure),
-            _less(_end),
-        ),
-        _aim("detection", "40 %: detection at the end, %", 75.0, (unsure,), _end),
-    ]
-
-
-def _abstract() -> list[Published]:
-    """Return what the abstract says where the chapter says otherwise."""
-    a = {name: Case(name, SCENARIOS["A"]) for name in SAMPLERS}
-    return [
-        Published(
-            "A", "abstract: Dynamic clears 1 ha 3-5 days sooner (than bouncy), days", "is", 4.0,
-            DAYS, (a["dynamic"], a["bouncy"]), _sooner(100.0), fitted=False,
-        ),
-        Published(
-            "C", "abstract: Dynamic: detection at the end, 10 ha, %", "is", 80.0, PERCENT,
-            (Case("dynamic", SCENARIOS["C"]),), _end, fitted=False,
-        ),
-    ]  # fmt: skip
-
-
-FIGURES: tuple[Published, ...] = (*_scenarios(), *_sweeps(), *_orderings(), *_abstract())
+FIGURES = tuple(_figure(row) for row in packaged_table(_TABLE))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -12,6 +10,8 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
+from fieldmon.simulation import executor
+from fieldmon.simulation.experiment import Experiment, Memory, in_settings, run
 from fieldmon.studies.thesis.chapter5.open_choices import N_DAYS
 from fieldmon.studies.thesis.chapter5.seasons import (
     AT_LEVEL,
@@ -20,24 +20,26 @@ from fieldmon.studies.thesis.chapter5.seasons import (
     LEVELS_PCT,
     NEW,
     VISITED,
-    Luck,
-    Trial,
+    PriorTrial,
+    SeedKeys,
     detection_pct,
     play,
 )
-from fieldmon.studies.thesis.chapter5.sites import Site, square
+from fieldmon.studies.thesis.chapter5.sites import square
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
+    from fieldmon.simulation.experiment import Progress
+    from fieldmon.studies.thesis.chapter5.sites import Site
+
     Floats = NDArray[np.float64]
-    Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Runs:
+class PriorRuns:
     """The seasons of one trial.
 
     Parameters
@@ -50,7 +52,7 @@ class Runs:
         ``(seeds, days, 9)``, see `seasons.N_COLUMNS`.
     """
 
-    trial: Trial
+    trial: PriorTrial
     n_plants: int
     tables: Floats
 
@@ -121,29 +123,29 @@ class Runs:
         }
 
 
-class Made(NamedTuple):
+class FinishedTrials(NamedTuple):
     """What was run: by trial, and whether somebody stopped it before the end."""
 
-    runs: dict[Trial, Runs]
+    runs: dict[PriorTrial, PriorRuns]
     stopped: bool
 
 
-def lucks(seeds: int, seed: int = 1, n_days: int = N_DAYS) -> list[Luck]:
-    """Return the coins of so many paired seeds."""
+def seed_keys(seeds: int, seed: int = 1, n_days: int = N_DAYS) -> list[SeedKeys]:
+    """Return the keys of so many paired seeds."""
     if seeds < 2:
         raise SettingError(
             f"There must be at least 2 seeds for an interval, but there are {seeds}."
         )
-    return [Luck.of(RandomStreams(seed + k), n_days) for k in range(seeds)]
+    return [SeedKeys.of(RandomStreams(seed + k), n_days) for k in range(seeds)]
 
 
 def run_trials(
-    trials: Iterable[Trial],
-    coins: Sequence[Luck],
+    trials: Iterable[PriorTrial],
+    keys: Sequence[SeedKeys],
     progress: Progress | None = None,
     site: Site | None = None,
     threads: int | None = None,
-) -> Made:
+) -> FinishedTrials:
     """Play every trial once a seed; the same seed meets the same insects in all of them.
 
     The answer does not depend on `threads`. `progress` is called with trials done and their total.
@@ -151,26 +153,20 @@ def run_trials(
     square plot that each trial names.
     """
     wanted = list(dict.fromkeys(trials))
-    runs: dict[Trial, Runs] = {}
-    pool = ThreadPoolExecutor(threads or os.cpu_count() or 1)
+
+    def simulate(trial: PriorTrial, seeds: range) -> PriorRuns:
+        where = site or square(trial.hectares or 1.0)
+        tables = np.stack([play(where, trial, keys[k]) for k in seeds])
+        return PriorRuns(trial, len(where.grid), tables)
+
     # the longest first, so that no core waits for the last one
     order = sorted(wanted, key=lambda trial: -(trial.hectares or 0.0))
-    jobs = [
-        pool.submit(_repeat, site or square(trial.hectares or 1.0), trial, coins) for trial in order
-    ]
+    experiment = Experiment(order, range(len(keys)), simulate, key=lambda trial, _: trial)
+    made: Memory[PriorRuns] = Memory()
+    stopped = False
     try:
-        for done, job in enumerate(as_completed(jobs), start=1):
-            made = job.result()
-            runs[made.trial] = made
-            if progress is not None:
-                progress(done, len(wanted))
+        with executor.threads(threads) as workers:
+            run(experiment, workers, made, in_settings(progress, len(keys)))
     except KeyboardInterrupt:
-        return Made({trial: runs[trial] for trial in wanted if trial in runs}, stopped=True)
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)
-    return Made({trial: runs[trial] for trial in wanted}, stopped=False)
-
-
-def _repeat(site: Site, trial: Trial, coins: Sequence[Luck]) -> Runs:
-    tables = np.stack([play(site, trial, luck) for luck in coins])
-    return Runs(trial, len(site.grid), tables)
+        stopped = True
+    return FinishedTrials({trial: made[trial] for trial in wanted if trial in made}, stopped)

@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.infestation.belief import Learning, learn, overnight
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.independent import learn, overnight
 from fieldmon.infestation.spread import night
-from fieldmon.planning.workday import outcomes
-from fieldmon.samplers import GATE, NEVER, Scene, sampler
+from fieldmon.planning.workday import draw_detections
+from fieldmon.plot.travel import GATE
+from fieldmon.samplers import kind_of, sampler
+from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.studies.thesis.chapter5.open_choices import N_DAYS, OpenChoices
 from fieldmon.studies.thesis.chapter5.sites import first_morning
 
@@ -19,7 +22,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.plot.robot import Robot
-    from fieldmon.simulation.season import Start
+    from fieldmon.simulation.start import Start
     from fieldmon.studies.thesis.chapter5.sites import Site
 
     Floats = NDArray[np.float64]
@@ -32,13 +35,11 @@ N_COLUMNS = AT_LEVEL + len(LEVELS_PCT)
 the evening before (day 1: at the start); plants infested, and found, at least once by then; and
 at which part of the working day detection came to each of `LEVELS_PCT` (NaN: not on that day)."""
 
-# who does not look at the chance map needs none
-_BLIND = frozenset({"naive", "bouncy"})
 _MOST = 1.0 - 1e-6
 
 
 @dataclass(frozen=True)
-class Trial:
+class PriorTrial:
     """One configuration of chapter 5.
 
     Parameters
@@ -68,33 +69,41 @@ class Trial:
 
 
 @dataclass(frozen=True, eq=False)
-class Luck:
-    """The keys of all coins of one seed, drawn once for all samplers."""
+class SeedKeys:
+    """The keys of all coins of one seed, drawn once for all samplers.
 
-    chance: RandomStreams
+    Parameters
+    ----------
+    streams
+        All random streams of the seed.
+    inspect, spread
+        ``(days,)`` the key of each day's inspections, and of its night.
+    """
+
+    streams: RandomStreams
     inspect: NDArray[np.uint64]
     spread: NDArray[np.uint64]
 
     @classmethod
-    def of(cls, chance: RandomStreams, n_days: int = N_DAYS) -> Luck:
+    def of(cls, streams: RandomStreams, n_days: int = N_DAYS) -> SeedKeys:
         """Return the keys of ``inspect/day`` and ``spread/day``."""
         keys = (
-            np.array([chance.key(name, day) for day in range(n_days)], np.uint64)
+            np.array([streams.key(name, day) for day in range(n_days)], np.uint64)
             for name in ("inspect", "spread")
         )
-        return cls(chance, *keys)
+        return cls(streams, *keys)
 
 
-def play(site: Site, trial: Trial, luck: Luck) -> Floats:
+def play(site: Site, trial: PriorTrial, keys: SeedKeys) -> Floats:
     """Return a season as ``(days, 9)``, see `N_COLUMNS`; visited is NaN after the end of work."""
-    start = first_morning(site, trial.choices.start, luck.chance)
-    return play_from(site, trial, start, luck)
+    start = first_morning(site, trial.choices.start, keys.streams)
+    return play_from(site, trial, start, keys)
 
 
-def play_from(site: Site, trial: Trial, start: Start, luck: Luck) -> Floats:
+def play_from(site: Site, trial: PriorTrial, start: Start, keys: SeedKeys) -> Floats:
     """Return a season as :func:`play` does, from a given first morning."""
     choices, robot, count = trial.choices, trial.robot, np.count_nonzero
-    table = np.zeros((len(luck.inspect), N_COLUMNS))
+    table = np.zeros((len(keys.inspect), N_COLUMNS))
     table[:, AT_LEVEL:] = np.nan
     infested, belief = start.infested.copy(), start.chance.copy()
     ever, ever_found = infested.copy(), np.zeros(len(infested), np.bool_)
@@ -108,7 +117,7 @@ def play_from(site: Site, trial: Trial, start: Start, luck: Luck) -> Floats:
             table[day:, EVER], table[day:, EVER_FOUND] = count(ever), count(ever_found)
             break
         scene = Scene(site.aisles, robot, belief, last, day, GATE, robot.day_s, trail)
-        plants, found, at_s = _inspect(trial, scene, infested, luck.inspect[day])
+        plants, found, at_s = _inspect(trial, scene, infested, keys.inspect[day])
         finds = plants[found]
         again = ever_found[finds]
         missed = np.zeros(len(infested), np.bool_)
@@ -120,10 +129,10 @@ def play_from(site: Site, trial: Trial, start: Start, luck: Luck) -> Floats:
         row = table[day]
         row[:AT_LEVEL] = len(plants), len(finds), here, new, count(ever), count(ever_found)
         row[AT_LEVEL:] = _levels(table[: day + 1], choices, again, at_s[found] / robot.day_s)
-        if trial.sampler not in _BLIND:
+        if kind_of(trial.sampler).reads_chance:
             evening = learn(belief, site.grid, plants, found, Learning(detection=robot.detects))
             belief = _morning(site, choices, evening, (plants, found, missed))
-        after = _night(site, choices, infested, missed, luck.spread[day])
+        after = _night(site, choices, infested, missed, keys.spread[day])
         new = count(after) - count(infested)
         infested = after
         ever |= infested
@@ -132,10 +141,10 @@ def play_from(site: Site, trial: Trial, start: Start, luck: Luck) -> Floats:
 
 
 def _inspect(
-    trial: Trial, scene: Scene, infested: Flags, key: np.uint64
+    trial: PriorTrial, scene: Scene, infested: Flags, key: np.uint64
 ) -> tuple[NDArray[np.int32], Flags, Floats]:
     """Return the plants inspected on a day, which were found infested, and when it was done."""
-    would_find = outcomes(infested, scene.robot.detects, key)
+    would_find = draw_detections(infested, np.array([scene.robot.detects]), key) > 0
     plants, arrive_s, _ = sampler(trial.sampler).walk(scene, would_find)
     end = len(plants)
     if trial.sampler == "bouncy" and trial.choices.bouncy_rests:

@@ -10,11 +10,12 @@ import numba as nb
 import numpy as np
 
 from fieldmon.compute.random_streams import coin, coin_table
-from fieldmon.infestation.belief import Learning, learn
-from fieldmon.infestation.prior import PriorSettings, edge_chance, path_chance, start_infested
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.independent import learn
+from fieldmon.infestation.prior import PriorSettings, edge_chance, path_chance
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.travel import Aisles
-from fieldmon.simulation.season import Start
+from fieldmon.simulation.start import Start, season_start
 from fieldmon.studies.thesis.chapter5.open_choices import side_of
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def square(hectares: float) -> Site:
     return Site(f"{hectares:g} ha", Aisles.of(rectangle(side, side)))
 
 
-def first_morning(site: Site, start: StartUp, chance: RandomStreams) -> Start:
+def first_morning(site: Site, start: StartUp, streams: RandomStreams) -> Start:
     """Draw who is infested and what is believed; streams ``start`` and ``records``.
 
     On a site with a chance map each plant is drawn by its own chance, with the mean that `start`
@@ -92,17 +93,16 @@ def first_morning(site: Site, start: StartUp, chance: RandomStreams) -> Start:
     each plant's chance of being in one, and 0.95 at recorded plants, 0.3 and more beside them.
     """
     if site.chance is not None:
-        drawn = start_infested(site.chance, start.share, chance.of("start"))
-        return Start(drawn[site.grid.vine], site.chance)
+        return season_start(site.grid, site.chance, start.share, streams)
     n = len(site.grid)
     infested = np.zeros(n, np.bool_)
     wanted = max(1, round(start.share * n))
     margin = site.entering(start.depth_m)
     rule = (wanted, start.margin_share, 1.0 / start.cluster_size)
-    _grow(infested, np.cumsum(margin), site.grid.adjacent, rule, chance.key("start"))
+    _grow(infested, np.cumsum(margin), site.grid.adjacent, rule, streams.key("start"))
     everywhere = (1.0 - start.margin_share) / n
     believed = wanted * (everywhere + start.margin_share * margin / margin.sum())
-    told = infested & (coin_table(chance.key("records"), n) < start.recorded_share)
+    told = infested & (coin_table(streams.key("records"), n) < start.recorded_share)
     plants = np.flatnonzero(told).astype(np.int32)
     finds = np.ones(len(plants), np.bool_)
     base = np.clip(believed, _LEAST, 0.5)

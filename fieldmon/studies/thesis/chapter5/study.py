@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fieldmon.errors import SettingError
-from fieldmon.studies.thesis.chapter4.measures import spread_of
+from fieldmon.simulation.statistics import summary_statistics
 from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
 from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS, OpenChoices
 from fieldmon.studies.thesis.chapter5.published import PARTS, cases_of
-from fieldmon.studies.thesis.chapter5.replicates import lucks, run_trials
-from fieldmon.studies.thesis.chapter5.seasons import Trial
+from fieldmon.studies.thesis.chapter5.replicates import run_trials, seed_keys
+from fieldmon.studies.thesis.chapter5.seasons import PriorTrial
 from fieldmon.studies.thesis.chapter5.verdicts import Compared, compare
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from fieldmon.studies.thesis.chapter5.mapped_plots import MapRow
-    from fieldmon.studies.thesis.chapter5.replicates import Progress, Runs
+    from fieldmon.simulation.experiment import Progress
+    from fieldmon.studies.thesis.chapter5.replicates import PriorRuns
     from fieldmon.studies.thesis.chapter5.sites import Site
 
 TITLES = {
@@ -37,7 +35,7 @@ OWN = "plot"
 
 
 @dataclass(frozen=True)
-class Row:
+class PriorMeasure:
     """A row of the tidy table: one measure of one configuration, with its 95 % interval.
 
     `day` is NaN for measures of the whole season; `detection` and `rate` are what was in force.
@@ -60,7 +58,7 @@ class Row:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class StudyPart:
     """One scenario or sweep made again.
 
     Parameters
@@ -75,18 +73,18 @@ class Part:
 
     name: str
     title: str
-    runs: tuple[Runs, ...]
+    runs: tuple[PriorRuns, ...]
     compared: tuple[Compared, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
-class Study:
+class PriorStudy:
     """Parts made in one go; `stopped` if somebody ended it, with what was done by then."""
 
     choices: OpenChoices
     seeds: int
     seed: int
-    parts: tuple[Part, ...]
+    parts: tuple[StudyPart, ...]
     stopped: bool = False
 
     @property
@@ -101,7 +99,7 @@ def run_prior(
     seed: int = 1,
     choices: OpenChoices = CALIBRATED,
     progress: Progress | None = None,
-) -> Study:
+) -> PriorStudy:
     """Play scenarios and sweeps of chapter 5; all samplers meet the same insects.
 
     Parameters
@@ -125,15 +123,15 @@ def run_prior(
         )
     chosen = [part for part in PARTS if part in parts]
     trials = [case.trial(choices) for part in chosen for case in cases_of(part)]
-    made = run_trials(trials, lucks(seeds, seed), progress)
+    made = run_trials(trials, seed_keys(seeds, seed), progress)
     done = []
     for part in chosen:
         runs = [made.runs.get(case.trial(choices)) for case in cases_of(part)]
         ours = tuple(each for each in runs if each is not None)
         compared = tuple(compare(made.runs, choices, [part]))
         if ours:
-            done.append(Part(part, TITLES[part], ours, compared))
-    return Study(choices, seeds, seed, tuple(done), made.stopped)
+            done.append(StudyPart(part, TITLES[part], ours, compared))
+    return PriorStudy(choices, seeds, seed, tuple(done), made.stopped)
 
 
 def run_site(
@@ -142,20 +140,20 @@ def run_site(
     seed: int = 1,
     choices: OpenChoices = CALIBRATED,
     progress: Progress | None = None,
-) -> Study:
+) -> PriorStudy:
     """Play the three samplers on any plot, from its own chance map if it has one."""
-    trials = [Trial(name, choices) for name in SAMPLERS]
-    made = run_trials(trials, lucks(seeds, seed), progress, site)
-    part = Part(OWN, site.name, tuple(made.runs.values()))
-    return Study(choices, seeds, seed, (part,) if made.runs else (), made.stopped)
+    trials = [PriorTrial(name, choices) for name in SAMPLERS]
+    made = run_trials(trials, seed_keys(seeds, seed), progress, site)
+    part = StudyPart(OWN, site.name, tuple(made.runs.values()))
+    return PriorStudy(choices, seeds, seed, (part,) if made.runs else (), made.stopped)
 
 
-def rows(study: Study) -> list[Row]:
+def rows(study: PriorStudy) -> list[PriorMeasure]:
     """Return the tidy table: season measures first, then detection and visits day by day."""
     return [row for part in study.parts for runs in part.runs for row in _rows(part, runs)]
 
 
-def _rows(part: Part, runs: Runs) -> Iterable[Row]:
+def _rows(part: StudyPart, runs: PriorRuns) -> Iterable[PriorMeasure]:
     for name, values in runs.measures().items():
         yield _row(part, runs, (name, math.nan), values)
     for name in ("detection_pct", "visited_pct"):
@@ -163,10 +161,10 @@ def _rows(part: Part, runs: Runs) -> Iterable[Row]:
             yield _row(part, runs, (name, float(day)), values)
 
 
-def _row(part: Part, runs: Runs, what: tuple[str, float], values: object) -> Row:
+def _row(part: StudyPart, runs: PriorRuns, what: tuple[str, float], values: object) -> PriorMeasure:
     trial = runs.trial
-    ours = spread_of(values)  # type: ignore[arg-type]
-    return Row(
+    ours = summary_statistics(values)  # type: ignore[arg-type]
+    return PriorMeasure(
         part=part.name,
         sampler=trial.sampler,
         plot=part.title if trial.hectares is None else f"{trial.hectares:g} ha",
@@ -184,25 +182,7 @@ def _row(part: Part, runs: Runs, what: tuple[str, float], values: object) -> Row
     )
 
 
-def csv_text(table: Sequence[Row] | Sequence[Compared] | Sequence[MapRow]) -> str:
-    """Return a table as CSV, one row an entry; empty where there is no value."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    if table:
-        names = [column.name for column in fields(table[0])]
-        writer.writerow(names)
-        for row in table:
-            writer.writerow([_plain(getattr(row, name)) for name in names])
-    return text.getvalue()
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, float):
-        return "" if math.isnan(value) else f"{value:.6g}"
-    return value
-
-
-def label_of(part: str, trial: Trial) -> str:
+def label_of(part: str, trial: PriorTrial) -> str:
     """Return what tells a trial from the others of its part."""
     if part == "spread":
         return f"{trial.choices.spread.rate_per_day:.0%} a day"

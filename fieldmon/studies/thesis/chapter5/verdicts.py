@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.studies.thesis.chapter4.measures import spread_of
+from fieldmon.simulation.statistics import summary_statistics
 from fieldmon.studies.thesis.chapter5.published import FIGURES, PARTS
 
 if TYPE_CHECKING:
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from fieldmon.studies.thesis.chapter5.open_choices import OpenChoices
     from fieldmon.studies.thesis.chapter5.published import Published
-    from fieldmon.studies.thesis.chapter5.replicates import Runs
-    from fieldmon.studies.thesis.chapter5.seasons import Trial
+    from fieldmon.studies.thesis.chapter5.replicates import PriorRuns
+    from fieldmon.studies.thesis.chapter5.seasons import PriorTrial
 
 AGREES, NEAR, DIFFERS = "agrees", "near", "differs"
 HOLDS, OPEN, FAILS = "holds", "open", "fails"
@@ -54,7 +54,7 @@ class Compared:
 
 
 def compare(
-    runs: Mapping[Trial, Runs], choices: OpenChoices, parts: Collection[str] = PARTS
+    runs: Mapping[PriorTrial, PriorRuns], choices: OpenChoices, parts: Collection[str] = PARTS
 ) -> list[Compared]:
     """Return every published figure of some parts whose seasons were played, beside ours."""
     return [
@@ -64,7 +64,7 @@ def compare(
     ]
 
 
-def misfit(runs: Mapping[Trial, Runs], choices: OpenChoices) -> dict[str, float]:
+def misfit(runs: Mapping[PriorTrial, PriorRuns], choices: OpenChoices) -> dict[str, float]:
     """Return how far off each part is: mean steps over its fitted figures, a figure 6 at most."""
     steps: dict[str, list[float]] = {}
     for figure in FIGURES:
@@ -76,7 +76,7 @@ def misfit(runs: Mapping[Trial, Runs], choices: OpenChoices) -> dict[str, float]
 
 
 def _values(
-    figure: Published, runs: Mapping[Trial, Runs], choices: OpenChoices
+    figure: Published, runs: Mapping[PriorTrial, PriorRuns], choices: OpenChoices
 ) -> np.ndarray | None:
     trials = [case.trial(choices) for case in figure.cases]
     if not all(trial in runs for trial in trials):
@@ -91,7 +91,7 @@ def _difference(figure: Published, ours: float) -> float:
 
 
 def _compared(figure: Published, values: np.ndarray) -> Compared:
-    ours = spread_of(values)
+    ours = summary_statistics(values)
     off = _difference(figure, ours.mean)
     words = {"is": "", "least": " or more", "above": "more than "}[figure.kind]
     said = f"{figure.value:g}"

@@ -9,16 +9,18 @@ from hypothesis import strategies as st
 
 from fieldmon.studies.thesis.chapter4 import listings
 from fieldmon.studies.thesis.chapter4.listing_errors import AS_PUBLISHED, NAMES
-from fieldmon.studies.thesis.chapter4.trial import Strategy, Trial, night_of, walk_of
+from fieldmon.studies.thesis.chapter4.trial import NoPriorTrial, ThesisStrategy, night_of, walk_of
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS, Hours, Vineyard
 
 strategies = st.one_of(
-    st.builds(Strategy, st.sampled_from([2, 4]), st.integers(1, 5)),
-    st.builds(Strategy, st.sampled_from([1, 3, 5, 6])),
+    st.builds(ThesisStrategy, st.sampled_from([2, 4]), st.integers(1, 5)),
+    st.builds(ThesisStrategy, st.sampled_from([1, 3, 5, 6])),
 )
 vineyards = st.builds(Vineyard, st.integers(6, 40), st.integers(2, 9), st.floats(0.5, 6))
 slips = st.sets(st.sampled_from(NAMES)).map(lambda names: AS_PUBLISHED.without(*names))
-trials = st.builds(Trial, vineyards, strategies, st.sampled_from([1, 2, 3]), st.floats(0, 1), slips)
+trials = st.builds(
+    NoPriorTrial, vineyards, strategies, st.sampled_from([1, 2, 3]), st.floats(0, 1), slips
+)
 
 
 def go(trial, seed=0, *, start=0.3, spare=0.5, curve=0):
@@ -86,7 +88,7 @@ def test_no_run_is_aborted_once_the_row_index_is_right(trial, seed):
 
 @given(seed=st.integers(0, 50), strategy=strategies)
 def test_the_curve_rises_through_a_day_and_ends_at_what_was_found(seed, strategy):
-    trial = Trial(SCENARIOS["B"], strategy, rules=AS_PUBLISHED.without("night_row_index"))
+    trial = NoPriorTrial(SCENARIOS["B"], strategy, rules=AS_PUBLISHED.without("night_row_index"))
     table, curve, _ = go(trial, seed, curve=2000)
     assert (np.diff(curve[:, 0]) > 0).all()
     assert curve[0].tolist() == [0.0, 0.0]
@@ -95,14 +97,14 @@ def test_the_curve_rises_through_a_day_and_ends_at_what_was_found(seed, strategy
 
 
 def first_day(strategy, viewpoints=3, **changes):
-    trial = Trial(SCENARIOS["A"], strategy, viewpoints, rules=AS_PUBLISHED, **changes)
+    trial = NoPriorTrial(SCENARIOS["A"], strategy, viewpoints, rules=AS_PUBLISHED, **changes)
     return go(trial, start=0.0)[0][0]
 
 
 @pytest.mark.parametrize(("slip", "every"), [("travel_once", 4), ("row_change_by_counter", 2)])
 def test_a_snake_that_pays_its_way_gets_less_far(slip, every):
     hours = Hours(days=1)
-    listed = Trial(SCENARIOS["A"], Strategy(2, every), hours=hours)
+    listed = NoPriorTrial(SCENARIOS["A"], ThesisStrategy(2, every), hours=hours)
     right = replace(listed, rules=AS_PUBLISHED.without(slip))
     visited = [go(trial)[0][0, listings.VISITED] for trial in (listed, right)]
     assert visited[1] < visited[0]
@@ -111,14 +113,14 @@ def test_a_snake_that_pays_its_way_gets_less_far(slip, every):
 def test_a_stop_of_the_snake_costs_one_vine_and_one_look():
     """10 stops at 2.88 s + 23.74 s; the listing wants a little more than that."""
     hours = Hours(day_s=10 * (2.88 + 23.74) + 0.5, days=1)
-    day = first_day(Strategy(1), hours=hours)
+    day = first_day(ThesisStrategy(1), hours=hours)
     assert day[listings.VISITED] == 10
     assert day[listings.LEFT_S] == pytest.approx(0.5)
 
 
 def test_a_stop_of_the_neighbor_strategy_costs_two_looks_and_a_turn():
     hours = Hours(day_s=10 * (2.88 + 2 * 4.34 + 23) + 0.5, days=1)
-    day = first_day(Strategy(6), 1, hours=hours)
+    day = first_day(ThesisStrategy(6), 1, hours=hours)
     assert day[listings.VISITED] == 20
     assert day[listings.LEFT_S] == pytest.approx(0.5)
 
@@ -126,7 +128,7 @@ def test_a_stop_of_the_neighbor_strategy_costs_two_looks_and_a_turn():
 def test_rows_walked_to_and_fro_are_met_in_the_other_order():
     """Half a side into side 1: as listed its first vines are visited, put right its last."""
     hours = Hours(day_s=76 * (2.88 + 23.74), days=1)
-    listed = Trial(SCENARIOS["A"], Strategy(1), hours=hours, severity=0.0)
+    listed = NoPriorTrial(SCENARIOS["A"], ThesisStrategy(1), hours=hours, severity=0.0)
     for rules, first in ((AS_PUBLISHED, True), (AS_PUBLISHED.without("one_way_rows"), False)):
         trial = replace(listed, rules=rules)
         walk = walk_of(trial, rules)

@@ -10,48 +10,54 @@ from hypothesis import strategies as st
 from fieldmon.studies.thesis.chapter4 import listings, prose_model
 from fieldmon.studies.thesis.chapter4.listing_errors import ALL_PUT_RIGHT
 from fieldmon.studies.thesis.chapter4.replicates import measures, run_trials
-from fieldmon.studies.thesis.chapter4.trial import TABLE_ROWS, Prose, Strategy, Trial, way_of
+from fieldmon.studies.thesis.chapter4.trial import (
+    TABLE_ROWS,
+    NoPriorTrial,
+    Prose,
+    ThesisStrategy,
+    prose_walk_of,
+)
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS, Hours, Vineyard
 
 PLANT_S, VP_S = 2.88, 23.74
 
 strategies = st.one_of(
-    st.builds(Strategy, st.sampled_from([2, 4, 7]), st.integers(1, 5)),
-    st.builds(Strategy, st.sampled_from([1, 3, 5, 6])),
+    st.builds(ThesisStrategy, st.sampled_from([2, 4, 7]), st.integers(1, 5)),
+    st.builds(ThesisStrategy, st.sampled_from([1, 3, 5, 6])),
 )
 vineyards = st.builds(Vineyard, st.integers(6, 40), st.integers(2, 9), st.floats(0.5, 6))
 proses = st.builds(Prose, st.booleans(), st.sampled_from([0.0, 11.5]), st.booleans())
 trials = st.builds(
-    Trial, vineyards, strategies, st.sampled_from([1, 2, 3]), st.floats(0, 1), proses
+    NoPriorTrial, vineyards, strategies, st.sampled_from([1, 2, 3]), st.floats(0, 1), proses
 )
 
 
 def go(trial, seed=0, infested=None, *, spare=0.5):
     field, rng = trial.vineyard, np.random.default_rng(seed)
-    way = way_of(trial, trial.rules)
-    steps = np.concatenate([rng.random(prose_model.most_draws(way)), np.full(200, spare)])
+    walk = prose_walk_of(trial, trial.rules)
+    steps = np.concatenate([rng.random(prose_model.most_draws(walk)), np.full(200, spare)])
     if infested is None:
         infested = rng.random(field.faces) < 0.3
     coins = rng.random((trial.hours.days, 3, field.faces))
-    return prose_model.run(way, infested, coins, steps)
+    return prose_model.run(walk, infested, coins, steps)
 
 
 def faces_on_day_1(strategy, day_s, viewpoints=3, scenario="A"):
     hours = Hours(day_s=day_s, days=1)
-    trial = Trial(SCENARIOS[scenario], strategy, viewpoints, rules=Prose(), hours=hours)
+    trial = NoPriorTrial(SCENARIOS[scenario], strategy, viewpoints, rules=Prose(), hours=hours)
     return int(go(trial)[0, listings.VISITED])
 
 
 @pytest.mark.parametrize(
     ("strategy", "stops", "seconds"),
     [
-        (Strategy(1), 50, 50 * VP_S + 49 * PLANT_S),
+        (ThesisStrategy(1), 50, 50 * VP_S + 49 * PLANT_S),
         # round the end of the aisle to its other side
-        (Strategy(1), 51, 51 * VP_S + 50 * PLANT_S + 23),
+        (ThesisStrategy(1), 51, 51 * VP_S + 50 * PLANT_S + 23),
         # and on to the next aisle
-        (Strategy(1), 101, 101 * VP_S + 100 * PLANT_S + 23 + 25),
+        (ThesisStrategy(1), 101, 101 * VP_S + 100 * PLANT_S + 23 + 25),
         # every vine passed is paid, and the phase is kept from side to side
-        (Strategy(2, 3), 18, 18 * VP_S + 51 * PLANT_S + 23),
+        (ThesisStrategy(2, 3), 18, 18 * VP_S + 51 * PLANT_S + 23),
     ],
 )
 def test_a_snakes_day_holds_its_stops_to_the_second(strategy, stops, seconds):
@@ -62,9 +68,9 @@ def test_a_snakes_day_holds_its_stops_to_the_second(strategy, stops, seconds):
 @pytest.mark.parametrize(
     ("strategy", "stops", "seconds"),
     [
-        (Strategy(6), 50, 50 * (2 * VP_S + 23) + 49 * PLANT_S),
-        (Strategy(6), 51, 51 * (2 * VP_S + 23) + 50 * PLANT_S + 25),
-        (Strategy(4, 4), 14, 14 * (2 * VP_S + 23) + 52 * PLANT_S + 25),
+        (ThesisStrategy(6), 50, 50 * (2 * VP_S + 23) + 49 * PLANT_S),
+        (ThesisStrategy(6), 51, 51 * (2 * VP_S + 23) + 50 * PLANT_S + 25),
+        (ThesisStrategy(4, 4), 14, 14 * (2 * VP_S + 23) + 52 * PLANT_S + 25),
     ],
 )
 def test_a_neighbor_strategys_day_holds_its_stops_to_the_second(strategy, stops, seconds):
@@ -73,7 +79,7 @@ def test_a_neighbor_strategys_day_holds_its_stops_to_the_second(strategy, stops,
 
 
 def test_turning_to_the_plant_is_charged_where_it_is_asked_for():
-    trial = Trial(SCENARIOS["A"], Strategy(1), rules=Prose(), hours=Hours(days=1))
+    trial = NoPriorTrial(SCENARIOS["A"], ThesisStrategy(1), rules=Prose(), hours=Hours(days=1))
     turning = replace(trial, rules=Prose(turn_90_s=11.5))
     assert go(turning)[0, listings.VISITED] < go(trial)[0, listings.VISITED]
 
@@ -102,15 +108,17 @@ def test_the_way_does_not_depend_on_the_insects_and_draws_no_more_than_it_says(t
 @given(every=st.integers(1, 6), neighbor=st.booleans())
 def test_a_strategy_that_has_time_visits_the_whole_field_day_by_day(every, neighbor):
     """The re-entry among the last N takes, sweep by sweep, another of the N phases."""
-    strategy = Strategy(4 if neighbor else 2, every)
-    trial = Trial(Vineyard(12, 3, 2.0), strategy, 1, rules=Prose(), hours=Hours(days=2 * every + 2))
+    strategy = ThesisStrategy(4 if neighbor else 2, every)
+    trial = NoPriorTrial(
+        Vineyard(12, 3, 2.0), strategy, 1, rules=Prose(), hours=Hours(days=2 * every + 2)
+    )
     assert go(trial)[-1, listings.EVER] == trial.vineyard.faces
 
 
 @given(every=st.integers(1, 9))
 def test_the_scattered_strategy_takes_its_share_of_the_field_each_day(every):
-    strategy, field = Strategy(7, every), Vineyard(20, 3, 2.0)
-    trial = Trial(field, strategy, 1, rules=Prose(), hours=Hours(day_s=80_000))
+    strategy, field = ThesisStrategy(7, every), Vineyard(20, 3, 2.0)
+    trial = NoPriorTrial(field, strategy, 1, rules=Prose(), hours=Hours(day_s=80_000))
     table = go(trial)
     assert (table[:, listings.VISITED] == field.faces // every).all()
 
@@ -140,14 +148,14 @@ def spread_slowly(before, coins, severity, sides, plants):
 def test_insects_reach_their_row_mates_and_the_other_face(sides, plants, severity, seed, shared):
     rng = np.random.default_rng(seed)
     before, coins = rng.random(sides * plants) < 0.3, rng.random((3, sides * plants))
-    trial = Trial(
+    trial = NoPriorTrial(
         Vineyard(plants, sides // 2 + 1, 2.0),
-        Strategy(1),
+        ThesisStrategy(1),
         severity=severity,
         rules=Prose(independent_coins=not shared),
     )
     after = before.copy()
-    new = prose_model.spread(way_of(trial, trial.rules), after, coins)
+    new = prose_model.spread(prose_walk_of(trial, trial.rules), after, coins)
     used = np.repeat(coins[:1], 3, axis=0) if shared else coins
     assert (after == spread_slowly(before, used, severity, sides, plants)).all()
     assert new == after.sum() - before.sum()
@@ -164,7 +172,7 @@ def test_insects_reach_their_row_mates_and_the_other_face(sides, plants, severit
 )
 def test_means_at_three_viewpoints_are_those_of_the_reference(scenario, algorithm, detected):
     """The reference gives means of 500 replicates in whole percent."""
-    trial = Trial(SCENARIOS[scenario], Strategy(algorithm), 3, rules=Prose())
+    trial = NoPriorTrial(SCENARIOS[scenario], ThesisStrategy(algorithm), 3, rules=Prose())
     (runs,) = run_trials([trial], 400, 1)
     for day, expected in enumerate(detected, start=1):
         values = measures(runs)[f"PCD_ED{day}"]
@@ -182,7 +190,7 @@ def test_two_programs_agree_once_every_slip_is_put_right(scenario):
     """
     rows = [s for s in TABLE_ROWS if s.every < 4]
     both = [
-        Trial(SCENARIOS[scenario], strategy, 3, rules=rules)
+        NoPriorTrial(SCENARIOS[scenario], strategy, 3, rules=rules)
         for strategy in rows
         for rules in (ALL_PUT_RIGHT, Prose())
     ]

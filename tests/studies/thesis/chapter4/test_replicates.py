@@ -10,22 +10,22 @@ from fieldmon.errors import SettingError
 from fieldmon.studies.thesis.chapter4.listing_errors import AS_PUBLISHED
 from fieldmon.studies.thesis.chapter4.replicates import (
     NEVER,
-    Runs,
+    NoPriorRuns,
     detection_curve,
     measures,
     run_trials,
 )
 from fieldmon.studies.thesis.chapter4.trial import (
     TABLE_ROWS,
+    NoPriorTrial,
     Prose,
-    Strategy,
-    Trial,
+    ThesisStrategy,
     table_viewpoints,
 )
 from fieldmon.studies.thesis.chapter4.vineyard import SCENARIOS
 
 LISTED = [
-    Trial(SCENARIOS[letter], strategy, table_viewpoints(strategy, AS_PUBLISHED), severity)
+    NoPriorTrial(SCENARIOS[letter], strategy, table_viewpoints(strategy, AS_PUBLISHED), severity)
     for letter, severities in (("A", (0.1, 0.3, 0.5, 0.9)), ("B", (0.3,)), ("C", (0.3,)))
     for severity in severities
     for strategy in TABLE_ROWS
@@ -35,7 +35,7 @@ LISTED = [
 def by_hand(*days, aborted=0):
     """Return runs of one replicate: visited, found, infested, counted, true, end, left, ever."""
     table = np.array([days], dtype=float)
-    return Runs(Trial(SCENARIOS["A"], Strategy(1)), table, np.array([aborted]))
+    return NoPriorRuns(NoPriorTrial(SCENARIOS["A"], ThesisStrategy(1)), table, np.array([aborted]))
 
 
 DAYS = (
@@ -148,7 +148,7 @@ def test_every_strategy_meets_the_same_insects(listed_runs):
 
 
 def test_the_answer_does_not_depend_on_the_number_of_threads():
-    some = [*LISTED[::9], Trial(SCENARIOS["C"], Strategy(7, 3), rules=Prose())]
+    some = [*LISTED[::9], NoPriorTrial(SCENARIOS["C"], ThesisStrategy(7, 3), rules=Prose())]
     one, four = (run_trials(some, 5, 4, threads=threads) for threads in (1, 4))
     for ours, theirs in zip(one, four, strict=True):
         assert ours.trial == theirs.trial
@@ -164,7 +164,7 @@ def test_seeds_matter_and_repeat():
 def test_progress_counts_the_trials():
     told = []
     run_trials(LISTED[:3], 2, 1, lambda done, total: told.append((done, total)))
-    assert told == [(1, 3), (2, 3), (3, 3)]
+    assert told == [(0, 3), (1, 3), (2, 3), (3, 3)]
 
 
 def test_a_single_replicate_is_refused_with_a_sentence():
@@ -181,5 +181,5 @@ def test_the_detection_curve_spans_the_working_hours_and_ends_at_what_was_found(
 
 
 def test_the_prose_draws_no_curve():
-    with pytest.raises(SettingError, match="choose Slips, not Prose"):
-        detection_curve(Trial(SCENARIOS["A"], Strategy(1), rules=Prose()), 2, 1)
+    with pytest.raises(SettingError, match="choose ListingErrors, not Prose"):
+        detection_curve(NoPriorTrial(SCENARIOS["A"], ThesisStrategy(1), rules=Prose()), 2, 1)

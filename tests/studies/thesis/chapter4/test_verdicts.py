@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.studies.thesis.chapter4.measures import Cell
+from fieldmon.studies.thesis.chapter4.measures import NoPriorMeasure
 from fieldmon.studies.thesis.chapter4.published import Reference
 from fieldmon.studies.thesis.chapter4.verdicts import (
-    beside_table_5,
-    beside_tables_2_to_4,
+    judged_by_table_5,
+    judged_by_tables_2_to_4,
     reference_verdict,
     thesis_verdict,
 )
 
-CELL = Cell(
+CELL = NoPriorMeasure(
     table="2",
     field="A",
     faces=500,
@@ -77,19 +77,21 @@ def test_nothing_is_said_where_one_side_has_no_value():
 
 
 def test_a_cell_stands_beside_the_printed_table_and_the_reference():
-    cell = beside_tables_2_to_4(CELL)
+    cell = judged_by_tables_2_to_4(CELL)
     assert (cell.thesis, cell.reference) == (53.0, 53.0)
     assert (cell.thesis_verdict, cell.reference_verdict) == ("equal", "agrees")
 
 
 def test_a_known_misprint_is_named():
-    cell = beside_tables_2_to_4(replace(CELL, field="A", algorithm=6, measure="PVV_ED2", mean=64.0))
+    cell = judged_by_tables_2_to_4(
+        replace(CELL, field="A", algorithm=6, measure="PVV_ED2", mean=64.0)
+    )
     assert (cell.thesis, cell.thesis_verdict) == (82.0, "misprint")
     assert "64.0 %" in cell.note
 
 
 def test_other_severities_have_a_reference_and_no_printed_cell():
-    cell = beside_tables_2_to_4(replace(CELL, severity=0.9))
+    cell = judged_by_tables_2_to_4(replace(CELL, severity=0.9))
     assert math.isnan(cell.thesis)
     assert cell.reference_verdict == "agrees"
 
@@ -97,10 +99,10 @@ def test_other_severities_have_a_reference_and_no_printed_cell():
 def test_days_go_by_the_most_likely_one_and_tell_their_shares():
     days = np.array([1.0] * 73 + [2.0] * 27 + [math.nan])
     cell = replace(CELL, measure="D50", mean=1.27, sd=0.446, replicates=100)
-    found = beside_table_5(cell, days)
+    found = judged_by_table_5(cell, days)
     assert (found.thesis, found.thesis_verdict) == (1.0, "equal")
     assert found.note == "day 1 73%, day 2 27%"
     assert found.reference == pytest.approx(0.728 + 2 * 0.273)
     assert found.reference_verdict == "agrees"
-    assert beside_table_5(cell, 3 - days).thesis_verdict == "near"
-    assert beside_table_5(cell, days * 0 + 4).thesis_verdict == "differs"
+    assert judged_by_table_5(cell, 3 - days).thesis_verdict == "near"
+    assert judged_by_table_5(cell, days * 0 + 4).thesis_verdict == "differs"

@@ -8,8 +8,8 @@ import pytest
 from fieldmon.studies.thesis.chapter5 import calibrate as module
 from fieldmon.studies.thesis.chapter5.calibrate import (
     SPACE,
-    Candidate,
     Effort,
+    TriedChoices,
     calibrate,
     candidates_csv,
     choices_of,
@@ -34,12 +34,12 @@ def quick(monkeypatch):
         parts["B"] = 3.0 - parts["A"]
         return parts
 
-    class Made:
+    class FinishedTrials:
         runs, stopped = None, False
 
     monkeypatch.setattr(module, "misfit", off)
-    monkeypatch.setattr(module, "run_trials", lambda *_: Made)
-    monkeypatch.setattr(module, "lucks", lambda *_: None)
+    monkeypatch.setattr(module, "run_trials", lambda *_: FinishedTrials)
+    monkeypatch.setattr(module, "seed_keys", lambda *_: None)
     return tried
 
 
@@ -90,5 +90,5 @@ def test_a_search_gives_the_same_again_and_fills_its_table(quick):  # noqa: ARG0
 
 
 def test_the_joint_fit_is_the_mean_over_the_parts():
-    each = Candidate(CALIBRATED, tuple((part, float(k)) for k, part in enumerate(PARTS)))
+    each = TriedChoices(CALIBRATED, tuple((part, float(k)) for k, part in enumerate(PARTS)))
     assert each.joint == pytest.approx(3.0)

@@ -9,10 +9,10 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.robot import Robot
+from fieldmon.studies.plant_maps import PlantMap
 from fieldmon.studies.thesis.chapter5.mapped_plots import (
     SHARES_PCT,
     MapRules,
-    PlantMap,
     inspect,
     run_maps,
 )

@@ -1,0 +1,1 @@
+"""What a person can do: each action writes, starts or changes something."""

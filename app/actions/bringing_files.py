@@ -1,0 +1,134 @@
+"""Boxes for files, what their import says, and buttons that answer what a file leaves open."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.errors import ChoiceNeeded
+
+from ..state import brought_files, rasters
+from ..state.brought_files import PLANTS, PLOT, RECORDS, answers, brought
+from ..words import texts
+
+if TYPE_CHECKING:
+    from fieldmon.errors import FieldmonError
+
+    from ..state.brought_files import FileMessage
+
+_ICONS = {"seen": "👁", "repaired": "🔧", "guessed": "💡", "dropped": "🗑", "doubtful": "⚠️"}
+
+
+# -- boxes
+
+
+def show() -> None:
+    """Show the boxes for a plot's files; what was dropped is kept while the session lasts."""
+    labels = {PLOT: texts.PLOT_FILE, RECORDS: texts.RECORD_FILE, PLANTS: texts.PLANT_FILE}
+    columns = st.columns(3)
+    for column, (kind, label) in zip(columns, labels.items(), strict=True):
+        with column:
+            dropped = st.file_uploader(label, key=_box(kind), accept_multiple_files=True,
+                                       on_change=_take, args=(kind,))  # fmt: skip
+            if not dropped:
+                _kept(kind)
+
+
+def show_raster(label: str, kind: str) -> None:
+    """Show a box for one raster."""
+    st.file_uploader(label, key=_box(kind), on_change=_take_one, args=(kind,))
+
+
+def show_kept_raster(kind: str) -> None:
+    """Show which raster is kept and what is wrong with it; take it out on demand."""
+    _kept(kind)
+    problem = rasters.problem(kind)
+    if kind in brought() and problem is not None:
+        brought_files.ask_about(brought()[kind].key)
+        say(problem)
+
+
+def _kept(kind: str) -> None:
+    kept = brought().get(kind)
+    if kept is not None:
+        st.caption(texts.KEPT_FILE.format(name=texts.isolated(kept.name)))
+        st.button(texts.FORGET_FILE, key=f"forget {kind}", on_click=brought_files.take_out,
+                  args=(kind,))  # fmt: skip
+
+
+def _box(kind: str) -> str:
+    return f"{kind}_file"
+
+
+def _take(kind: str) -> None:
+    brought_files.keep(kind, st.session_state.get(_box(kind)) or [])
+
+
+def _take_one(kind: str) -> None:
+    part = st.session_state.get(_box(kind))
+    if part is not None:
+        brought_files.keep(kind, [part])
+
+
+# -- what imports say, and ask
+
+
+def say(error: FieldmonError) -> None:
+    """Show a problem as its sentence; where the file leaves a choice, ask for it by buttons."""
+    asking = brought_files.asking()
+    if isinstance(error, ChoiceNeeded):
+        st.warning(str(error))
+        _ask(error, asking)
+    else:
+        st.error(str(error))
+    _offer_undo(asking)
+
+
+def _ask(error: ChoiceNeeded, asking: str) -> None:
+    label = f"{texts.CHOOSE}: {error.option}"
+    widget = f"ask {asking} {error.option}"
+    if error.choices and error.option != "columns":
+        st.markdown(texts.CHOOSE_QUICK)
+        with st.container(horizontal=True):
+            for choice in error.choices[:4]:
+                st.button(str(choice), key=f"pick {asking} {choice}",
+                          on_click=brought_files.answer,
+                          args=(asking, error.option, str(choice)))  # fmt: skip
+        st.selectbox(label, error.choices, key=widget, accept_new_options=True)
+    else:
+        hint = ", ".join(error.choices)
+        st.text_input(label, placeholder="date=Datum", help=hint or None, key=widget)
+    st.button(texts.CHOOSE_BUTTON, key=f"use {asking} {error.option}", type="primary",
+              on_click=_answer_from, args=(asking, error.option, widget))  # fmt: skip
+
+
+def _answer_from(key: str, option: str, widget: str) -> None:
+    brought_files.answer(key, option, st.session_state.get(widget) or "")
+
+
+def _offer_undo(key: str) -> None:
+    """Offer to take the last answer about a file back, if there is one."""
+    if key and answers(key):
+        option, value = answers(key)[-1]
+        st.button(texts.UNDO_ANSWER.format(option=option, value=value), key=f"back {key}",
+                  icon=":material/undo:", on_click=brought_files.take_back,
+                  args=(key,))  # fmt: skip
+
+
+def show_messages(said: tuple[FileMessage, ...]) -> None:
+    """Show what imports had to say, the gravest first, each remedy as a button."""
+    if not said:
+        st.markdown(texts.MESSAGES_NONE)
+    for number, one in enumerate(sorted(said, key=lambda one: -one.message.severity.rank)):
+        message = one.message
+        place = f"{texts.isolated(message.feature)}: " if message.feature else ""
+        mark = f"{_ICONS[message.severity]} **{texts.SEVERITIES[message.severity]}**"
+        st.markdown(f"{mark} · {place}{message.sentence}")
+        remedy = message.remedy
+        if remedy is not None:
+            key = f"remedy {number} {one.file_key} {remedy.option} {remedy.value}"
+            st.button(remedy.label, key=key, on_click=brought_files.answer,
+                      args=(one.file_key, remedy.option, remedy.value))  # fmt: skip
+    for key in dict.fromkeys(one.file_key for one in said):
+        _offer_undo(key)

@@ -1,0 +1,83 @@
+"""Changing a strategy: in the season that is open, or in the boxes of the sidebar."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from ..state import notices
+from ..words import texts
+from ..words.strategies import sampler_does, sampler_name, strategy_name
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring import MonitoringSettings, Season
+
+    from ..state.choices import Choices
+    from ..state.comparison import Strategy
+
+#: a sampler's box is too narrow for more than its name
+NAMED = {
+    "format_func": sampler_name,
+    "help": "\n".join(f"- {is_}" for is_ in texts.SAMPLERS.values()),
+}
+
+
+def show(name: str, season: Season) -> None:
+    """Show who works in the season of this name, and change it on demand."""
+    with st.expander(texts.WHO):
+        settings = season.settings
+        wanted = _wanted(name, settings)
+        if wanted != settings:
+            st.caption(texts.CHANGE_NOTE)
+            if st.button(texts.CHANGE, type="primary", key="change_setup"):
+                season.change(wanted, settings)
+                st.rerun()
+        _offer_undo(season)
+
+
+def _wanted(name: str, settings: MonitoringSettings) -> MonitoringSettings:
+    """Show the boxes; return the settings that they say."""
+    robot = settings.robot
+    key = f"{name} {robot.hours} {robot.look_s} {settings.sampler}"
+    # a command, or "one hour more", may have set what is beyond the usual
+    usual_s = robot.look_s
+    hours = st.slider(texts.HOURS, min(0.5, robot.hours), max(16.0, robot.hours), robot.hours, 0.5,
+                      key=f"hours {key}")  # fmt: skip
+    inspection_s = st.slider(texts.INSPECTION_S, min(20.0, usual_s), max(60.0, usual_s), usual_s,
+                             5.0, format="%g", key=f"inspection_s {key}")  # fmt: skip
+    names = list(texts.SAMPLERS)
+    sampler = st.selectbox(
+        texts.SAMPLER, names, names.index(settings.sampler), key=f"sampler {key}", **NAMED
+    )
+    st.caption(sampler_does(sampler))
+    robot = replace(robot, hours=float(hours), look_s=float(inspection_s))
+    return replace(settings, robot=robot, sampler=sampler)
+
+
+def _offer_undo(season: Season) -> None:
+    before = season.before_change()
+    if before is None:
+        return
+    back = strategy_name(before.sampler, before.robot.hours, before.robot.look_s)
+    label = texts.UNDO_CHANGE.format(strategy=back, starts=f"{before.starts:%H:%M}")
+    if st.button(label, key="undo_change", icon=":material/undo:"):
+        season.undo_change()
+        st.rerun()
+
+
+@notices.reporting
+def use(choices: Choices, strategy: Strategy) -> str:
+    """Work by this strategy from now on (for callbacks)."""
+    sampler, hours, inspection_s = strategy.sampler, strategy.hours, strategy.inspection_s
+    if choices.season is not None:
+        settings = choices.season.settings
+        robot = replace(settings.robot, hours=hours, look_s=inspection_s)
+        choices.season.change(replace(settings, robot=robot, sampler=sampler), settings)
+    else:
+        who = st.session_state.get("who", texts.ROBOT)
+        st.session_state["sampler"] = sampler
+        st.session_state[f"hours {who}"] = hours
+        st.session_state[f"inspection_s {who}"] = int(inspection_s)
+    return texts.NOW_USED.format(name=strategy_name(sampler, hours, inspection_s))

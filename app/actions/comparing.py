@@ -1,0 +1,50 @@
+"""Boxes that say what is simulated: strategies, and the season they meet."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from ..state import widget_memory
+from ..state.comparison import ComparisonSettings, Strategy
+from ..words import texts
+from ..words.strategies import sampler_name
+
+if TYPE_CHECKING:
+    from ..state.choices import Choices
+
+
+def settings(choices: Choices) -> ComparisonSettings:
+    """Show what can be compared; return what is asked for."""
+    left, middle, right = st.columns([2, 1, 1])
+    samplers = widget_memory.show(
+        left.multiselect, texts.STRATEGY_SAMPLERS, list(texts.SAMPLERS), key="strategy_samplers",
+        default=["adaptive", "dynamic", "naive"], format_func=sampler_name,
+    )  # fmt: skip
+    own_hours, own_s = float(choices.robot.hours), int(choices.robot.look_s)
+    hours = middle.multiselect(
+        texts.STRATEGY_HOURS, sorted({2.0, 4.0, 6.0, 8.0, 10.0, 12.0, own_hours}), [own_hours],
+        key=f"strategy_hours {own_hours}", format_func="{:g}".format,
+    )  # fmt: skip
+    seconds = right.multiselect(
+        texts.STRATEGY_INSPECTION_S, sorted({20, 25, 30, 35, 40, 45, own_s}), [own_s],
+        key=f"strategy_inspection_s {own_s}",
+    )  # fmt: skip
+    strategies = tuple(
+        Strategy(name, float(h), float(s)) for name, h, s in product(samplers, hours, seconds)
+    )
+    first, *others = st.columns(4)
+    seeds = first.number_input(texts.SEEDS, 1, 500, 20, help=texts.SEEDS_HELP, key="seeds")
+    return ComparisonSettings(strategies, *season(others), int(seeds))
+
+
+def season(columns: list) -> tuple[int, float, float]:
+    """Show what a simulated season is like: days, share infested at the start, spread a night."""
+    show, (first, second, third) = widget_memory.show, columns
+    n_days = show(first.number_input, texts.DAYS, 2, 60, key="n_days", default=25)
+    share = show(second.number_input, texts.INFESTED, 0.1, 50.0, step=0.5, key="share", default=2.0)
+    rate = show(third.number_input, texts.SPREAD, 0.0, 100.0, step=5.0, key="rate", default=10.0,
+                help=texts.SPREAD_HELP)  # fmt: skip
+    return int(n_days), share / 100, rate / 100

@@ -1,0 +1,62 @@
+"""Boxes for rasters of this session: missing plants, risk, a picture of the ground."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.errors import FieldmonError
+from fieldmon.infestation.raster_risk import RELATIVE
+
+from ..show.maps import marks
+from ..state import rasters, widget_memory
+from ..state.brought_files import brought
+from ..words import texts
+from . import bringing_files
+
+if TYPE_CHECKING:
+    from ..state.choices import Choices
+
+
+def show_missing() -> None:
+    """Show the box for a raster of missing plants, and below which value no plant is there."""
+    with st.expander(texts.MISSING, expanded=rasters.MISSING in brought()):
+        st.caption(texts.MISSING_NOTE)
+        bringing_files.show_raster(texts.MISSING_FILE, rasters.MISSING)
+        widget_memory.show(st.number_input, texts.MISSING_BELOW, -1000.0, 100_000.0, step=0.1,
+                           key=rasters.MISSING_BELOW, default=0.5)  # fmt: skip
+        bringing_files.show_kept_raster(rasters.MISSING)
+
+
+def show_risk() -> None:
+    """Show the box for a raster of risk, and what its numbers mean."""
+    with st.expander(texts.RISK, expanded=rasters.RISK in brought()):
+        st.caption(texts.RISK_NOTE)
+        bringing_files.show_raster(texts.RISK_FILE, rasters.RISK)
+        widget_memory.show(st.selectbox, texts.RISK_MEANS, list(texts.RISK_MEANINGS),
+                           key=rasters.RISK_MEANING, default="chance", filter_mode=None,
+                           format_func=texts.RISK_MEANINGS.__getitem__)  # fmt: skip
+        if widget_memory.value(rasters.RISK_MEANING) in RELATIVE:
+            widget_memory.show(st.number_input, texts.RISK_SHARE, 0.1, 50.0, step=0.5,
+                               key=rasters.RISK_SHARE, default=2.0)  # fmt: skip
+            widget_memory.show(st.toggle, texts.RISK_LOW, key=rasters.RISK_LOW, default=False)
+        bringing_files.show_kept_raster(rasters.RISK)
+
+
+def show_backdrop() -> None:
+    """Show the box for a picture of the ground."""
+    bringing_files.show_raster(texts.BACKDROP, rasters.BACKDROP)
+    bringing_files.show_kept_raster(rasters.BACKDROP)
+
+
+def backdrop_layers(choices: Choices) -> list:
+    """Return the picture's layer, if there is one that lies about the plot; else it is said."""
+    try:
+        picture = rasters.backdrop(choices)
+    except FieldmonError as error:
+        bringing_files.say(error)
+        return []
+    if picture is None:
+        return []
+    return [marks.backdrop(picture.data_uri, picture.corners_lonlat.tolist())]

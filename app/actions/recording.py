@@ -1,0 +1,180 @@
+"""Recording what was found: one plant, the stops of the route, or a file; and taking it back."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+import streamlit as st
+
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
+from fieldmon.io.options import Upload
+from fieldmon.plot.grid import plant_at, row_label
+
+from ..state import browser, chosen_day, notices
+from ..words import texts
+
+if TYPE_CHECKING:
+    from ..state.choices import Choices
+
+# batches shown, the last ones
+_MOST = 20
+
+
+def show(choices: Choices) -> None:
+    """Show the ways of recording, and of noting a treatment."""
+    st.markdown(f"**{texts.RECORD} · {choices.units.day(choices.day)}**")
+    st.caption(texts.RECORD_NOTE)
+    route, one, file, treat = st.tabs(
+        [texts.RECORD_ROUTE, texts.RECORD_ONE, texts.RECORD_UPLOAD, texts.TREAT]
+    )
+    with route:
+        _show_route(choices)
+    with one:
+        _show_one(choices)
+    with file:
+        _show_file(choices)
+    with treat:
+        _show_treatment(choices)
+
+
+# -- one plant
+
+
+def _show_one(choices: Choices) -> None:
+    with st.form("one_plant_form", border=False):
+        left, right = st.columns(2)
+        left.number_input(texts.HISTORY_ROW, 1, None, 1, key="one_row")
+        right.number_input(texts.HISTORY_PLANT, 1, None, 1, key="one_plant")
+        st.segmented_control(texts.RESULT, list(texts.RESULTS_OF), default=CLEAN,
+                             format_func=texts.RESULTS_OF.__getitem__, key="one_result",
+                             required=True)  # fmt: skip
+        st.number_input(texts.COUNT, 0, None, None, key="one_count")
+        st.form_submit_button(texts.RECORD_BUTTON, on_click=_record_one, args=(choices,))
+
+
+@notices.reporting
+def _record_one(choices: Choices) -> str:
+    state = st.session_state
+    plant = plant_at(choices.plot.grid, int(state["one_row"]), int(state["one_plant"]))
+    result, count = state["one_result"], state["one_count"]
+    counted = np.array([np.nan if count is None or result != FOUND else float(count)])
+    results = Inspections.of(
+        np.array([plant]), np.array([result]), np.datetime64(choices.day), count=counted
+    )
+    return _recorded(choices, results, texts.TYPED_IN)
+
+
+# -- the stops of the route
+
+
+def _show_route(choices: Choices) -> None:
+    """Show the route given out for the day, or the one planned, to be marked stop by stop."""
+    kept = chosen_day.given_out(choices)
+    plants = kept if len(kept) else choices.plan().route.plant
+    label = row_label(choices.plot.grid, plants)
+    table = pd.DataFrame(
+        {
+            texts.COLUMN_ROW: label.line,
+            texts.COLUMN_PLANT: label.number,
+            texts.LEGEND_STATES["found"]: False,
+        },
+        index=pd.RangeIndex(1, len(plants) + 1, name="stop"),
+    )
+    # Enter after typing a number must not record: the button under it would record as many again
+    with st.form("route_form", border=False, enter_to_submit=False):
+        st.caption(texts.RECORD_REST)
+        st.number_input(texts.RECORD_STOPS, 0, len(plants), len(plants), key="stops_done")
+        with st.container(key="route_marks"):
+            marked = st.data_editor(table, height=230, disabled=list(table.columns[:2]),
+                                    key=f"marks {choices.day} {len(plants)}")  # fmt: skip
+        pressed = st.form_submit_button(texts.RECORD_BUTTON, type="primary")
+    if pressed:
+        found = marked.index[marked[texts.LEGEND_STATES["found"]]].tolist()
+        _record_stops(choices, plants, found)
+        st.rerun()
+
+
+@notices.reporting
+def _record_stops(choices: Choices, plants: np.ndarray, found: list[int]) -> str:
+    """Record the first stops of the route: those marked as found, the others as clean."""
+    done = plants[: int(st.session_state["stops_done"])]
+    result = np.where(np.isin(np.arange(len(done)) + 1, found), FOUND, CLEAN)
+    results = Inspections.of(done, result, np.datetime64(choices.day))
+    return _recorded(choices, results, texts.ROUTE_TABLE)
+
+
+# -- a file
+
+
+def _show_file(choices: Choices) -> None:
+    brought = st.file_uploader(texts.RECORD_FILE_IN, key="findings_file")
+    st.checkbox(texts.TAKE_DOUBTFUL, key="take_doubtful")
+    if brought is not None:
+        st.button(texts.RECORD_BUTTON, key="record_file", type="primary", on_click=_record_file,
+                  args=(choices, brought.name, brought.getvalue()))  # fmt: skip
+
+
+@notices.reporting
+def _record_file(choices: Choices, name: str, data: bytes) -> str:
+    """Record findings from a file: a route given out and filled in, a table, positions."""
+    # what reads files is half a second to import
+    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
+    from fieldmon.io.readers.inspections import read_inspections  # noqa: PLC0415
+
+    options = InspectionOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
+    options = options.choose("day", choices.day)
+    read = read_inspections(Upload(name, data), choices.plot.grid, options)
+    messages = "".join(f"\n- {message.sentence}" for message in read.messages)
+    return _recorded(choices, read.value, name) + messages
+
+
+def _recorded(choices: Choices, results: Inspections, source: str) -> str:
+    done = choices.season.record(results, source)
+    return texts.RECORDED.format(new=done.new, known=done.known)
+
+
+# -- a treatment
+
+
+def _show_treatment(choices: Choices) -> None:
+    with st.form("treatment_form", border=False):
+        st.number_input(texts.TREAT_EFFICACY, 0, 100, 90, 5, key="efficacy")
+        st.text_input(texts.TREAT_PRODUCT, key="product")
+        st.form_submit_button(texts.TREAT_BUTTON, on_click=_treat, args=(choices,))
+
+
+@notices.reporting
+def _treat(choices: Choices) -> str:
+    """Note that the whole plot was treated."""
+    share, product = st.session_state["efficacy"] / 100, st.session_state["product"]
+    done = choices.season.treat(choices.on, share, product=product)
+    return texts.TREATED if done.new else texts.TREATED_BEFORE
+
+
+# -- what was recorded
+
+
+def show_batches(choices: Choices) -> None:
+    """Show what was recorded, the last one first, each with its undo."""
+    for batch in choices.season.batches()[:_MOST]:
+        if not batch.rows:
+            continue
+        left, right = st.columns([4, 1], vertical_alignment="center")
+        at = browser.local(datetime.fromisoformat(batch.at))
+        said = texts.BATCHES_SAID[batch.kind].format(
+            day=choices.units.day(at.date()), time=f"{at:%H:%M}", n=batch.rows,
+            source=texts.isolated(batch.source) if batch.source else "",
+        )  # fmt: skip
+        left.markdown(said + (f" ({texts.UNDONE})" if batch.undone else ""))
+        if not batch.undone:
+            right.button(texts.UNDO, key=f"undo {batch.number}", on_click=undo,
+                         args=(choices, batch.number))  # fmt: skip
+
+
+@notices.reporting
+def undo(choices: Choices, batch: int) -> str:
+    """Take a batch back."""
+    return choices.season.undo(batch)

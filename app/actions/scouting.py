@@ -1,0 +1,113 @@
+"""What scout mode does; all of it is in the season's file, nothing in the page."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+import numpy as np
+import streamlit as st
+
+from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.monitoring.settings import seconds
+from fieldmon.plot.grid import row_label
+
+from ..state import browser, chosen_day, notices
+from ..words import texts
+
+if TYPE_CHECKING:
+    from ..state.choices import Choices
+
+SOURCE = "scout mode"
+
+
+def give_out(choices: Choices) -> None:
+    """Keep the day's route with the season when the scouting begins."""
+    if not len(chosen_day.given_out(choices)):
+        choices.season.plan(choices.on)
+
+
+def _second(choices: Choices, plant: int) -> float:
+    """Return the second of the day of a tap: the clock's today, else what the plan says."""
+    clock = browser.now()
+    if clock.date() == choices.on:
+        return clock.hour * 3600.0 + clock.minute * 60.0 + clock.second
+    plan = choices.plan()
+    begins = chosen_day.starts(choices, plan)
+    stop = np.flatnonzero(plan.route.plant == plant)
+    gone = float(plan.route.leave_s[stop[0]]) if stop.size else 0.0
+    start_s = (begins - datetime.combine(choices.on, datetime.min.time())).total_seconds()
+    return min(start_s + gone, 86_399.0)
+
+
+@notices.reporting
+def _tap(choices: Choices, plant: int, result: int) -> str:
+    count = st.session_state.get("scout_count")
+    counted = float(count) if result == FOUND and count is not None else np.nan
+    second = _second(choices, plant)
+    results = Inspections.of(
+        np.array([plant]), np.array([result]), np.datetime64(choices.day),
+        second=np.array([second]), count=np.array([counted]),
+    )  # fmt: skip
+    choices.season.record(results, SOURCE)
+    return ""
+
+
+def tap(choices: Choices, plant: int, result: int) -> None:
+    """Record a tap at once."""
+    _tap(choices, plant, result)
+    st.session_state["scout_count"] = None
+
+
+def last_tap(choices: Choices) -> int | None:
+    """Return the batch of the last tap that counts, or None."""
+    taps = (b.number for b in choices.season.batches() if b.source == SOURCE and not b.undone)
+    return next(taps, None)
+
+
+def last_said(choices: Choices) -> str:
+    """Return what was recorded last on this day, in words."""
+    done = choices.season.history.inspections.on(choices.on)
+    if not len(done):
+        return ""
+    label = row_label(choices.plot.grid, done.plant[-1:])
+    result = texts.HISTORY_RESULTS[int(done.result[-1])]
+    return texts.SCOUT_LAST.format(row=label.line[0], plant=label.number[0], result=result)
+
+
+@notices.reporting
+def undo(choices: Choices, batch: int) -> str:
+    """Take the last tap back."""
+    return choices.season.undo(batch)
+
+
+@notices.reporting
+def longer(choices: Choices) -> str:
+    """Make the working day an hour longer than it is, and than the work has taken so far."""
+    settings, history = choices.season.settings, choices.season.history
+    second = history.inspections.on(choices.on).second
+    # a scout who came in the evening is hours beyond the end
+    gone_s = np.nanmax(np.append(second, 0.0)) - seconds(settings.starts)
+    hours = max(settings.robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
+    robot = replace(settings.robot, hours=float(min(hours, 24.0)))
+    choices.season.change(replace(settings, robot=robot), settings)
+    return texts.NOW_USED.format(name=f"{robot.hours:g} h")
+
+
+def ask_start(choices: Choices) -> None:
+    """Where the work begins later than planned, offer to begin now."""
+    settings, clock = choices.season.settings, browser.now()
+    begun = len(choices.season.history.inspections.on(choices.on))
+    late = clock.date() == choices.on and clock.time() > settings.starts
+    if not begun and late:
+        st.info(texts.SCOUT_START.format(start=f"{settings.starts:%H:%M}", now=f"{clock:%H:%M}"))
+        st.button(texts.SCOUT_NOW, key="begin_now", on_click=_begin_now, args=(choices,))
+
+
+@notices.reporting
+def _begin_now(choices: Choices) -> str:
+    settings = choices.season.settings
+    starts = browser.now().replace(second=0, microsecond=0).time()
+    choices.season.change(replace(settings, starts=starts), settings)
+    return texts.NOW_USED.format(name=f"{starts:%H:%M}")

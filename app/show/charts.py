@@ -1,0 +1,187 @@
+"""Charts of seasons. No Streamlit in here."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import altair as alt
+import pandas as pd
+
+from ..words import texts
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.monitoring import DayFigures
+    from fieldmon.simulation.metrics import SeasonMetrics
+
+
+# Okabe & Ito's colours for the colour-blind
+# the last one grey, not black, which the dark page swallows
+_COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7F7F7F"]
+# more lines than colours: the next ones are dashed
+_DASHES = [[1, 0], [6, 3], [2, 2]]
+_LEGEND = alt.Legend(orient="top", title=None, columns=2, labelLimit=300, symbolType="stroke",
+                     symbolSize=300, symbolStrokeWidth=3, symbolOpacity=1)  # fmt: skip
+_GREY = "#7F7F7F"
+
+
+def detection(seasons: dict[str, SeasonMetrics], day: int, axes: tuple[str, str]) -> alt.LayerChart:
+    """Return detection per day, a line for each sampler, with a rule at the day shown."""
+    table = pd.concat(
+        pd.DataFrame({"strategy": name, "day": range(1, len(f.found) + 1), "mean": f.detection_pct})
+        for name, f in seasons.items()
+    )
+    lines = _lines(table, list(seasons), axes)
+    rule = (
+        alt.Chart(pd.DataFrame({"day": [day]}))
+        .mark_rule(strokeDash=[4, 4], color=_GREY)
+        .encode(x="day:Q")
+    )
+    return alt.layer(lines, rule).properties(height=280)
+
+
+def curves(table: pd.DataFrame, axes: tuple[str, str]) -> alt.Chart:
+    """Return a line for each column of a table whose index counts days."""
+    long = (
+        table.rename_axis("day").reset_index().melt("day", var_name="strategy", value_name="mean")
+    )
+    return _lines(long, list(table.columns), axes).properties(height=320)
+
+
+def _lines(table: pd.DataFrame, names: list[str], axes: tuple[str, str]) -> alt.Chart:
+    """Return the mean by day, a line for each strategy, told apart by colour and by dashes."""
+    tooltip = [
+        alt.Tooltip("strategy", title=texts.COLUMN_STRATEGY),
+        alt.Tooltip("day", title=axes[0]),
+        alt.Tooltip("mean:Q", title=axes[1], format=".1f"),
+    ]
+    return (
+        alt.Chart(table)
+        .mark_line(point=True, strokeWidth=2.5)
+        .encode(
+            x=alt.X("day:Q", title=axes[0], axis=alt.Axis(tickMinStep=1)),
+            y=alt.Y("mean:Q", title=axes[1], scale=alt.Scale(domain=[0, 100])),
+            color=alt.Color("strategy:N", scale=_scale(names, _COLOURS), legend=_LEGEND),
+            strokeDash=alt.StrokeDash("strategy:N", scale=_dashes(names), legend=_LEGEND),
+            tooltip=tooltip,
+        )
+    )
+
+
+def _scale(names: list[str], colours: list[str]) -> alt.Scale:
+    return alt.Scale(domain=names, range=[colours[k % len(colours)] for k in range(len(names))])
+
+
+def _dashes(names: list[str]) -> alt.Scale:
+    dashes = [_DASHES[k // len(_COLOURS) % len(_DASHES)] for k in range(len(names))]
+    return alt.Scale(domain=names, range=dashes)
+
+
+def found(figures: SeasonMetrics, axes: tuple[str, str]) -> alt.Chart:
+    """Return the plants found on each day."""
+    table = pd.DataFrame({"day": range(1, len(figures.found) + 1), "found": figures.found})
+    return (
+        alt.Chart(table)
+        .mark_bar(color=_COLOURS[0])
+        .encode(
+            x=alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0)),
+            y=alt.Y("found:Q", title=axes[1]),
+            tooltip=[alt.Tooltip("day", title=axes[0]), alt.Tooltip("found", title=axes[1])],
+        )
+        .properties(height=200)
+    )
+
+
+def bands(
+    curves: dict[str, tuple[NDArray[np.float64], ...]], axes: tuple[str, str]
+) -> alt.LayerChart:
+    """Return a line with its interval for each strategy.
+
+    `curves` holds mean, low and high ``(d,)`` each.
+    """
+    table = pd.concat(
+        pd.DataFrame({"strategy": name, "day": range(1, len(mean) + 1), "mean": mean, "low": low,
+                      "high": high})
+        for name, (mean, low, high) in curves.items()
+    )  # fmt: skip
+    band = (
+        alt.Chart(table)
+        .mark_area(opacity=0.18)
+        .encode(
+            x="day:Q", y=alt.Y("low:Q", title=axes[1]), y2="high:Q",
+            color=alt.Color("strategy:N", scale=_scale(list(curves), _COLOURS), legend=_LEGEND),
+        )
+    )  # fmt: skip
+    return alt.layer(band, _lines(table, list(curves), axes)).properties(height=320)
+
+
+def season_days(days: list[DayFigures], axes: tuple[str, str, str]) -> alt.LayerChart:
+    """Return plants inspected and found on each day of a season."""
+    table = pd.DataFrame(
+        {
+            "day": [str(s.on)[5:] for s in days],
+            "inspected": [s.inspected for s in days],
+            "found": [s.found for s in days],
+        }
+    )
+    x = alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True))
+    tip = [alt.Tooltip("day", title=axes[0]), alt.Tooltip("inspected", title=axes[1]),
+           alt.Tooltip("found", title=axes[2])]  # fmt: skip
+    bars = (
+        alt.Chart(table)
+        .mark_bar(color=_COLOURS[5])
+        .encode(x=x, y=alt.Y("inspected:Q", title=axes[1]), tooltip=tip)
+    )
+    found_ = (
+        alt.Chart(table)
+        .mark_line(color=_COLOURS[1], point={"color": _COLOURS[1], "size": 60}, strokeWidth=2.5)
+        .encode(x=x, y=alt.Y("found:Q", title=axes[2]), tooltip=tip)
+    )
+    return alt.layer(bars, found_).resolve_scale(y="independent").properties(height=220)
+
+
+def still_out(days: list[DayFigures], axes: tuple[str, str]) -> alt.LayerChart:
+    """Return the expected number of infested plants by day, with its interval."""
+    table = pd.DataFrame(
+        {
+            "day": [str(s.on)[5:] for s in days],
+            "expected": [s.expected for s in days],
+            "low": [s.low for s in days],
+            "high": [s.high for s in days],
+        }
+    )
+    base = alt.Chart(table).encode(
+        x=alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True)),
+        tooltip=[
+            alt.Tooltip("day", title=axes[0]),
+            alt.Tooltip("expected:Q", title=axes[1], format=".1f"),
+            alt.Tooltip("low", title=texts.LEAST), alt.Tooltip("high", title=texts.MOST),
+        ],
+    )  # fmt: skip
+    # an edge, since the pale bar alone is next to nothing on a dark page
+    band = base.mark_bar(
+        fillOpacity=0.3, color=_COLOURS[0], stroke=_COLOURS[0], strokeWidth=1, width=10
+    ).encode(y="low:Q", y2="high:Q")
+    line = base.mark_line(point=True, color=_COLOURS[0]).encode(
+        y=alt.Y("expected:Q", title=axes[1])
+    )
+    return alt.layer(band, line).properties(height=220)
+
+
+def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64],
+             axes: tuple[str, str]) -> alt.Chart:  # fmt: skip
+    """Return the days since each row was inspected, ``(r,)``; rows never inspected are left out."""
+    table = pd.DataFrame({"row": lines, "days": days_since}).dropna()
+    table = table.groupby("row", as_index=False)["days"].min()
+    return (
+        alt.Chart(table)
+        .mark_bar(color=_COLOURS[2])
+        .encode(
+            x=alt.X("row:Q", title=axes[0], axis=alt.Axis(tickMinStep=1, format="d")),
+            y=alt.Y("days:Q", title=axes[1], axis=alt.Axis(tickMinStep=1, format="d")),
+            tooltip=[alt.Tooltip("row", title=axes[0]), alt.Tooltip("days", title=axes[1])],
+        )
+        .properties(height=180)
+    )

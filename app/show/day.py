@@ -1,0 +1,119 @@
+"""A day in figures and words: what there is to do, what was done, what changed, and why there."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+import streamlit as st
+
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.planning.explain import explain
+from fieldmon.plot.grid import row_label
+
+from ..state import chosen_day
+from ..words import texts
+
+if TYPE_CHECKING:
+    from fieldmon.planning.plan import DayPlan
+
+    from ..state.choices import Choices
+
+
+def stops(choices: Choices, plan: DayPlan) -> pd.DataFrame:
+    """Return the stops in order, as a table."""
+    label = row_label(choices.plot.grid, plan.route.plant)
+    gone = pd.to_timedelta(plan.route.arrive_s.round(), unit="s")
+    starts = pd.Timestamp(chosen_day.starts(choices, plan))
+    columns = {
+        texts.COLUMN_ARRIVE: (starts + gone).strftime("%H:%M:%S"),
+        texts.COLUMN_ROW: label.line,
+        texts.COLUMN_PLANT: label.number,
+        texts.COLUMN_CHANCE: (100 * plan.route.chance).round(1),
+    }
+    return pd.DataFrame(columns, pd.RangeIndex(1, len(plan.route) + 1, name="stop"))
+
+
+def route_figures(choices: Choices, plan: DayPlan) -> None:
+    """Show the figures to decide by."""
+    route, n = plan.route, len(choices.plot.grid)
+    finds = route.expected_found
+    with st.container(horizontal=True):
+        st.metric(texts.PLANTS_TO_INSPECT, f"{len(route):,} / {n:,}", width="content")
+        st.metric(texts.TIME, f"{route.end_s / 3600:.1f} h", width="content")
+        st.metric(texts.DRIVE, choices.units.metres(route.drive_m), width="content")
+        st.metric(texts.FINDS, f"{finds:.1f}", help=texts.FINDS_HELP, width="content")
+    if len(route) and route.bound_sentence:
+        st.caption(route.bound_sentence, help=texts.BOUND_HELP)
+
+
+def said_of_day(choices: Choices, plan: DayPlan) -> None:
+    """Say what was recorded of the day, and why there is no route where there is none."""
+    said = "" if len(plan.route) else texts.NO_STOPS
+    if choices.season is not None:
+        now = chosen_day.progress(choices)
+        done = {"inspected": now.inspected_today, "found": now.found_today}
+        if now.inspected_today:
+            st.info((texts.TODAY_OVER if said else texts.TODAY_DONE).format(**done))
+            return
+    if said:
+        st.warning(said)
+
+
+def changes(choices: Choices) -> list[str]:
+    """Return sentences on what changed since yesterday."""
+    if choices.season is None:
+        return []
+    if choices.on == choices.season.settings.begins:
+        return [texts.CHANGED_FIRST]
+    yesterday = str(choices.on - timedelta(days=1))
+    before, now = (chosen_day.figures(choices, day) for day in (yesterday, choices.day))
+    on = choices.units.day(yesterday)
+    said = [texts.CHANGED_NONE.format(day=on)]
+    if before.inspected:
+        said = [texts.CHANGED_FINDS.format(found=before.found, inspected=before.inspected, day=on)]
+    diff = now.expected - before.expected
+    said.append(
+        texts.CHANGED_OUT.format(
+            now=now.expected, before=before.expected, diff=abs(diff), sign="+" if diff >= 0 else "−"
+        )
+    )
+    spots = [len(chosen_day.season_hot_spots(choices, day)) for day in (yesterday, choices.day)]
+    if spots[0] != spots[1]:
+        said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))
+    rows = _risen(choices, yesterday)
+    return [*said, texts.CHANGED_ROWS.format(rows=rows)] if rows else said
+
+
+def _risen(choices: Choices, yesterday: str) -> str:
+    """Return the three rows whose mean chance rose most over the night, in words."""
+    grid = choices.plot.grid
+    line = grid.row_line[grid.row]
+    chances = [chosen_day.morning(choices, day) for day in (yesterday, choices.day)]
+    total = [np.bincount(line, chance) for chance in chances]
+    rise = (total[1] - total[0]) / np.maximum(np.bincount(line), 1)
+    top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]
+    return ", ".join(f"{k + 1} (+{rise[k]:.1%})" for k in top)
+
+
+def found_by_row(choices: Choices) -> dict[str, str]:
+    """Return the numbers of the plants found on the day, by row."""
+    label = row_label(choices.plot.grid, chosen_day.found(choices))
+    rows: dict[str, list[str]] = {}
+    for line, number in zip(label.line.tolist(), label.number.tolist(), strict=True):
+        rows.setdefault(texts.REPORT_IN_ROW.format(row=line), []).append(str(number))
+    return {row: ", ".join(numbers) for row, numbers in rows.items()}
+
+
+def reasons(choices: Choices, plan: DayPlan) -> list[str]:
+    """Return what the stops of the day are for, in sentences."""
+    season = choices.season
+    if season is None or not len(plan.route):
+        return []
+    done, now = season.history.inspections, np.datetime64(choices.on)
+    lately = (done.result == FOUND) & (done.date <= now) & (done.date > now - 7)
+    finds = dict(zip(done.plant[lately].tolist(), done.date[lately].tolist(), strict=True))
+    on = [texts.WHY_TODAY if day == choices.on else f"{day:%A}" for day in finds.values()]
+    return explain(plan.scene, plan.work, np.array([*finds], np.int32), on)

@@ -1,0 +1,131 @@
+"""What else lies on a map: hot spots, records, paths, places, what is drawn, a picture below."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pydeck as pdk
+import shapely
+from pydeck import Layer
+
+from ...words import texts
+from .colours import GATE, HOT, HOT_IN_DARK, TRUTH, TRUTH_IN_DARK
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.plot.field import Field
+    from fieldmon.plot.grid import PlantGrid
+
+    from .colours import Colour
+
+
+def hot(grid: PlantGrid, spots: HotSpots, *, dark: bool = False) -> list[Layer]:
+    """Return the hot spots, if there are any: their tint, and their outlines."""
+    if not len(spots):
+        return []
+    rows = []
+    margin_m = 0.75 * max(grid.row_spacing_m, grid.plant_spacing_m)
+    inside = np.flatnonzero(spots.of_plant >= 0)
+    for k in range(len(spots)):
+        own = shapely.multipoints(grid.xy_m[inside[spots.of_plant[inside] == k]])
+        shape = grid.frame.geometry_lonlat(shapely.buffer(shapely.convex_hull(own), margin_m))
+        corners = np.round(shapely.get_coordinates(shape.exterior), 7).tolist()
+        text = texts.TIP_HOT.format(found=spots.found[k], inspected=spots.inspected[k])
+        rows.append({"p": corners, "t": text})
+    colour = HOT_IN_DARK if dark else HOT
+    return [
+        Layer("PolygonLayer", rows, id="hot", get_polygon="p", get_fill_color=[*colour, 20],
+              stroked=False, pickable=True),
+        Layer("PathLayer", rows, id="hot-edge", get_path="p", get_color=list(colour),
+              width_min_pixels=3, get_width=0.4),
+    ]  # fmt: skip
+
+
+def with_hot(layers: list[Layer], spots: list[Layer]) -> list[Layer]:
+    """Return the layers with hot spots outlined, their tint under plants that can be tapped."""
+    points = [k for k, layer in enumerate(layers) if layer.type == "ScatterplotLayer"]
+    under = min([*points, len(layers)])
+    return [*layers[:under], *spots[:1], *layers[under:], *spots[1:]]
+
+
+def paths(field: Field) -> list[Layer]:
+    """Return the paths along which insects come in."""
+    rows = [
+        {"path": np.round(shapely.get_coordinates(line), 7).tolist(), "t": texts.TIP_PATH}
+        for line in shapely.get_parts(field.paths)
+    ]
+    return [
+        Layer("PathLayer", rows, id="paths", get_path="path", get_color=[150, 110, 60, 160],
+              get_width=1.0, width_min_pixels=2)
+    ]  # fmt: skip
+
+
+def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
+    """Return the records: filled where pests were seen, empty where not."""
+    colour = HOT_IN_DARK if dark else HOT
+    rows = [
+        {
+            "p": place,
+            "c": [*colour, 220 if seen == 1 else 0],
+            "t": texts.TIP_RECORD.format(day=day, result=texts.TIP_SEEN.get(seen, "?")),
+        }
+        for place, seen, day in zip(
+            np.round(observations.lonlat, 7).tolist(),
+            observations.present.tolist(),
+            observations.day.astype(str).tolist(),
+            strict=True,
+        )
+    ]
+    return [
+        Layer(
+            "ScatterplotLayer", rows, id="records", get_position="p", get_fill_color="c",
+            get_radius=1.2, radius_min_pixels=3, stroked=True, get_line_color=[*colour, 170],
+            line_width_min_pixels=1, pickable=True,
+        )
+    ]  # fmt: skip
+
+
+def truth(grid: PlantGrid, infested: NDArray[np.bool_], *, dark: bool = False) -> list[Layer]:
+    """Return dots on plants that are infested, as only a simulation can know."""
+    here = np.round(grid.lonlat(np.flatnonzero(infested)), 7).tolist()
+    return [
+        Layer(
+            "ScatterplotLayer", [{"p": p, "t": texts.TIP_INFESTED} for p in here], id="truth",
+            get_position="p", get_fill_color=list(TRUTH_IN_DARK if dark else TRUTH),
+            get_radius=0.5, radius_min_pixels=2,
+        )
+    ]  # fmt: skip
+
+
+def places(lonlat: list[list[float]], name: str, colour: Colour, note: str) -> Layer:
+    """Return large rings about some positions: where one stands, what was tapped."""
+    rows = [{"p": p, "t": note} for p in lonlat]
+    return Layer(
+        "ScatterplotLayer", rows, id=name, get_position="p", get_radius=1.5, radius_min_pixels=11,
+        filled=True, get_fill_color=[*colour, 60], stroked=True, get_line_color=list(colour),
+        line_width_min_pixels=4, pickable=True,
+    )  # fmt: skip
+
+
+def drawing(points: tuple[tuple[float, float], ...]) -> list[Layer]:
+    """Return what is being drawn: its corners so far, joined."""
+    here = [list(point) for point in points]
+    return [
+        Layer(
+            "PathLayer", [{"path": here}] if len(here) > 1 else [], id="drawing", get_path="path",
+            get_color=list(GATE), width_min_pixels=3, get_width=0.4,
+        ),
+        places(here, "corners", GATE, texts.TIP_CORNER),
+    ]  # fmt: skip
+
+
+def backdrop(uri: str, corners: list[list[float]]) -> Layer:
+    """Return a picture of the ground; corners from lower left over upper left, lon/lat."""
+    return Layer(
+        "BitmapLayer", None, id="backdrop", image=pdk.types.String(uri), bounds=corners,
+        opacity=0.8,
+    )  # fmt: skip

@@ -1,0 +1,73 @@
+"""What is known of one plant: the one tapped on the map, or named by row and number."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import streamlit as st
+
+from fieldmon.errors import FieldmonError
+from fieldmon.plot.grid import plant_at, row_label
+
+from ..state import chosen_day, widget_memory
+from ..words import texts
+from .maps import plant_layers
+
+if TYPE_CHECKING:
+    from ..state.choices import Choices
+
+_ROW, _PLANT = "history row", "history plant"
+
+
+def take_plant(choices: Choices, objects: dict) -> None:
+    """Take the plant that was tapped as the one whose history is shown."""
+    hits = [hit["i"] for layer in objects.values() for hit in layer if "i" in hit]
+    if hits:
+        grid = choices.plot.grid
+        label = row_label(grid, np.array([min(hits[0], len(grid) - 1)]))
+        st.session_state[_ROW], st.session_state[_PLANT] = int(label.line[0]), int(label.number[0])
+
+
+def layers(choices: Choices) -> list:
+    """Return the ring round the plant whose history is shown, if there is such a plant."""
+    try:
+        plant = plant_at(
+            choices.plot.grid, *(widget_memory.value(key, 1) for key in (_ROW, _PLANT))
+        )
+    except FieldmonError:
+        return []  # its history says why
+    return plant_layers.chosen(choices.plot.grid, plant)
+
+
+def show(choices: Choices) -> None:
+    """Show what is known of the plant tapped, or of the one whose row and number are given."""
+    st.markdown(f"**{texts.HISTORY}**")
+    st.caption(texts.HISTORY_TAP)
+    row, number = (
+        widget_memory.show(st.number_input, label, 1, key=key, default=1)
+        for label, key in ((texts.HISTORY_ROW, _ROW), (texts.HISTORY_PLANT, _PLANT))
+    )
+    plant = plant_at(choices.plot.grid, int(row), int(number))
+    now = first = chosen_day.chance(choices)
+    if choices.season is not None:
+        first = chosen_day.morning(choices, str(choices.season.settings.begins))
+    st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
+    for line in _inspections(choices, plant):
+        st.markdown(line)
+
+
+def _inspections(choices: Choices, plant: int) -> list[str]:
+    season = choices.season
+    if season is None:
+        return [texts.HISTORY_NEVER]
+    done = season.history.inspections
+    own = np.flatnonzero(done.plant == plant)
+    lines = []
+    for k in own.tolist():
+        second = done.second[k]
+        at = "" if np.isnan(second) else f" {int(second) // 3600:02d}:{int(second) // 60 % 60:02d}"
+        day = choices.units.day(done.date[k].item())
+        result = texts.HISTORY_RESULTS[int(done.result[k])]
+        lines.append(texts.HISTORY_LINE.format(day=day, time=at, result=result))
+    return lines or [texts.HISTORY_NEVER]

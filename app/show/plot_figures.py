@@ -1,0 +1,28 @@
+"""A plot in figures: how large it is and how it is planted."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import shapely
+import streamlit as st
+
+from ..words import texts
+
+if TYPE_CHECKING:
+    from fieldmon.plot.plot import Plot
+
+    from ..words.units import Units
+
+
+def show(plot: Plot, units: Units) -> None:
+    """Show the figures side by side."""
+    grid = plot.grid
+    area_m2 = shapely.area(grid.frame.geometry_m(plot.field.drivable()))
+    apart = f"{units.metres(grid.row_spacing_m, 1)} / {units.metres(grid.plant_spacing_m, 1)}"
+    with st.container(horizontal=True):
+        st.metric(texts.AREA_IS, units.square(float(area_m2)), width="content")
+        st.metric(texts.PLANTS_ARE, f"{len(grid):,}", width="content")
+        st.metric(texts.ROWS_ARE, int(grid.row_line.max()) + 1, width="content")
+        st.metric(texts.BEARING_IS, f"{grid.frame.bearing_deg % 180:.1f}°", width="content")
+        st.metric(texts.SPACING_IS, apart, width="content")

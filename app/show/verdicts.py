@@ -1,0 +1,77 @@
+"""What a comparison came to, in words and as a table. No Streamlit in here."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import isnan
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from ..words import texts
+from ..words.strategies import strategy_name
+
+if TYPE_CHECKING:
+    from fieldmon.simulation.statistics import SummaryStatistics
+
+    from ..state.comparison import Outcome, Strategy
+
+
+def name(strategy: Strategy) -> str:
+    """Return what to call a strategy."""
+    return strategy_name(strategy.sampler, strategy.hours, strategy.inspection_s)
+
+
+def sentence(ranked: list[Outcome]) -> str:
+    """Return which strategy is best, and by how much."""
+    if len(ranked) == 1:
+        return ""
+    best, second = ranked[0], ranked[1]
+    names = {"best": name(best.strategy), "second": name(second.strategy)}
+    if not second.behind.low > 0:
+        return texts.VERDICT_TIED.format(**names)
+    return texts.VERDICT.format(
+        **names, loss=best.loss.mean, low=second.behind.low, high=second.behind.high,
+        percent=100 * second.behind.mean / second.loss.mean,
+    )  # fmt: skip
+
+
+def table(ranked: list[Outcome]) -> pd.DataFrame:
+    """Return what each strategy came to, the best first and marked."""
+    base = ranked[0].loss.mean
+    return pd.DataFrame(
+        {
+            texts.COLUMN_STRATEGY: [name(o.strategy) for o in ranked],
+            texts.COLUMN_LOSS: [_interval(o.loss, "{:,.0f}") for o in ranked],
+            texts.COLUMN_FOUND: [
+                _interval(_share(o.detection_pct), "{:.3g}", " %") for o in ranked
+            ],
+            texts.COLUMN_VISITED: [f"{o.visited_pct:.1f} %" for o in ranked],
+            texts.COLUMN_HALF: ["-" if o.half_day is None else f"{o.half_day:g}" for o in ranked],
+            texts.COLUMN_VERDICT: [_word(o, base) for o in ranked],
+        }
+    )
+
+
+def _share(e: SummaryStatistics) -> SummaryStatistics:
+    """Return an estimate of a percentage within 0 to 100, which Student's t does not know of."""
+    return replace(e, low=max(e.low, 0.0), high=min(e.high, 100.0))
+
+
+def _interval(e: SummaryStatistics, form: str, unit: str = "") -> str:
+    mean = form.format(e.mean) + unit
+    if isnan(e.low):
+        return mean
+    return f"{mean} ({form.format(e.low)} .. {form.format(e.high)})"
+
+
+def _word(o: Outcome, base: float) -> str:
+    if o.behind is None:
+        return f"★ {texts.BEST}"
+    if isnan(o.behind.low):
+        return texts.ONE_SEASON
+    if not o.behind.low > 0:
+        return texts.NO_DIFFERENCE
+    percent = {name: 100 * getattr(o.behind, of) / base
+               for name, of in (("percent", "mean"), ("low", "low"), ("high", "high"))}  # fmt: skip
+    return texts.WORSE.format(**percent)

@@ -1,0 +1,1 @@
+"""What happens before a first page is there: the server, loading ahead, the first screen."""

@@ -1,0 +1,147 @@
+"""What `fieldmon app` starts: a server that answers at once, while all else is still loading.
+
+A browser takes longer to load Streamlit's page than Python takes to load Streamlit. So the page's
+own files, which lie in Streamlit's folder, are handed out here; whatever else a browser asks for
+waits for Streamlit, which runs as it does under any server (`st.App`).
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import mimetypes
+import os
+import signal
+import socket
+import sys
+import threading
+import webbrowser
+from contextlib import AsyncExitStack
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.io.sandbox import process
+
+from . import preload
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable
+
+    Message = dict[str, Any]
+    Receive = Callable[[], Awaitable[Message]]
+    Send = Callable[[Message], Awaitable[None]]
+
+#: what Streamlit is told through its own variables; all else is in .streamlit/config.toml
+ADDRESS, PORT = "STREAMLIT_SERVER_ADDRESS", "STREAMLIT_SERVER_PORT"
+PAGE = Path(__file__).resolve().parents[1] / "streamlit_app.py"
+# what draws maps is three megabytes of script, which the page asks for late: at the first map
+_MAPS = "/static/js/DeckGlJsonChart.*.js"
+_FOR_GOOD = b"public, immutable, max-age=31536000"
+# one thread must not keep the others waiting while libraries load (Python's default is 5 ms)
+_TURN_S = 0.0005
+_GOODBYE_S = 5
+# as Python knows them: what a machine says of scripts may keep browsers from running them
+_KINDS = mimetypes.MimeTypes()
+_LOG = logging.getLogger(__name__)
+
+
+class Server:
+    """An ASGI application: the page's files at once, all else from Streamlit once it is loaded."""
+
+    def __init__(self) -> None:
+        self._files = page_files()
+        self._hint = next((name for name in self._files if Path(name).match(_MAPS)), None)
+        self._streamlit: Any = None
+        self._loaded = asyncio.Event()
+
+    async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
+        """Answer a request, or run until the server stops."""
+        if scope["type"] == "lifespan":
+            await self._run(receive, send)
+        elif scope["path"] in self._files and scope.get("method") == "GET":
+            await self._hand_out(scope["path"], send)
+        else:
+            await self._loaded.wait()
+            await self._streamlit(scope, receive, send)
+
+    async def _hand_out(self, path: str, send: Send) -> None:
+        body = self._files[path].read_bytes()
+        kind = _KINDS.guess_type(self._files[path].name)[0] or "application/octet-stream"
+        headers = [
+            (b"content-type", kind.encode()),
+            (b"content-length", b"%d" % len(body)),
+            (b"cache-control", _FOR_GOOD if path.startswith("/static/") else b"no-cache"),
+        ]
+        if path == "/" and self._hint is not None:
+            headers.append((b"link", f"<.{self._hint}>; rel=modulepreload".encode()))
+        await send({"type": "http.response.start", "status": 200, "headers": headers})
+        await send({"type": "http.response.body", "body": body})
+
+    async def _run(self, receive: Receive, send: Send) -> None:
+        """Load Streamlit beside the first answers; stop it at the end."""
+        await receive()
+        await send({"type": "lifespan.startup.complete"})
+        async with AsyncExitStack() as stack:
+            loading = asyncio.create_task(self._load(stack))
+            await receive()
+            await loading
+        await send({"type": "lifespan.shutdown.complete"})
+
+    async def _load(self, stack: AsyncExitStack) -> None:
+        try:
+            self._streamlit = await asyncio.to_thread(_streamlit)
+            await stack.enter_async_context(self._streamlit.lifespan()(None))
+        except Exception:  # noqa: BLE001 - nobody else would hear of it
+            _LOG.exception("The app could not be loaded.")
+            signal.raise_signal(signal.SIGINT)
+            return
+        self._loaded.set()
+        preload.start()
+
+
+def page_files() -> dict[str, Path]:
+    """Return the files of Streamlit's page by their addresses; nothing if they are elsewhere."""
+    streamlit = find_spec("streamlit")
+    if streamlit is None or streamlit.origin is None:
+        return {}
+    folder = Path(streamlit.origin).with_name("static")
+    files = {f"/{f.relative_to(folder).as_posix()}": f for f in folder.rglob("*") if f.is_file()}
+    if "/index.html" in files:
+        files["/"] = files.pop("/index.html")
+    return files
+
+
+def _streamlit() -> Any:  # noqa: ANN401 - half a second to import
+    return import_module("streamlit.starlette").App(PAGE)
+
+
+def _has_screen() -> bool:
+    """Return whether a browser can show itself; in a terminal it would only be in the way."""
+    screens = ("DISPLAY", "WAYLAND_DISPLAY")
+    return not sys.platform.startswith("linux") or any(map(os.environ.get, screens))
+
+
+def main() -> None:
+    """Serve the app at the address and port of the environment; `--browser` opens it there."""
+    address, port = os.environ[ADDRESS], int(os.environ[PORT])
+    line = socket.create_server((address, port), backlog=2048)
+    process.warm()
+    if "--browser" in sys.argv and _has_screen():
+        url = f"http://{address}:{port}"
+        threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+    import uvicorn  # noqa: PLC0415 - the browser starts meanwhile
+
+    sys.setswitchinterval(_TURN_S)
+    config = uvicorn.Config(
+        Server(), access_log=False, log_level="warning", ws="websockets-sansio", lifespan="on",
+        ws_per_message_deflate=False, ws_ping_interval=30, ws_ping_timeout=30,
+        timeout_graceful_shutdown=_GOODBYE_S,
+    )  # fmt: skip
+    logging.getLogger("uvicorn.access").disabled = True  # Streamlit writes down every request
+    uvicorn.Server(config).run(sockets=[line])
+
+
+if __name__ == "__main__":
+    main()

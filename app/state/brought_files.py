@@ -1,0 +1,113 @@
+"""What a session brought: files, and what was answered about them. Other sessions never see it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import streamlit as st
+
+from fieldmon.io.options import Upload
+
+from . import cached
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from streamlit.runtime.uploaded_file_manager import UploadedFile
+
+    from fieldmon.io.import_report import Imported, ImportMessage
+
+PLOT, RECORDS, PLANTS = "plot", "record", "plant"
+_BROUGHT, _ASKING = "brought", "asking"
+
+
+@dataclass(frozen=True, eq=False)
+class File:
+    """A file to read: what stands for it in keys, and where it is or its bytes."""
+
+    key: str
+    source: Path | Upload | tuple[Upload, ...]
+
+    @property
+    def name(self) -> str:
+        """Return its name; that of the first one, where several make one file."""
+        first = self.source[0] if isinstance(self.source, tuple) else self.source
+        return first.name
+
+
+@dataclass(frozen=True, eq=False)
+class FileMessage:
+    """What an import has to say, and the key of the file it is about."""
+
+    file_key: str
+    message: ImportMessage
+
+
+def messages_of(file_key: str, imported: Imported[Any]) -> tuple[FileMessage, ...]:
+    """Return what an import had to say about a file."""
+    return tuple(FileMessage(file_key, message) for message in imported.messages)
+
+
+# -- the files
+
+
+def brought() -> dict[str, File]:
+    """Return the files of this session by what they are: a plot, records, plants, rasters."""
+    files: dict[str, File] = st.session_state.setdefault(_BROUGHT, {})
+    return files
+
+
+def keep(kind: str, parts: Iterable[UploadedFile]) -> None:
+    """Keep what was dropped into a box, the parts of one file; nothing: take it out."""
+    uploads = tuple(Upload(part.name, part.getvalue()) for part in parts)
+    if not uploads:
+        take_out(kind)
+        return
+    key = cached.digest(b"".join(u.name.encode() + b"\0" + u.data for u in uploads))
+    brought()[kind] = File(key, uploads[0] if len(uploads) == 1 else uploads)
+
+
+def take_out(kind: str) -> None:
+    """Forget a file."""
+    brought().pop(kind, None)
+
+
+# -- what was answered about them
+
+
+def settled(file: File, options: Any) -> Any:  # noqa: ANN401 - any of four kinds of options
+    """Return the options with what was answered for this file before; it is the one asked about."""
+    for option, value in answers(file.key):
+        options = options.choose(option, value)
+    ask_about(file.key)
+    return options
+
+
+def ask_about(key: str) -> None:
+    """Let whatever is asked next be about the file with this key."""
+    st.session_state[_ASKING] = key
+
+
+def asking() -> str:
+    """Return the key of the file that is asked about; empty: of none."""
+    key: str = st.session_state.get(_ASKING, "")
+    return key
+
+
+def answers(key: str) -> tuple[tuple[str, str], ...]:
+    """Return what was answered about a file, in order: option and value."""
+    said: tuple[tuple[str, str], ...] = st.session_state.get(f"answers {key}", ())
+    return said
+
+
+def answer(key: str, option: str, value: str) -> None:
+    """Add an answer about a file; an empty one is none."""
+    if value:
+        st.session_state[f"answers {key}"] = (*answers(key), (option, value))
+
+
+def take_back(key: str) -> None:
+    """Take the last answer about a file back."""
+    st.session_state[f"answers {key}"] = answers(key)[:-1]

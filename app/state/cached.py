@@ -1,0 +1,303 @@
+"""Everything the app keeps between clicks. Keys are digests and frozen settings, never arrays.
+
+Streamlit hashes large arrays from a sample of their cells; a plot that differs in one plant would
+be taken for the same. So values that cannot be keyed come in as ``_arguments``, which Streamlit
+leaves out, beside a key that stands for them.
+"""
+
+from __future__ import annotations
+
+from hashlib import sha256
+from typing import TYPE_CHECKING
+
+import numpy as np
+import streamlit as st
+
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.hotspots import HotSpots, hot_spots, record_states
+from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.infestation.spread import Spread
+from fieldmon.io import prepare, read
+from fieldmon.io.rasters.read import read_backdrop
+from fieldmon.monitoring import Season, worked_route
+from fieldmon.planning.day_bound import with_bound
+from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from
+from fieldmon.samplers import sampler
+from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
+from fieldmon.simulation.season import SeasonSettings, SimulatedDay, simulated_days
+from fieldmon.simulation.start import season_start
+
+from ..words import texts
+from .comparison import Comparison
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+    from pydeck import Layer
+    from shapely import MultiLineString
+
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.io.import_report import Imported
+    from fieldmon.io.options import PlotOptions, ReadOptions, Source
+    from fieldmon.io.rasters.values import Backdrop, RasterOptions
+    from fieldmon.io.readers.places import Plants
+    from fieldmon.io.sources import (
+        CanopySource,
+        PlantingChoices,
+        PlotSources,
+        RecordSource,
+        RiskSource,
+    )
+    from fieldmon.monitoring import DayFigures, KeptMessage, Progress
+    from fieldmon.planning.route import Route
+    from fieldmon.plot.field import Field
+    from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot
+
+    from .comparison import ComparisonSettings
+
+    Array = NDArray[np.float64]
+
+_FEW = 24
+# maps of many plants are megabytes each, a day's figures a few numbers
+_MAPS, _DAYS = 60, 200
+
+
+def digest(data: bytes) -> str:
+    """Return what stands for a file's bytes in keys."""
+    return sha256(data).hexdigest()
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def plots(key: str, options: PlotOptions, _source: Source) -> Imported[tuple[Field, ...]]:  # noqa: ARG001
+    """Return the plots of a file."""
+    return read.read_plots(_source, options)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def records(
+    key: str,  # noqa: ARG001
+    _source: RecordSource,
+    _plot: Plot,
+    _fields: tuple[Field, ...],
+    _measured: Plants | None,
+) -> Imported[Observations]:
+    """Return the records on and near a plot; `key` stands for the file and the plot.
+
+    They may name one of `_fields`, or rows and plants, the measured ones by their own labels.
+    """
+    return prepare.records_on(_plot, _source, lambda: _fields, _measured)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def measured_plants(key: str, options: ReadOptions, _source: Source) -> Plants:  # noqa: ARG001
+    """Return measured plants: positions, and labels if the file has any."""
+    return read.read_plants(_source, options).value
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def paths(source: Path) -> MultiLineString:
+    """Return the lines of one of the program's own files."""
+    return read.read_lines(source).value
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def plot(key: str, choices: PlantingChoices, _field: Field) -> Plot:  # noqa: ARG001
+    """Return a field with its plants and aisles."""
+    return prepare.lay(_field, choices).plot
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def plot_around(
+    key: str,  # noqa: ARG001
+    choices: PlantingChoices,
+    _sources: PlotSources,
+    _measured: Plants,
+) -> Plot:
+    """Return the plot of measured plants that have no drawn boundary."""
+    return prepare.lay_around(_sources, _measured, choices).plot
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def day_plan(
+    key: str,
+    day: str,
+    robot: Robot,
+    sampler_name: str,
+    _plot: Plot,
+    _known: tuple[Observations, Array | None],
+) -> DayPlan:
+    """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
+    chance = chance_map(key, day, _plot, _known)
+    return with_bound(plan_from(_plot, chance, PlanSettings(robot, sampler(sampler_name))))
+
+
+@st.cache_resource(max_entries=_FEW)
+def chance_map(
+    key: str,  # noqa: ARG001
+    day: str,
+    _plot: Plot,
+    _known: tuple[Observations, Array | None],
+) -> Array:
+    """Return the chance map of a day, whoever is to work on it; `key` as above."""
+    records, at_risk = _known
+    on = np.datetime64(day, "D")
+    return prior_chance(_plot.grid, _plot.field, records, on, PriorSettings(), at_risk)
+
+
+@st.cache_resource(max_entries=_FEW)
+def recorded_states(key: str, _plot: Plot, _records: Observations) -> NDArray[np.int8]:  # noqa: ARG001
+    """Return what records say of plants; `key` stands for the plot, its records and the day."""
+    return record_states(_plot.grid, _records)
+
+
+@st.cache_resource(max_entries=_FEW)
+def recorded_hot_spots(key: str, _plot: Plot, _records: Observations) -> HotSpots:
+    """Return where records cluster; `key` as above."""
+    return hot_spots(_plot.grid, recorded_states(key, _plot, _records))
+
+
+# -- seasons that are kept
+
+
+def season(path: Path) -> Season:
+    """Open a season; all sessions share it, and each call of it reads what is new in the file."""
+    inode = path.stat().st_ino if path.is_file() else 0
+    return _season(path, inode)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def _season(path: Path, inode: int) -> Season:  # noqa: ARG001 - another file of the same name
+    return Season(path)
+
+
+@st.cache_resource(max_entries=_FEW)
+def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:  # noqa: ARG001
+    """Return what the imports had to say when a season began."""
+    return _season.messages()
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def season_plan(path: str, revision: str, day: str, _season: Season) -> DayPlan:  # noqa: ARG001
+    """Return what is left of a season's day."""
+    return with_bound(_season.plan(np.datetime64(day).item(), keep=False))
+
+
+@st.cache_resource(max_entries=_FEW)
+def kept_route(path: str, revision: str, day: str, _season: Season) -> Array:  # noqa: ARG001
+    """Return the plants of the route that was given out for a day; empty if none was."""
+    return _season.kept_route(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_FEW)
+def worked(path: str, revision: str, day: str, _season: Season) -> Route:  # noqa: ARG001
+    """Return a day's route as it was worked; empty if nothing was recorded."""
+    return worked_route(_season, np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_FEW)
+def kept_days(path: str, revision: str, _season: Season) -> tuple[DayFigures, ...]:  # noqa: ARG001
+    """Return the figures of a season's days on which something happened, in order."""
+    return _season.days()
+
+
+@st.cache_resource(max_entries=_DAYS)
+def day_figures(path: str, revision: str, day: str, _season: Season) -> DayFigures:  # noqa: ARG001
+    """Return a day of a season in figures."""
+    return _season.day_figures(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def progress(path: str, revision: str, day: str, _season: Season) -> Progress:  # noqa: ARG001
+    """Return how far the inspections are after a day of a season."""
+    return _season.progress(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def season_hot_spots(path: str, revision: str, day: str, _season: Season) -> HotSpots:  # noqa: ARG001
+    """Return where finds cluster on a day of a season."""
+    number = _season.settings.day(np.datetime64(day).item())
+    return hot_spots(_season.plot.grid, _season.history.states(number))
+
+
+@st.cache_resource(max_entries=_MAPS)
+def evening(path: str, revision: str, day: str, _season: Season) -> Array:  # noqa: ARG001
+    """Return the chance map of a day after what was recorded of it."""
+    return _season.evening(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def morning(path: str, revision: str, day: str, _season: Season) -> Array:  # noqa: ARG001
+    """Return the chance map of a morning."""
+    return _season.morning(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Backdrop:  # noqa: ARG001
+    """Return a picture of the ground about a plot."""
+    return read_backdrop(_source, options, _near).value
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def risk(
+    key: str,  # noqa: ARG001
+    _source: RiskSource,
+    _plot: Plot,
+) -> Imported[Array]:
+    """Return the risk of a plot's plants from a raster; `key` stands for raster and plot."""
+    return prepare.risk_on(_plot, _source)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def without_missing(
+    key: str,  # noqa: ARG001
+    _source: CanopySource,
+    _plot: Plot,
+) -> Imported[Plot]:
+    """Return a plot without the plants that a raster shows to be missing; `key` as above."""
+    return prepare.without_missing(_plot, _source)
+
+
+@st.cache_resource(max_entries=_MAPS)
+def layers(key: str, _make: Callable[[], list[Layer]]) -> list[Layer]:  # noqa: ARG001
+    """Return map layers, made once; `key` stands for all that they show."""
+    return _make()
+
+
+# -- simulated seasons
+
+
+@st.cache_resource(max_entries=8)
+def comparison(
+    key: str,  # noqa: ARG001
+    settings: ComparisonSettings,
+    robot: Robot,
+    _plot: Plot,
+    _chance: Array,
+) -> Comparison:
+    """Return the comparison of these settings on this plot; it is at work or will be."""
+    return Comparison(settings, _plot, _chance, robot)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+def simulated_season(
+    key: str,  # noqa: ARG001
+    sampler_name: str,
+    numbers: tuple[int, float, float, int],
+    robot: Robot,
+    _plot: Plot,
+    _chance: np.ndarray,
+) -> tuple[list[SimulatedDay], SeasonMetrics]:
+    """Return a simulated season and its figures; `key` stands for plot, records and day.
+
+    `numbers` are days, share infested at the start, spread a night, and seed.
+    """
+    n_days, share, rate, seed = numbers
+    streams = RandomStreams(seed)
+    start = season_start(_plot.grid, _chance, share, streams)
+    settings = SeasonSettings(n_days=n_days, spread=Spread(rate))
+    decides = sampler(sampler_name)
+    walk = list(simulated_days(_plot.aisles, robot, decides, start, settings, streams))
+    return walk, season_metrics(walk)

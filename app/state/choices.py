@@ -1,0 +1,93 @@
+"""What the person chose, as one frozen value that every page gets."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import date
+from typing import TYPE_CHECKING
+
+from ..words import texts
+from . import browser, cached
+
+if TYPE_CHECKING:
+    from fieldmon.errors import FieldmonError
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.monitoring import Season
+    from fieldmon.planning.plan import DayPlan
+    from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot
+
+    from ..words.units import Units
+    from .brought_files import FileMessage
+
+
+@dataclass(frozen=True, eq=False)
+class Choices:
+    """What the person chose, read and laid out.
+
+    Parameters
+    ----------
+    key
+        Stands for the plot and the records in cache keys.
+    plot, records
+        The plot with its plants, and the records near it.
+    messages
+        What the imports had to say.
+    robot, sampler, day
+        Who inspects, who chooses, and for which day (ISO).
+    units
+        How numbers are written.
+    season
+        The season that is open, or None: nothing is kept then.
+    plot_key
+        Names the plot before anything was drawn on it.
+    risk
+        ``(n,)`` risk of the plants from a raster, or None; a season has taken it in.
+    """
+
+    key: str
+    plot: Plot
+    records: Observations
+    messages: tuple[FileMessage, ...]
+    robot: Robot
+    sampler: str
+    day: str
+    units: Units
+    season: Season | None = None
+    plot_key: str = ""
+    risk: cached.Array | None = None
+
+    @property
+    def name(self) -> str:
+        """Return the plot's name, apart from the text around it, whatever its script."""
+        return texts.isolated(self.plot.field.name)
+
+    @property
+    def on(self) -> date:
+        """Return the day."""
+        return date.fromisoformat(self.day)
+
+    @property
+    def revision(self) -> str:
+        """Return what changes with everything that is recorded."""
+        return "" if self.season is None else self.season.revision
+
+    @property
+    def dark(self) -> bool:
+        """Return whether the page is dark."""
+        return browser.is_dark()
+
+    def plan(self) -> DayPlan:
+        """Return the planned day: what is left of it, once something of it was recorded."""
+        if self.season is not None:
+            return cached.season_plan(self.key, self.revision, self.day, self.season)
+        known = self.records, self.risk
+        return cached.day_plan(self.key, self.day, self.robot, self.sampler, self.plot, known)
+
+
+@dataclass(frozen=True, eq=False)
+class Chosen:
+    """The choices, or why there are none yet (neither: nothing was brought)."""
+
+    choices: Choices | None = None
+    problem: FieldmonError | None = None

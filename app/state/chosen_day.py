@@ -1,0 +1,140 @@
+"""What is known and planned on the chosen day: of a season's findings, else of records."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import date, datetime, time, timedelta
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.observations import usable
+
+from . import cached
+
+if TYPE_CHECKING:
+    from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.monitoring import DayFigures, Progress
+    from fieldmon.planning.plan import DayPlan
+    from fieldmon.planning.route import Route
+    from fieldmon.plot.plot import Plot
+
+    from .choices import Choices
+
+#: when work starts where no season says it
+STARTS = time(6, 0)
+
+
+@dataclass(frozen=True, eq=False)
+class DayRoute:
+    """A route on the map, and the local time at which it starts."""
+
+    route: Route
+    begins: datetime
+
+
+def starts(choices: Choices, plan: DayPlan) -> datetime:
+    """Return the local time at which the planned route, or what is left of it, starts."""
+    begins = STARTS if choices.season is None else choices.season.settings.starts
+    gone = timedelta(seconds=plan.scene.robot.day_s - plan.scene.seconds_left)
+    return datetime.combine(choices.on, begins) + gone
+
+
+def route(choices: Choices) -> DayRoute:
+    """Return the route as it was driven on a day that was worked, or as it is planned."""
+    plan, season = choices.plan(), choices.season
+    if season is not None and (not len(plan.route) or choices.on < season.last_date()):
+        done = cached.worked(choices.key, choices.revision, choices.day, season)
+        if len(done):
+            return DayRoute(done, datetime.combine(choices.on, season.settings.starts))
+    return DayRoute(plan.route, starts(choices, plan))
+
+
+def given_out(choices: Choices) -> cached.Array:
+    """Return the plants of the route that a season keeps as given out for the day, or none."""
+    return cached.kept_route(choices.key, choices.revision, choices.day, choices.season)
+
+
+def chance(choices: Choices) -> cached.Array:
+    """Return ``(n,)`` what is believed on the day, after what was recorded of it."""
+    if choices.season is None:
+        return choices.plan().chance
+    return cached.evening(choices.key, choices.revision, choices.day, choices.season)
+
+
+def morning(choices: Choices, day: str) -> cached.Array:
+    """Return ``(n,)`` what a season believed on the morning of a day (ISO)."""
+    return cached.morning(choices.key, choices.revision, day, choices.season)
+
+
+def states(choices: Choices) -> cached.Array:
+    """Return ``(n,)`` found (1), clean (0) or never inspected (-1); of records without a season."""
+    if choices.season is None:
+        return cached.recorded_states(*_recorded(choices))
+    return choices.season.history.states(choices.season.settings.day(choices.on))
+
+
+def hot_spots(choices: Choices) -> HotSpots:
+    """Return the hot spots of the day: of findings in a season, else of records."""
+    if choices.season is None:
+        return cached.recorded_hot_spots(*_recorded(choices))
+    return season_hot_spots(choices, choices.day)
+
+
+def season_hot_spots(choices: Choices, day: str) -> HotSpots:
+    """Return a season's hot spots on a day (ISO)."""
+    return cached.season_hot_spots(choices.key, choices.revision, day, choices.season)
+
+
+def ages(choices: Choices) -> cached.Array:
+    """Return ``(n,)`` days since each plant was inspected; -1: never."""
+    if choices.season is None:
+        return np.full(len(choices.plot.grid), -1)
+    day = choices.season.settings.day(choices.on)
+    last = choices.season.history.last_inspected(day)
+    return np.where(last < 0, -1, day - last)
+
+
+def progress(choices: Choices) -> Progress:
+    """Return how far a season's inspections are."""
+    return cached.progress(choices.key, choices.revision, choices.day, choices.season)
+
+
+def figures(choices: Choices, day: str) -> DayFigures:
+    """Return a day (ISO) of a season in figures."""
+    return cached.day_figures(choices.key, choices.revision, day, choices.season)
+
+
+def figures_so_far(choices: Choices) -> list[DayFigures]:
+    """Return the days up to the chosen one on which something happened, and that one."""
+    kept = cached.kept_days(choices.key, choices.revision, choices.season)
+    return [*(one for one in kept if one.on < choices.on), figures(choices, choices.day)]
+
+
+def found(choices: Choices) -> cached.Array:
+    """Return the plants found on the day, by number; none without a season."""
+    if choices.season is None:
+        return np.empty(0, np.int32)
+    done = choices.season.history.inspections.on(choices.on)
+    return np.unique(done.plant[done.result == FOUND])
+
+
+def season_days(choices: Choices) -> list[str]:
+    """Return the days (ISO) of a season from its first up to its last or the chosen one."""
+    season = choices.season
+    until: date = max(choices.on, season.last_date())
+    first = np.datetime64(season.settings.begins, "D")
+    return [str(day) for day in np.arange(first, np.datetime64(until, "D") + 1)]
+
+
+def messages_on_records(choices: Choices) -> list[str]:
+    """Return what planning says about records it cannot use."""
+    return list(usable(choices.records, np.datetime64(choices.day)).messages())
+
+
+def _recorded(choices: Choices) -> tuple[str, Plot, Observations]:
+    """Return the records that are known on the chosen day, their plot, and a key for both."""
+    known = usable(choices.records, np.datetime64(choices.day)).observations
+    return f"{choices.key} {choices.day}", choices.plot, known

@@ -1,0 +1,216 @@
+"""Strategies against each other on a plot, in the background. No Streamlit in here.
+
+Every strategy meets the same insects: a seed's start, its nights and what its inspections detect
+are drawn from streams that know nothing of the strategy. So differences are taken seed by seed
+(paired).
+"""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.errors import FieldmonError
+from fieldmon.simulation import executor
+from fieldmon.simulation.design import Combination
+from fieldmon.simulation.experiment import Experiment, Memory, run
+from fieldmon.simulation.statistics import half_interval, summary_statistics
+from fieldmon.simulation.worker import simulated_season
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot
+    from fieldmon.simulation.metrics import SeasonMetrics
+    from fieldmon.simulation.statistics import SummaryStatistics
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, order=True)
+class Strategy:
+    """One way to work a season.
+
+    Parameters
+    ----------
+    sampler
+        Who chooses the plants.
+    hours
+        Working day.
+    inspection_s
+        Seconds at a plant; more of them find more of what is there (the thesis's viewpoints).
+    """
+
+    sampler: str
+    hours: float
+    inspection_s: float
+
+
+@dataclass(frozen=True)
+class ComparisonSettings:
+    """What is compared, and on how many seasons of which kind.
+
+    Parameters
+    ----------
+    strategies
+        What is compared.
+    n_days
+        Days a season.
+    share
+        Plants infested at the start, 0 to 1.
+    rate
+        Chance a night that an infested plant infests each plant next to it.
+    seeds
+        Seasons for each strategy.
+    """
+
+    strategies: tuple[Strategy, ...]
+    n_days: int
+    share: float
+    rate: float
+    seeds: int
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a strategy came to.
+
+    Parameters
+    ----------
+    strategy
+        What was done.
+    loss
+        Infested plant-days: the grower's loss, less is better.
+    detection_pct
+        Detection at the end of the season.
+    visited_pct
+        Plants inspected a day.
+    half_day
+        First day with half of all infestations found; the median over seeds, None if it is never.
+    behind
+        Loss beyond that of the best strategy, seed by seed; None for the best.
+    """
+
+    strategy: Strategy
+    loss: SummaryStatistics
+    detection_pct: SummaryStatistics
+    visited_pct: float
+    half_day: float | None
+    behind: SummaryStatistics | None
+
+
+class Comparison:
+    """A comparison that runs in a thread of its own and can be watched and stopped."""
+
+    def __init__(
+        self, settings: ComparisonSettings, plot: Plot, chance: Floats, robot: Robot
+    ) -> None:
+        self.settings = settings
+        self.problem: FieldmonError | None = None
+        self._prepared, self._robot = (plot, chance), robot
+        self._experiment = Experiment(
+            settings=settings.strategies,
+            seeds=range(1, settings.seeds + 1),
+            simulate=self._season,
+            chunk_size=lambda _: 1,
+            seed_by_seed=True,
+        )
+        self._made: Memory[SeasonMetrics] = Memory()
+        self._stop = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    @property
+    def total(self) -> int:
+        """Return the number of seasons to simulate."""
+        return len(self._experiment)
+
+    @property
+    def done(self) -> int:
+        """Return the number of seasons simulated."""
+        return len(self._made)
+
+    @property
+    def running(self) -> bool:
+        """Tell whether it is at work."""
+        return self._thread is not None and self._thread.is_alive()
+
+    def start(self) -> None:
+        """Begin, or go on where it was stopped."""
+        if not self.running and self.done < self.total:
+            self._stop.clear()
+            self._thread = threading.Thread(target=self._work, daemon=True)
+            self._thread.start()
+
+    def stop(self) -> None:
+        """End after the season that is being simulated; what is there is kept."""
+        self._stop.set()
+
+    def wait(self, timeout_s: float) -> None:
+        """Wait for the end."""
+        if self._thread is not None:
+            self._thread.join(timeout_s)
+
+    def seasons(self) -> dict[Strategy, list[SeasonMetrics]]:
+        """Return the seasons of all seeds that every strategy has been through."""
+        made: dict[Strategy, list[SeasonMetrics]] = {one: [] for one in self.settings.strategies}
+        for chunk in self._experiment.chunks():
+            if chunk.key in self._made:
+                made[chunk.setting].append(self._made[chunk.key])
+        full = min(len(seasons) for seasons in made.values())
+        return {strategy: seasons[:full] for strategy, seasons in made.items()}
+
+    def _work(self) -> None:
+        try:
+            run(self._experiment, executor.here(), self._made, stop=self._stop.is_set)
+        except FieldmonError as error:
+            self.problem = error
+
+    def _season(self, strategy: Strategy, seeds: range) -> SeasonMetrics:
+        settings = self.settings
+        levels = Combination(
+            strategy.sampler, strategy.hours, strategy.inspection_s, settings.share, settings.rate
+        )
+        return simulated_season(self._prepared, self._robot, levels, seeds.start, settings.n_days)
+
+
+def outcomes(seasons: dict[Strategy, list[SeasonMetrics]]) -> list[Outcome]:
+    """Return what each strategy came to, the best first; empty while no seed is complete."""
+    if not all(seasons.values()):
+        return []
+    losses = {
+        strategy: np.array([s.infested_plant_days for s in made], float)
+        for strategy, made in seasons.items()
+    }
+    ranked = sorted(losses, key=lambda strategy: losses[strategy].mean())
+    best = losses[ranked[0]]
+    return [
+        Outcome(
+            strategy,
+            summary_statistics(losses[strategy]),
+            summary_statistics(np.array([s.detection_pct[-1] for s in seasons[strategy]])),
+            float(np.mean([s.visited_pct.mean() for s in seasons[strategy]])),
+            _half_day(seasons[strategy]),
+            None if strategy == ranked[0] else summary_statistics(losses[strategy] - best),
+        )
+        for strategy in ranked
+    ]
+
+
+def curve(made: list[SeasonMetrics]) -> tuple[Floats, Floats, Floats]:
+    """Return detection by day over the seeds, ``(d,)`` each: mean, and ends of its interval."""
+    percent = np.stack([s.detection_pct for s in made])
+    mean, n = percent.mean(axis=0), len(percent)
+    if n < 2:
+        return mean, mean, mean
+    half = half_interval(percent.std(axis=0, ddof=1), n)
+    return mean, np.maximum(mean - half, 0.0), np.minimum(mean + half, 100.0)
+
+
+def _half_day(made: list[SeasonMetrics]) -> float | None:
+    reached = [np.inf if (day := s.first_day(50.0)) is None else day for s in made]
+    middle = float(np.median(reached))
+    return middle if np.isfinite(middle) else None

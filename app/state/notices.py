@@ -1,0 +1,44 @@
+"""Sentences that an action leaves for the next run of the page, which shows them above it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.errors import FieldmonError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_KEY = "notice"
+
+
+def keep(kind: str, sentence: str) -> None:
+    """Keep a sentence for the next run: ``"success"`` or ``"error"``."""
+    st.session_state[_KEY] = (kind, sentence)
+
+
+def show() -> None:
+    """Show what was kept, once."""
+    kind, sentence = st.session_state.pop(_KEY, (None, ""))
+    if kind is not None:
+        getattr(st, kind)(sentence)
+
+
+def reporting(action: Callable[..., str]) -> Callable[..., None]:
+    """Return a callback that keeps the sentence its action returns, or the problem it meets.
+
+    An empty sentence is nothing to say.
+    """
+
+    def callback(*arguments: object) -> None:
+        try:
+            sentence = action(*arguments)
+        except FieldmonError as error:
+            keep("error", str(error))
+        else:
+            if sentence:
+                keep("success", sentence)
+
+    return callback

@@ -1,0 +1,195 @@
+"""From a session's files to a plot with its plants, its records and its risk, step by step.
+
+The way is that of `fieldmon.io.prepare`; each step is kept, and what a person draws comes between.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.infestation.observations import Observations
+from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
+from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
+
+from . import brought_files, cached, rasters, sample_estate
+from .brought_files import File, FileMessage, messages_of, settled
+from .plot_edits import Edit, edited
+from .row_settings import row_settings
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fieldmon.io.readers.places import Plants
+    from fieldmon.plot.field import Field
+    from fieldmon.plot.plot import Plot
+
+    #: asks which plot of a file is meant, by the file and the plots' names
+    Which = Callable[[File, list[str]], int]
+
+#: what is put into cache keys for the sample estate's files
+_SAMPLE = "sample/"
+_LAYING = "laying"
+
+
+@dataclass(frozen=True, eq=False)
+class Files:
+    """The files that make a plot: a boundary or measured plants or both, and records of pests."""
+
+    plot: File | None
+    records: File | None
+    plants: File | None
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """A plot as its files draw it, before plants are laid.
+
+    Parameters
+    ----------
+    key
+        Names it in cache keys.
+    field
+        Its boundary and what was drawn with it; None if there are measured plants only.
+    fields
+        Every plot of its file, which records may name.
+    measured
+        Plants measured on it; None if there are none.
+    messages
+        What the import had to say.
+    """
+
+    key: str
+    field: Field | None
+    fields: tuple[Field, ...]
+    measured: Plants | None
+    messages: tuple[FileMessage, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class PlotFromFiles:
+    """A plot that is ready to be planned.
+
+    Parameters
+    ----------
+    key
+        Stands for all of it in cache keys.
+    plot, records
+        The plot with its plants, and the records near it.
+    risk
+        ``(n,)`` risk of the plants from a raster, or None.
+    messages
+        What the imports had to say.
+    """
+
+    key: str
+    plot: Plot
+    records: Observations
+    risk: cached.Array | None
+    messages: tuple[FileMessage, ...]
+
+
+def of_sample() -> Files:
+    """Return the files of the sample estate."""
+    return Files(_sample(sample_estate.PLOTS), _sample(sample_estate.RECORDS), None)
+
+
+def of_session() -> Files | None:
+    """Return the files that this session brought; None while they make no plot."""
+    brought = brought_files.brought()
+    kinds = (brought_files.PLOT, brought_files.RECORDS, brought_files.PLANTS)
+    files = Files(*(brought.get(kind) for kind in kinds))
+    return None if files.plot is None and files.plants is None else files
+
+
+def _sample(name: str) -> File:
+    return File(_SAMPLE + name, sample_estate.FOLDER / name)
+
+
+def outline(files: Files, which: Which) -> Outline:
+    """Return the plot that `which` answers with, and its measured plants."""
+    measured, key = _measured(files.plants)
+    if files.plot is None:
+        return Outline(key, None, (), measured, ())
+    options = settled(files.plot, PlotOptions())
+    read = cached.plots(files.plot.key, options, files.plot.source)
+    number = which(files.plot, [field.name for field in read.value])
+    field = read.value[number]
+    if measured is not None:
+        field = replace(field, plants=measured.lonlat)
+    if files.plot.key.startswith(_SAMPLE):
+        field = replace(field, paths=cached.paths(_sample(sample_estate.PATHS).source))
+    said = messages_of(files.plot.key, read)
+    own = tuple(one for one in said if one.message.feature in (None, field.name))
+    return Outline(f"{key}{files.plot.key}{options}{number}", field, read.value, measured, own)
+
+
+def _measured(file: File | None) -> tuple[Plants | None, str]:
+    if file is None:
+        return None, ""
+    options = settled(file, ReadOptions())
+    return cached.measured_plants(file.key, options, file.source), f"{file.key}{options}"
+
+
+def prepared(files: Files, outline: Outline) -> PlotFromFiles:
+    """Return the plot with its plants, records and risk."""
+    plot, key = _plot(files, outline)
+    # records may name plants by numbers that count those missing too
+    records, read, key = _records(files.records, outline, plot, key)
+    plot, missing, key = rasters.without_missing(plot, key)
+    risk, said, key = rasters.risk(plot, key)
+    return PlotFromFiles(key, plot, records, risk, (*outline.messages, *missing, *read, *said))
+
+
+def _plot(files: Files, outline: Outline) -> tuple[Plot, str]:
+    """Return the plot with its plants, as the row settings and what was drawn say."""
+    st.session_state[_LAYING] = outline.key
+    edits, field = drawn(outline.key), outline.field
+    if field is None:
+        choices = PlantingChoices(**row_settings(outline.key))
+        sources = PlotSources(plants=files.plants.source)
+        around = cached.plot_around(outline.key, choices, sources, outline.measured)
+        if not edits:
+            return around, f"{outline.key}{choices}"
+        field = around.field
+    return laid(outline.key, edits, field, edits)
+
+
+def laying() -> str:
+    """Return the key of the plot whose plants were laid last, or could not be."""
+    key: str = st.session_state.get(_LAYING, "")
+    return key
+
+
+def laid(
+    plot_key: str, edits: tuple[Edit, ...], field: Field, new: tuple[Edit, ...]
+) -> tuple[Plot, str]:
+    """Return the plot on which all `edits` are drawn, the `new` ones of them not yet on `field`."""
+    choices = PlantingChoices(**row_settings(plot_key))
+    key = f"{plot_key}{edits}"
+    return cached.plot(key, choices, edited(field, new)), f"{key}{choices}"
+
+
+def drawn(plot_key: str) -> tuple[Edit, ...]:
+    """Return what was drawn on a plot, in order."""
+    edits: tuple[Edit, ...] = st.session_state.get(f"edits {plot_key}", ())
+    return edits
+
+
+def draw(plot_key: str, edits: tuple[Edit, ...]) -> None:
+    """Keep what was drawn on a plot."""
+    st.session_state[f"edits {plot_key}"] = edits
+
+
+def _records(
+    file: File | None, outline: Outline, plot: Plot, key: str
+) -> tuple[Observations, tuple[FileMessage, ...], str]:
+    if file is None:
+        return Observations.none(), (), key
+    options = settled(file, RecordOptions())
+    key = f"{key}{file.key}{options}"
+    source = RecordSource(file.source, options)
+    read = cached.records(key, source, plot, outline.fields, outline.measured)
+    return read.value, messages_of(file.key, read), key

@@ -1,0 +1,35 @@
+"""Where the plot comes from: the sample estate, a person's own files, or a season that is kept."""
+
+from __future__ import annotations
+
+import streamlit as st
+
+from ..words import texts
+from . import widget_memory
+
+#: names the box that says it; also the word in the address
+KEY = "season"
+
+
+def begin_from_address() -> None:
+    """Let the box begin with what the address says: a season's name leads back to the season."""
+    widget_memory.first(KEY, st.query_params.get(KEY))
+
+
+def chosen() -> str:
+    """Return `texts.SAMPLE`, `texts.UPLOAD` or the name of a season."""
+    source: str = widget_memory.value(KEY, texts.SAMPLE)
+    return source
+
+
+def keep_in_address(source: str) -> None:
+    """Let the address lead back to a source after a reload, and to another person's screen."""
+    if source == texts.SAMPLE:
+        st.query_params.pop(KEY, None)
+    elif st.query_params.get(KEY) != source:
+        st.query_params[KEY] = source
+
+
+def open_season(name: str) -> None:
+    """Let the season of this name be open from the next run on (for callbacks)."""
+    st.session_state[KEY] = name

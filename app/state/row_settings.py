@@ -1,0 +1,32 @@
+"""What was said about a plot's rows by hand; lengths are kept in the unit chosen for the boxes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from . import widget_memory
+from .chosen_units import units
+
+if TYPE_CHECKING:
+    from ..words.units import Units
+
+#: the boxes that hold lengths
+LENGTHS = ("row_spacing", "plant_spacing", "headland")
+
+
+def row_settings(plot_key: str) -> dict[str, float | None]:
+    """Return the rows' settings, metres and degrees; None: found, or as the file says."""
+    said, now = {}, units()
+    for name in LENGTHS:
+        shown = widget_memory.value(f"{name} {plot_key}")
+        said[f"{name}_m"] = None if shown is None else now.in_metres(shown)
+    both = widget_memory.value(f"both_faces {plot_key}")
+    bearing = widget_memory.value(f"row_bearing {plot_key}")
+    return {**said, "row_bearing_deg": bearing, "faces": 2 if both else None}
+
+
+def carry_over(before: Units) -> None:
+    """Carry lengths that boxes hold over into the unit that is now chosen (for callbacks)."""
+    now = units()
+    if now.length != before.length:
+        widget_memory.change(LENGTHS, lambda shown: now.shown(before.in_metres(shown)))

@@ -1,0 +1,52 @@
+"""The seasons on this machine: one GeoPackage each, in the folder given at the start.
+
+No Streamlit in here.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fieldmon.errors import SettingError
+from fieldmon.monitoring import is_season
+
+from ..words import texts
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+#: names the folder; `fieldmon app --seasons` sets it
+FOLDER = "FIELDMON_SEASONS"
+_ENDING = ".gpkg"
+_LONGEST = 80
+
+
+def folder() -> Path:
+    """Return the folder in which seasons live."""
+    return Path(os.environ.get(FOLDER) or "seasons").absolute()
+
+
+def names() -> list[str]:
+    """Return the names of the seasons there, in order."""
+    here = folder()
+    files: Iterable[Path] = here.glob(f"*{_ENDING}") if here.is_dir() else ()
+    return sorted(file.stem for file in files if is_season(file))
+
+
+def path_of(name: str) -> Path:
+    """Return the file of a season; raise `SettingError` if the name leads out of the folder."""
+    if not name or re.search(r'[\\/:*?"<>|\x00-\x1f]', name) or name.startswith("."):
+        raise SettingError(texts.SEASON_NAMED.format(name=name))
+    if len(name) > _LONGEST:
+        raise SettingError(texts.SEASON_LONG.format(most=_LONGEST, n=len(name)))
+    return folder() / f"{name}{_ENDING}"
+
+
+def new_path(name: str) -> Path:
+    """Return where a new season goes; the folder is made if it is missing."""
+    path = path_of(name.strip())
+    path.parent.mkdir(parents=True, exist_ok=True)
+    return path

@@ -1,0 +1,90 @@
+"""Widgets that keep what was chosen when the page is turned.
+
+Streamlit forgets a widget's value on another page. Its ``persist_state="session"`` (1.67) shows
+the default in the run that turns the page where only one run came before: a reload of the address
+of a season, then another page, was the sample estate again.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import streamlit as st
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+T = TypeVar("T")
+_VALUES, _PAGE, _BEGINS = "widget values", "page", "widget begins"
+
+
+def turn(page: str) -> None:
+    """Say which page is about to be shown."""
+    st.session_state[_PAGE] = page
+
+
+def first(key: str, value: object) -> None:
+    """Let a widget begin with a value, if it was never shown and there is one."""
+    if value is not None:
+        _values().setdefault(key, ("", value))
+
+
+def value(key: str, default: object = None) -> Any:  # noqa: ANN401 - whatever the widget holds
+    """Return what was chosen last, on whichever page, though its widget may come further down."""
+    page, kept = _values().get(key, ("", default))
+    if key in st.session_state:
+        kept = st.session_state[key]
+        # what it changes may be that its widget is not shown any more
+        _values()[key] = (page, kept)
+    return kept
+
+
+def change(names: tuple[str, ...], new: Callable[[Any], Any]) -> None:
+    """Change the values of all widgets whose keys begin with one of the names (for callbacks)."""
+    for key, (page, kept) in list(_values().items()):
+        now = st.session_state.get(key, kept)
+        if key.split(" ")[0] in names and now is not None:
+            _values()[key] = (page, new(now))
+            # another unit, other limits: its own default must lie within them too
+            st.session_state.setdefault(_BEGINS, {})[key] = new(now)
+            if key in st.session_state:
+                st.session_state[key] = new(now)
+
+
+def show(
+    widget: Callable[..., T], *arguments: object, key: str, default: object = None,
+    **settings: object,
+) -> T:  # fmt: skip
+    """Show a widget with what was chosen before, on this page or another."""
+    state, page = st.session_state, st.session_state.get(_PAGE, "")
+    shown_on, kept = _values().get(key, ("", default))
+    begins = state.setdefault(_BEGINS, {})
+    if key not in state or shown_on != page:
+        # the last page's widget, if it was just left, knows better than what its last run saw
+        begins[key] = state[key] = state.get(key, kept)
+    own = _own_default(widget, arguments, begins.get(key, kept))
+    chosen = widget(*arguments, key=key, **settings, **own)
+    _values()[key] = (page, chosen)
+    return chosen
+
+
+def _own_default(
+    widget: Callable[..., object], arguments: tuple[object, ...], value: object
+) -> dict[str, Any]:
+    """Return the widget's own default, the same as long as a page is shown.
+
+    A run that is followed at once by another never reaches the browser, nor does the value set in
+    it: a box then fell back to its least number, and a choice to none.
+    """
+    name = widget.__name__
+    if name in {"selectbox", "radio"}:
+        options: list[object] = list(arguments[1])  # type: ignore[call-overload]
+        return {"index": options.index(value)} if value in options else {}
+    if name in {"pills", "segmented_control", "multiselect"}:
+        return {"default": value}
+    return {"value": value}
+
+
+def _values() -> dict[str, tuple[str, Any]]:
+    values: dict[str, tuple[str, Any]] = st.session_state.setdefault(_VALUES, {})
+    return values

@@ -1,0 +1,1 @@
+"""Every text of the app, and how names and numbers are written."""

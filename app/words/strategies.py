@@ -1,0 +1,24 @@
+"""What samplers and strategies are called. No Streamlit in here."""
+
+from __future__ import annotations
+
+from fieldmon.samplers import kind_of
+
+from . import texts
+
+
+def sampler_name(sampler: str) -> str:
+    """Return a sampler's name without its description."""
+    return kind_of(sampler).title
+
+
+def sampler_does(sampler: str) -> str:
+    """Return what a sampler does, without its name."""
+    return kind_of(sampler).does
+
+
+def strategy_name(sampler: str, hours: float, inspection_s: float) -> str:
+    """Return what to call a strategy: a sampler, its hours a day, its seconds at a plant."""
+    return texts.STRATEGY_NAME.format(
+        sampler=sampler_name(sampler), hours=hours, seconds=inspection_s
+    )

@@ -1,0 +1,343 @@
+"""Every text of the app in one place: a translation is one file."""
+
+from fieldmon.samplers import of_equal_times
+
+
+def isolated(name: str) -> str:
+    """Return a name that reads right inside any sentence, whatever its script and direction."""
+    return f"\u2068{name}\u2069"
+
+
+TITLE = "fieldmon"
+TODAY, MAP, SEASON, SCOUTING, COMPARE = "Today", "Map", "Season", "Scout", "Compare"
+PLOT, REPORT, SIMULATE, STUDY = "Plot & records", "Report", "Simulate", "Study"
+SAMPLE, UPLOAD = "Sample estate", "My own files"
+SAMPLE_NOTE = "A made-up estate near Paran, to try things out. Nothing of it exists."
+PLOT_FROM = "Plot or season"
+PLOT_FROM_HELP = (
+    "The sample estate and your own files are only looked at. A season is kept on this machine, "
+    "step by step: begin one on the Today page."
+)
+PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
+RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
+PLANT_FILE = "Measured plant positions (optional)"
+KEPT_FILE = "In use: {name}"
+FORGET_FILE = "Take it out"
+WHICH_PLOT = "Which plot"
+EMPTY = (
+    "### Bring a plot\n"
+    "Drop a plot file into the first box: the boundary of a real plot, in any coordinate system. "
+    "Records of pests are welcome but not needed. Your files stay in this session; nobody else "
+    "sees them, and nothing is sent anywhere. Or choose the sample estate on the left first."
+)
+ROWS = "Rows"
+BEARING = "Row bearing (degrees from north)"
+BEARING_HELP = "Leave empty to have it found from the boundary or the plants."
+ROW_SPACING, PLANT_SPACING = "Row to row ({unit})", "Plant to plant ({unit})"
+HEADLAND = "Headland ({unit})"
+SPACING_HELP = "Leave empty for what the file says, or else {rows} and {plants}."
+WHO = "Who inspects"
+ROBOT, SCOUT = "Robot", "Scout on foot"
+HOURS, INSPECTION_S = "Working hours", "Seconds at a plant"
+SAMPLER = "Who chooses the plants"
+SAMPLERS = {name: f"{kind.title}: {kind.does}" for name, kind in of_equal_times().items()}
+DATE = "Day"
+PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
+FINDS_HELP = (
+    "Infested plants on the route, by the chance map, times the chance that an inspection finds "
+    "them."
+)
+BOUND_HELP = (
+    "Whichever plants it visits, no route fixed in the morning can expect more finds. Who plans "
+    "again after each find may find more."
+)
+DOWNLOAD = "Download the route (GeoJSON)"
+NO_STOPS = (
+    "The working day is too short to reach a plant and come back. Give more hours on the left."
+)
+MESSAGES = "What the import found"
+MESSAGES_NONE = "Nothing to report: the files were read as they are."
+CHOOSE = "The file leaves this open"
+CHOOSE_BUTTON = "Use this"
+CHOOSE_QUICK = "Most likely:"
+UNDO_ANSWER = "Take back: {option} = {value}"
+SEVERITIES = {
+    "seen": "Seen",
+    "repaired": "Repaired",
+    "guessed": "Guessed",
+    "dropped": "Left out",
+    "doubtful": "Please look",
+}
+STOPS = "Stops in order"
+LAYERS = "Show"
+LAYER_NAMES = {
+    "plants": "plants",
+    "route": "route",
+    "numbers": "stop numbers",
+    "hot": "hot spots",
+    "records": "records",
+}
+LEGEND_CHANCE = "Chance that a plant is infested"
+LEGEND_ROUTE = (
+    "Route: blue line, arrows in driving direction; green ring: gate, start and end; numbers: stops"
+)
+LEGEND_DAYS, LEGEND_NEVER = "{n} days ago", "never inspected"
+LEGEND_HOT = "Purple outlines: hot spots, where finds cluster more than chance allows"
+LEGEND_RECORDS = "Records: filled where pests were seen, empty where not"
+LEGEND_STATES = {"found": "found", "clean": "looked clean", "never": "never inspected"}
+LEGENDS = {"route": LEGEND_ROUTE, "hot": LEGEND_HOT, "records": LEGEND_RECORDS}
+LEGEND_TRUTH = "Black dots (white in the dark): infested, not yet found (only a simulation knows)"
+SCALE_FIRST = " (before zooming)"
+SCALE_ALT = "The scale bar is {bar} long; the arrow points north."
+SEASON_INTRO = (
+    "A simulated season on this plot. The start is drawn from the chance map; insects spread to "
+    "neighbouring plants at night; every sampler meets the same insects. Detection is all finds "
+    "so far in percent of all infestations so far."
+)
+DAYS, INFESTED, SPREAD, SEED = "Days", "Infested at the start (%)", "Spread a night (%)", "Seed"
+SPREAD_HELP = "Chance a night that an infested plant infests each plant next to it."
+SEED_HELP = "The same seed gives the same season."
+DETECTION_AXIS, DAY_AXIS, FOUND_AXIS = "found so far (%)", "day", "plants found that day"
+COMPARED = "Samplers compared"
+BOTH_FACES = "Inspect both faces of each row"
+SHOW_SAMPLER, SHOW_DAY, SHOW_TRUTH = "On the map", "Day", "Show what is really infested"
+LEFT = "Infested left"
+FOUND_SO_FAR, FOUND_TODAY, VISITED_TODAY = "Found so far", "Found that day", "Inspected that day"
+WORKING = "Working ..."
+COMPILING = (
+    "fieldmon is being compiled for this machine: {n} parts so far. This happens once and takes "
+    "up to a minute; the plan follows by itself."
+)
+OUTLINE_ALT = "Outline of plot {name}; its plants are not laid yet."
+STUDY_TITLE = "The thesis's samplers without prior information"
+STUDY_INTRO = (
+    "Chapter 4 of A. Yehoshua's thesis (2023), made again: our mean and its interval beside each "
+    "printed figure. The seven samplers themselves run on your own plot on the pages Simulate and "
+    "Compare."
+)
+STUDY_TABLE, REPLICATES = "Table", "Seasons a row"
+STUDY_RUN, STUDY_REPORT = "Run", "Download the report (HTML)"
+STUDY_CSV = "Download the table (CSV)"
+STUDY_PROGRESS = "{done} of {total} rows simulated"
+STUDY_STOPPED = "Stopped. Nothing of it is kept; press Run to begin again."
+STUDY_ALT = "Found so far by day, a line a configuration: {title}."
+
+# -- who works, and how numbers are written
+CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
+UNDO_CHANGE = "Back to {strategy}, from {starts}"
+DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"
+
+SEASON_NAMED = (
+    "A season's name must be letters, digits, spaces and dashes, without \\ / : * ? \" < > | and "
+    "no dot in front, but it is {name!r}."
+)
+SEASON_LONG = "A season's name must have {most} letters at most, but it has {n}."
+
+# -- today
+BEGIN_TITLE = "Keep this season"
+BEGIN_NOTE = (
+    "Begin a season, and everything is kept from here on: routes, what was found, and what that "
+    "says about the rest of the plot. Come back to it tomorrow from the list on the left."
+)
+SEASON_NAME, BEGIN = "Name of the season", "Begin the season"
+BEGUN = "Season {name} has begun. Its file is {path}."
+START_SCOUTING, GIVE_OUT = "Start scouting", "Give this route out"
+GIVEN_OUT = "This route is kept with the season as given out for {day}."
+GIVE_OUT_HELP = "Keeps the route with the season, so that the report can hold it to what was done."
+WHY, WHY_TODAY = "Why there", "today"
+CHANGED = "Since yesterday"
+CHANGED_FIRST = "This is the first day of the season; from tomorrow, changes stand here."
+CHANGED_FINDS = "{found} found on {inspected} plants inspected on {day}."
+CHANGED_NONE = "Nothing was recorded on {day}."
+CHANGED_OUT = "Still infested, as expected: {now:.1f} after {before:.1f} ({sign}{diff:.1f})."
+CHANGED_HOT = "Hot spots: {now} after {before}."
+CHANGED_ROWS = "Rows whose chance rose most: {rows}."
+TODAY_OVER = (
+    "{inspected} plants inspected today, {found} found: the working day is over. Choose the next "
+    "day on the left for its route, or give more hours."
+)
+TODAY_DONE = "{inspected} plants inspected today so far, {found} found. The route shows the rest."
+OTHER_FORMATS, FORMAT, DOWNLOAD_AS = "Robot, phone, paper", "Format", "Download for {reader}"
+COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"
+MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
+
+# -- what stands beside a thing on the map that is pointed at
+TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start and end", "path"
+TIP_CHANCE, TIP_STATE = ": {chance:.1%} chance", ": {state}"
+TIP_HOT = "hot spot: {found} found of {inspected} inspected"
+TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
+TIP_INFESTED, TIP_HERE, TIP_CORNER = "infested", "here", "corner"
+
+# -- plot and records
+AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
+BEARING_IS, SPACING_IS = "Row bearing", "Rows / plants apart"
+FOUND_ROWS = "Leave a box empty to take what was found. Plants are laid again at once."
+FIXED = "The plants of a season are laid once and for all: its plant numbers stay valid."
+DRAW, DRAW_KIND = "Gate, paths, no-go areas", "A click on the map sets"
+DRAW_KINDS = {"": "nothing", "gate": "the gate", "path": "points of a path",
+              "no_go": "corners of a no-go area"}  # fmt: skip
+DRAW_TYPED = "or type positions (lon,lat lon,lat ...)"
+DRAW_ADD, DRAW_DONE, DRAW_UNDO, DRAW_DROP = "Add", "Finish", "Undo the last one", "Drop points"
+DRAW_POINTS = "{n} point(s) so far."
+DRAW_LEAST = (
+    "{what} needs {least} points or more, but {n} are given. Add points on the map, or type them."
+)
+DRAW_WHAT = {"gate": "A gate", "path": "A path", "no_go": "A no-go area"}
+DRAW_CROSSED = (
+    "The edge of a no-go area must not cross itself, but it does. Give its corners in order, one "
+    "way round."
+)
+DRAW_WRITTEN = "A position must be written lon,lat such as 35.1503,30.3601, but it is {text!r}."
+DRAW_RANGE = "A longitude lies in -180..180 and a latitude in -90..90, but this is {text!r}."
+DRAW_NOTE = "Insects come in along paths; a no-go area carries no plants and is not driven through."
+RISK, RISK_FILE = "Risk from a raster", "GeoTIFF: NDVI, elevation, a risk map"
+RISK_NOTE = "One more reason for a plant to be infested, beside records, edges and paths."
+RISK_MEANS = "Its numbers are"
+RISK_MEANINGS = {
+    "chance": "chances, 0 to 1",
+    "percent": "chances in percent",
+    "rank": "only an order: the higher, the more risk",
+    "score": "scores: far above the average is much more risk",
+}
+RISK_SHARE, RISK_LOW = "Plants infested for this reason (%)", "Low numbers are the risky ones"
+MISSING, MISSING_FILE = "Missing plants from a raster", "GeoTIFF: canopy height, NDVI"
+MISSING_NOTE = (
+    "No plant stands where the canopy is low. Rows and aisles stay as they are; plants that the "
+    "raster does not show count as there."
+)
+MISSING_BELOW = "A plant is missing where the raster is below"
+RECORDS, RECORDS_NONE = "Records up to", "There are no records of this plot."
+RECORDS_SHOWN = "{shown} of {all} records shown ({found} with pests, {clean} without)."
+UNDATED = "Records without a date are always shown."
+
+# -- the map of the field
+SHADE_BY = "Plants by"
+SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspected",
+          "age": "days since inspected"}  # fmt: skip
+MAP_LAYERS = {"route": "route", "numbers": "stop numbers", "hot": "hot spots",
+              "records": "records", "backdrop": "picture"}  # fmt: skip
+MAP_DAY, MAP_CLOCK, PLAY, PAUSE = "Day", "Time of the day", "Play", "Pause"
+ROWS_CLOSE, ROWS_CLOSE_HELP = "Rows shown plant by plant", "Other rows are shown as one picture."
+BACKDROP = "Picture of the ground (GeoTIFF)"
+HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
+HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
+HISTORY_NOW = "Chance of infestation now: **{now:.1%}** (first morning: {first:.1%})."
+HISTORY_NEVER = "Never inspected."
+HISTORY_LINE = "- {day}{time}: **{result}**"
+HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}
+HOT_MEANS = (
+    "{rows}: {found} found among {inspected} inspected of its {plants} plants, where "
+    "{expected:.1f} would be if finds were strewn evenly. So many by chance alone: {p}."
+)
+HOT_ROWS, HOT_ROW = (
+    "Rows {first} to {last}, plants {low} to {high}",
+    "Row {first}, plants {low} to {high}",
+)
+HOT_NONE = "No hot spots: finds cluster no more than chance allows."
+CHANCE_P_SMALL, CHANCE_P = "less than 1 in 10,000", "about 1 in {n:,}"
+
+# -- the season
+NEEDS_SEASON = (
+    "### Begin a season first\n"
+    "This page shows what was found day by day. Begin a season on the Today page; then record "
+    "what was found here, by hand, from a file, or with scout mode."
+)
+LEAST, MOST = "at least (90 %)", "at most (90 %)"
+EXPECTED_LEFT, EXPECTED_HELP = "Still infested", "Expected, and the interval that holds 90 %."
+CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Found of all expected"
+INSPECTED_EVER = "Inspected so far"
+FOUND_EVER = "Found"
+RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
+RECORD_FILE_IN = (
+    "The route file with its found column filled in, or any table or GPS file with plants, rows "
+    "or positions"
+)
+TAKE_DOUBTFUL = "Take doubtful positions too"
+RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
+RESULT, COUNT, RESULTS_OF = "Result", "Count", {0: "clean", 1: "found", 2: "could not inspect"}
+RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
+RECORD_REST = "So many stops from the first are recorded: clean, unless marked as found."
+RECORD_STOPS = "Stops done"
+BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
+BATCHES_SAID = {
+    "findings": "{day} {time} · {source} · {n} plant(s)",
+    "treatment": "{day} {time} · treatment of the plot {source}",
+}
+TYPED_IN, ROUTE_TABLE = "typed in", "route table"
+TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
+TREAT_BUTTON, TREATED = "Note the treatment", "Treatment noted."
+TREATED_BEFORE = "This treatment was noted already; nothing changed."
+ROW_AGES, DAYS_SINCE, ROW_AXIS = "Days since each row was inspected", "days", "row"
+OUT_AXIS, INSPECTED_AXIS, DATE_AXIS = "still infested (expected)", "inspected", "day"
+NEVER_ROWS = "{n} of {all} rows were never inspected."
+
+# -- scouting
+SCOUT_NEEDS = (
+    "### Scouting keeps what you find\n"
+    "Begin a season on the Today page first; then each tap here is saved at once."
+)
+NEXT, NEXT_PLACE = "Next", "Row {row} · plant {plant}"
+NEXT_WAY = "{metres} {compass}{along}"
+NEXT_ALONG = ", in this row"
+NEXT_AISLE = ", change rows"
+NEXT_CHANCE = "Chance {chance:.1%} · stop {done} done, {left} to go · {hours} left"
+COMPASS = ("north", "north-east", "east", "south-east", "south", "south-west", "west",
+           "north-west")  # fmt: skip
+ARROWS = ("⬆️", "↗️", "➡️", "↘️", "⬇️", "↙️", "⬅️", "↖️")
+CLEAN_BUTTON, FOUND_BUTTON = "Clean", "Found"
+SKIP_BUTTON, UNDO_BUTTON = "Could not inspect", "Undo"
+COUNT_LABEL = "Pests counted (if found)"
+SCOUT_DONE = "### Done for today\n{inspected} plants inspected, {found} found."
+SCOUT_START = "Work starts at {start} by the settings of this season; it is {now}."
+SCOUT_NOW = "Begin now"
+SCOUT_LONGER, SCOUT_LONGER_NOTE = "One hour more", "The working day is over. Work on?"
+SCOUT_LAST = "Last: row {row}, plant {plant}: {result}"
+
+# -- comparing
+COMPARE_INTRO = (
+    "Seasons are simulated on this plot: the start is drawn from today's chance map, and every "
+    "strategy meets the same insects. Less loss (infested plants times days) is better."
+)
+STRATEGY_SAMPLERS, STRATEGY_HOURS = "Samplers", "Working hours"
+STRATEGY_INSPECTION_S = "Seconds at a plant"
+SEEDS, SEEDS_HELP = "Seasons each", "More seasons, narrower intervals."
+RUN, STOP, GO_ON = "Compare", "Stop", "Go on"
+COMPARE_PROGRESS = "{done} of {total} seasons simulated"
+COMPARE_EMPTY = "Choose and press Compare. Results appear as they come."
+TOO_MANY = "Compare 1 to {most} strategies at once, but these are {n}. Choose fewer."
+BEST, NO_DIFFERENCE = "best", "no clear difference"
+WORSE = "{percent:+.0f} % loss ({low:+.0f} to {high:+.0f})"
+ONE_SEASON = "(one season: no interval)"
+COLUMN_STRATEGY, COLUMN_LOSS = "strategy", "infested plant-days"
+COLUMN_FOUND = "found at the end"
+COLUMN_VISITED, COLUMN_HALF, COLUMN_VERDICT = "inspected a day", "half found on day", "verdict"
+STRATEGY = "Strategy"
+USE_THIS = "Use this strategy"
+VERDICT = (
+    "**{best}** is best: {loss:,.0f} infested plant-days, {percent:.0f} % less than {second} "
+    "({low:,.0f} to {high:,.0f} fewer, 95 % interval)."
+)
+VERDICT_TIED = (
+    "**{best}** comes out best, but not clearly better than {second}: the 95 % interval of the "
+    "difference holds 0. More seasons would tell."
+)
+NOW_USED = "{name} is in use now."
+STRATEGY_NAME = "{sampler} · {hours:g} h · {seconds:g} s"
+
+# -- the report
+REPORT_INTRO = "A page to print, or to keep as PDF (Print, then Save as PDF)."
+REPORT_DOWNLOAD, REPORT_PREVIEW = "Download the report (HTML)", "Preview"
+REPORT_TITLE = "Plot {name}, {day}"
+REPORT_SETTINGS, REPORT_ROUTE, REPORT_SEASON = "Settings", "Route", "Season so far"
+REPORT_FOUND, REPORT_IN_ROW = "Found that day", "Row {row}"
+REPORT_TICK = "found?"
+SPEED, DETECTS = "Speed", "Finds what is there with a chance of"
+
+PRIOR = "Study, prior"
+PRIOR_TITLE = "The thesis's samplers with prior information"
+PRIOR_INTRO = (
+    "Chapter 5 of A. Yehoshua's thesis (2023), made again: Dynamic, Naive and Bouncy with the "
+    "thesis's robot, and the choices that its text leaves open as they fit its figures best. On "
+    "this plot the season starts from its own records where it has any."
+)
+PRIOR_PART, PRIOR_OWN = "Scenario or sweep", "This plot"

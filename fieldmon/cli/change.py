@@ -1,0 +1,66 @@
+"""`fieldmon change`: a season goes on otherwise. Heavy imports wait."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.options import Hours, Look, SeasonFile, Speed, WorkerOptions
+from fieldmon.cli.times import clock
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring import MonitoringSettings
+
+
+@dataclass(frozen=True)
+class ChangeOptions:
+    """What `fieldmon change` is told."""
+
+    season: SeasonFile
+    sampler: Annotated[str | None, typer.Option(help="Who chooses.")] = None
+    every: Annotated[int | None, typer.Option(help="Its every N-th, as in plan.")] = None
+    hours: Hours = None
+    look: Look = None
+    speed: Speed = None
+    start: Annotated[str | None, typer.Option(help="Local time the work starts, HH:MM.")] = None
+    spread: Annotated[
+        float | None, typer.Option(help="Chance a night to infest a neighbour, as believed.")
+    ] = None
+
+    def changed(self, settings: MonitoringSettings) -> MonitoringSettings:
+        """Return a season's settings as they are to be."""
+        from dataclasses import replace  # noqa: PLC0415
+
+        robot = WorkerOptions(self.hours, self.look, self.speed).given()
+        new = replace(settings, robot=replace(settings.robot, **robot))  # type: ignore[arg-type]
+        if self.sampler is not None:
+            new = replace(new, sampler=self.sampler, sampler_settings={})
+        if self.every is not None:
+            new = replace(new, sampler_settings={"every": self.every})
+        if self.start is not None:
+            new = replace(new, starts=clock(self.start))
+        if self.spread is not None:
+            rate = replace(settings.belief.spread, rate_per_day=self.spread)
+            new = replace(new, belief=replace(settings.belief, spread=rate))
+        return new
+
+
+@with_options
+def change(options: ChangeOptions) -> None:
+    """Choose otherwise for a season; what was chosen before stays in its file.
+
+    Example: fieldmon change season.gpkg --hours 6 --sampler naive
+    """
+    from fieldmon.monitoring import Season  # noqa: PLC0415
+
+    season = Season(options.season)
+    seen = season.settings
+    new = options.changed(seen)
+    if new == seen:
+        typer.echo("Nothing was changed.")
+        return
+    season.change(new, seen)
+    typer.echo("Changed; fieldmon plan uses it from now on.")

@@ -1,0 +1,101 @@
+"""`fieldmon init`: a season begins. Heavy imports wait."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fieldmon.cli.messages import tell_unusable
+from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.options import (
+    Every,
+    Feature,
+    MaybePlotFile,
+    OneSampler,
+    PlotFiles,
+    Records,
+    StartTime,
+    WorkerOptions,
+    sampler_settings,
+)
+from fieldmon.cli.preparing import prepared
+from fieldmon.cli.sampler_names import USUAL_SAMPLER
+from fieldmon.cli.times import clock, day
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring import MonitoringSettings
+
+
+@dataclass(frozen=True)
+class InitOptions:
+    """What `fieldmon init` is told."""
+
+    season: Annotated[Path, typer.Argument(help="File of the season to make: season.gpkg.")]
+    plot: MaybePlotFile = None
+    observations: Records = None
+    feature: Feature = None
+    sampler: OneSampler = USUAL_SAMPLER
+    every: Every = None
+    begins: Annotated[
+        str | None, typer.Option(help="First day of the season, YYYY-MM-DD; today.")
+    ] = None
+    start: StartTime = "06:00"
+    flag_only: Annotated[
+        bool,
+        typer.Option(
+            "--flag-only", help="Plants found infested are only flagged, not treated at once."
+        ),
+    ] = False
+    spread: Annotated[
+        float, typer.Option(help="Chance a night that a plant infests its neighbour, as believed.")
+    ] = 0.02
+    seed: Annotated[int, typer.Option(help="For samplers that draw.")] = 1
+    worker: WorkerOptions = field(default_factory=WorkerOptions)
+    files: PlotFiles = field(default_factory=PlotFiles)
+
+    def settings(self) -> MonitoringSettings:
+        """Return how the season is worked."""
+        from dataclasses import replace  # noqa: PLC0415
+
+        from fieldmon.monitoring import MonitoringSettings  # noqa: PLC0415
+        from fieldmon.monitoring.history import BeliefSettings  # noqa: PLC0415
+
+        belief = BeliefSettings(treated=not self.flag_only)
+        return MonitoringSettings(
+            day(self.begins),
+            clock(self.start),
+            self.worker.robot(),
+            self.sampler.value,
+            sampler_settings(self.sampler, self.every),
+            belief=replace(belief, spread=replace(belief.spread, rate_per_day=self.spread)),
+            seed=self.seed,
+        )
+
+
+@with_options
+def init(options: InitOptions) -> None:
+    """Begin a season on a plot: one GeoPackage that grows with every day's findings.
+
+    QGIS and QField open it as it is. Then, every day: fieldmon plan, the work, fieldmon record.
+
+    Example: fieldmon init season.gpkg estate.zip --feature Gate --observations mites.csv
+    """
+    import numpy as np  # noqa: PLC0415
+
+    from fieldmon.monitoring import KeptMessage, Season  # noqa: PLC0415
+
+    settings, path = options.settings(), options.season
+    request = options.files.request(options.plot, options.feature, options.observations)
+    known = prepared(request)
+    tell_unusable(known.records, np.datetime64(settings.begins, "D"))
+    messages = [KeptMessage.of(said.source, said.message) for said in known.messages]
+    season = Season.create(path, known.plot, known.records, settings, messages, known.risk)
+    ahead = season.status(settings.begins).estimate
+    typer.echo(
+        f"Season begun in {path}: {len(known.records)} records, about {ahead.expected:.0f} plants "
+        f"believed infested ({ahead.low} to {ahead.high})."
+    )
+    typer.echo(f"Next: fieldmon plan {path} -o route.geojson")

@@ -1,0 +1,107 @@
+"""What imports have to say and to ask, as a person at a terminal reads and answers it."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import typer
+
+from fieldmon.errors import ChoiceNeeded
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    import numpy as np
+
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.io.prepare import Laid, SourceMessage
+    from fieldmon.plot.plot import Plot
+
+#: the options that take what a file leaves open, by what the file is to the plot
+FLAGS = {
+    "plot": "--plot-option",
+    "plants": "--plants-option",
+    "paths": "--paths-option",
+    "records": "--record-option",
+    "canopy": "--canopy-option",
+    "risk": "--risk-option",
+}
+#: what commands that have `FLAGS` also take by an option of its own
+_BY_NAME = frozenset({"crs", "layer", "feature"})
+
+
+@dataclass(frozen=True)
+class Terminal:
+    """Prints what there is to say while a plot is prepared.
+
+    Parameters
+    ----------
+    flags
+        Options of the command that take what is left open.
+    shows_plot
+        Whether the plot is described, and what had to be assumed for it.
+    """
+
+    flags: Mapping[str, str] = field(default_factory=lambda: FLAGS)
+    shows_plot: bool = True
+
+    def message(self, said: SourceMessage) -> None:
+        """Print what an import has to say, with the option that answers."""
+        typer.echo(said.message.line(self.flags.get(said.role, "")), err=True)
+
+    def laid(self, laid: Laid) -> None:
+        """Print how the plot is planted."""
+        if not self.shows_plot:
+            return
+        describe(laid.plot)
+        for assumed in laid.assumed:
+            option = assumed.setting.removesuffix("_m").replace("_", "-")
+            typer.echo(f"{assumed} [--{option}]", err=True)
+
+    @contextmanager
+    def answering(self) -> Iterator[None]:
+        """Say with a question how to answer it on the command line."""
+        try:
+            yield
+        except ChoiceNeeded as question:
+            raise ChoiceNeeded(
+                self._with_answer(question), question.option, question.choices, question.role
+            ) from None
+
+    def _with_answer(self, question: ChoiceNeeded) -> str:
+        answer = question.choices[0] if question.choices else "..."
+        if question.option == "feature" and not question.role:
+            sentence = str(question).removesuffix(".")
+            return f'{sentence}: --feature "{answer}" or --feature 1.'
+        how = self._option(question)
+        return f'{question} Answer with {how}"{answer}", for instance.' if how else str(question)
+
+    def _option(self, question: ChoiceNeeded) -> str:
+        """Return the option that answers a question, up to its value; empty if there is none."""
+        flag, option = self.flags.get(question.role, ""), question.option
+        if question.role == "plot" and option in _BY_NAME and (flag or option == "feature"):
+            return f"--{option} "
+        if option == "plot" and not flag:
+            # where nothing can be said of records, one plot can be chosen for them
+            return "--feature "
+        return f"{flag} {option}=" if flag else ""
+
+
+def describe(plot: Plot) -> None:
+    """Print how a plot is planted."""
+    grid = plot.grid
+    typer.echo(
+        f"{plot.field.name}: {len(grid)} plants in {grid.n_rows} rows, bearing "
+        f"{grid.frame.bearing_deg % 180:.1f} degrees, rows {grid.row_spacing_m:.2f} m and plants "
+        f"{grid.plant_spacing_m:.2f} m apart."
+    )
+
+
+def tell_unusable(records: Observations, day: np.datetime64) -> None:
+    """Print which records say nothing about a day."""
+    from fieldmon.infestation.observations import usable  # noqa: PLC0415
+
+    for sentence in usable(records, day).messages():
+        typer.echo(sentence, err=True)

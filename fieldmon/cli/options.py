@@ -1,0 +1,256 @@
+"""Options that commands share, and what is made of them. Heavy imports wait."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fieldmon.cli.named_values import chosen
+from fieldmon.cli.raster_options import RasterFiles
+from fieldmon.cli.sampler_names import SamplerName
+from fieldmon.errors import SettingError
+from fieldmon.samplers import kind_of, sampler
+
+if TYPE_CHECKING:
+    from fieldmon.io.options import PlotOptions
+    from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
+    from fieldmon.plot.robot import Robot
+    from fieldmon.samplers.base import Sampler
+
+PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
+
+PlotFile = Annotated[Path, typer.Argument(help=PLOT_HELP, show_default=False)]
+MaybePlotFile = Annotated[
+    Path | None,
+    typer.Argument(help=f"{PLOT_HELP} Not needed if --plants are given.", show_default=False),
+]
+SeasonFile = Annotated[Path, typer.Argument(help="The season's file, made by fieldmon init.")]
+Feature = Annotated[
+    str | None,
+    typer.Option(help="Name or number (from 1) of the plot, where a file holds several."),
+]
+PlotChoices = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--plot-option",
+        help="What else the plot file leaves open, as NAME=VALUE; messages say which. "
+        "E.g. crs=EPSG:2039, layer=parcels, member=plots.shp, swap_axes=yes.",
+    ),
+]
+Crs = Annotated[
+    str | None, typer.Option(help="Coordinate system of the plot file if it has none: EPSG:2039.")
+]
+Layer = Annotated[str | None, typer.Option(help="Layer of the plot file.")]
+Records = Annotated[
+    Path | None,
+    typer.Option("--observations", help="Dated pest records: CSV, Excel, shapefile, GeoJSON, ..."),
+]
+RecordChoices = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--record-option",
+        help="What the records leave open, as NAME=VALUE: crs=EPSG:2039, date_order=dmy, "
+        "columns=date=Datum, columns=count=Milben.",
+    ),
+]
+Plants = Annotated[
+    Path | None, typer.Option(help="Positions of plants measured on the plot (points).")
+]
+Paths = Annotated[
+    Path | None, typer.Option(help="Paths and roads from which insects enter (lines).")
+]
+PlantsChoices = Annotated[
+    list[str] | None,
+    typer.Option("--plants-option", help="What the file of plants leaves open, as NAME=VALUE."),
+]
+PathsChoices = Annotated[
+    list[str] | None,
+    typer.Option("--paths-option", help="What the file of paths leaves open, as NAME=VALUE."),
+]
+Bearing = Annotated[
+    float | None,
+    typer.Option(help="Direction of the rows, degrees from north; found if not given."),
+]
+RowSpacing = Annotated[float | None, typer.Option(help="Metres from row to row.")]
+PlantSpacing = Annotated[float | None, typer.Option(help="Metres from plant to plant in a row.")]
+Headland = Annotated[float | None, typer.Option(help="Metres free of plants at both row ends.")]
+BothFaces = Annotated[
+    bool, typer.Option("--both-faces", help="Inspect both faces of each row, each from its aisle.")
+]
+Gate = Annotated[str | None, typer.Option(help="Where the day starts and ends: LON,LAT.")]
+Scout = Annotated[bool, typer.Option("--scout", help="A person on foot instead of the robot.")]
+Hours = Annotated[float | None, typer.Option(help="Working hours a day.")]
+Look = Annotated[float | None, typer.Option("--look", help="Seconds spent looking at a plant.")]
+Speed = Annotated[float | None, typer.Option(help="Driving speed, km/h.")]
+RowChange = Annotated[float | None, typer.Option(help="Seconds added for changing rows.")]
+Turn = Annotated[
+    float | None, typer.Option(help="Seconds to turn to the other side of the same aisle.")
+]
+OneSampler = Annotated[SamplerName, typer.Option(help="Who chooses.")]
+Every = Annotated[
+    int | None,
+    typer.Option(
+        help="Every N-th plant or stop (bouncy 2, snake 1, neighbor 1) or 1/N (random 3)."
+    ),
+]
+Outputs = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--output",
+        "-o",
+        help="Route file to write, its format by its ending; repeat for several. "
+        "route.geojson if none.",
+    ),
+]
+Bounded = Annotated[
+    bool,
+    typer.Option(
+        "--bound/--no-bound",
+        help="Say what no other route of these hours can expect to find (10 s at most).",
+    ),
+]
+WorkDate = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; today.")]
+TheDate = Annotated[str | None, typer.Option("--date", help="The day, YYYY-MM-DD; today.")]
+StartTime = Annotated[str, typer.Option(help="Local time the work starts, HH:MM.")]
+
+
+@dataclass(frozen=True)
+class WorkerOptions:
+    """Who inspects, and how long."""
+
+    hours: Hours = None
+    look: Look = None
+    speed: Speed = None
+    row_change: RowChange = None
+    turn: Turn = None
+    scout: Scout = False
+
+    def given(self) -> dict[str, float]:
+        """Return what was said, as settings of `Robot`."""
+        said = {
+            "hours": self.hours,
+            "look_s": self.look,
+            "speed_m_s": None if self.speed is None else self.speed / 3.6,
+            "row_change_s": self.row_change,
+            "turn_180_s": self.turn,
+        }
+        return {name: value for name, value in said.items() if value is not None}
+
+    def robot(self) -> Robot:
+        """Return the robot, or the scout, with what was said."""
+        from dataclasses import replace  # noqa: PLC0415
+
+        from fieldmon.plot import robot  # noqa: PLC0415
+
+        base = robot.scout() if self.scout else robot.Robot()
+        return replace(base, **self.given())  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class RowOptions:
+    """How the plot is planted."""
+
+    bearing: Bearing = None
+    row_spacing: RowSpacing = None
+    plant_spacing: PlantSpacing = None
+    headland: Headland = None
+    both_faces: BothFaces = False
+
+    def choices(self) -> PlantingChoices:
+        """Return what was said of the rows."""
+        from fieldmon.io.sources import PlantingChoices  # noqa: PLC0415
+
+        faces = 2 if self.both_faces else None
+        spacings = self.row_spacing, self.plant_spacing, self.headland
+        return PlantingChoices(self.bearing, *spacings, faces)
+
+
+@dataclass(frozen=True)
+class FileOptions:
+    """The files about a plot, and how each is read."""
+
+    gate: Gate = None
+    plants: Plants = None
+    paths: Paths = None
+    crs: Crs = None
+    layer: Layer = None
+    plot_option: PlotChoices = None
+    record_option: RecordChoices = None
+    plants_option: PlantsChoices = None
+    paths_option: PathsChoices = None
+
+    def sources(self, plot: Path | None, feature: str | None) -> PlotSources:
+        """Return the plot's files, given the first of them."""
+        from fieldmon.io.options import ReadOptions  # noqa: PLC0415
+        from fieldmon.io.sources import PlotSources  # noqa: PLC0415
+
+        if plot is None and self.plants is None:
+            raise SettingError(
+                "Give a plot file, or the positions of its plants with --plants FILE."
+            )
+        return PlotSources(
+            plot,
+            plot_options(feature, self.crs, self.layer, self.plot_option),
+            self.plants,
+            chosen(ReadOptions(), self.plants_option),
+            self.paths,
+            chosen(ReadOptions(), self.paths_option),
+            None if self.gate is None else _lonlat(self.gate),
+        )
+
+
+@dataclass(frozen=True)
+class PlotFiles:
+    """All that a plot is prepared from, beside its own file and that of the records."""
+
+    rows: RowOptions = field(default_factory=RowOptions)
+    files: FileOptions = field(default_factory=FileOptions)
+    rasters: RasterFiles = field(default_factory=RasterFiles)
+
+    def request(
+        self, plot: Path | None, feature: str | None, observations: Path | None
+    ) -> PlotRequest:
+        """Return what to prepare from the command's files."""
+        from fieldmon.io.options import RecordOptions  # noqa: PLC0415
+        from fieldmon.io.sources import PlotRequest, RecordSource  # noqa: PLC0415
+
+        options = chosen(RecordOptions(), self.files.record_option)
+        return PlotRequest(
+            self.files.sources(plot, feature),
+            self.rows.choices(),
+            None if observations is None else RecordSource(observations, options),
+            self.rasters.canopy_source(),
+            self.rasters.risk_source(),
+        )
+
+
+def plot_options(
+    feature: str | None, crs: str | None, layer: str | None, more: list[str] | None
+) -> PlotOptions:
+    """Return how a plot file is read."""
+    from fieldmon.io.options import PlotOptions  # noqa: PLC0415
+
+    return chosen(PlotOptions(feature=feature, crs=crs, layer=layer), more)
+
+
+def sampler_settings(name: SamplerName, every: int | None) -> dict[str, float]:
+    """Return what was said of a sampler."""
+    return kind_of(name.value).settings_for(every)
+
+
+def sampler_of(name: SamplerName, every: int | None) -> Sampler:
+    """Return the sampler that was chosen."""
+    return sampler(name.value, **sampler_settings(name, every))
+
+
+def _lonlat(text: str) -> tuple[float, float]:
+    try:
+        lon, lat = (float(part) for part in text.split(","))
+    except ValueError as error:
+        raise SettingError(
+            f"--gate must be LON,LAT in degrees, such as 35.15,30.36, but it is {text!r}."
+        ) from error
+    return lon, lat

@@ -1,0 +1,171 @@
+"""`fieldmon plan`: a day on a plot, on every plot of a file, or of a season. Heavy imports wait."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fieldmon.cli.messages import tell_unusable
+from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.options import (
+    Bounded,
+    Every,
+    Feature,
+    MaybePlotFile,
+    OneSampler,
+    Outputs,
+    PlotFiles,
+    Records,
+    StartTime,
+    WorkDate,
+    WorkerOptions,
+    sampler_of,
+)
+from fieldmon.cli.outputs import ChanceMap, day_in_words, write_chance_map, write_routes
+from fieldmon.cli.plan_season import plan_season
+from fieldmon.cli.preparing import estate, prepared
+from fieldmon.cli.sampler_names import USUAL_SAMPLER
+from fieldmon.cli.times import clock, day
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from fieldmon.io.sources import PlotRequest
+
+Now = Annotated[
+    str | None,
+    typer.Option(help="Of a season: plan the rest of the day from this local time, HH:MM."),
+]
+EveryPlot = Annotated[
+    bool,
+    typer.Option("--all", help="Every plot of the file; --output is the folder of routes then."),
+]
+
+
+@dataclass(frozen=True)
+class PlanOptions:
+    """What `fieldmon plan` is told."""
+
+    plot: MaybePlotFile = None
+    output: Outputs = None
+    observations: Records = None
+    feature: Feature = None
+    sampler: OneSampler = USUAL_SAMPLER
+    every: Every = None
+    on: WorkDate = None
+    start: StartTime = "06:00"
+    now: Now = None
+    worker: WorkerOptions = field(default_factory=WorkerOptions)
+    files: PlotFiles = field(default_factory=PlotFiles)
+    chance_map: ChanceMap = None
+    every_plot: EveryPlot = False
+    bound: Bounded = True
+
+    def begins(self) -> datetime:
+        """Return the local date and time at which the work starts."""
+        return datetime.combine(day(self.on), clock(self.start))
+
+
+@with_options
+def plan(context: typer.Context, options: PlanOptions) -> None:
+    """Plan today's route on a plot or in a season, and write it for whoever drives.
+
+    Files hold the line to drive, which crosses no row of plants, and the stops in order with
+    arrival time, row, plant and chance of infestation. Without observations every plant has the
+    same chance but for the plot's edge, from which insects come.
+
+    In a season (see fieldmon init) the route follows from everything recorded so far; on a day of
+    which something was recorded already, it is the rest of the day's.
+
+    Example: fieldmon plan vines.zip --feature 3 --observations mites.csv --hours 6 -o route.geojson
+    Example: fieldmon plan season.gpkg -o route.geojson
+    Example: fieldmon plan estate.zip --all --observations mites.csv -o routes
+
+    Of a whole day it is said what no other route of these hours can expect to find, whichever
+    plants it visits: how much a better plan could gain at most.
+
+    With --all, columns robot (robot or scout), hours, speed_km_h and look_s of the plot file say
+    who works on each plot; options given here go before them.
+    """
+    from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
+
+    if options.plot is not None and is_season(options.plot):
+        plan_season(context, options, options.plot)
+        return
+    if options.now is not None:
+        raise SettingError("--now needs a season (see fieldmon init), but this is a plot file.")
+    if options.every_plot:
+        _plan_every_plot(options)
+    else:
+        _plan_one(options)
+
+
+def _plan_one(options: PlanOptions) -> None:
+    import numpy as np  # noqa: PLC0415
+
+    from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
+    from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
+    from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
+
+    begins, robot = options.begins(), options.worker.robot()
+    on = np.datetime64(begins.date(), "D")
+    settings = PlanSettings(robot, sampler_of(options.sampler, options.every))
+    request = options.files.request(options.plot, options.feature, options.observations)
+    known = prepared(request)
+    tell_unusable(known.records, on)
+    today = first_day(known.plot, known.records, on, settings, known.risk)
+    if not len(today.route):
+        raise SettingError(
+            f"The working day must be long enough to reach a plant and come back, but "
+            f"{robot.hours:g} h are not. Give more --hours."
+        )
+    if options.bound:
+        today = with_bound(today)
+    typer.echo(day_in_words(today.route))
+    notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
+    write_routes(replace(today.route, notes=notes), options.output)
+    write_chance_map(options.chance_map, known.plot, today.chance)
+
+
+def _plan_every_plot(options: PlanOptions) -> None:
+    """Plan every plot of the file into a folder."""
+    import numpy as np  # noqa: PLC0415
+
+    from fieldmon.cli.plan_all import Day, plan_all  # noqa: PLC0415
+    from fieldmon.planning.batch import Orders  # noqa: PLC0415
+
+    begins, worker = options.begins(), options.worker
+    request, folder = _request_of_all(options), _folder(options.output)
+    orders = Orders(
+        day=np.datetime64(begins.date(), "D"),
+        sampler=options.sampler.value,
+        every=options.every,
+        on_foot=worker.scout,
+        robot=worker.given(),
+        planting=request.planting.given(),
+    )
+    plots = estate(request)
+    tell_unusable(plots.records.anywhere, orders.day)
+    plan_all(plots, orders, Day(plots.records, folder, begins))
+
+
+def _request_of_all(options: PlanOptions) -> PlotRequest:
+    """Return what to prepare for every plot; refuse what is of one plot only."""
+    files, rasters = options.files.files, options.files.rasters
+    of_one = options.feature, files.plants, files.gate, rasters.risk, rasters.canopy
+    if options.plot is None or any((*of_one, options.chance_map)):
+        raise SettingError(
+            "--all plans every plot of one plot file: leave out --feature, --plants, --gate, "
+            "--risk, --canopy and --chance-map."
+        )
+    return options.files.request(options.plot, None, options.observations)
+
+
+def _folder(outputs: list[Path] | None) -> Path:
+    """Return where the routes of all plots go."""
+    if outputs and (len(outputs) > 1 or outputs[0].suffix):
+        raise SettingError("With --all, --output must be one folder for the routes of all plots.")
+    return outputs[0] if outputs else Path("routes")

@@ -1,0 +1,60 @@
+"""`fieldmon plan` with a season: a day of it, or what is left of the day. Heavy imports wait."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import typer
+
+from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
+from fieldmon.cli.times import clock, day
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fieldmon.cli.plan import PlanOptions
+
+# what a plan of a season may be told; all else was chosen when it began
+_OF_A_PLAN = {"plot", "output", "on", "now", "chance_map", "bound"}
+
+
+def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> None:
+    """Plan a day of a season, keep the route in its file, and write it for whoever drives."""
+    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
+
+    _refuse_what_was_chosen(context)
+    season = Season(file)
+    on, now = day(options.on), options.now
+    today = season.plan(on, None if now is None else clock(now, "--now"))
+    if options.bound and len(today.route):
+        today = with_bound(today)
+    route = today.route
+    if not len(route):
+        left_h = today.scene.seconds_left / 3600
+        raise SettingError(
+            "The working day must be long enough to reach another plant and come back, but "
+            f"{left_h:.1f} h are left of {on}. Plan another day with --date."
+        )
+    seen = season.history.on(today.scene.day)
+    done = f"{len(seen)} done, " if len(seen) else ""
+    typer.echo(f"{on}: {done}{day_in_words(route)}")
+    write_routes(route, options.output)
+    write_chance_map(options.chance_map, season.plot, today.chance)
+
+
+def _refuse_what_was_chosen(context: typer.Context) -> None:
+    """Refuse options that a season has kept since it began."""
+    told = {
+        name
+        for name in context.params
+        if (source := context.get_parameter_source(name)) is not None
+        and source.name == "COMMANDLINE"
+    }
+    if told - _OF_A_PLAN:
+        flags = ", ".join(f"--{name.replace('_', '-')}" for name in sorted(told - _OF_A_PLAN))
+        raise SettingError(
+            f"A season keeps what was chosen when it began, but {flags} was given too. "
+            "Leave it away, or choose otherwise for the days to come with: fieldmon change"
+        )

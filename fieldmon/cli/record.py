@@ -1,0 +1,89 @@
+"""`fieldmon record`: what was found. Heavy imports wait."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fieldmon.cli.named_values import chosen
+from fieldmon.cli.options import SeasonFile
+from fieldmon.cli.status import lines
+from fieldmon.cli.times import day
+
+if TYPE_CHECKING:
+    from fieldmon.infestation.inspections import Inspections
+    from fieldmon.io.readers.inspection_options import InspectionOptions
+    from fieldmon.monitoring import Season
+
+TakeDoubtful = Annotated[
+    bool, typer.Option("--take-doubtful", help="Take doubtful positions at the nearest plant.")
+]
+FindingChoices = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--finding-option",
+        help="What the files leave open, as NAME=VALUE: zone=Asia/Jerusalem, accuracy_m=3, "
+        "columns=count=Milben.",
+    ),
+]
+
+
+def record(
+    season: SeasonFile,
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            help="Findings: CSV, Excel, GeoJSON, GPX, GeoPackage... with plants or positions; "
+            "or the route file given out, filled in."
+        ),
+    ],
+    on: Annotated[
+        str | None,
+        typer.Option("--date", help="Day of findings whose file names none, YYYY-MM-DD."),
+    ] = None,
+    who: Annotated[str, typer.Option(help="Who inspected.")] = "",
+    take_doubtful: TakeDoubtful = False,  # noqa: FBT002 - a flag
+    finding_option: FindingChoices = None,
+) -> None:
+    """Record what was found; the same findings twice change nothing.
+
+    Plants that are not in the files stay unknown. Positions are snapped to the nearest plant;
+    doubtful ones are listed and left out, unless --take-doubtful is given.
+
+    Example: fieldmon record season.gpkg route.csv --date 2026-04-06 --who Ann
+    """
+    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
+    from fieldmon.monitoring import Season  # noqa: PLC0415
+
+    kept = Season(season)
+    options = InspectionOptions(take_doubtful=take_doubtful)
+    if on is not None:
+        options = options.choose("day", str(day(on)))
+    options = chosen(options, finding_option)
+    last = None
+    for file, inspections in zip(files, _read(kept, files, options), strict=True):
+        done = kept.record(inspections, file.name, who)
+        if len(inspections):
+            last = max(last or inspections.date.max(), inspections.date.max())
+        batch = "" if done.batch is None else f" (batch {done.batch})"
+        typer.echo(f"{file.name}: {done.new} new, {done.known} known already{batch}")
+    if last is not None:
+        typer.echo("\n".join(lines(kept, kept.status(last.item()))))
+
+
+def _read(season: Season, files: list[Path], options: InspectionOptions) -> list[Inspections]:
+    """Return what is in files, all of them before any is recorded: nothing is left half-done."""
+    from fieldmon.io.readers.inspections import read_inspections  # noqa: PLC0415
+    from fieldmon.monitoring import counting_copy  # noqa: PLC0415
+    from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
+
+    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+        sources = [counting_copy(f, Path(folder)) if is_season(f) else f for f in files]
+        read = [read_inspections(source, season.plot.grid, options) for source in sources]
+    for file, found in zip(files, read, strict=True):
+        for message in found.messages:
+            typer.echo(f"{file.name}: {message}", err=True)
+    return [found.value for found in read]

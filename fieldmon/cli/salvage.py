@@ -1,0 +1,33 @@
+"""`fieldmon salvage`: what is left of a damaged season. Heavy imports wait."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fieldmon.cli.options import SeasonFile
+
+
+def salvage(
+    season: SeasonFile,
+    output: Annotated[Path, typer.Option("--output", "-o", help="New file to save it in.")],
+) -> None:
+    """Save what can be saved from a damaged season into a new file.
+
+    Example: fieldmon salvage season.gpkg --output rescued.gpkg
+    """
+    from fieldmon.monitoring.salvage import salvage as save  # noqa: PLC0415
+
+    done = save(season, output)
+    for name, rows in done.rows.items():
+        note = "  (some could not be read)" if name in done.lost else ""
+        typer.echo(f"  {rows:8d}  {name}{note}")
+    if done.whole:
+        typer.echo(f"{output} is a season again. Compare it with: fieldmon status {output}")
+    else:
+        typer.echo(
+            f"{output} holds what could be read, but the plot or its settings are lost: begin a "
+            "new season with fieldmon init, and record the layer inspections into it."
+        )

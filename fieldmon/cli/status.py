@@ -1,0 +1,84 @@
+"""`fieldmon status`: where a season stands. Heavy imports wait."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fieldmon.cli.options import SeasonFile, TheDate
+from fieldmon.cli.times import day
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fieldmon.monitoring import Season, Status
+
+ListBatches = Annotated[
+    bool, typer.Option("--batches", help="List what was recorded, with numbers to undo.")
+]
+ListRows = Annotated[
+    bool, typer.Option("--rows", help="List the days since each row was inspected.")
+]
+
+
+def status(
+    season: SeasonFile,
+    on: TheDate = None,
+    batches: ListBatches = False,  # noqa: FBT002 - a flag
+    rows: ListRows = False,  # noqa: FBT002 - a flag
+) -> None:
+    """Show where a season stands: found, expected still out there, rows not seen for long.
+
+    Example: fieldmon status season.gpkg
+    """
+    from fieldmon.monitoring import Season  # noqa: PLC0415
+
+    kept = Season(season)
+    now = kept.status(kept.last_date() if on is None else day(on))
+    typer.echo("\n".join(lines(kept, now)))
+    if rows:
+        _show_rows(kept, now)
+    if batches:
+        for batch in kept.batches():
+            undone = "  (undone)" if batch.undone else ""
+            who = f" by {batch.who}" if batch.who else ""
+            typer.echo(
+                f"{batch.number:5d}  {batch.at[:16]}  {batch.rows:5d} {batch.kind}{who}  "
+                f"{batch.source}{undone}"
+            )
+    for sentence in kept.verify():
+        typer.echo(f"doubtful: {sentence}", err=True)
+
+
+def lines(season: Season, now: Status) -> Iterator[str]:
+    """Yield where a season stands, line by line."""
+    ahead = now.estimate
+    yield f"{season.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
+    yield f"  inspected today        {now.inspected_today:6d}, {now.found_today} found infested"
+    yield (
+        f"  inspected so far       {now.inspected:6d} of {now.plants} plants "
+        f"({100 * now.inspected / now.plants:.0f} %), {now.found} found infested"
+    )
+    yield (
+        f"  expected still there   {ahead.expected:6.1f} ({ahead.low} to {ahead.high} with a "
+        "chance of 90 %)"
+    )
+    yield f"  found of all           {now.detection_pct:6.1f} %, as believed"
+    yield f"  chance it is clean     {100 * ahead.chance_clean:6.1f} %"
+    spots = now.hot_spots
+    yield f"  hot spots              {len(spots):6d}" + "".join(
+        f"; {spots.found[h]} finds where {spots.expected[h]:.1f} were expected"
+        for h in range(min(len(spots), 3))
+    )
+
+
+def _show_rows(season: Season, now: Status) -> None:
+    import numpy as np  # noqa: PLC0415
+
+    of_plant = season.plot.grid.row_line + 1
+    for line in np.unique(of_plant):
+        days = now.days_since[of_plant == line]
+        known = days[~np.isnan(days)]
+        said = f"{known.min():.0f} days ago" if len(known) else "never"
+        typer.echo(f"  row {line:4d}  {said}")

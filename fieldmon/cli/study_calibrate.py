@@ -1,0 +1,57 @@
+"""`fieldmon study calibrate`: what the thesis's chapter 5 leaves open. Heavy imports wait."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fieldmon.cli.study_output import must_be_folder, write_all
+from fieldmon.cli.waiting import counting
+
+if TYPE_CHECKING:
+    from fieldmon.studies.thesis.chapter5.calibrate import FittedChoices
+
+
+def calibrate(
+    drawn: Annotated[int, typer.Option(help="Open choices drawn at first.")] = 500,
+    kept: Annotated[int, typer.Option(help="How many of them are tried on everything.")] = 20,
+    steps: Annotated[int, typer.Option(help="Steps of improving one choice or two.")] = 400,
+    seeds: Annotated[int, typer.Option(help="Paired seasons in the final comparison.")] = 20,
+    seed: Annotated[int, typer.Option(help="The same seed, the same figures.")] = 1,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder for tables and report.")
+    ] = Path(),
+) -> None:
+    """Search what the thesis leaves open for the best fit to its published figures.
+
+    Tells the best joint fit, the best fit of each part alone, and which parts conflict. Takes
+    about half an hour on two cores; Ctrl-C keeps what was tried on everything.
+    """
+    from fieldmon.studies.thesis.chapter5.calibrate import Effort, candidates_csv  # noqa: PLC0415
+    from fieldmon.studies.thesis.chapter5.calibrate import calibrate as search  # noqa: PLC0415
+
+    must_be_folder(output)
+    effort = Effort(drawn=drawn, kept=kept, steps=steps, final_seeds=seeds)
+    with counting("Searching") as count:
+        found = search(effort, seed, count)
+    _tell_fit(found)
+    write_all(output, {"prior_calibration.csv": candidates_csv(found.tried)})
+
+
+def _tell_fit(found: FittedChoices) -> None:
+    if found.stopped:
+        typer.echo("Stopped: this is the best of what was tried.")
+    off = ", ".join(f"{part} {steps:.2f}" for part, steps in found.best.off.items())
+    typer.echo(f"Best joint fit, {found.best.joint:.2f} steps off (5 points or a day): {off}")
+    for sentence in found.best.choices.sentences():
+        typer.echo(f"  {sentence}")
+    for part, best in found.per_part.items():
+        typer.echo(f"Best fit of {part} alone: {best.off[part]:.2f} steps off")
+        typer.echo(f"  {'; '.join(best.choices.sentences())}")
+    for one, other, alone, both in found.conflicts:
+        typer.echo(
+            f"{one} and {other} pull apart: alone each is met to {alone:.2f} steps or better, "
+            f"together to {both:.2f}"
+        )

@@ -1,0 +1,77 @@
+"""`fieldmon study no-prior`: the thesis's chapter 4, made again. Heavy imports wait."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fieldmon.cli.study_output import must_be_folder, write_all
+from fieldmon.cli.waiting import counting
+from fieldmon.errors import FileProblem
+
+
+def no_prior(
+    table: Annotated[
+        str,
+        typer.Option(
+            help="2, 3, 4, 5 or 2-5 (the printed tables), severity, bigger, trend, equal, "
+            "everywhere, slips, or all."
+        ),
+    ] = "2-5",
+    replicates: Annotated[int, typer.Option(help="Simulated seasons a row.")] = 400,
+    seed: Annotated[int, typer.Option(help="The same seed, the same figures.")] = 1,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder for the table (CSV) and report (HTML).")
+    ] = Path(),
+    golden: Annotated[
+        list[Path] | None,
+        typer.Option(help="Compare with exact runs instead; exit code 1 where rows differ."),
+    ] = None,
+    night: Annotated[
+        str | None,
+        typer.Option(help="Which night the exact runs are of: published or corrected."),
+    ] = None,
+) -> None:
+    """Run the thesis's samplers without prior information beside its printed tables.
+
+    Example: fieldmon study no-prior --table 2 --replicates 400 -o study
+    """
+    if golden:
+        _compare(golden, night)
+        return
+    from fieldmon.studies.thesis.chapter4.report import report_html  # noqa: PLC0415
+    from fieldmon.studies.thesis.chapter4.study import run_no_prior  # noqa: PLC0415
+    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
+
+    must_be_folder(output)
+    with counting("Simulating") as count:
+        made = run_no_prior(table, replicates, seed, count)
+    for part in made.tables:
+        typer.echo(f"\n{part.title}")
+        for sentence in part.summary:
+            typer.echo(f"  {sentence}")
+    name = f"no_prior_{table}"
+    write_all(output, {f"{name}.csv": csv_text(made.cells), f"{name}.html": report_html(made)})
+
+
+def _compare(files: list[Path], night: str | None) -> None:
+    """Print which rows of exact runs differ; end with exit code 1 if any does."""
+    from fieldmon.studies.thesis.chapter4.exact_runs import compare_golden  # noqa: PLC0415
+
+    all_equal = True
+    for file in files:
+        try:
+            text = file.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise FileProblem(
+                f"{file} must be a readable text file (CSV), but it is not ({error})."
+            ) from error
+        comparison = compare_golden(text, file.name, night)
+        typer.echo(str(comparison))
+        for difference in comparison.differences:
+            typer.echo(str(difference))
+        all_equal = all_equal and comparison.equal
+    if not all_equal:
+        raise typer.Exit(1)

@@ -1,0 +1,42 @@
+"""`fieldmon undo`: what was recorded is taken back. Heavy imports wait."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from fieldmon.cli.options import SeasonFile
+from fieldmon.errors import SettingError
+
+UndoChange = Annotated[
+    bool, typer.Option("--change", help="Take back the last change of settings instead.")
+]
+
+
+def undo(
+    season: SeasonFile,
+    batch: Annotated[
+        int | None, typer.Option(help="Number of a batch, see fieldmon status --batches.")
+    ] = None,
+    inspection: Annotated[
+        int | None, typer.Option(help="Number (fid) of one inspection in the season's file.")
+    ] = None,
+    change: UndoChange = False,  # noqa: FBT002 - a flag
+) -> None:
+    """Take back what was recorded last, a batch, one inspection, or a change; nothing is deleted.
+
+    Example: fieldmon undo season.gpkg
+    """
+    if (batch is not None) + (inspection is not None) + change > 1:
+        raise SettingError("Give --batch, --inspection or --change, not two of them.")
+    from fieldmon.monitoring import Season  # noqa: PLC0415
+
+    if change:
+        settings = Season(season).undo_change()
+        typer.echo(
+            f"The last change was taken back: {settings.sampler}, {settings.robot.hours:g} h from "
+            f"{settings.starts:%H:%M}, {settings.robot.look_s:g} s at a plant."
+        )
+        return
+    typer.echo(Season(season).undo(batch, inspection))

@@ -1,0 +1,41 @@
+"""Arrays that hold lists of different lengths one after the other, and arrays nobody may change."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+A = TypeVar("A", bound="NDArray[np.generic]")
+
+
+def read_only(array: A) -> A:
+    """Return the same array, which nobody can change from now on."""
+    array.setflags(write=False)
+    return array
+
+
+def offsets(count: NDArray[np.integer]) -> NDArray[np.int64]:
+    """Return where each of k lists starts, and the last one ends, ``(k + 1,)``.
+
+    The lists hold ``count`` ``(k,)`` entries and stand one after the other (compressed sparse
+    rows): list i is ``entry[offsets[i]:offsets[i + 1]]``.
+    """
+    start = np.zeros(len(count) + 1, np.int64)
+    np.cumsum(count, out=start[1:])
+    return start
+
+
+def runs(
+    first: NDArray[np.integer], count: NDArray[np.integer]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return k runs of whole numbers, one after the other, and of which run each number is.
+
+    Run i is ``first[i], first[i] + 1, ...``, ``count[i]`` of them; both arrays are ``(k,)``, and
+    what is returned, numbers and runs, has one entry a number.
+    """
+    run = np.repeat(np.arange(len(count)), count)
+    return np.arange(len(run)) + (first - offsets(count)[:-1])[run], run

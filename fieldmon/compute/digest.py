@@ -1,0 +1,42 @@
+"""Short names for values: the same for the same values only."""
+
+from __future__ import annotations
+
+import hashlib
+
+import numpy as np
+import shapely
+
+
+def digest(*parts: object, length: int = 64, end: bytes = b"\0") -> str:
+    """Return the first `length` hexadecimal digits of the SHA-256 of some values.
+
+    Digests stand in season files, in folders of studies and of routes: what is stored must come
+    out again, so what a part is to SHA-256 never changes.
+
+    Parameters
+    ----------
+    parts
+        Arrays count by their bytes (say the type where it could vary), geometries by their WKB,
+        mappings by their items in the order of the keys, bytes as they are, all else as Python
+        writes it (`repr`).
+    length
+        How many digits; 64 are all there are.
+    end
+        What comes after each part, so that no other parts are the same in a row. Empty where
+        nothing did when digests of that kind were first stored.
+    """
+    everything = hashlib.sha256()
+    for part in parts:
+        everything.update(_bytes(part) + end)
+    return everything.hexdigest()[:length]
+
+
+def _bytes(value: object) -> bytes:
+    if isinstance(value, bytes):
+        return value
+    if isinstance(value, shapely.Geometry):
+        return shapely.to_wkb(value)
+    if isinstance(value, np.ndarray):
+        return value.tobytes()
+    return repr(sorted(value.items()) if isinstance(value, dict) else value).encode()

@@ -1,0 +1,210 @@
+"""Reading in one call each, for the public library; what imports doubt comes as a warning.
+
+The command line and the app read in the same way, by `fieldmon.io.prepare`, and show messages.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.errors import ImportDoubt
+from fieldmon.io.import_report import Severity
+from fieldmon.io.options import PlotOptions, RecordOptions
+from fieldmon.io.prepare import prepare, records_on
+from fieldmon.io.read import read_plots as read_fields
+from fieldmon.io.readers.inspection_options import InspectionOptions
+from fieldmon.io.readers.inspections import read_inspections as read_on_grid
+from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources, RecordSource
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fieldmon.infestation.inspections import Inspections
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.io.import_report import ImportMessage
+    from fieldmon.io.options import Source
+    from fieldmon.plot.field import Field
+    from fieldmon.plot.plot import Plot
+
+_DOUBTS = (Severity.GUESSED, Severity.DROPPED, Severity.DOUBTFUL)
+
+
+def read_plot(
+    source: Source,
+    feature: str | int | None = None,
+    plants: Source | None = None,
+    planting: PlantingChoices | None = None,
+    gate: tuple[float, float] | None = None,
+    **options: str,
+) -> Plot:
+    """Return one plot of a file with its plants in rows.
+
+    Parameters
+    ----------
+    source
+        Path of a shapefile, GeoPackage, GeoJSON, KML...; also zipped.
+    feature
+        Name of the plot, or its number from 1, where the file holds several.
+    plants
+        File with positions of measured plants; None: plants are laid.
+    planting
+        Bearing, spacings, headland and faces where the file's own are not wanted; None: found in
+        the file, or assumed (rows 4 m, plants 3 m), with a warning.
+    gate
+        ``(lon, lat)`` where days start and end; None: the nearest row end.
+    **options
+        What else the file leaves open, as the messages name it: ``crs="EPSG:2039"``.
+
+    Returns
+    -------
+    Plot
+        Its ``grid`` holds n plants; `Plot.to_geopandas` gives them as points.
+
+    Warns
+    -----
+    ImportDoubt
+        For everything that was guessed, dropped or is doubtful.
+
+    Raises
+    ------
+    ChoiceNeeded
+        If the file leaves a choice; the sentence says which option answers.
+    FileProblem
+        If a file cannot be read.
+    PlotError
+        If no plant has room.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> plot.n_plants, plot.grid.n_rows
+    (3825, 45)
+    """
+    chosen = _chosen(PlotOptions(), options)
+    if feature is not None:
+        chosen = chosen.choose("feature", str(feature))
+    sources = PlotSources(source, chosen, plants=plants, gate=gate)
+    ready = prepare(PlotRequest(sources, planting or PlantingChoices()))
+    _warn(said.message for said in ready.messages)
+    for assumed in ready.assumed:
+        warnings.warn(f"{assumed} (planting=PlantingChoices(...))", ImportDoubt, stacklevel=2)
+    return ready.plot
+
+
+def read_plots(source: Source, **options: str) -> tuple[Field, ...]:
+    """Return the outlines of all plots of a file, without plants; as `read_plot` otherwise.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> [field.name for field in fm.read_plots("sample_data/paran_estate.zip")][:4]
+    ['Gate', 'Pond', 'Wadi', 'Big field']
+    """
+    read = read_fields(source, _chosen(PlotOptions(), options))
+    _warn(read.messages)
+    return read.value
+
+
+def read_records(source: Source, near: Plot, **options: str) -> Observations:
+    """Return the dated pest records on a plot or near it.
+
+    Parameters
+    ----------
+    source
+        Path of a CSV, Excel, shapefile, GeoPackage, GeoJSON or KML file, with positions, with rows
+        and plants, or with names of plots.
+    near
+        The plot; records more than 100 m away are kept apart.
+    **options
+        What the file leaves open: ``date_order="dmy"``, ``crs="EPSG:2039"``.
+
+    Returns
+    -------
+    Observations
+        m records, an array entry each.
+
+    Warns
+    -----
+    ImportDoubt
+        For everything that was guessed, dropped or is doubtful.
+
+    Raises
+    ------
+    ChoiceNeeded
+        If the file leaves a choice.
+    FileProblem
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> records = fm.read_records("sample_data/mite_records.csv", near=plot)
+    >>> len(records), int((records.present == 1).sum())
+    (329, 86)
+    """
+    read = records_on(near, RecordSource(source, _chosen(RecordOptions(), options)))
+    _warn(read.messages)
+    return read.value
+
+
+def read_inspections(source: Source, plot: Plot, **options: str) -> Inspections:
+    r"""Return what was found at which plants, from a route file filled in or any table of finds.
+
+    Parameters
+    ----------
+    source
+        CSV, TSV, Excel, GeoJSON, GeoPackage, shapefile, KML or GPX, with plants by number, by row
+        and number in it, or by position. Blank lines stay unknown.
+    plot
+        Whose plants they are.
+    **options
+        What the file leaves open: ``day="2026-11-18"``, ``who="Ann"``, ``zone="Asia/Jerusalem"``,
+        ``accuracy_m="3"``.
+
+    Returns
+    -------
+    Inspections
+        k inspections, an array entry each; `Season.record` takes them.
+
+    Warns
+    -----
+    ImportDoubt
+        For everything that was guessed, left out or is doubtful.
+
+    Raises
+    ------
+    ChoiceNeeded
+        If the file leaves a choice.
+    FileProblem
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> table = "plant,found,date\n17,yes,2026-11-18\n18,no,2026-11-18\n19,,2026-11-18\n"
+    >>> with open("day.csv", "w") as file:
+    ...     _ = file.write(table)
+    >>> seen = fm.read_inspections("day.csv", plot)
+    >>> seen.plant.tolist(), seen.result.tolist()
+    ([17, 18], [1, 0])
+    """
+    read = read_on_grid(source, plot.grid, _chosen(InspectionOptions(), options))
+    _warn(read.messages)
+    return read.value
+
+
+def _chosen(options: Any, more: dict[str, str]) -> Any:  # noqa: ANN401 - options of any kind
+    for name, value in more.items():
+        options = options.choose(name, str(value))
+    return options
+
+
+def _warn(messages: Iterable[ImportMessage]) -> None:
+    """Warn the caller of the caller of every doubt."""
+    for message in messages:
+        if message.severity in _DOUBTS:
+            warnings.warn(str(message), ImportDoubt, stacklevel=3)

@@ -1,0 +1,28 @@
+"""Texts and tables that come with the program: templates, stylesheet, published figures."""
+
+from __future__ import annotations
+
+import csv
+from importlib.resources import files
+
+
+def packaged_text(path: str) -> str:
+    """Return a text file of the program.
+
+    Parameters
+    ----------
+    path
+        From where the packages stand, as ``"fieldmon/io/templates/page.css"``: the same in a
+        checkout and in an installed wheel.
+    """
+    package, _, name = path.rpartition("/")
+    return files(package.replace("/", ".")).joinpath(name).read_text(encoding="utf-8")
+
+
+def packaged_table(path: str) -> list[dict[str, str]]:
+    """Return the rows of a CSV table of the program by the names of its columns.
+
+    Lines that begin with ``#`` say where the figures come from and are no rows.
+    """
+    lines = packaged_text(path).splitlines()
+    return list(csv.DictReader((line for line in lines if not line.startswith("#")), strict=True))

@@ -1,0 +1,81 @@
+"""Times of day as people write them, and the zones they are in."""
+
+from __future__ import annotations
+
+import re
+from contextlib import suppress
+from datetime import UTC, datetime, timedelta, timezone, tzinfo
+from typing import NamedTuple
+from zoneinfo import ZoneInfo
+
+import numpy as np
+
+from fieldmon.errors import SettingError
+
+_CLOCK = re.compile(
+    r"(?:^|[T\s,])(\d{1,2}):(\d{2})(?::(\d{2})(?:[.,]\d+)?)?\s*([AaPp]\.?[Mm]\.?)?\s*"
+    r"(Z|UTC|GMT|[-+]\d{2}(?::?\d{2})?)?$"
+)
+_SERIAL = re.compile(r"^\d{5}(\.\d+)?$")
+_OFFSET = re.compile(r"^([-+])(\d{1,2}):?(\d{2})?$")
+_FARTHEST_ZONE = timedelta(hours=14)
+
+
+def zone_of(name: str) -> tzinfo:
+    """Return a time zone by its name or its offset; raise `SettingError` where there is none."""
+    offset = _OFFSET.match(name.strip())
+    if offset:
+        sign, hours, minutes = offset.groups()
+        ahead = timedelta(hours=int(hours), minutes=int(minutes or 0))
+        if ahead <= _FARTHEST_ZONE:
+            return timezone(-ahead if sign == "-" else ahead)
+    else:
+        with suppress(KeyError, ValueError, OSError):
+            return ZoneInfo(name.strip())
+    raise SettingError(
+        f"A time zone must be named as Asia/Jerusalem or +02:00, but it is {name!r}."
+    )
+
+
+class ClockTime(NamedTuple):
+    """A time of day: seconds since midnight, and how far ahead of UTC its zone is if it says."""
+
+    seconds: int
+    offset: timedelta | None
+
+
+def clock_time(cell: str) -> ClockTime | None:
+    """Return the time of day that a cell holds beside its date, and its zone if it names one."""
+    if _SERIAL.match(cell) and "." in cell:
+        return ClockTime(round(float(cell) % 1 * 86_400), None)
+    found = _CLOCK.search(cell)
+    if not found:
+        return None
+    hour, minute, second = (int(part or 0) for part in found.groups()[:3])
+    half = (found.group(4) or "").replace(".", "").casefold()
+    hour = hour % 12 + 12 * (half == "pm") if half else hour
+    if hour > 23 or minute > 59 or second > 60:
+        return None
+    zone = found.group(5)
+    if zone is None:
+        return ClockTime(3600 * hour + 60 * minute + second, None)
+    try:
+        ahead = (zone_of(zone) if zone[0] in "+-" else UTC).utcoffset(None)
+    except SettingError:
+        return None
+    return ClockTime(3600 * hour + 60 * minute + second, ahead)
+
+
+def local_time(day: np.datetime64, clock: ClockTime, zone: tzinfo | None) -> np.datetime64:
+    """Return the local time, datetime64[s], of a time of day on a day; in `zone` if it is told."""
+    here = day.astype("datetime64[s]") + np.timedelta64(clock.seconds, "s")
+    if clock.offset is None or zone is None:
+        return np.datetime64(here, "s")
+    stated = here.astype(datetime).replace(tzinfo=timezone(clock.offset))
+    return np.datetime64(stated.astimezone(zone).replace(tzinfo=None), "s")
+
+
+def is_clock_alone(cell: str) -> bool:
+    """Return whether a cell holds a time of day and no date, or nothing."""
+    found = _CLOCK.search(cell)
+    return not cell or (found is not None and found.start() == 0)

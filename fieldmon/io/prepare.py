@@ -1,0 +1,450 @@
+"""The one way from files to a prepared plot, for the command line, the app and the library.
+
+`prepare` makes one plot, `prepare_estate` reads every plot of a file with its records. Whoever
+keeps what was read, and draws on plots in between, goes the same way step by step: `lay` or
+`lay_around`, `records_on`, `without_missing`, `risk_on`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol, TypeVar
+
+from fieldmon.errors import ChoiceNeeded, PlotError, SettingError
+from fieldmon.infestation.observations import Observations
+from fieldmon.io.options import source_name
+from fieldmon.io.read import (
+    read_crews,
+    read_lines,
+    read_plants,
+    read_plots,
+    read_records,
+    read_records_by_plot,
+)
+from fieldmon.io.readers.crews import Crew
+from fieldmon.io.readers.nearby import near_plot, on_plants
+from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
+from fieldmon.io.sources import PlantingChoices
+from fieldmon.plot.layout import Planting
+from fieldmon.plot.plot import Plot, planting_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.io.import_report import Imported, ImportMessage
+    from fieldmon.io.options import Source
+    from fieldmon.io.readers.places import Plants
+    from fieldmon.io.sources import (
+        CanopySource,
+        PlotRequest,
+        PlotSources,
+        RecordSource,
+        RiskSource,
+        Role,
+    )
+    from fieldmon.plot.field import Field
+
+T = TypeVar("T")
+
+_MOST_NAMED = 12
+_SPACINGS = ("row_spacing_m", "plant_spacing_m")
+
+
+@dataclass(frozen=True)
+class SourceMessage:
+    """One thing that the import of a file has to say.
+
+    Parameters
+    ----------
+    role
+        What the file is to the plot: whose option or button answers.
+    source
+        The file's name.
+    message
+        What there is to say.
+    """
+
+    role: Role
+    source: str
+    message: ImportMessage
+
+
+@dataclass(frozen=True)
+class Assumed:
+    """Something about a plot that nobody said and no file states.
+
+    Parameters
+    ----------
+    setting
+        Its name in `PlantingChoices`, which says otherwise: ``"row_spacing_m"``.
+    value
+        What was taken, metres.
+    """
+
+    setting: str
+    value: float
+
+    def __str__(self) -> str:
+        words = self.setting.removesuffix("_m").replace("_", " ")
+        return f"guessed: {words} {self.value:g} m"
+
+
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """A plot with its plants, and what had to be assumed for them."""
+
+    plot: Plot
+    assumed: tuple[Assumed, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A plot that is ready to be planned, simulated or begun a season on.
+
+    Parameters
+    ----------
+    plot
+        The plot, without the plants that are missing.
+    records
+        The records on it or near it.
+    risk
+        ``(n,)`` risk of its plants from a raster, NaN where that says nothing; None without one.
+    messages
+        What the imports had to say, in order.
+    assumed
+        What nobody said.
+    """
+
+    plot: Plot
+    records: Observations
+    risk: NDArray[np.float64] | None
+    messages: tuple[SourceMessage, ...]
+    assumed: tuple[Assumed, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class EstateRecords:
+    """The records of several plots.
+
+    Parameters
+    ----------
+    anywhere
+        Those that belong to a plot by their position.
+    named
+        Those that name a plot's rows and plants, by the plot's name; empty where records do not.
+    """
+
+    anywhere: Observations = field(default_factory=Observations.none)
+    named: Mapping[str, Observations] = field(default_factory=dict)
+
+    def candidates(self, name: str) -> Observations:
+        """Return the records among which those of a plot are."""
+        return self.named.get(name, self.anywhere)
+
+    def on(self, plot: Field) -> Observations:
+        """Return the records on a plot or near it; there may be none."""
+        return near_plot(self.candidates(plot.name), plot).inside
+
+
+@dataclass(frozen=True, eq=False)
+class Estate:
+    """Every plot of a file.
+
+    Parameters
+    ----------
+    fields
+        The plots, with their paths.
+    crews
+        Who works on each, by name, as the file says.
+    records
+        The records of all of them.
+    messages
+        What the imports had to say, in order.
+    """
+
+    fields: tuple[Field, ...]
+    crews: Mapping[str, Crew]
+    records: EstateRecords
+    messages: tuple[SourceMessage, ...]
+
+    def crew(self, field: Field) -> Crew:
+        """Return who works on a plot."""
+        return self.crews.get(field.name, Crew())
+
+
+class Listener(Protocol):
+    """Hears what there is to say while files are read, be a later one of no use or not."""
+
+    def message(self, said: SourceMessage, /) -> None:
+        """Hear what an import has to say."""
+
+    def laid(self, laid: Laid, /) -> None:
+        """Hear of the plot, before its records are read."""
+
+
+def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
+    """Return one plot with its records and its risk.
+
+    Raise `ChoiceNeeded` where a file leaves a choice; its ``role`` says which file. A file of
+    several plots, of which none is chosen, asks for ``"feature"`` and is no file's question.
+    """
+    hearing = _Hearing(listener)
+    sources, measured = request.sources, None
+    if sources.plot is None:
+        measured = _measured(sources, hearing)
+        laid = lay_around(sources, measured, request.planting)
+    else:
+        field = one_of(_fields(sources, hearing))
+        if sources.plants is not None:
+            measured = _measured(sources, hearing)
+            field = replace(field, plants=measured.lonlat.copy())
+        field = _with_paths((field,), sources, hearing)[0]
+        gate = field.gate if sources.gate is None else sources.gate
+        laid = lay(replace(field, gate=gate), request.planting)
+    if listener is not None:
+        listener.laid(laid)
+    plot, records, risk = laid.plot, Observations.none(), None
+    if (asked := request.records) is not None:
+        named = partial(_every_field, sources)
+        records = hearing.read(
+            "records", asked.file, partial(records_on, plot, asked, named, measured)
+        )
+    if (canopy := request.canopy) is not None:
+        plot = hearing.read("canopy", canopy.file, partial(without_missing, plot, canopy))
+    if (raster := request.risk) is not None:
+        risk = hearing.read("risk", raster.file, partial(risk_on, plot, raster))
+    return Prepared(plot, records, risk, tuple(hearing.messages), laid.assumed)
+
+
+def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Estate:
+    """Return every plot of a file, or the one that is chosen, and the records of all of them.
+
+    Where records name rows and plants, each plot gets its own; where they do not say of which
+    plot, and there are several, ask for ``"plot"``. Plants, gate and rasters are of one plot only
+    and left out of account.
+    """
+    hearing = _Hearing(listener)
+    sources, records = request.sources, EstateRecords()
+    if (file := sources.plot) is None:
+        raise SettingError("Give a file of plots.")
+
+    def read() -> Imported[tuple[tuple[Field, ...], dict[str, Crew]]]:
+        plots, crews = read_crews(file, sources.plot_options)
+        return plots.having((plots.value, crews))
+
+    fields, crews = hearing.read("plot", file, read)
+    fields = _with_paths(fields, sources, hearing)
+    if (asked := request.records) is not None:
+        lay_one = partial(lay, choices=request.planting)
+        records = hearing.read("records", asked.file, partial(records_of, fields, asked, lay_one))
+    return Estate(fields, crews, records, tuple(hearing.messages))
+
+
+def one_of(fields: tuple[Field, ...]) -> Field:
+    """Return the only plot; ask which is meant where there are several."""
+    if len(fields) == 1:
+        return fields[0]
+    names = tuple(field.name for field in fields)
+    raise ChoiceNeeded(
+        f"One plot must be chosen, but the file holds {len(names)}: {_some(names)}. "
+        "Choose one by name or number.",
+        "feature",
+        names,
+    )
+
+
+def lay(field: Field, choices: PlantingChoices | None = None) -> Laid:
+    """Return a field with its plants: those measured, or laid as said, stated or usual."""
+    given = (choices or PlantingChoices()).given()
+    planting = planting_of(field, **given)
+    missing = [name for name in _SPACINGS if name not in given and getattr(field, name) is None]
+    assumed = tuple(Assumed(name, getattr(planting, name)) for name in missing)
+    return Laid(Plot.of(field, planting), assumed if field.plants is None else ())
+
+
+def lay_around(
+    sources: PlotSources, measured: Plants, choices: PlantingChoices | None = None
+) -> Laid:
+    """Return the plot of measured plants whose boundary nobody drew, called as their file."""
+    planting = Planting(**(choices or PlantingChoices()).given())  # type: ignore[arg-type]
+    name = "plants" if sources.plants is None else Path(source_name(sources.plants)).stem
+    return Laid(Plot.around(name, measured.lonlat.copy(), planting, sources.gate))
+
+
+def records_on(
+    plot: Plot,
+    source: RecordSource,
+    fields: Callable[[], tuple[Field, ...]] | None = None,
+    measured: Plants | None = None,
+) -> Imported[Observations]:
+    """Return the records on a plot or near it.
+
+    They give positions, or name rows and plants, or plots.
+
+    Parameters
+    ----------
+    plot
+        The plot with all of its plants, also those that a raster shows to be missing.
+    source
+        The records.
+    fields
+        Returns every plot of the plot's file, for records that name plots; called only then.
+    measured
+        The plot's measured plants, whose labels records may name.
+    """
+    try:
+        read = read_records(source.file, source.options, near=plot.field)
+    except ChoiceNeeded as question:
+        if question.option not in {"plants", "plots"}:
+            raise
+        known = (plot.field,) if fields is None else fields()
+        places = NamedPlaces.of(known, plot.grid, measured, plot.field.name)
+        read = read_records(source.file, source.options, plot.field, places)
+    return read.having(read.value, on_plants(read.value, plot.grid))
+
+
+def records_of(
+    fields: tuple[Field, ...], source: RecordSource, lay: Callable[[Field], Laid]
+) -> Imported[EstateRecords]:
+    """Return the records of several plots; `lay` makes the plants that records name."""
+    try:
+        read = read_records(source.file, source.options)
+    except ChoiceNeeded as question:
+        if question.option == "plots":
+            read = read_records(source.file, source.options, places=NamedPlaces(fields))
+            return read.having(EstateRecords(read.value))
+        if question.option != "plants":
+            raise
+        return _by_plant(fields, source, lay, question.choices)
+    return read.having(EstateRecords(read.value))
+
+
+def without_missing(plot: Plot, source: CanopySource) -> Imported[Plot]:
+    """Return a plot without the plants where the canopy is low; those unseen stay."""
+    from fieldmon.io.rasters.at_plants import read_missing  # noqa: PLC0415 - half a second
+    from fieldmon.io.rasters.values import RasterOptions  # noqa: PLC0415
+
+    options = source.options or RasterOptions()
+    read = read_missing(source.file, options, plot, source.below, source.how)
+    return read.having(plot.without(read.value))
+
+
+def risk_on(plot: Plot, source: RiskSource) -> Imported[NDArray[np.float64]]:
+    """Return the risk of each plant ``(n,)`` from a raster, NaN where it says nothing."""
+    from fieldmon.infestation.raster_risk import RiskSettings  # noqa: PLC0415
+    from fieldmon.io.rasters.at_plants import read_risk  # noqa: PLC0415 - half a second
+    from fieldmon.io.rasters.values import RasterOptions  # noqa: PLC0415
+
+    settings, options = source.settings or RiskSettings(), source.options or RasterOptions()
+    return read_risk(source.file, options, plot, settings, source.how)
+
+
+class _Hearing:
+    """Keeps what imports have to say, and tells it on; marks questions with the file's role."""
+
+    def __init__(self, listener: Listener | None) -> None:
+        self.listener = listener
+        self.messages: list[SourceMessage] = []
+
+    def read(self, role: Role, source: Source, read: Callable[[], Imported[T]]) -> T:
+        try:
+            imported = read()
+        except ChoiceNeeded as question:
+            raise ChoiceNeeded(str(question), question.option, question.choices, role) from None
+        for message in imported.messages:
+            said = SourceMessage(role, source_name(source), message)
+            self.messages.append(said)
+            if self.listener is not None:
+                self.listener.message(said)
+        return imported.value
+
+
+def _fields(sources: PlotSources, hearing: _Hearing) -> tuple[Field, ...]:
+    """Return the plots of the file that are meant."""
+    file = sources.plot
+    if file is None:
+        return ()
+    return hearing.read("plot", file, partial(read_plots, file, sources.plot_options))
+
+
+def _every_field(sources: PlotSources) -> tuple[Field, ...]:
+    """Return all plots of the file; what it has to say was said before."""
+    if sources.plot is None:
+        return ()
+    return read_plots(sources.plot, replace(sources.plot_options, feature=None)).value
+
+
+def _measured(sources: PlotSources, hearing: _Hearing) -> Plants:
+    file = sources.plants
+    if file is None:
+        raise SettingError("Give a file of plots, or the positions of a plot's plants.")
+    return hearing.read("plants", file, partial(read_plants, file, sources.plants_options))
+
+
+def _with_paths(
+    fields: tuple[Field, ...], sources: PlotSources, hearing: _Hearing
+) -> tuple[Field, ...]:
+    file = sources.paths
+    if file is None:
+        return fields
+    lines = hearing.read("paths", file, partial(read_lines, file, sources.paths_options))
+    return tuple(replace(field, paths=lines) for field in fields)
+
+
+def _by_plant(
+    fields: tuple[Field, ...],
+    source: RecordSource,
+    lay: Callable[[Field], Laid],
+    plots: tuple[str, ...],
+) -> Imported[EstateRecords]:
+    """Return records that name rows and plants, each on its own plot; `plots` are those named."""
+    if len(fields) == 1:
+        (only,) = fields
+        places = NamedPlaces.of(fields, lay(only).plot.grid, None, only.name)
+        read = read_records(source.file, source.options, places=places)
+        return read.having(EstateRecords(named={only.name: read.value}))
+    named_plots = plots_called(plots, fields) if plots else (_plot_by_hand(fields, source),)
+    places = NamedPlaces(fields, plants_of=_plants_of(named_plots, lay))
+    by_plot = read_records_by_plot(source.file, source.options, places)
+    none = Observations.none()
+    named = {field.name: by_plot.value.get(field.name, none) for field in fields}
+    return by_plot.having(EstateRecords(named=named))
+
+
+def _plot_by_hand(fields: tuple[Field, ...], source: RecordSource) -> Field:
+    """Return the plot whose rows and plants records name without naming it; ask for it."""
+    by_hand = source.options.plot
+    if by_hand is not None and (called := plots_called((by_hand,), fields)):
+        return called[0]
+    names = tuple(field.name for field in fields)
+    wrong = "" if by_hand is None else f" (it is not {by_hand!r})"
+    raise ChoiceNeeded(
+        f"Records that name rows and plants must be of a known plot, but "
+        f"{source_name(source.file)} does not say of which{wrong}. Choose one of {len(names)}: "
+        f"{_some(names)}.",
+        "plot",
+        names,
+    )
+
+
+def _plants_of(fields: tuple[Field, ...], lay: Callable[[Field], Laid]) -> dict[str, Plants]:
+    """Return the plants of plots by name, but of those that cannot carry any."""
+    plants: dict[str, Plants] = {}
+    problem = None
+    for each in fields:
+        try:
+            plants[each.name] = labelled(lay(each).plot.grid)
+        except PlotError as error:
+            problem = error
+    if problem is not None and not plants:
+        raise problem
+    return plants
+
+
+def _some(names: tuple[str, ...]) -> str:
+    return ", ".join(names[:_MOST_NAMED]) + (", ..." if len(names) > _MOST_NAMED else "")

@@ -1,0 +1,1 @@
+"""A file of inspections: its columns, results, plants, times, and all of it row by row."""

@@ -1,0 +1,108 @@
+"""Which column of a file of inspections holds what."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.errors import ChoiceNeeded
+from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.parse.columns import find, plain
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from fieldmon.io.readers.inspection_options import InspectionOptions
+
+# The columns of inspections that no pest record has; spellings as in `columns`
+_NAMES = {
+    "number": "number numberinrow plantinrow placeinrow nummerinreihe numeroenfila מספרבשורה",
+    # a running number where there is a better one
+    "ordinal": "no nr num nummer numero numéro número מספר",
+    "time": "time hour when timestamp datetime inspected inspectedat visited visitedat zeit "
+    "uhrzeit zeitpunkt hora heure ora שעה זמן",
+    "who": "who scout inspector observer recordedby surveyor user username operator by wer "
+    "prüfer kontrolleur quién quien inspecteur בודק פקח שםהבודק מי",
+    "notes": "notes note remark remarks comment comments bemerkung bemerkungen notiz kommentar "
+    "notas observaciones remarques commentaire cmt הערה הערות",
+    "face": "face side seite cara lado צד",
+    "id": "plantid idplant",
+}
+_PLAIN = {role: tuple(plain(name) for name in names.split()) for role, names in _NAMES.items()}
+_IDS = frozenset(_PLAIN["id"])
+_BLANK = frozenset({"", "nan", "nat", "none", "null", "<na>"})
+
+
+class InspectionColumns(NamedTuple):
+    """Which column holds what; None where none does."""
+
+    result: str | None
+    number_found: str | None
+    marks: str | None
+    plant: str | None
+    line: str | None
+    number: str | None
+    face: str | None
+    arrive: str | None
+
+
+def own_column(role: str, layer: Layer, taken: Iterable[str | None] = ()) -> str | None:
+    """Return the column of one of the roles that only inspections have."""
+    known = {plain(name): name for name in reversed(list(layer.columns)) if name not in taken}
+    return next((known[name] for name in _PLAIN[role] if name in known), None)
+
+
+def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
+    """Return the columns that matter; raise `ChoiceNeeded` where nothing says what was found."""
+    names = list(layer.columns)
+    line = options.column("row") or find("row", names)
+    number = own_column("number", layer, {line})
+    plant = options.column("plant") or own_column("id", layer)
+    plant = plant or find("plant", names, frozenset({line} if line else ()))
+    number = number or (own_column("ordinal", layer) if plant is None else None)
+    count = options.column("count") or find("count", names, frozenset({plant or "", number or ""}))
+    result = options.column("present") or _result_name(layer, count)
+    marks = None
+    if result is None and count is None:
+        marks = next((n for n in names if plain(n) in {"name", "title", "label"}), None)
+        if marks is None:
+            raise ChoiceNeeded(
+                f"{layer.name} must have a column that says what was found (found, result, count), "
+                f"but none was recognised among: {', '.join(names) or 'none'}. Name it.",
+                "columns",
+                tuple(names),
+            )
+    if plant is not None and line is not None and number is None and plain(plant) not in _IDS:
+        plant, number = None, plant
+    arrive = next((n for n in names if plain(n) == "arrive"), None)
+    return InspectionColumns(
+        result, count, marks, plant, line, number, own_column("face", layer), arrive
+    )
+
+
+def _result_name(layer: Layer, count: str | None) -> str | None:
+    for wanted in ("result", "found"):
+        known = next((n for n in layer.columns if plain(n) == wanted), None)
+        if known is not None:
+            return known
+    return find("present", layer.columns, frozenset({count} if count else ()))
+
+
+def texts_in(layer: Layer, name: str | None) -> NDArray[np.str_]:
+    """Return a column as text ``(n,)``, empty where it holds nothing or there is no column."""
+    if name is None:
+        return np.full(len(layer), "", dtype=np.str_)
+    cells = [text(v) for v in layer.column(name)]
+    return np.array(["" if c.casefold() in _BLANK else c for c in cells], dtype=np.str_)
+
+
+def who_in(
+    layer: Layer, columns: InspectionColumns, options: InspectionOptions
+) -> NDArray[np.str_]:
+    """Return who inspected ``(n,)``, as the file says or as told; empty where nobody is."""
+    taken = {columns.marks, columns.result}
+    who = texts_in(layer, own_column("who", layer, taken))
+    return np.where(who == "", options.who or "", who)

@@ -1,0 +1,98 @@
+"""Which plants a file of inspections names, and where it says they are."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.parse.columns import find
+from fieldmon.io.parse.positions import located
+from fieldmon.io.parse.values import numbers
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.io.import_report import ImportMessage
+    from fieldmon.io.readers.inspection_file.columns import InspectionColumns
+    from fieldmon.io.readers.inspection_options import InspectionOptions
+
+_LABEL = re.compile(r"^[^\d\s]{0,8}\s*(\d{1,6})\s*[/\-.,:;\s]\s*[^\d\s]{0,8}\s*(\d{1,6})([abAB]?)$")
+#: a plant in the name of a waypoint of ours: ``R3/17``, with what stands before and behind it
+PLANT_IN_NAME = re.compile(r"(?:^|\s)(?:\d+\s+)?R(\d{1,6})/(\d{1,6})([ab]?)(?=\s|$)")
+_FACES = {"1": 1, "a": 1, "2": 2, "b": 2}
+_ROW = "\0row"
+
+
+def named_plants(
+    layer: Layer, columns: InspectionColumns
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int8]]:
+    """Return the plant's number in the grid, or row, number and face, by which a file names it."""
+    n = len(layer)
+    plant = np.full(n, -1, np.int64)
+    line, number, face = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int8)
+    if columns.line is not None and columns.number is not None:
+        line, number = (_whole(layer, name, 0) for name in (columns.line, columns.number))
+        line[number <= 0] = number[line <= 0] = 0
+    if columns.face is not None:
+        words = [text(v).casefold() for v in layer.column(columns.face)]
+        face[:] = [_FACES.get(word, 0) for word in words]
+    if columns.plant is not None:
+        plant = _whole(layer, columns.plant, -1)
+    labels = columns.plant if columns.marks is None else columns.marks
+    if labels is not None:
+        pattern = _LABEL if columns.marks is None else PLANT_IN_NAME
+        for i, value in enumerate(layer.column(labels)):
+            found = pattern.search(text(value))
+            if found and plant[i] < 0:
+                line[i], number[i] = int(found.group(1)), int(found.group(2))
+                face[i] = _FACES.get(found.group(3).casefold(), 0)
+    return plant, line, number, face
+
+
+def _whole(layer: Layer, name: str, otherwise: int) -> NDArray[np.int64]:
+    values = numbers(layer.column(name))
+    good = np.isfinite(values) & (values == np.round(values)) & (np.abs(values) < 2**31)
+    return np.where(good, np.where(good, values, 0), otherwise).astype(np.int64)
+
+
+def positions_in(
+    layer: Layer, columns: InspectionColumns, options: InspectionOptions
+) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[ImportMessage, ...]]:
+    """Return positions ``(n, 2)`` and their accuracy ``(n,)``, NaN where there is none."""
+    lonlat, accuracy_m = np.full((len(layer), 2), np.nan), np.full(len(layer), np.nan)
+    roles = {role for role in ("lon", "lat", "x", "y", "position") if _has(layer, role, options)}
+    given = layer.geometry is not None or roles >= {"lon", "lat"} or "position" in roles
+    is_named = columns.plant is not None or columns.number is not None
+    if not given and (is_named or not roles >= {"x", "y"}):
+        if not is_named:
+            raise ChoiceNeeded(
+                f"{layer.name} must say which plants were inspected (a plant's number, a row and a "
+                f"number in it, or a position), but its columns are {', '.join(layer.columns)}. "
+                "Name them.",
+                "columns",
+                tuple(layer.columns),
+            )
+        return lonlat, accuracy_m, ()
+    rows = np.empty(len(layer), dtype=object)
+    rows[:] = range(len(layer))
+    try:
+        found = located(replace(layer, columns={**layer.columns, _ROW: rows}, messages=()), options)
+    except (ChoiceNeeded, FileProblem):
+        if not is_named:
+            raise
+        return lonlat, accuracy_m, ()
+    kept = found.layer.columns[_ROW].astype(np.int64)
+    name = options.column("accuracy") or find("accuracy", layer.columns)
+    stated = numbers(found.layer.column(name)) if name else np.full(len(kept), np.nan)
+    lonlat[kept] = found.lonlat
+    accuracy_m[kept] = np.fmax(np.where(stated > 0, stated, np.nan), found.accuracy_m)
+    return lonlat, accuracy_m, found.messages
+
+
+def _has(layer: Layer, role: str, options: InspectionOptions) -> bool:
+    return (options.column(role) or find(role, layer.columns)) is not None

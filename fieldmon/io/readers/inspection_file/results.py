@@ -1,0 +1,189 @@
+"""What was found, as cells say it: words in many languages, signs, counts, names of waypoints."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.import_report import ImportMessage, doubtful, seen
+from fieldmon.io.parse.values import counted, decimal_mark, is_missing, presence
+from fieldmon.io.readers.inspection_file.plants import PLANT_IN_NAME
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.io.readers.inspection_file.columns import InspectionColumns
+    from fieldmon.io.readers.inspection_options import InspectionOptions
+
+_CLEAN = frozenset(
+    {"clear", "ok", "okay", "sauber", "befallsfrei", "limpio", "limpia", "sano", "sana", "propre"}
+    | {"sain", "saine", "pulito", "pulita", "limpo", "limpa", "sadio", "nil found", "no pests"}
+    | {
+        "kein befall",
+        "nicht gefunden",
+        "no encontrado",
+        "pas trouvé",
+        "non trovato",
+        "ללא",
+        "נקייה",
+    }
+)
+_FOUND = frozenset(
+    {"gefunden", "befall", "encontrado", "encontrada", "trouvé", "trouvée", "infesté", "trovato"}
+    | {"infestato", "infestado", "plaga", "pest", "pests", "mite", "mites", "נמצאה", "נגועה", "✔"}
+)
+_NOT_INSPECTED = frozenset(
+    {"not inspected", "uninspected", "could not inspect", "cannot inspect", "not visited", "ni"}
+    | {"n/i", "skip", "skipped", "missed", "not done", "no access", "nicht geprüft", "ausgelassen"}
+    | {"nicht kontrolliert", "no inspeccionado", "no inspeccionada", "sin inspeccionar", "saltado"}
+    | {"non inspecté", "non inspectée", "non ispezionato", "não inspecionado", "לא נבדק"}
+    | {"לא נבדקה", "דולג"}
+)
+_WORDS = (
+    dict.fromkeys(_CLEAN, ABSENT)
+    | dict.fromkeys(_FOUND, PRESENT)
+    | dict.fromkeys(_NOT_INSPECTED, UNKNOWN)
+)
+_MINUS = frozenset({"-", "\u2212", "\u2013"})
+_PLUS = re.compile(r"^\+\s*(\d*)$")
+
+
+class SeenResults(NamedTuple):
+    """What was seen, ``(n,)`` each; `said` where anything at all was written down."""
+
+    result: NDArray[np.int8]
+    how_many: NDArray[np.float64]
+    doubt: NDArray[np.str_]
+    said: NDArray[np.bool_]
+    messages: list[ImportMessage]
+
+
+class _CellResult(NamedTuple):
+    """What one cell says."""
+
+    result: int
+    how_many: float
+    is_said: bool
+    is_read: bool = True
+
+
+_SILENT = _CellResult(UNKNOWN, np.nan, is_said=False)
+
+
+def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> SeenResults:
+    """Return what was seen at each plant of a layer."""
+    if columns.marks is not None:
+        said = [_of_mark(text(v)) for v in layer.column(columns.marks)]
+        return _put_together(said, [_SILENT] * len(said), [])
+    by_result, by_count = [_SILENT] * len(layer), [_SILENT] * len(layer)
+    messages: list[ImportMessage] = []
+    if columns.result is not None:
+        cells = [text(v) for v in layer.column(columns.result)]
+        signs = any(_PLUS.match(cell) for cell in cells)
+        mark = options.decimal or decimal_mark(cells) or "."
+        known = {cell: _of_word(cell, mark, signs=signs) for cell in set(cells)}
+        by_result = [known[cell] for cell in cells]
+        messages += [seen(f"Results are in column {columns.result!r}."), *_unread(cells, known)]
+    if columns.number_found is not None:
+        cells = [text(v) for v in layer.column(columns.number_found)]
+        mark = options.decimal or decimal_mark(cells) or "."
+        known = {cell: _of_count(cell, mark) for cell in set(cells)}
+        by_count = [known[cell] for cell in cells]
+        messages += [
+            seen(f"Counts are in column {columns.number_found!r}."),
+            *_unread(cells, known),
+        ]
+    return _put_together(by_result, by_count, messages)
+
+
+def _put_together(
+    by_result: list[_CellResult], by_count: list[_CellResult], messages: list[ImportMessage]
+) -> SeenResults:
+    """Return what result and count say together.
+
+    Forms fill in zeros by themselves: in a file with results, a zero beside an empty result is
+    doubtful, and one beside "not inspected" says nothing.
+    """
+    first = np.array([s.result for s in by_result], dtype=np.int8)
+    second = np.array([s.result for s in by_count], dtype=np.int8)
+    spoken = np.array([s.is_said for s in by_result], dtype=bool)
+    counted_too = np.array([s.is_said for s in by_count], dtype=bool)
+    against = spoken & (second != UNKNOWN) & (first != second)
+    against &= (first != UNKNOWN) | (second == PRESENT)
+    zero_alone = ~spoken & (second == ABSENT) & spoken.any()
+    doubt = np.where(against, "its result and its count contradict each other", "")
+    doubt = np.where(zero_alone, "its count is 0, but its result is empty", doubt)
+    result = np.where(against, PRESENT, np.where(spoken, first, second)).astype(np.int8)
+    own = np.array([s.how_many for s in by_result], dtype=np.float64)
+    count = np.array([s.how_many for s in by_count], dtype=np.float64)
+    how_many = np.where(np.isnan(count), own, count)
+    return SeenResults(result, how_many, doubt.astype(np.str_), spoken | counted_too, messages)
+
+
+def _unread(cells: list[str], known: dict[str, _CellResult]) -> list[ImportMessage]:
+    odd = [cell for cell in cells if not known[cell].is_read]
+    if not odd:
+        return []
+    shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(odd))[:5])
+    said = f"{len(odd)} record(s) say neither clean nor found ({shown}); left unknown."
+    return [doubtful(said)]
+
+
+def _of_word(cell: str, mark: str, *, signs: bool) -> _CellResult:
+    """Return what a cell for a result says: a word in many languages, a sign, or a count.
+
+    A lone minus is "clean" only in a column that has a plus somewhere, else it is nothing. A number
+    above 1 is a find with that count; 1 is "yes", which counts nothing.
+    """
+    word = " ".join(cell.casefold().replace("_", " ").split())
+    plus = _PLUS.match(word)
+    if plus:
+        return _CellResult(PRESENT, float(plus.group(1) or "nan"), is_said=True)
+    if signs and word in _MINUS:
+        return _CellResult(ABSENT, np.nan, is_said=True)
+    if word in _WORDS:
+        return _CellResult(_WORDS[word], np.nan, is_said=True)
+    result = presence(word)
+    if result == UNKNOWN:
+        return _CellResult(UNKNOWN, np.nan, is_said=False, is_read=is_missing(word))
+    read = counted(word, mark)
+    how_many = read.number if read.number > 1 and not read.is_rough else np.nan
+    return _CellResult(result, how_many, is_said=True)
+
+
+def _of_count(cell: str, mark: str) -> _CellResult:
+    """Return what a cell for a count says; ``<5`` is a find that was not counted."""
+    if cell.strip().casefold() in _NOT_INSPECTED:
+        return _CellResult(UNKNOWN, np.nan, is_said=True)
+    read = counted(cell.removeprefix("+"), mark)
+    if read.present == UNKNOWN:
+        return _CellResult(UNKNOWN, np.nan, is_said=False, is_read=not read.is_rough)
+    # "no" and "0" count nothing; a range or a bound is a find, not a number
+    number = read.number if read.present == PRESENT and not read.is_rough else np.nan
+    return _CellResult(read.present, 0.0 if read.present == ABSENT else number, is_said=True)
+
+
+def _of_mark(name: str) -> _CellResult:
+    """Return what a waypoint's name says: ``+3``, ``+``, ``-``, ``0``, ``clean``, ``R3/17 +2``.
+
+    A number alone is none: handhelds number their waypoints 001, 002.
+    """
+    words = name.split()
+    last = words[-1] if words else ""
+    for sign in (name.strip(), last):
+        plus = _PLUS.match(sign)
+        if plus:
+            return _CellResult(PRESENT, float(plus.group(1) or "nan"), is_said=True)
+        if sign in _MINUS:
+            return _CellResult(ABSENT, np.nan, is_said=True)
+    if name.strip() == "0":
+        return _CellResult(ABSENT, np.nan, is_said=True)
+    bare = PLANT_IN_NAME.sub(" ", name).strip()
+    if not bare or re.fullmatch(r"[\d\s]+", bare):
+        return _SILENT
+    said = _of_word(bare, ".", signs=True)
+    return said if said.is_said else _SILENT

@@ -1,0 +1,176 @@
+"""What a file says of plants that were inspected, before they are looked up on a plot.
+
+This half runs in the reading process and knows no plot.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.formats.open_layer import layers_of, open_layer
+from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
+from fieldmon.io.parse.columns import plain
+from fieldmon.io.readers.inspection_file.columns import columns_of, own_column, texts_in, who_in
+from fieldmon.io.readers.inspection_file.plants import named_plants, positions_in
+from fieldmon.io.readers.inspection_file.results import results_in
+from fieldmon.io.readers.inspection_file.times import times_in
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.io.formats.layer import LayerInfo
+    from fieldmon.io.options import Source
+    from fieldmon.io.readers.inspection_options import InspectionOptions
+    from fieldmon.io.sandbox.unpack import Workroom
+
+# Layers of files given out and of a season's file: what to read where nobody chose
+_LAYERS = ("inspections", "stops", "plants", "waypoints")
+
+
+@dataclass(frozen=True, eq=False)
+class InspectionRows:
+    """Inspections as a file tells them, one entry a record that says anything, ``(m,)`` each.
+
+    Parameters
+    ----------
+    plant
+        Number of the plant in the grid, as files given out have it; -1 where it is not named.
+    line, number, face
+        Row and number in it as people count, and which face; 0 where not named.
+    lonlat
+        ``(m, 2)`` degrees; NaN without a position.
+    accuracy_m
+        Of the position; NaN where not stated.
+    result
+        int8 `PRESENT`, `ABSENT` or `UNKNOWN` (could not be inspected).
+    count
+        Pests counted; NaN where not counted.
+    doubt
+        Why a record is doubtful in itself; empty where it is not.
+    when
+        datetime64[s], local; NaT without a clock time.
+    day
+        datetime64[D]; NaT where none is stated.
+    who, notes
+        Text; empty where there is none.
+    source_row
+        Which record of the file, from 1.
+    """
+
+    plant: NDArray[np.int64]
+    line: NDArray[np.int64]
+    number: NDArray[np.int64]
+    face: NDArray[np.int8]
+    lonlat: NDArray[np.float64]
+    accuracy_m: NDArray[np.float64]
+    result: NDArray[np.int8]
+    count: NDArray[np.float64]
+    doubt: NDArray[np.str_]
+    when: NDArray[np.datetime64]
+    day: NDArray[np.datetime64]
+    who: NDArray[np.str_]
+    notes: NDArray[np.str_]
+    source_row: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        """Return the number of records."""
+        return len(self.result)
+
+
+def rows_of(
+    source: Source, options: InspectionOptions, workroom: Workroom
+) -> Imported[InspectionRows]:
+    """Return what a file says of plants that were inspected.
+
+    Where a file has several layers and nobody chose, the first of `_LAYERS` that reports anything
+    is read: QField and QGIS edit a layer of plants, of stops or of inspections in place.
+    """
+    if options.member is not None or options.layer is not None:
+        return rows_in(open_layer(source, options, workroom), options)
+    known = _known_layers(layers_of(source, workroom))
+    said_nothing: list[Imported[InspectionRows]] = []
+    for info in known:
+        own = replace(options, member=info.member, layer=info.layer)
+        try:
+            read = rows_in(open_layer(source, own, workroom), own)
+        except (ChoiceNeeded, FileProblem):
+            continue  # this one has no columns for inspections
+        said = seen(f"Findings were read from layer {info.layer}.")
+        if len(read.value):
+            return Imported(read.value, (said, *read.messages))
+        said_nothing.append(Imported(read.value, (said, *read.messages)))
+    return (
+        said_nothing[0] if said_nothing else rows_in(open_layer(source, options, workroom), options)
+    )
+
+
+def _known_layers(infos: tuple[LayerInfo, ...]) -> list[LayerInfo]:
+    """Return the layers that files of ours have, likeliest first; none where there is no choice."""
+    if len(infos) < 2:
+        return []
+    ours = [info for info in infos if info.layer.casefold() in _LAYERS]
+    return sorted(ours, key=lambda info: _LAYERS.index(info.layer.casefold()))
+
+
+def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows]:
+    """Return what one layer or table says of plants that were inspected."""
+    layer, messages = _without_lines(layer)
+    layer = _without_undone(layer)
+    columns = columns_of(layer, options)
+    results = results_in(layer, columns, options)
+    notes = texts_in(layer, own_column("notes", layer))
+    said = results.said
+    noted = int((~said & (notes != "")).sum()) if columns.marks is None else 0
+    if noted:
+        messages.append(doubtful(f"{noted} record(s) have a note, but no result: left unknown."))
+    if not said.all():
+        what = "carry no finding in their name" if columns.marks else "are not filled in"
+        messages.append(seen(f"{int((~said).sum())} of {len(layer)} record(s) {what}: unknown."))
+    lonlat, accuracy_m, more = positions_in(layer, columns, options)
+    plant, line, number, face = named_plants(layer, columns)
+    times = times_in(layer, columns, options)
+    whole = InspectionRows(
+        plant=plant,
+        line=line,
+        number=number,
+        face=face,
+        lonlat=lonlat,
+        accuracy_m=accuracy_m,
+        result=results.result,
+        count=results.how_many,
+        doubt=results.doubt,
+        when=times.when,
+        day=times.day,
+        who=who_in(layer, columns, options),
+        notes=notes,
+        source_row=np.arange(1, len(layer) + 1),
+    )
+    kept = InspectionRows(**{name: values[said] for name, values in vars(whole).items()})
+    every = (*layer.messages, *messages, *results.messages, *more, *times.messages)
+    return Imported(kept, every)
+
+
+def _without_lines(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
+    """Return the layer without the driven line that files given out hold beside the stops."""
+    if layer.geometry is None:
+        return layer, []
+    kinds = shapely.get_type_id(layer.geometry)
+    lines = np.isin(kinds, (1, 2, 5))
+    if not lines.any() or lines.all():
+        return layer, []
+    said = seen(f"{int(lines.sum())} line(s) beside the points were passed over.")
+    return layer.take(np.flatnonzero(~lines)), [said]
+
+
+def _without_undone(layer: Layer) -> Layer:
+    """Return the layer without what a season's file keeps, but marks as taken back."""
+    name = next((n for n in layer.columns if plain(n) == "undone"), None)
+    if name is None:
+        return layer
+    return layer.take(np.flatnonzero([text(v) in {"", "0", "False"} for v in layer.column(name)]))

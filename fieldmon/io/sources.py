@@ -1,0 +1,121 @@
+"""What a plot is prepared from: its files, how they are read, and what is said of its rows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
+
+if TYPE_CHECKING:
+    from fieldmon.infestation.raster_risk import RiskSettings
+    from fieldmon.io.options import Source
+    from fieldmon.io.rasters.values import How, RasterOptions
+
+#: what a file is to a plot
+Role: TypeAlias = Literal["plot", "plants", "paths", "records", "canopy", "risk"]
+
+
+@dataclass(frozen=True)
+class PlotSources:
+    """The files of a plot, and where one gets in.
+
+    Parameters
+    ----------
+    plot
+        File of plots; None: the plot is where its measured plants are.
+    plot_options
+        How it is read; ``feature`` says which of its plots is meant, if it holds several.
+    plants, plants_options
+        File of positions of plants measured on the plot.
+    paths, paths_options
+        File of lines along which insects enter.
+    gate
+        ``(lon, lat)`` where the day starts and ends.
+    """
+
+    plot: Source | None = None
+    plot_options: PlotOptions = field(default_factory=PlotOptions)
+    plants: Source | None = None
+    plants_options: ReadOptions = field(default_factory=ReadOptions)
+    paths: Source | None = None
+    paths_options: ReadOptions = field(default_factory=ReadOptions)
+    gate: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class PlantingChoices:
+    """What is said of a plot's rows by hand, as `Planting` has it; None: found, stated or usual."""
+
+    row_bearing_deg: float | None = None
+    row_spacing_m: float | None = None
+    plant_spacing_m: float | None = None
+    headland_m: float | None = None
+    faces: int | None = None
+
+    def given(self) -> dict[str, float]:
+        """Return what is said, by name."""
+        return {name: value for name, value in vars(self).items() if value is not None}
+
+
+@dataclass(frozen=True)
+class RecordSource:
+    """A file of dated pest records; they give positions, or name rows and plants, or plots."""
+
+    file: Source
+    options: RecordOptions = field(default_factory=RecordOptions)
+
+
+@dataclass(frozen=True)
+class CanopySource:
+    """A raster that shows where plants are missing.
+
+    Parameters
+    ----------
+    file
+        The raster.
+    below
+        No plant stands where it has less than this.
+    options
+        How it is read; None: as it says.
+    how
+        What of a plant's ground counts; None: the highest.
+    """
+
+    file: Source
+    below: float
+    options: RasterOptions | None = None
+    how: How | None = None
+
+
+@dataclass(frozen=True)
+class RiskSource:
+    """A raster of the risk of infestation.
+
+    Parameters
+    ----------
+    file
+        The raster.
+    settings
+        What its numbers mean; None: chances.
+    options
+        How it is read; None: as it says.
+    how
+        What of a plant's ground counts; None: the mean.
+    """
+
+    file: Source
+    settings: RiskSettings | None = None
+    options: RasterOptions | None = None
+    how: How | None = None
+
+
+@dataclass(frozen=True)
+class PlotRequest:
+    """All that a plot is prepared from; see `fieldmon.io.prepare`."""
+
+    sources: PlotSources
+    planting: PlantingChoices = field(default_factory=PlantingChoices)
+    records: RecordSource | None = None
+    canopy: CanopySource | None = None
+    risk: RiskSource | None = None

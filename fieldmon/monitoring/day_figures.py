@@ -1,0 +1,99 @@
+"""A season's days in figures: what was done on them, and what was still out there afterwards."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import date
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.observations import PRESENT
+from fieldmon.samplers.base import NEVER
+
+if TYPE_CHECKING:
+    import sqlite3
+
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.plot_estimate import PlotEstimate
+    from fieldmon.monitoring.history import History
+
+
+@dataclass(frozen=True)
+class DayFigures:
+    """A day after its work.
+
+    Parameters
+    ----------
+    on
+        Its date.
+    inspected, found
+        Plants inspected and found infested on it.
+    expected
+        Plants infested and not found yet, as expected.
+    low, high
+        The interval that holds 90 % of what that number may be.
+    chance_clean
+        Chance that no plant is infested any more.
+    """
+
+    on: date
+    inspected: int
+    found: int
+    expected: float
+    low: int
+    high: int
+    chance_clean: float
+
+    @classmethod
+    def of(cls, on: date, progress: Progress, estimate: PlotEstimate) -> DayFigures:
+        """Return the figures of a day from what was done and what is believed."""
+        done = progress.inspected_today, progress.found_today
+        return cls(on, *done, estimate.expected, estimate.low, estimate.high, estimate.chance_clean)
+
+
+@dataclass(frozen=True, eq=False)
+class Progress:
+    """How far the inspections are after a day's work.
+
+    Parameters
+    ----------
+    inspected, found
+        Plants inspected so far at least once, and plants found infested so far.
+    inspected_today, found_today
+        Plants inspected and found infested on this day.
+    days_since
+        ``(r,)`` days since any plant of each row was inspected; NaN: never.
+    """
+
+    inspected: int
+    found: int
+    inspected_today: int
+    found_today: int
+    days_since: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, history: History, day: int) -> Progress:
+        """Return the progress up to a day, given by its number."""
+        grid, state = history.grid, history.states(day)
+        today = history.on(day).inspected
+        last = np.full(grid.n_rows, NEVER, np.int64)
+        np.maximum.at(last, grid.row, history.last_inspected(day))
+        return cls(
+            inspected=int(np.count_nonzero(state >= 0)),
+            found=int(np.count_nonzero(state == PRESENT)),
+            inspected_today=len(today),
+            found_today=int(np.count_nonzero(today.result == FOUND)),
+            days_since=np.where(last == NEVER, np.nan, day - last),
+        )
+
+
+def kept(db: sqlite3.Connection) -> tuple[DayFigures, ...]:
+    """Return the figures that stand in the file: of days on which something happened, in order."""
+    rows = db.execute(
+        "SELECT date, inspected, found, expected_left, low, high, chance_clean "
+        "FROM days ORDER BY day"
+    )
+    return tuple(DayFigures(date.fromisoformat(on), *more) for on, *more in rows)

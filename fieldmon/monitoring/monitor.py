@@ -1,0 +1,359 @@
+"""Ask and tell: a sampler asked plant by plant, by a robot or by a simulator of one's own.
+
+Nothing is kept on disk; see `fieldmon.monitoring.season_file` for a season that lasts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple, Self
+
+import numpy as np
+
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.planning.plan import plan_in
+from fieldmon.plot.grid import row_label
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import GATE
+from fieldmon.samplers import sampler as sampler_of
+from fieldmon.samplers.base import NEVER, Scene
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.belief import Belief, Learning
+    from fieldmon.planning.plan import DayPlan
+    from fieldmon.plot.plot import Plot
+    from fieldmon.samplers.base import Sampler, Stops, WouldFind
+
+# told clocks are compared with charged ones to a millisecond
+_SAME_S = 1e-3
+
+
+class PlantToInspect(NamedTuple):
+    """What `MonitorDay.ask` answers: the plant to inspect next.
+
+    Parameters
+    ----------
+    plant
+        Number in the grid, from 0.
+    row, number
+        Where it stands, as people count, from 1.
+    lonlat
+        Its position, degrees WGS84.
+    arrive_s
+        Seconds since the day began, on arrival, as driving and inspecting are charged.
+    inspect_s
+        Seconds to spend there.
+    detects
+        Chance that so long an inspection finds what is there.
+    """
+
+    plant: int
+    row: int
+    number: int
+    lonlat: tuple[float, float]
+    arrive_s: float
+    inspect_s: float
+    detects: float
+
+
+class Monitor:
+    """A season in memory: days that are asked and told, and nights that are believed.
+
+    Asked and told as the simulator draws, a day is the compiled one, stop for stop.
+
+    Parameters
+    ----------
+    plot
+        The plot and its plants.
+    sampler
+        Name of a sampler, or one of your own (see `fieldmon.samplers.base.Sampler`).
+    robot
+        Who inspects; None: the thesis's robot.
+    chance
+        ``(n,)`` chance of infestation on the first morning; None: what is believed of a plot
+        without records.
+    belief_settings
+        What the insects are taken to do at night, and whether finds are treated; None: the
+        defaults of a monitored season.
+    seed
+        For samplers that draw.
+
+    Raises
+    ------
+    SettingError
+        If there is no such sampler, or `chance` does not fit the plants.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> monitor = fm.Monitor(plot, sampler="naive", robot=fm.Robot(hours=1))
+    >>> with monitor.day() as day:
+    ...     while (stop := day.ask()) is not None:
+    ...         day.tell(found=stop.plant % 20 == 0)
+    >>> len(day.plants), int(day.found.sum())
+    (74, 4)
+    >>> monitor.night()
+    >>> monitor.chance.shape == (len(plot.grid),)
+    True
+    """
+
+    def __init__(
+        self,
+        plot: Plot,
+        sampler: str | Sampler = "adaptive",
+        robot: Robot | None = None,
+        chance: NDArray[np.float64] | None = None,
+        belief_settings: BeliefSettings | None = None,
+        seed: int = 1,
+    ) -> None:
+        self.plot = plot
+        self.robot = robot or Robot()
+        self.belief_settings = belief_settings or BeliefSettings()
+        self.day_number = 0
+        self._sampler = sampler_of(sampler) if isinstance(sampler, str) else sampler
+        self._streams = RandomStreams(seed)
+        self._belief: Belief = PairApproximation.of(plot.grid, _first_chance(plot, chance))
+        self._last_inspected = np.full(len(plot.grid), NEVER, np.int32)
+        self._trail = np.empty(0, np.int32)
+        self._day: MonitorDay | None = None
+
+    def __repr__(self) -> str:
+        """Say which plot, who decides, and how far the season is."""
+        who = type(self._sampler).__name__
+        return f"<Monitor {self.plot.field.name}: {who}, day {self.day_number + 1}>"
+
+    @property
+    def chance(self) -> NDArray[np.float64]:
+        """Believed chance of infestation now, ``(n,)``."""
+        return self._belief.chance
+
+    @property
+    def last_inspected(self) -> NDArray[np.int32]:
+        """Day of each plant's last inspection, from 0; -1: never, ``(n,)``."""
+        return self._last_inspected
+
+    def plan(self) -> DayPlan:
+        """Return the day ahead as it goes if nothing is found."""
+        return plan_in(self._scene(), self._sampler)
+
+    def day(self) -> MonitorDay:
+        """Begin a day; use it in a ``with`` statement, at whose end the belief learns.
+
+        Raises
+        ------
+        SettingError
+            If a day is under way, or the last one's night has not passed.
+        """
+        if self._day is not None:
+            raise SettingError(
+                "A day must end and its night pass before the next begins. Call night() first."
+            )
+        self._day = MonitorDay(self, self._scene(), self._sampler)
+        return self._day
+
+    def night(self) -> None:
+        """Let a night pass: what is believed of the next morning.
+
+        Raises
+        ------
+        SettingError
+            If the day has not ended yet.
+        """
+        if self._day is not None and not self._day.ended:
+            raise SettingError("The day must end before the night. Leave its with statement first.")
+        self._belief = self._belief.overnight(self.belief_settings.spread)
+        self._day = None
+        self.day_number += 1
+
+    def _scene(self) -> Scene:
+        rests = GATE if self.robot.returns or not len(self._trail) else int(self._trail[-1])
+        return Scene(
+            aisles=self.plot.aisles,
+            robot=self.robot,
+            chance=self._belief.chance,
+            pair_chance=self._belief.pair_chance,
+            last_inspected=self._last_inspected,
+            day=self.day_number,
+            at=rests,
+            seconds_left=self.robot.day_s,
+            trail=self._trail,
+            key=self._streams.key("sampler", self.day_number),
+        )
+
+    def _learn(self, day: MonitorDay) -> None:
+        """Take in what was told on a day."""
+        if len(day.plants):
+            self._belief = self._belief.learn(day.plants, day.found, self._learning(day.detects))
+            self._last_inspected = self._last_inspected.copy()
+            self._last_inspected[day.plants] = self.day_number
+            self._trail = day.plants
+
+    def _learning(self, detects: NDArray[np.float64]) -> Learning:
+        one = self.belief_settings.learning(self.robot.detects)
+        alike = (detects == self.robot.detects).all()
+        return one if alike else replace(one, detection=detects)
+
+
+class MonitorDay:
+    """A day that is asked for the next plant and told what was seen there; see `Monitor`."""
+
+    def __init__(self, monitor: Monitor, scene: Scene, sampler: Sampler) -> None:
+        self.ended = False
+        self._monitor, self._sampler = monitor, sampler
+        self._times = sampler.inspection_times(scene.robot)
+        self._told: list[tuple[PlantToInspect, bool | None]] = []
+        self._asked: PlantToInspect | None = None
+        self._stops: Stops | None = None
+        self._would_find: WouldFind
+        self._begin(scene, 0.0)
+
+    def __enter__(self) -> Self:
+        """Begin to work."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """End the day: what was told is learnt, also where an error ended it."""
+        if not self.ended:
+            self.ended = True
+            self._monitor._learn(self)  # noqa: SLF001 - two halves of one thing
+
+    def __repr__(self) -> str:
+        """Say how much was inspected and found."""
+        return f"<MonitorDay: {len(self.plants)} inspected, {int(self.found.sum())} found>"
+
+    @property
+    def plants(self) -> NDArray[np.int32]:
+        """Plants inspected so far, in order, ``(k,)``."""
+        return np.array([stop.plant for stop, seen in self._told if seen is not None], np.int32)
+
+    @property
+    def found(self) -> NDArray[np.bool_]:
+        """Whether each of `plants` was found infested, ``(k,)``."""
+        return np.array([seen for _, seen in self._told if seen is not None], np.bool_)
+
+    @property
+    def detects(self) -> NDArray[np.float64]:
+        """Chance with which each of `plants` was inspected to find what is there, ``(k,)``."""
+        return np.array([stop.detects for stop, seen in self._told if seen is not None])
+
+    def ask(self) -> PlantToInspect | None:
+        """Return the plant to inspect next; None where the day's hours allow no other.
+
+        The same one until it is told what was seen there.
+        """
+        if self.ended:
+            return None
+        if self._asked is None:
+            if self._stops is None:
+                self._stops = self._sampler.walk(self._scene, self._would_find)
+            if self._next < len(self._stops.plant):
+                self._asked = self._stop(self._stops, self._next)
+        return self._asked
+
+    def tell(self, found: bool | None, at_s: float | None = None) -> None:  # noqa: FBT001 - a result
+        """Say what was seen at the plant that was asked for.
+
+        Parameters
+        ----------
+        found
+            Whether it is infested; None: it could not be inspected, and stays unknown.
+        at_s
+            Seconds since the day began, by the robot's own clock, when the inspection was done.
+            None: as charged. The rest of the day is planned anew where it differs.
+
+        Raises
+        ------
+        ObservationError
+            If no plant was asked for, or the clock goes backwards.
+        """
+        stop = self._asked
+        if stop is None:
+            raise ObservationError("A plant must be asked for before it is told of. Call ask().")
+        done_s = stop.arrive_s + stop.inspect_s
+        if at_s is not None and at_s < self._since_s:
+            raise ObservationError(
+                f"The day's clock must go on, but it was {self._since_s:.0f} s and is {at_s:.0f} s."
+            )
+        self._told.append((stop, found))
+        self._asked = None
+        late = at_s is not None and abs(at_s - done_s) > _SAME_S
+        if found is None or late:
+            self._plan_on(stop.plant, done_s if at_s is None else at_s)
+            return
+        if found:
+            self._would_find[stop.plant] = self._level(self._next) + 1
+            self._stops = None
+        self._next += 1
+
+    def _begin(self, scene: Scene, since_s: float) -> None:
+        self._scene, self._since_s, self._next = scene, since_s, 0
+        # what an inspection would find; of plants not inspected yet a sampler reads nothing
+        self._would_find = np.zeros(len(scene.chance), np.uint8)
+        self._stops = None
+
+    def _plan_on(self, at: int, now_s: float) -> None:
+        """Begin again where the robot stands, from what is believed after all that was told."""
+        monitor, believed = self._monitor, self._monitor._belief  # noqa: SLF001 - as above
+        if len(self.plants):
+            learning = monitor._learning(self.detects)  # noqa: SLF001
+            believed = believed.learn(self.plants, self.found, learning)
+        last = monitor.last_inspected.copy()
+        last[[stop.plant for stop, _ in self._told]] = monitor.day_number
+        scene = replace(
+            self._scene,
+            chance=believed.chance,
+            pair_chance=believed.pair_chance,
+            last_inspected=last,
+            at=at,
+            seconds_left=max(0.0, monitor.robot.day_s - now_s),
+        )
+        self._begin(scene, now_s)
+
+    def _level(self, k: int) -> int:
+        """Return which of its inspection times the sampler took at a stop, from 0."""
+        if self._stops is None or self._stops.time is None:
+            return 0
+        return int(self._stops.time[k])
+
+    def _stop(self, stops: Stops, k: int) -> PlantToInspect:
+        plant, level = int(stops.plant[k]), self._level(k)
+        grid = self._scene.grid
+        label = row_label(grid, stops.plant[k : k + 1])
+        lon, lat = grid.lonlat(stops.plant[k : k + 1])[0]
+        return PlantToInspect(
+            plant=plant,
+            row=int(label.line[0]),
+            number=int(label.number[0]),
+            lonlat=(float(lon), float(lat)),
+            arrive_s=self._since_s + float(stops.arrive_s[k]),
+            inspect_s=float(self._times.stop_s[level]),
+            detects=float(self._times.detects[level]),
+        )
+
+
+def _first_chance(plot: Plot, chance: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    if chance is None:
+        none, day = Observations.none(), np.datetime64("today")
+        return prior_chance(plot.grid, plot.field, none, day, PriorSettings())
+    given = np.asarray(chance, np.float64)
+    if given.shape != (len(plot.grid),) or not ((given >= 0) & (given <= 1)).all():
+        raise SettingError(
+            f"A chance map must have a chance in 0..1 for each of {len(plot.grid)} plants, "
+            f"but it has the shape {given.shape}."
+        )
+    return given

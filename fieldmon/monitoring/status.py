@@ -1,0 +1,75 @@
+"""Where a season stands on a day."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fieldmon.infestation.hotspots import hot_spots
+from fieldmon.monitoring.day_figures import Progress
+
+if TYPE_CHECKING:
+    from datetime import date
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.infestation.plot_estimate import PlotEstimate
+    from fieldmon.monitoring.history import History
+
+
+@dataclass(frozen=True, eq=False)
+class Status:
+    """Where a season stands on a day, after what was recorded of it.
+
+    Parameters
+    ----------
+    day
+        Number of the day, from 0.
+    on
+        Its date.
+    plants
+        Plants of the plot.
+    inspected, found
+        Plants inspected so far at least once, and plants found infested so far.
+    inspected_today, found_today
+        Plants inspected and found infested on this day.
+    estimate
+        How many are infested and not found yet, as believed.
+    days_since
+        ``(r,)`` days since any plant of each row was inspected; NaN: never.
+    hot_spots
+        Where finds cluster.
+    """
+
+    day: int
+    on: date
+    plants: int
+    inspected: int
+    found: int
+    inspected_today: int
+    found_today: int
+    estimate: PlotEstimate
+    days_since: NDArray[np.float64]
+    hot_spots: HotSpots
+
+    @classmethod
+    def of(cls, history: History, morning: Belief, day: int) -> Status:
+        """Return how a history stands on a day, given by its number and its morning."""
+        progress = Progress.of(history, day)
+        return cls(
+            day=day,
+            on=history.date_of(day),
+            plants=len(history.grid),
+            **vars(progress),
+            estimate=history.estimate(morning, day),
+            hot_spots=hot_spots(history.grid, history.states(day)),
+        )
+
+    @property
+    def detection_pct(self) -> float:
+        """Return the finds in percent of finds and what is still expected out there."""
+        everything = self.found + self.estimate.expected
+        return 100.0 * self.found / everything if everything else 100.0

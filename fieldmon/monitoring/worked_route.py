@@ -1,0 +1,64 @@
+"""The route of a day as it was worked, from the results that were recorded of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring.settings import seconds
+from fieldmon.planning.route import route_of
+from fieldmon.planning.workday import Workday
+from fieldmon.plot.travel import GATE, driven_s
+from fieldmon.samplers.base import NEVER, Scene
+
+if TYPE_CHECKING:
+    from datetime import date
+
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.inspections import Inspections
+    from fieldmon.monitoring.season_file import Season
+    from fieldmon.planning.route import Route
+
+
+def worked_route(season: Season, on: date) -> Route:
+    """Return the way from plant to plant as a day was worked, at the times noted.
+
+    Where a time is missing, all are those that driving and inspecting cost. Empty if nothing was
+    recorded.
+    """
+    settings, aisles = season.settings, season.plot.aisles
+    robot = settings.robot
+    done = _in_order(season.history.on(settings.day(on)))
+    scene = Scene(
+        aisles=aisles, robot=robot, chance=season.morning(on), seconds_left=robot.day_s,
+        last_inspected=np.full(len(aisles.grid), NEVER, np.int32),
+    )  # fmt: skip
+    n, drive_s = len(done), _drive_s(scene, done.plant)
+    leave_s = np.maximum(done.second - seconds(settings.starts), 0.0)
+    if not np.isfinite(leave_s).all():
+        leave_s = np.cumsum(drive_s[:n] + robot.visit_s)
+    # a find is noted while standing there: the time of arrival is not known, and not needed
+    work = Workday(
+        plant=done.plant, arrive_s=leave_s, found=done.result == FOUND, stop_s=np.zeros(n),
+        detects=np.full(n, robot.detects),
+        end_s=float(leave_s[-1] + drive_s[n:].sum()) if n else 0.0,
+    )  # fmt: skip
+    return route_of(scene, work)
+
+
+def _in_order(done: Inspections) -> Inspections:
+    """Return a day's inspections by time, if all have one, else as they were recorded."""
+    if np.isfinite(done.second).all():
+        return done.take(np.argsort(done.second, kind="stable"))
+    return done
+
+
+def _drive_s(scene: Scene, plants: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return the seconds from the gate to each plant in turn, and back if the robot returns."""
+    back = [GATE] if scene.robot.returns else []
+    places = np.concatenate([[GATE], plants, back]).astype(np.int64)
+    legs = [places[k : k + 2] for k in range(len(places) - 1)]
+    return np.array([driven_s(scene.aisles.travel, scene.clock, leg) for leg in legs])

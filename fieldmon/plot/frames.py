@@ -1,0 +1,73 @@
+"""Plots as GeoDataFrames, in and out. GeoPandas is loaded when one of these is called."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from shapely import MultiPolygon
+
+from fieldmon.errors import PlotError, SettingError
+from fieldmon.plot.grid import row_label
+
+if TYPE_CHECKING:
+    from geopandas import GeoDataFrame
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.grid import PlantGrid
+
+_DEGREES = "EPSG:4326"
+
+
+def plant_frame(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> GeoDataFrame:
+    """Return the given plants ``(k,)``, or all, as points in EPSG:4326.
+
+    Columns ``plant`` (number in the grid, from 0), ``row`` and ``number`` (from 1), and ``face``
+    (1 or 2) where both faces are inspected.
+    """
+    import geopandas  # noqa: PLC0415 - half a second to import
+
+    chosen = np.arange(len(grid)) if plants is None else np.asarray(plants, np.int64)
+    label = row_label(grid, chosen)
+    columns = {"plant": chosen, "row": label.line, "number": label.number}
+    twin = grid.twin[chosen]
+    if (grid.twin >= 0).any():
+        columns["face"] = np.where(twin < 0, 1, np.where(chosen < twin, 1, 2))
+    lon, lat = grid.lonlat(chosen).T
+    return geopandas.GeoDataFrame(
+        columns, geometry=geopandas.points_from_xy(lon, lat), crs=_DEGREES
+    )
+
+
+def boundary_and_plants(frame: GeoDataFrame) -> tuple[MultiPolygon | None, NDArray[np.float64]]:
+    """Return the area of a frame, if it has one, and its points ``(n, 2)``, in degrees WGS84.
+
+    Raises
+    ------
+    SettingError
+        If the frame has no coordinate system.
+    PlotError
+        If it is empty, holds several areas, or anything but areas and points.
+    """
+    if frame.crs is None:
+        raise SettingError(
+            "A GeoDataFrame must say its coordinate system, but its crs is None. "
+            "Set it first: gdf.set_crs(4326), for instance."
+        )
+    shapes = frame.geometry[~(frame.geometry.isna() | frame.geometry.is_empty)].to_crs(_DEGREES)
+    kinds = shapes.geom_type.str.removeprefix("Multi")
+    areas, points = shapes[kinds == "Polygon"], shapes[kinds == "Point"]
+    if not len(shapes) or len(areas) + len(points) < len(shapes):
+        found = ", ".join(sorted(set(kinds))) or "nothing"
+        raise PlotError(
+            f"A plot must be an area, measured plants as points, or both, but the GeoDataFrame "
+            f"holds {found}."
+        )
+    if len(areas) > 1:
+        raise PlotError(
+            f"One area must be the plot, but the GeoDataFrame holds {len(areas)}. Choose a row, "
+            "gdf.iloc[[0]], or join its parts, gdf.dissolve()."
+        )
+    boundary = MultiPolygon(list(shapely.get_parts(areas.iloc[0]))) if len(areas) else None
+    return boundary, shapely.get_coordinates(points.to_numpy())

@@ -1,0 +1,249 @@
+"""Adaptive's day: drive, inspect, learn, plan on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.jit import loop, part
+from fieldmon.infestation.clustering import clustering_scale, scale_clustering, update_clusters
+from fieldmon.infestation.pairs import update_neighbourhood
+from fieldmon.plot.travel import travel_s
+from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, NEARLY, NOWHERE
+from fieldmon.samplers.adaptive.replan import first_price, plan_on, row_of
+from fieldmon.samplers.adaptive.rows import best_time, most_in
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.grid import Linked
+    from fieldmon.plot.travel import Clock, TravelTable
+    from fieldmon.samplers.adaptive.arrays import (
+        BeliefArrays,
+        BestTours,
+        OwnRow,
+        RowTours,
+        Stretch,
+        Workspace,
+    )
+    from fieldmon.samplers.base import InspectionTimes
+
+    Float = NDArray[np.float64]
+
+# how much closer or less close infested plants must stand than thought to think again
+_NOTABLE = 0.1
+
+
+@loop
+def drive_day(
+    travel: TravelTable,
+    clock: Clock,
+    plants: tuple[Linked, BeliefArrays, NDArray[np.uint8]],
+    room: tuple[RowTours, BestTours, InspectionTimes, OwnRow],
+    start: tuple[int, float, NDArray[np.bool_]],
+    stops: tuple[NDArray[np.int32], Float, NDArray[np.uint8]],
+) -> int:
+    """Write down the stops of the rest of the day; return how many there are.
+
+    Parameters
+    ----------
+    plants
+        Who stands beside whom, what is believed, and what an inspection would find.
+    room
+        To plan in, and the inspection times to choose from.
+    start
+        Where the robot stands, how much more than itself a find is worth, and ``(n,)`` which
+        plants were inspected today.
+    stops
+        Room for plants, seconds on arrival, and which inspection time each gets.
+    """
+    linked, belief, _ = plants
+    rows, tours, times, own_row = room
+    at, spares, closed = start
+    _value_finds(linked, belief, closed, spares)
+    work = belief, rows, tours, times, own_row
+    now_s, k = 0.0, 0
+    price = first_price(travel, clock, work, at)
+    while k < stops[0].size:
+        _learn_clustering(linked, belief, rows)
+        here = (at, price, clock.seconds_left - now_s)
+        price, stretch = plan_on(travel, clock, work, here)
+        before = k
+        while stretch.row >= 0 and k < stops[0].size:
+            plant, time = _next_in(travel, (belief, times), stretch, (at, price))
+            if plant < 0 or not _fits(travel, clock, (at, plant), times.stop_s[time], now_s):
+                break
+            move = (at, plant, time, k)
+            now_s, found = _inspect(travel, clock, plants, (rows, times), stops, (move, now_s))
+            at, k = plant, k + 1
+            if found or plant == stretch.last:
+                break
+        if k == before:
+            plant, time = _best_left(travel, clock, work, at, now_s)
+            if plant < 0:
+                break
+            move = (at, plant, time, k)
+            now_s, _ = _inspect(travel, clock, plants, (rows, times), stops, (move, now_s))
+            at, k = plant, k + 1
+    return k
+
+
+@part
+def _inspect(
+    travel: TravelTable,
+    clock: Clock,
+    plants: tuple[Linked, BeliefArrays, NDArray[np.uint8]],
+    work: tuple[RowTours, InspectionTimes],
+    stops: tuple[NDArray[np.int32], Float, NDArray[np.uint8]],
+    state: tuple[tuple[int, int, int, int], float],
+) -> tuple[float, bool]:
+    """Write down stop k, at a plant for one of the times, and learn from it.
+
+    Return the time after it, and whether something was found.
+    """
+    linked, belief, would_find = plants
+    rows, times = work
+    (at, plant, time, k), now_s = state
+    arrive_s = now_s + travel_s(travel, clock, at, plant)
+    stops[0][k], stops[1][k], stops[2][k] = plant, arrive_s, time
+    found = 0 < would_find[plant] <= time + 1
+    _learn(travel, linked, belief, rows, (plant, found, times.detects[time]))
+    return arrive_s + times.stop_s[time], found
+
+
+@part
+def _fits(
+    travel: TravelTable, clock: Clock, move: tuple[int, int], stop_s: float, now_s: float
+) -> bool:
+    """Tell whether a stop of so long fits into the day, way back to the gate included."""
+    at, plant = move
+    end_s = now_s + travel_s(travel, clock, at, plant) + stop_s
+    if clock.returns:
+        end_s += travel_s(travel, clock, plant, -1)
+    return bool(end_s <= clock.seconds_left)
+
+
+@part
+def _value_finds(
+    linked: Linked, belief: BeliefArrays, closed: NDArray[np.bool_], spares: float
+) -> None:
+    """Work out what a find would be worth, and where each plant's pair with the last one stands."""
+    chance = belief.chance
+    for i in range(chance.size):
+        first, end = linked.start[i], linked.start[i + 1]
+        clean = 0.0
+        for e in range(first, end):
+            clean += 1.0 - chance[linked.plant[e]]
+            if linked.plant[e] == i - 1:
+                belief.pair_before[i] = e
+        if not closed[i]:
+            belief.worth[i] = 1.0 + spares * clean / max(end - first, 1)
+
+
+@part
+def _learn(
+    travel: TravelTable,
+    linked: Linked,
+    belief: BeliefArrays,
+    rows: RowTours,
+    result: tuple[int, bool, float],
+) -> None:
+    """Close a plant and learn from its inspection about those near it."""
+    i, found, detects = result
+    believed = belief.chance, belief.pair_chance
+    n = update_neighbourhood(believed, linked, (i, found), (detects, True), belief.near)
+    update_clusters(
+        (belief.morning_chance, belief.morning_pair_chance),
+        linked,
+        (i, found, detects),
+        belief.clusters,
+    )
+    belief.worth[i] = 0.0
+    for t in range(n):
+        near_it = belief.near.plant[t]
+        rows.stale[travel.row[near_it]], rows.most[near_it // BLOCK] = True, -1.0
+
+
+@part
+def _learn_clustering(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
+    """Believe how much infested plants stand together, once it differs enough from what was."""
+    scale = clustering_scale(belief.clusters)
+    if abs(scale - belief.scale[0]) < _NOTABLE * belief.scale[0]:
+        return
+    scale_clustering(
+        (belief.chance, belief.pair_chance), linked, scale / max(belief.scale[0], LEAST)
+    )
+    belief.scale[0] = scale
+    rows.stale[:] = True
+
+
+@part
+def _next_in(
+    travel: TravelTable,
+    work: tuple[BeliefArrays, InspectionTimes],
+    stretch: Stretch,
+    state: tuple[int, float],
+) -> tuple[int, int]:
+    """Return the next plant of a stretch that is worth its stop, or -1, and the time it gets."""
+    belief, times = work
+    at, price = state
+    up = stretch.first_end == 0
+    if at >= 0 and travel.row[at] == stretch.row:
+        i = at + 1 if up else at - 1
+    elif up:
+        i = travel.row_start[stretch.row]
+    else:
+        i = travel.row_start[stretch.row + 1] - 1
+    step = 1 if up else -1
+    while (i <= stretch.last) if up else (i >= stretch.last):
+        gain, time = best_time(times, belief.worth[i], belief.chance[i], price)
+        if gain > 0.0:
+            return int(i), time
+        i += step
+    return NOWHERE, 0
+
+
+@part
+def _best_left(
+    travel: TravelTable, clock: Clock, work: Workspace, at: int, now_s: float
+) -> tuple[int, int]:
+    """Return the plant with the most worth for its seconds that still fits into the day, or -1.
+
+    And which inspection time it gets.
+    """
+    belief, rows, tours, times, _ = work
+    quick_s, sharp = times.stop_s[0], times.detects[-1]
+    best, best_rate, time = NOWHERE, 0.0, 0
+    for row in range(rows.stale.size):
+        least_s = _least_s(travel, clock, at, row)
+        home_s = min(tours.home_s[row, 0], tours.home_s[row, 1])
+        if now_s + least_s + quick_s + home_s > clock.seconds_left:
+            continue
+        first, end = travel.row_start[row], travel.row_start[row + 1]
+        for block in range(first // BLOCK, (end - 1) // BLOCK + 1):
+            if sharp * most_in(belief, rows, block) <= best_rate * (least_s + quick_s):
+                continue
+            for i in range(max(first, block * BLOCK), min(end, (block + 1) * BLOCK)):
+                if sharp * belief.worth[i] * belief.chance[i] <= best_rate * quick_s:
+                    continue
+                way_s = travel_s(travel, clock, at, i)
+                for k in range(times.stop_s.size):
+                    stop_s = times.stop_s[k]
+                    rate = times.detects[k] * belief.worth[i] * belief.chance[i] / (way_s + stop_s)
+                    if rate > best_rate and _fits(travel, clock, (at, i), stop_s, now_s):
+                        best, best_rate, time = i, rate, k
+    return best, time
+
+
+@part
+def _least_s(travel: TravelTable, clock: Clock, at: int, row: int) -> float:
+    """Return seconds that it takes at least from a place to any plant of a row."""
+    own = row_of(travel, at)
+    if own < 0 or travel.corridor[own] == travel.corridor[row]:
+        return 0.0
+    least_m = np.inf
+    for end in range(2):
+        for other_end in range(2):
+            least_m = min(least_m, travel.between_m[2 * own + end, 2 * row + other_end])
+    return float((least_m / clock.speed_m_s + clock.row_change_s) * NEARLY)

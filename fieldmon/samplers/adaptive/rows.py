@@ -1,0 +1,138 @@
+"""What each way of driving a row comes to, at a price of a second."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.jit import inlined, part
+from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, N_WAYS, NEARLY, NOWHERE
+
+if TYPE_CHECKING:
+    from fieldmon.plot.travel import Clock, TravelTable
+    from fieldmon.samplers.adaptive.arrays import BeliefArrays, RowTours
+    from fieldmon.samplers.base import InspectionTimes
+
+
+@inlined
+def best_time(
+    times: InspectionTimes, worth: float, chance: float, price: float
+) -> tuple[float, int]:
+    """Return what the best inspection time gains at a price, and which it is."""
+    best, time = -np.inf, 0
+    for k in range(times.stop_s.size):
+        gain = times.detects[k] * worth * chance - price * times.stop_s[k]
+        if gain > best:
+            best, time = gain, k
+    return best, time
+
+
+@part
+def value_row(
+    travel: TravelTable,
+    clock: Clock,
+    work: tuple[BeliefArrays, RowTours, InspectionTimes],
+    state: tuple[int, float],
+) -> None:
+    """Work out what each way of driving a row comes to at a price.
+
+    Of neighbours in the row the second counts as it will be after a clean inspection of the first.
+    """
+    belief, rows, times = work
+    row, price = state
+    first, end = travel.row_start[row], travel.row_start[row + 1]
+    rows.last[row] = NOWHERE
+    pays = _pays_from(times, price)
+    previous, before, n = NOWHERE, 0, 0
+    for block in range(first // BLOCK, (end - 1) // BLOCK + 1):
+        if most_in(belief, rows, block) < pays:
+            continue
+        for i in range(max(first, block * BLOCK), min(end, (block + 1) * BLOCK)):
+            if belief.worth[i] * belief.chance[i] < pays:
+                continue
+            gain, time = best_time(times, belief.worth[i], belief.chance[i], price)
+            if gain > 0.0 and previous == i - 1 and previous >= 0:
+                chance = _after_clean(belief, i, times.detects[before])
+                gain, time = best_time(times, belief.worth[i], chance, price)
+            if gain > 0.0:
+                rows.gain[first + n], rows.stop_s[first + n] = gain, times.stop_s[time]
+                previous, before = i, time
+                rows.pays[first + n] = i
+                n += 1
+    rows.n_pays[row] = n
+    if n == 0:
+        return
+    for way in range(2, N_WAYS):
+        _in_and_out(travel, clock, rows, (row, way), price)
+    _through(travel, clock, rows, row, price)
+
+
+@inlined
+def _pays_from(times: InspectionTimes, price: float) -> float:
+    """Return what a find must be expected to be worth for any inspection to pay; a little less."""
+    least = np.inf
+    for k in range(times.stop_s.size):
+        least = min(least, times.stop_s[k] / times.detects[k])
+    return price * least * NEARLY
+
+
+@inlined
+def most_in(belief: BeliefArrays, rows: RowTours, block: int) -> float:
+    """Return the most that a find in a block is expected to be worth."""
+    most = rows.most[block]
+    if most < 0.0:
+        most = 0.0
+        for i in range(block * BLOCK, min((block + 1) * BLOCK, belief.worth.size)):
+            most = max(most, belief.worth[i] * belief.chance[i])
+        rows.most[block] = most
+    return float(most)
+
+
+# copied: handing over all of a belief takes longer than this
+@inlined
+def _after_clean(belief: BeliefArrays, i: int, detects: float) -> float:
+    """Return the chance of plant i once the one before it was inspected and seemed clean."""
+    p, e = belief.chance[i], belief.pair_before[i]
+    if e < 0:
+        return float(p)
+    q = belief.chance[i - 1]
+    c = min(belief.pair_chance[e], p, q)
+    return float((p - detects * c) / max(1.0 - detects * q, LEAST))
+
+
+@part
+def _in_and_out(
+    travel: TravelTable, clock: Clock, rows: RowTours, state: tuple[int, int], price: float
+) -> None:
+    """Value a row that is left by the end it was entered by, as far in as pays best."""
+    row, way = state
+    entry_m = travel.end_x_m[row, way - 2]
+    first, n = travel.row_start[row], rows.n_pays[row]
+    best, best_s, last = -np.inf, 0.0, NOWHERE
+    gains, inspecting_s = 0.0, 0.0
+    for k in range(n):
+        place = first + k if way == 2 else first + n - 1 - k
+        i = rows.pays[place]
+        gains += rows.gain[place]
+        inspecting_s += rows.stop_s[place]
+        drive_s = 2.0 * abs(travel.x_m[i] - entry_m) / clock.speed_m_s
+        net = gains - price * drive_s
+        if net > best:
+            best, best_s, last = net, drive_s + inspecting_s, i
+    rows.net[row, way], rows.seconds[row, way], rows.last[row, way] = best, best_s, last
+
+
+@part
+def _through(travel: TravelTable, clock: Clock, rows: RowTours, row: int, price: float) -> None:
+    """Value a row that is driven from end to end, either way."""
+    first, n = travel.row_start[row], rows.n_pays[row]
+    gains, inspecting_s = 0.0, 0.0
+    for place in range(first, first + n):
+        gains += rows.gain[place]
+        inspecting_s += rows.stop_s[place]
+    drive_s = (travel.end_x_m[row, 1] - travel.end_x_m[row, 0]) / clock.speed_m_s
+    for way in range(2):
+        rows.net[row, way] = gains - price * drive_s
+        rows.seconds[row, way] = drive_s + inspecting_s
+        rows.last[row, way] = rows.pays[first + n - 1] if way == 0 else rows.pays[first]

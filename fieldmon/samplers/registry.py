@@ -1,0 +1,130 @@
+"""The samplers by name: the one place that lists them.
+
+A new sampler is one file in this package and one line in `SAMPLERS`. The command line, the app,
+studies and the promises in the tests find it there. Nothing is loaded before it is used: a
+command's help must not wait for compiled loops.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from fieldmon.samplers.base import Sampler
+
+
+@dataclass(frozen=True)
+class SamplerKind:
+    """What is known of a sampler before it is loaded.
+
+    Parameters
+    ----------
+    where
+        ``"module:Class"``: the module of this package, and the sampler in it.
+    title, does
+        What people call it, and what it does, in a few words.
+    every
+        Its own N if it inspects every N-th plant or stop and takes another, else None.
+    settings
+        Settings that make this one of several kinds of its class.
+    reads_chance
+        Whether it reads the believed chances, see `Sampler`.
+    chooses_time
+        Whether it decides at each plant how long to inspect it.
+    s_per_plant_day
+        About how many seconds a simulated day costs for each plant of the plot.
+    """
+
+    where: str
+    title: str
+    does: str
+    every: int | None = None
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    reads_chance: bool = False
+    chooses_time: bool = False
+    s_per_plant_day: float = 2e-8
+
+    def load(self) -> Callable[..., Sampler]:
+        """Return the class."""
+        module, name = self.where.split(":")
+        loaded: Callable[..., Sampler] = getattr(import_module(f"{__package__}.{module}"), name)
+        return loaded
+
+    def settings_for(self, every: int | None) -> dict[str, float]:
+        """Return the settings that a given N comes to: none where it takes none, or is given none.
+
+        For whoever asks for an N whichever sampler is chosen, as the commands do.
+        """
+        return {} if every is None or self.every is None else {"every": every}
+
+
+SAMPLERS = {
+    "naive": SamplerKind("sweeps:Naive", "Naive", "every plant, row by row"),
+    "bouncy": SamplerKind("sweeps:Bouncy", "Bouncy", "every second plant", every=2),
+    "dynamic": SamplerKind(
+        "dynamic:Dynamic", "Dynamic", "suspicious plants first",
+        reads_chance=True, s_per_plant_day=4e-7,
+    ),
+    "adaptive": SamplerKind(
+        "adaptive:Adaptive", "Adaptive", "the drive that should find most",
+        reads_chance=True, s_per_plant_day=2.5e-6,
+    ),
+    "adaptive-looks": SamplerKind(
+        "adaptive:Adaptive", "Adaptive-looks", "the same, longer at the plants most suspected",
+        settings={"chooses_time": True},
+        reads_chance=True, chooses_time=True, s_per_plant_day=2.5e-6,
+    ),
+    "snake": SamplerKind(
+        "without_prior:Snake", "Snake", "up one side of an aisle, down the other", every=1
+    ),
+    "snake-random": SamplerKind(
+        "without_prior:SnakeRandom", "Snake-random", "every 1st to 4th plant by chance"
+    ),
+    "neighbor": SamplerKind(
+        "without_prior:Neighbor", "Neighbor", "both sides of the aisle at each stop", every=1
+    ),
+    "neighbor-random": SamplerKind(
+        "without_prior:NeighborRandom", "Neighbor-random", "every 1st to 4th stop by chance"
+    ),
+    "random": SamplerKind(
+        "without_prior:RandomShare", "Random", "a third of the plot, drawn every day", every=3
+    ),
+}  # fmt: skip
+#: who plans where nobody says otherwise, and who is compared
+USUAL = "adaptive"
+COMPARED = ("naive", "bouncy", "dynamic")
+
+
+def kind_of(name: str) -> SamplerKind:
+    """Return what is known of a sampler; raise `SettingError` if there is none of that name."""
+    if name not in SAMPLERS:
+        raise SettingError(f"A sampler must be one of {', '.join(SAMPLERS)}, but it is {name!r}.")
+    return SAMPLERS[name]
+
+
+def sampler(name: str, **settings: Any) -> Sampler:  # noqa: ANN401 - each sampler has its own
+    """Return the sampler called `name`; raise `SettingError` if there is none.
+
+    Parameters
+    ----------
+    settings
+        As its class takes them, see its docstring.
+    """
+    kind = kind_of(name)
+    return kind.load()(**{**kind.settings, **settings})
+
+
+def of_equal_times() -> dict[str, SamplerKind]:
+    """Return those that inspect every plant equally long, as they are offered to people.
+
+    The usual one comes first, then those that read chances.
+    """
+    equal = {name: kind for name, kind in SAMPLERS.items() if not kind.chooses_time}
+    order = sorted(equal, key=lambda name: (name != USUAL, not equal[name].reads_chance))
+    return {name: equal[name] for name in order}

@@ -1,0 +1,108 @@
+"""A season simulated in one call, for the public library."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.plot.robot import Robot
+from fieldmon.samplers import sampler as sampler_of
+from fieldmon.simulation.metrics import season_metrics
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import season_start
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.plot import Plot
+    from fieldmon.samplers.base import Sampler
+    from fieldmon.simulation.metrics import SeasonMetrics
+    from fieldmon.simulation.start import Start
+
+
+def draw_start(
+    plot: Plot, chance: NDArray[np.float64], share: float = 0.02, seed: int = 1
+) -> Start:
+    """Draw which plants are infested on a simulated season's first morning.
+
+    Parameters
+    ----------
+    plot
+        Plants and the ways between them.
+    chance
+        ``(n,)`` chance of infestation as believed, in 0..1, for instance `DayPlan.chance`.
+    share
+        Share of all plants infested on average, in 0..1.
+    seed
+        The same seed infests the same plants.
+
+    Raises
+    ------
+    SettingError
+        If `share` is not between 0 and 1.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance, share=0.05)
+    >>> bool(100 < start.infested.sum() < 300)
+    True
+    """
+    return season_start(plot.grid, chance, share, RandomStreams(seed))
+
+
+def simulate(
+    plot: Plot,
+    start: Start,
+    sampler: str | Sampler = "adaptive",
+    robot: Robot | None = None,
+    settings: SeasonSettings | None = None,
+    seed: int = 1,
+) -> SeasonMetrics:
+    """Simulate a season: insects spread at night, a sampler looks for them by day.
+
+    Samplers that are given the same start and seed meet the same insects.
+
+    Parameters
+    ----------
+    plot
+        Plants and the ways between them.
+    start
+        Who is infested on the first morning, and what is believed of it, see `draw_start`.
+    sampler
+        Name of a sampler, or one of your own.
+    robot
+        Who inspects; None: the thesis's robot.
+    settings
+        Days, and what insects do at night; None: 25 days, see `SeasonSettings`.
+    seed
+        Of nights and of what inspections find.
+
+    Returns
+    -------
+    SeasonMetrics
+        Columns ``(d,)`` a day: finds, plants still infested, shares inspected and detected.
+
+    Raises
+    ------
+    SettingError
+        If there is no such sampler.
+    PlotError
+        If the start is of another plot.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance)
+    >>> season = fm.simulate(plot, start, "naive", settings=fm.SeasonSettings(n_days=3))
+    >>> season.left.shape
+    (3,)
+    """
+    decides = sampler_of(sampler) if isinstance(sampler, str) else sampler
+    chosen, streams = settings or SeasonSettings(), RandomStreams(seed)
+    return season_metrics(
+        simulated_days(plot.aisles, robot or Robot(), decides, start, chosen, streams)
+    )

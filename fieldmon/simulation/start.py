@@ -1,0 +1,53 @@
+"""The first morning of a simulated season: who is infested, and what is believed about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fieldmon.compute.wording import counted
+from fieldmon.errors import SettingError
+from fieldmon.infestation.prior import start_infested
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.compute.random_streams import RandomStreams
+    from fieldmon.plot.grid import PlantGrid
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """The first morning.
+
+    Parameters
+    ----------
+    infested
+        ``(n,)`` the truth, which no sampler sees.
+    chance
+        ``(n,)`` chance of infestation as believed.
+    """
+
+    infested: NDArray[np.bool_]
+    chance: NDArray[np.float64]
+
+    def __repr__(self) -> str:
+        plants = counted(len(self.infested), "plant")
+        return f"<Start: {int(self.infested.sum())} of {plants} infested>"
+
+
+def season_start(
+    grid: PlantGrid, chance: NDArray[np.float64], share: float, streams: RandomStreams
+) -> Start:
+    """Draw a season's start from a chance map ``(n,)``: each plant by its own chance.
+
+    `share` of all plants are infested on average, 0 to 1. Both faces of a plant are infested
+    together. Streams of the same seed infest the same plants, whoever is to inspect them.
+    """
+    if not 0.0 < share < 1.0:
+        raise SettingError(
+            f"The share infested at the start must be between 0 and 1, but it is {share}."
+        )
+    infested = start_infested(chance, share, streams.of("start"))
+    return Start(infested[grid.vine], chance)

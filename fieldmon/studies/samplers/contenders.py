@@ -1,0 +1,106 @@
+"""Who takes part: samplers with the beliefs they are given, and bounds for orientation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.plot.robot import Robot
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import Sampler
+from fieldmon.samplers.dynamic import Dynamic
+from fieldmon.samplers.sweeps import Bouncy, Naive
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.belief import Belief
+    from fieldmon.plot.grid import PlantGrid
+    from fieldmon.samplers.base import Scene, Stops, WouldFind
+
+ADAPTIVE, WORDED, TUNED = "adaptive", "dynamic, as worded", "dynamic, tuned"
+NO_TRAVEL, CLAIRVOYANT = "no travel", "clairvoyant"
+SOME = 10
+
+
+@dataclass(frozen=True)
+class Contender:
+    """Who takes part: a sampler with the belief it is given.
+
+    Parameters
+    ----------
+    name
+        What it is called.
+    sampler
+        Who decides.
+    believe
+        How plot and chance map become a belief.
+    drives
+        False for the bound: driving and changing rows take no time.
+    every
+        Takes part in every so many-th season: who is there for orientation need not be in all.
+    """
+
+    name: str
+    sampler: Sampler
+    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = PairApproximation.of
+    drives: bool = True
+    every: int = 1
+
+
+# what `tuning.losses` came to; the map of pairs is the better one for Dynamic too
+CONTENDERS = (
+    Contender(ADAPTIVE, Adaptive()),
+    Contender(WORDED, Dynamic()),
+    Contender(TUNED, Dynamic(suspicious=0.06)),
+    Contender("dynamic, independent plants", Dynamic(), IndependentPlants, every=SOME),
+    Contender("adaptive, independent plants", Adaptive(), IndependentPlants, every=SOME),
+    Contender("naive", Naive(), IndependentPlants),
+    Contender("bouncy", Bouncy(), IndependentPlants),
+    Contender(NO_TRAVEL, Adaptive(), drives=False, every=SOME),
+)
+NAMES = (*(contender.name for contender in CONTENDERS), CLAIRVOYANT)
+
+
+class Oracle(Sampler):
+    """The clairvoyant: drives as Adaptive does, on the truth instead of a chance map.
+
+    Parameters
+    ----------
+    truth
+        ``(n,)`` who is infested today; whoever plays the season tells it every morning.
+    """
+
+    def __init__(self, truth: NDArray[np.bool_]) -> None:
+        self.truth = truth
+
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
+        """Return the stops of the rest of the day, at infested plants first."""
+        chance = np.where(self.truth, 1.0 - 1e-6, 1e-6)
+        start, other = scene.grid.adjacent
+        pair_chance = np.repeat(chance, np.diff(start)) * chance[other]
+        return Adaptive().walk(replace(scene, chance=chance, pair_chance=pair_chance), would_find)
+
+
+class Misinformed(Sampler):
+    """A sampler that takes the robot to detect what the thesis's does.
+
+    Parameters
+    ----------
+    sampler
+        Who decides.
+    """
+
+    def __init__(self, sampler: Sampler) -> None:
+        self.sampler = sampler
+
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
+        """Return the stops of the rest of the day."""
+        robot = replace(scene.robot, detection=Robot().detects)
+        return self.sampler.walk(replace(scene, robot=robot), would_find)

@@ -1,0 +1,54 @@
+"""Who works in a season is changed from now on, and back."""
+
+from dataclasses import replace
+
+from tests.app.driving import go, metric, press, until
+
+
+def test_more_hours_than_the_slider_had_and_odd_seconds_leave_the_page_whole(season_app, season):
+    project, settings = season(), season().settings
+    robot = replace(settings.robot, hours=17.0, look_s=12.5)
+    project.change(replace(settings, robot=robot), settings)
+    go(season_app, "today")
+    assert not season_app.exception
+    assert next(one for one in season_app.slider if one.key.startswith("hours ")).value == 17.0
+    assert not [one for one in season_app.button if one.key == "change_setup"]
+
+
+def test_other_hours_are_used_from_now_on_when_asked_for(season_app, season):
+    hours = next(s for s in season_app.slider if s.label == "Working hours")
+    hours.set_value(4.0).run()
+    assert season().settings.robot.hours == 12.0
+    press(season_app, "Use from now on")
+    assert season().settings.robot.hours == 4.0
+    assert int(metric(season_app, "Plants to inspect").split(" / ")[0]) < 300
+
+
+def hours_box(app):
+    return next(one for one in app.slider if one.key.startswith("hours "))
+
+
+def test_changes_of_settings_are_taken_back_one_by_one(season_app, season):
+    go(season_app, "season")
+    assert not [one for one in season_app.button if one.key == "undo_change"]
+    settings = season().settings
+    for hours in (7.0, 16.0):
+        hours_box(season_app).set_value(hours).run()
+        press(season_app, "Use from now on")
+    press(season_app, "Back to Adaptive · 7 h · 40 s, from 06:00")
+    assert season().settings.robot.hours == 7.0
+    press(season_app, "Back to Adaptive · 12 h · 40 s, from 06:00")
+    assert season().settings == settings
+    assert not [one for one in season_app.button if one.key == "undo_change"]
+
+
+def test_a_strategy_in_use_is_that_of_the_season_and_says_so(season_app, season):
+    go(season_app, "compare")
+    season_app.multiselect(key="strategy_samplers").set_value(["naive"])
+    season_app.number_input(key="seeds").set_value(1)
+    season_app.number_input(key="n_days").set_value(2).run()
+    season_app.button(key="run").click().run()
+    until(lambda: len(season_app.run().dataframe))
+    press(season_app, "Use this strategy")
+    assert season_app.success[0].value == "Naive · 12 h · 40 s is in use now."
+    assert season().settings.sampler == "naive"

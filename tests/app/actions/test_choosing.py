@@ -1,0 +1,43 @@
+"""The sidebar: what is chosen there counts on every page."""
+
+from tests.app.driving import go, heading, layer, metric
+
+
+def test_another_plot_is_another_map(app):
+    n = len(layer(app, "plants")["data"])
+    app.selectbox(key="feature sample/paran_estate.zip").set_value(1).run()
+    assert not app.exception
+    assert not heading(app).startswith("Gate")
+    assert len(layer(app, "plants")["data"]) != n
+
+
+def test_shorter_hours_give_a_shorter_route_on_every_page(app):
+    stops = int(metric(app, "Plants to inspect").split(" / ")[0])
+    app.slider(key="hours Robot").set_value(3.0).run()
+    assert int(metric(app, "Plants to inspect").split(" / ")[0]) < stops / 2
+    go(app, "map")
+    assert app.slider(key="hours Robot").value == 3.0
+
+
+def test_a_scout_is_planned_for_too(app):
+    app.segmented_control(key="who").set_value("Scout on foot").run()
+    assert not app.exception
+    assert app.slider(key="hours Scout on foot").value == 4.0
+
+
+def test_lengths_and_dates_are_written_as_the_person_wants(app):
+    app.selectbox(key="length").set_value("ft").run()
+    app.selectbox(key="date_like").set_value("16.11.2026").run()
+    assert heading(app) == "Gate · 16.11.2026"
+    assert metric(app, "Drive").endswith(" mi")
+    go(app, "plot")
+    app.selectbox(key="area").set_value("dunam").run()
+    assert metric(app, "Area").endswith("dunam")
+    assert metric(app, "Rows / plants apart") == "13.1 ft / 9.8 ft"
+
+
+def test_a_season_that_is_gone_leaves_the_sample(season_app, season):
+    season().path.unlink()
+    season_app.run()
+    assert not season_app.exception
+    assert season_app.selectbox(key="season").value == "Sample estate"

@@ -1,0 +1,65 @@
+"""Rasters of a session: a picture below, plants that are missing, risk."""
+
+import numpy as np
+
+from fieldmon.monitoring import Season
+from tests.app.driving import begun, geotiff, go, layer, map_of, metric, press, texts_of
+
+
+def test_a_picture_of_the_ground_lies_under_the_plants_where_it_is(app):
+    data = geotiff(np.full((400, 400), 90, np.uint8))
+    go(app, "map")
+    app.pills(key="map_layers").set_value(["backdrop"]).run()
+    app.file_uploader(key="backdrop_file").upload("ground.tif", data).run()
+    assert not app.exception
+    assert map_of(app)["layers"][1]["id"] == "backdrop"
+    corners = np.array(layer(app, "backdrop")["bounds"])
+    plants = np.array([p["p"] for p in layer(app, "plants")["data"]])
+    assert (corners.min(axis=0) <= plants.min(axis=0)).all()
+    assert (corners.max(axis=0) >= plants.max(axis=0)).all()
+    app.file_uploader(key="backdrop_file").upload("ground.tif", b"no picture").run()
+    assert not app.exception
+    assert app.error
+    assert layer(app, "backdrop") is None
+
+
+def test_plants_that_a_raster_shows_to_be_missing_are_not_laid(app):
+    go(app, "plot")
+    every = np.array([p["p"] for p in layer(app, "plants")["data"]])
+    west, east = every[:, 0].min(), every[:, 0].max()
+    low, high = every[:, 1].min(), every[:, 1].max()
+    half = np.repeat(np.array([[0.2, 1.5]], np.float32), 50, axis=1).repeat(50, axis=0)
+    # the middle half of the plot from west to east, and beyond it to the north and south
+    quarter = (east - west) / 4
+    data = geotiff(half, (west + quarter, low - 0.001, east - quarter, high + 0.001))
+    app.file_uploader(key="missing_plants_file").upload("canopy.tif", data).run()
+    left = np.array([p["p"] for p in layer(app, "plants")["data"]])
+    gone = (every[:, 0] > west + 1.05 * quarter) & (every[:, 0] < west + 1.95 * quarter)
+    assert gone.sum() > 500
+    assert not set(map(tuple, every[gone])) & set(map(tuple, left))
+    stays = (every[:, 0] < west + 0.95 * quarter) | (every[:, 0] > west + 2.05 * quarter)
+    assert set(map(tuple, every[stays])) <= set(map(tuple, left))
+    assert f"{len(every) - len(left)} of {len(every)} plants are missing" in texts_of(app)
+    assert "have no value on the raster and count as there" in texts_of(app)
+    app.number_input(key="missing_below").set_value(2.0).run()
+    assert len(layer(app, "plants")["data"]) < len(left)
+    press(app, "Take it out")
+    assert len(layer(app, "plants")["data"]) == len(every)
+
+
+def test_a_raster_of_risk_changes_the_chances_and_the_season_keeps_it(app, seasons_folder):
+    rows = np.repeat(np.linspace(40, 0, 400, dtype=np.float32)[:, None], 400, axis=1)
+    data = geotiff(rows)
+    before = float(metric(app, "Expected finds"))
+    go(app, "plot")
+    app.file_uploader(key="risk_file").upload("risk.tif", data).run()
+    assert "must hold values in 0..1" in app.error[0].value, "percent were taken for chances"
+    app.selectbox(key="risk_meaning").set_value("percent").run()
+    assert not app.error
+    assert "Risk by percent: 0.1" in texts_of(app)
+    go(app, "today")
+    assert float(metric(app, "Expected finds")) > before
+    begun(app)
+    risk = Season(seasons_folder / "Gate 2026.gpkg").risk
+    assert risk is not None
+    assert 0.1 < np.nanmean(risk) < 0.4

@@ -1,0 +1,100 @@
+"""What was found is recorded once, and undone."""
+
+from datetime import date
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import Season
+from tests.app.driving import go, metric, press, texts_of
+
+
+def test_one_plant_is_recorded_and_undone_on_the_season_page(season_app, season):
+    go(season_app, "season")
+    season_app.number_input(key="one_row").set_value(3)
+    season_app.number_input(key="one_plant").set_value(4)
+    season_app.segmented_control(key="one_result").set_value(1)
+    next(
+        b for b in season_app.button if b.label == "Record" and "one_plant" in b.proto.form_id
+    ).click()
+    season_app.run()
+    assert "1 recorded" in season_app.success[0].value
+    (plant,) = season().history.inspections.plant
+    label = season().label
+    assert (label.line[plant], label.number[plant]) == (3, 4)
+    assert metric(season_app, "Found") == "1"
+    press(season_app, "Undo")
+    assert metric(season_app, "Found") == "0"
+    assert not len(season().history.inspections)
+
+
+def test_a_treatment_is_taken_back(season_app):
+    before = metric(go(season_app, "season"), "Still infested")
+    next(b for b in season_app.button if b.label == "Note the treatment").click()
+    season_app.run()
+    assert metric(season_app, "Still infested") != before
+    assert "treatment of the plot" in texts_of(season_app)
+    press(season_app, "Undo")
+    assert metric(season_app, "Still infested") == before
+    assert "undone" in texts_of(season_app)
+
+
+def test_a_file_of_findings_is_recorded_once(season_app, season):
+    go(season_app, "season")
+    table = b"row,number,found,count\n1,1,yes,3\n1,2,no,\n2,5,,\n"
+    for says in ("2 recorded, 0 known", "0 recorded, 2 known"):
+        season_app.file_uploader(key="findings_file").upload("found.csv", table).run()
+        season_app.button(key="record_file").click().run()
+        assert says in season_app.success[0].value
+    assert season().history.inspections.result.tolist() == [1, 0]
+
+
+@pytest.mark.parametrize("data", [b"a,b\n1,2\n", b"row,number,found\n999,1,yes\n", b"\x00\x01"])
+def test_a_file_that_does_not_fit_is_a_sentence(season_app, season, data):
+    go(season_app, "season")
+    season_app.file_uploader(key="findings_file").upload("found.csv", data).run()
+    season_app.button(key="record_file").click().run()
+    assert not season_app.exception
+    (said,) = [*season_app.error, *season_app.success]
+    assert "found must" in said.value or "found.csv" in said.value or "0 recorded" in said.value
+    assert not len(season().history.inspections)
+
+
+def test_a_treatment_lowers_what_is_expected(season_app):
+    go(season_app, "season")
+    before = float(metric(season_app, "Still infested").split(" ")[0])
+    next(b for b in season_app.button if b.label == "Note the treatment").click()
+    season_app.run()
+    assert not season_app.error
+    assert float(metric(season_app, "Still infested").split(" ")[0]) < 0.2 * before
+
+
+def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(
+    season_app, season, tmp_path
+):
+    mine = season()
+    twin = Season.create(tmp_path / "twin.gpkg", mine.plot, mine.observations, mine.settings)
+    for day in range(16, 26):
+        on = date(2026, 11, day)
+        season_app.date_input(key="day Gate 2026").set_value(on).run()
+        go(season_app, "season")
+        season_app.number_input(key="stops_done").set_value(30)
+        next(
+            b for b in season_app.button if b.label == "Record" and "route" in b.proto.form_id
+        ).click()
+        season_app.run()
+        assert not season_app.exception
+        record_clean(twin, on, 30)
+        assert season().morning(on).tolist() == twin.morning(on).tolist()
+        assert season().evening(on).tolist() == twin.evening(on).tolist()
+        rest = [one.plan(on, keep=False).route.plant.tolist() for one in (season(), twin)]
+        assert rest[0] == rest[1]
+    go(season_app, "today")
+    assert "30 plants inspected" in texts_of(season_app)
+    assert "Still infested, as expected" in texts_of(season_app)
+
+
+def record_clean(project, on, n):
+    plants = project.plan(on, keep=False).route.plant[:n]
+    project.record(Inspections.of(plants, np.zeros(n, np.int8), np.datetime64(on)), "twin")

@@ -1,0 +1,126 @@
+"""Driving the app without a browser."""
+
+import json
+import time
+import zipfile
+from io import BytesIO
+
+import geopandas as gpd
+from rasterio.io import MemoryFile
+from rasterio.transform import from_bounds
+from shapely import MultiPolygon, box
+from streamlit.testing.v1 import AppTest
+from streamlit.util import calc_hash
+
+from tests.paths import ROOT
+
+ESTATE = ROOT / "sample_data"
+SQUARE = MultiPolygon([box(35.15, 30.36, 35.1506, 30.3606)])
+PAGES = ("today", "map", "scout", "season", "compare", "plot", "report", "simulate")
+
+
+def until(is_so, within_s=60.0):
+    """Wait for a state that another thread brings about."""
+    end = time.monotonic() + within_s
+    while not is_so():
+        assert time.monotonic() < end, "it did not come about in time"
+        time.sleep(0.005)
+
+
+def opened(season=None):
+    """Return a new session of the app, with a season open if one is named."""
+    app = AppTest.from_file(str(ROOT / "app" / "streamlit_app.py"), default_timeout=120)
+    if season is not None:
+        app.query_params["season"] = season
+    return app.run()
+
+
+def go(app, page):
+    """Turn to a page, as its link does: the address is bare, and the next run is the page's."""
+    app._page_hash = calc_hash("" if page == "today" else page)
+    app.query_params.clear()
+    return app.run()
+
+
+def begun(app, name="Gate 2026"):
+    """Begin a season on the plot that is open."""
+    go(app, "today")
+    app.text_input(key="season_name").set_value(name)
+    return press(app, "Begin the season")
+
+
+def press(app, label):
+    """Press the button with this label."""
+    next(button for button in app.button if button.label == label).click()
+    return app.run()
+
+
+def map_of(app):
+    return json.loads(app.get("deck_gl_json_chart")[0].proto.json)
+
+
+def row_box(app, name):
+    """Return the box in which a plot's rows are set by hand."""
+    return next(one for one in app.number_input if one.key.startswith(name))
+
+
+def layer(app, name):
+    return next((one for one in map_of(app)["layers"] if one["id"] == name), None)
+
+
+def metric(app, label):
+    return next(m.value for m in app.metric if m.label == label)
+
+
+def heading(app):
+    """Return the page's heading without the marks that keep names of any script together."""
+    return app.subheader[0].value.replace("\u2068", "").replace("\u2069", "")
+
+
+def texts_of(app):
+    """Return everything the page says."""
+    parts = [*app.markdown, *app.caption, *app.error, *app.warning, *app.success, *app.info]
+    return "\n".join(part.value for part in parts)
+
+
+def upload(app, **files):
+    """Bring files to the page of plots."""
+    app.selectbox(key="season").set_value("My own files").run()
+    go(app, "plot")
+    for key, data in files.items():
+        app.file_uploader(key=f"{key}_file").upload(*data)
+    return app.run()
+
+
+def zipped(folder, plots, name="plot", without=""):
+    """Return plots as the bytes of a zipped shapefile."""
+    plots.to_file(folder / f"{name}.shp")
+    data = BytesIO()
+    with zipfile.ZipFile(data, "w") as archive:
+        for part in folder.glob(f"{name}.*"):
+            if part.suffix != without:
+                archive.write(part, part.name)
+    return data.getvalue()
+
+
+def tap(app, key):
+    """Press the button with this key; it must work."""
+    app.button(key=key).click().run()
+    assert not app.exception
+    assert not app.error
+
+
+def geotiff(values, edges=(35.1, 30.3, 35.2, 30.4)):
+    """Return a raster ``(h, w)`` over the sample estate as the bytes of a GeoTIFF."""
+    high, wide = values.shape
+    with MemoryFile() as memory:
+        shape = {"width": wide, "height": high, "count": 1, "dtype": values.dtype}
+        place = from_bounds(*edges, wide, high)
+        with memory.open(**shape, driver="GTiff", crs="EPSG:4326", transform=place) as raster:
+            raster.write(values[None])
+        return memory.read()
+
+
+def square(size=0.001, name="square"):
+    shape = box(35.15, 30.36, 35.15 + size, 30.36 + size)
+    return gpd.GeoDataFrame([{"name": name, "geometry": shape}], crs="EPSG:4326")

@@ -1,0 +1,98 @@
+"""A day in figures and words."""
+
+import re
+from datetime import timedelta
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from app.show import day
+from app.words import texts
+from fieldmon.plot.grid import row_label
+from tests.app.chosen import a_plot, chosen, in_season, records_at
+from tests.app.driving import go, row_box, tap, texts_of
+from tests.monitoring.seasons import BEGINS, Insects, a_season
+
+
+def test_too_short_a_day_is_said_in_a_sentence(app):
+    go(app, "plot")
+    row_box(app, "headland").set_value(40.0).run()
+    app.slider(key="hours Robot").set_value(0.5).run()
+    assert not app.exception
+
+
+def test_today_says_why_it_goes_where_it_goes(season_app):
+    assert "never inspected yet" in texts_of(season_app)
+    go(season_app, "scout")
+    place = season_app.markdown[0].value.lower()
+    tap(season_app, "scout_found")
+    go(season_app, "today")
+    why = next(m.value for m in season_app.markdown if "around today's find" in m.value)
+    row, plant = (int(n) for n in re.findall(r"find in row (\d+), plant (\d+)", why)[0])
+    assert f"row {row} · plant {plant}" in place
+
+
+@pytest.fixture(scope="module")
+def worked(tmp_path_factory):
+    """Return a season of which two days were worked."""
+    season = a_season(tmp_path_factory.mktemp("worked") / "s.gpkg")
+    insects = Insects(season)
+    for number in (0, 1):
+        plants = season.plan(BEGINS + timedelta(days=number)).route.plant[:40]
+        season.record(insects.look(number, plants), f"day {number}")
+    return season
+
+
+def on(season, number):
+    return in_season(season, BEGINS + timedelta(days=number))
+
+
+def test_stops_are_the_route_s_in_order_with_the_times_of_their_arrival():
+    plot = a_plot()
+    choices = chosen(plot, records_at(plot, [50], [1]))
+    plan = choices.plan()
+    table = day.stops(choices, plan)
+    label = row_label(plot.grid, plan.route.plant)
+    assert table["row"].tolist() == label.line.tolist()
+    assert table["plant"].tolist() == label.number.tolist()
+    assert table.index.tolist() == list(range(1, len(plan.route) + 1))
+    begins = pd.Timestamp("2026-11-16 06:00")
+    seconds = [
+        (pd.Timestamp(f"2026-11-16 {at}") - begins).total_seconds() for at in table["arrive"]
+    ]
+    assert seconds == pytest.approx(plan.route.arrive_s, abs=0.51)
+
+
+def test_what_changed_is_the_difference_of_two_days(worked):
+    said = "\n".join(day.changes(on(worked, 1)))
+    before, now = (worked.day_figures(BEGINS + timedelta(days=n)) for n in (0, 1))
+    assert f"{before.found} found on 40 plants inspected on {before.on}" in said
+    assert f"{now.expected:.1f} after {before.expected:.1f}" in said
+    assert day.changes(on(worked, 0)) == [texts.CHANGED_FIRST]
+    assert "Nothing was recorded" in day.changes(on(worked, 3))[0]
+    assert day.changes(chosen(a_plot())) == []
+
+
+def test_rows_that_rose_most_come_first(worked):
+    said = day.changes(on(worked, 1))[-1]
+    grid = worked.plot.grid
+    line = grid.row_line[grid.row]
+    mornings = [worked.morning(BEGINS + timedelta(days=n)) for n in (0, 1)]
+    rise = [np.mean((mornings[1] - mornings[0])[line == k]) for k in range(line.max() + 1)]
+    best = int(np.argmax(rise))
+    if rise[best] > 0.001:
+        assert f"rose most: {best + 1} (+{rise[best]:.1%})" in said
+    else:
+        assert "rose most" not in said
+
+
+def test_plants_found_are_named_by_row(worked):
+    done = worked.history.inspections.on(BEGINS)
+    found = np.unique(done.plant[done.result == 1])
+    label = row_label(worked.plot.grid, found)
+    said = day.found_by_row(on(worked, 0))
+    assert sum(len(plants.split(", ")) for plants in said.values()) == len(found) > 0
+    for line, number in zip(label.line, label.number, strict=True):
+        assert str(number) in said[f"Row {line}"].split(", ")
+    assert day.found_by_row(chosen(a_plot())) == {}

@@ -1,0 +1,58 @@
+"""Hot spots in words: where they are and how surprising."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from app.show.hot_spots import meanings
+from fieldmon.plot.grid import plant_at
+from fieldmon.plot.layout import rectangle
+
+GRID = rectangle(8, 30)
+
+
+class Spots(SimpleNamespace):
+    def __len__(self):
+        return len(self.found)
+
+
+def spots(*groups, p=0.01):
+    of_plant = np.full(len(GRID), -1)
+    for k, plants in enumerate(groups):
+        of_plant[plants] = k
+    n = len(groups)
+    return Spots(of_plant=of_plant, found=np.arange(3, 3 + n), inspected=np.full(n, 9),
+                 plants=np.array([len(g) for g in groups]), expected=np.full(n, 1.25),
+                 p=np.full(n, p))  # fmt: skip
+
+
+def at(*places):
+    return [plant_at(GRID, row, number) for row, number in places]
+
+
+def test_no_hot_spot_is_said_too():
+    assert meanings(GRID, spots()) == ["No hot spots: finds cluster no more than chance allows."]
+
+
+def test_rows_and_plants_are_those_of_its_corners():
+    (said,) = meanings(GRID, spots(at((2, 7), (4, 3), (3, 9))))
+    assert said.startswith("Rows 2 to 4, plants 3 to 9: 3 found among 9 inspected of its 3 plants")
+    assert "1.2 would be" in said
+
+
+def test_a_hot_spot_in_one_row_names_that_row():
+    (said,) = meanings(GRID, spots(at((5, 2), (5, 4))))
+    assert said.startswith("Row 5, plants 2 to 4:")
+
+
+@pytest.mark.parametrize(
+    ("p", "says"), [(0.04, "about 1 in 25."), (1e-5, "less than 1 in 10,000."), (0.9, "1 in 1.")]
+)
+def test_how_likely_it_is_by_chance_is_said_in_ones_of_many(p, says):
+    (said,) = meanings(GRID, spots(at((1, 1), (1, 2)), p=p))
+    assert said.endswith(says)
+
+
+def test_of_very_many_only_the_first_are_said():
+    assert len(meanings(GRID, spots(*([k] for k in range(12))))) == 8

@@ -1,0 +1,81 @@
+"""What is known of one plant."""
+
+import numpy as np
+import pytest
+import streamlit as st
+
+from app.show import plant_history
+from app.state import chosen_day
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
+from fieldmon.plot.grid import row_label
+from tests.app.chosen import a_plot, chosen, in_season
+from tests.monitoring.seasons import BEGINS, a_season
+
+PLANT = 17
+
+
+@pytest.fixture
+def said(session, monkeypatch):  # noqa: ARG001 - said within it
+    lines = []
+    monkeypatch.setattr(st, "markdown", lines.append)
+    monkeypatch.setattr(st, "caption", lambda _: None)
+    monkeypatch.setattr(st, "number_input", number_input)
+    return lines
+
+
+def number_input(_label, _least, *, key, value):  # noqa: ARG001 - as Streamlit's
+    return st.session_state[key]
+
+
+@pytest.fixture(scope="module")
+def season(tmp_path_factory):
+    season = a_season(tmp_path_factory.mktemp("history") / "s.gpkg")
+    day = np.datetime64(BEGINS)
+    for k, (result, second) in enumerate([(CLEAN, np.nan), (SKIPPED, 30_000.0), (FOUND, 36_060.0)]):
+        season.record(Inspections.of(np.array([PLANT]), np.array([result]), day + k,
+                                     second=np.array([second])), "test")  # fmt: skip
+    return season
+
+
+def tap(choices, plant):
+    plant_history.take_plant(choices, {"plants": [{"i": plant}]})
+
+
+def test_every_inspection_of_the_plant_is_told_in_order_with_its_time_if_it_has_one(said, season):
+    choices = in_season(season, BEGINS)
+    tap(choices, PLANT)
+    plant_history.show(choices)
+    days = [str(np.datetime64(BEGINS) + k) for k in range(3)]
+    assert said[-3:] == [
+        f"- {days[0]}: **clean**",
+        f"- {days[1]} 08:20: **could not inspect**",
+        f"- {days[2]} 10:01: **found**",
+    ]
+    now, first = (chance[PLANT] for chance in (chosen_day.chance(choices), season.morning(BEGINS)))
+    assert f"{now:.1%}" in said[1]
+    assert f"{first:.1%}" in said[1]
+
+
+def test_a_plant_never_inspected_says_so(said, season):
+    choices = in_season(season, BEGINS)
+    tap(choices, PLANT + 1)
+    plant_history.show(choices)
+    assert said[-1] == "Never inspected."
+    plot = a_plot()
+    tap(chosen(plot), PLANT)
+    plant_history.show(chosen(plot))
+    assert said[-1] == "Never inspected."
+
+
+@pytest.mark.usefixtures("said")
+def test_the_plant_tapped_is_ringed_and_what_is_no_plant_changes_nothing():
+    plot = a_plot()
+    choices = chosen(plot)
+    tap(choices, PLANT)
+    plant_history.take_plant(choices, {"hot": [{"t": "hot spot"}]})
+    rings = plant_history.layers(choices)
+    assert rings[0].data[0]["p"] == pytest.approx(plot.grid.lonlat()[PLANT].tolist(), abs=1e-6)
+    label = row_label(plot.grid, np.array([PLANT]))
+    assert st.session_state["history row"] == label.line[0]
+    st.session_state["history row"] = 9999
+    assert plant_history.layers(choices) == []

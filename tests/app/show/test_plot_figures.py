@@ -1,0 +1,35 @@
+"""A plot in figures: its area, and how it is planted."""
+
+import pytest
+
+from app.show import plot_figures
+from app.words.units import Units
+from fieldmon.io.parse.geometry import area_m2
+from tests.app.chosen import a_plot
+
+
+class Metrics(dict):
+    def __call__(self, label, value, **_):
+        self[label] = value
+
+
+@pytest.fixture
+def metrics(monkeypatch):
+    shown = Metrics()
+    monkeypatch.setattr(plot_figures.st, "metric", shown)
+    return shown
+
+
+def test_figures_are_the_plot_s_in_the_units_chosen(metrics):
+    plot = a_plot(row_bearing_deg=200.0, row_spacing_m=5.0, plant_spacing_m=2.0)
+    plot_figures.show(plot, Units())
+    assert metrics == {
+        "Area": f"{area_m2(plot.field.boundary) / 1e4:.2f} ha",
+        "Plants": f"{len(plot.grid):,}",
+        "Rows": plot.grid.n_rows,
+        "Row bearing": "20.0°",
+        "Rows / plants apart": "5.0 m / 2.0 m",
+    }
+    plot_figures.show(plot, Units("ft", "dunam"))
+    assert metrics["Rows / plants apart"] == "16.4 ft / 6.6 ft"
+    assert metrics["Area"].endswith(" dunam")

@@ -1,0 +1,64 @@
+"""What a comparison came to, in words: never surer than its interval."""
+
+import numpy as np
+import pytest
+
+from app.show import verdicts
+from app.state.comparison import Outcome, Strategy
+from fieldmon.simulation.statistics import summary_statistics
+
+BEST, SECOND = Strategy("dynamic", 12.0, 40.0), Strategy("naive", 12.0, 40.0)
+
+
+def outcome(strategy, losses, behind=None, found=(50.0, 60.0, 70.0)):
+    return Outcome(
+        strategy, summary_statistics(np.array(losses)), summary_statistics(np.array(found)),
+        12.34, 7.0, None if behind is None else summary_statistics(np.array(behind)),
+    )  # fmt: skip
+
+
+def ranked(behind):
+    best = [100.0, 110.0, 120.0]
+    return [outcome(BEST, best), outcome(SECOND, np.add(best, behind), behind)]
+
+
+def test_a_clear_winner_is_said_with_its_interval():
+    said = verdicts.sentence(ranked([40.0, 41.0, 42.0]))
+    assert said.startswith("**Dynamic · 12 h · 40 s** is best: 110 infested plant-days, 27 % less")
+    assert "Naive · 12 h · 40 s" in said
+    low, high = summary_statistics(np.array([40.0, 41.0, 42.0])).low, 43.48
+    assert f"({low:,.0f} to {high:,.0f} fewer" in said
+
+
+def test_where_the_interval_holds_nothing_nobody_is_called_better():
+    said = verdicts.sentence(ranked([-5.0, 1.0, 10.0]))
+    assert "not clearly better" in said
+    assert verdicts.table(ranked([-5.0, 1.0, 10.0]))["verdict"].tolist() == [
+        "★ best", "no clear difference"
+    ]  # fmt: skip
+
+
+def test_one_strategy_alone_is_not_called_best_of_others():
+    assert verdicts.sentence(ranked([1.0, 2.0, 3.0])[:1]) == ""
+
+
+def test_one_season_has_no_interval():
+    table = verdicts.table([outcome(BEST, [100.0], found=[50.0]),
+                            outcome(SECOND, [130.0], [30.0], [40.0])])  # fmt: skip
+    assert table["verdict"].tolist() == ["★ best", "(one season: no interval)"]
+    assert table["infested plant-days"].tolist() == ["100", "130"]
+
+
+def test_the_table_says_by_how_much_in_percent_of_the_best():
+    row = verdicts.table(ranked([40.0, 41.0, 42.0])).iloc[1]
+    assert row["strategy"] == "Naive · 12 h · 40 s"
+    assert row["verdict"].startswith("+37 % loss (+35 to +40)")
+    assert row["inspected a day"] == "12.3 %"
+    assert row["half found on day"] == "7"
+
+
+@pytest.mark.parametrize("found", [(99.0, 100.0, 98.0), (0.0, 1.0, 0.5)])
+def test_an_interval_of_percent_stays_within_percent(found):
+    (cell,) = verdicts.table([outcome(BEST, [1.0, 2.0, 3.0], found=found)])["found at the end"]
+    low, high = cell.partition("(")[2].rstrip(")").split(" .. ")
+    assert 0 <= float(low) < float(high) <= 100

@@ -1,0 +1,84 @@
+"""The server answers while Streamlit is still loading."""
+
+import asyncio
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from app.startup.serve import Server, page_files
+
+
+def asked(server, path, method="GET", within_s=5.0):
+    """Return the status, headers and body of what the server answers."""
+    sent = []
+
+    async def send(message):
+        sent.append(message)
+
+    async def receive():
+        return {"type": "http.disconnect"}
+
+    async def ask():
+        scope = {"type": "http", "method": method, "path": path}
+        await asyncio.wait_for(server(scope, receive, send), within_s)
+
+    # in a thread of its own: a browser's tests leave a loop running in this one
+    with ThreadPoolExecutor(1) as thread:
+        thread.submit(lambda: asyncio.run(ask())).result()
+    start, body = sent
+    return start["status"], dict(start["headers"]), body["body"]
+
+
+def test_the_page_is_handed_out_before_streamlit_is_there():
+    status, headers, body = asked(Server(), "/")
+    assert status == 200
+    assert headers[b"content-type"] == b"text/html"
+    assert headers[b"cache-control"] == b"no-cache"
+    assert b"<title>" in body
+    assert int(headers[b"content-length"]) == len(body)
+
+
+def test_the_page_says_which_script_draws_maps_so_that_it_comes_early():
+    _, headers, _ = asked(Server(), "/")
+    hint = headers[b"link"].decode()
+    assert hint.endswith("; rel=modulepreload")
+    _, headers, body = asked(Server(), hint.split(">")[0].removeprefix("<."))
+    assert headers[b"content-type"].endswith(b"/javascript")
+    assert b"immutable" in headers[b"cache-control"]
+    assert len(body) > 1_000_000
+
+
+@pytest.mark.parametrize(
+    ("path", "method"),
+    [
+        ("/_stcore/health", "GET"),
+        ("/", "POST"),
+        ("/static/../../config.py", "GET"),
+        ("/map", "GET"),
+    ],
+)
+def test_whatever_is_no_file_of_the_page_waits_for_streamlit(path, method):
+    with pytest.raises(asyncio.TimeoutError):
+        asked(Server(), path, method, within_s=0.2)
+
+
+def test_every_script_that_the_page_names_is_there():
+    files = page_files()
+    page = files["/"].read_text(encoding="utf-8")
+    named = [part.split('"')[0] for part in page.split('"./')[1:] if "static/" in part[:10]]
+    assert len(named) > 20
+    assert not [name for name in named if f"/{name}" not in files]
+
+
+def test_the_outline_needs_no_tables_no_statistics_and_nothing_compiled():
+    heavy = ("pandas", "scipy", "numba", "geopandas", "altair")
+    code = (
+        "import sys, app.startup.serve, app.startup.first_screen\n"
+        f"print([name for name in {heavy} if name in sys.modules])"
+    )
+    said = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True
+    )  # fmt: skip
+    assert said.stdout.strip() == "[]"

@@ -1,0 +1,59 @@
+"""What a session brought is its own."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from app.state import brought_files
+from fieldmon.io.options import PlotOptions, Upload
+from tests.app.driving import heading, opened, square, texts_of, upload, zipped
+
+
+def test_one_session_does_not_see_the_files_of_another(app, tmp_path):
+    upload(app, plot=("plot.zip", zipped(tmp_path, square(name="secret"))))
+    assert heading(app).startswith("secret")
+    other = opened()
+    other.selectbox(key="season").set_value("My own files").run()
+    assert "Bring a plot" in texts_of(other)
+
+
+def part(name, data):
+    return SimpleNamespace(name=name, getvalue=lambda: data)
+
+
+@pytest.mark.usefixtures("session")
+def test_parts_dropped_together_are_one_file_with_one_key():
+    brought_files.keep("plot", [part("a.shp", b"1"), part("a.dbf", b"2")])
+    both = brought_files.brought()["plot"]
+    assert both.name == "a.shp"
+    assert [one.name for one in both.source] == ["a.shp", "a.dbf"]
+    brought_files.keep("plot", [part("a.shp", b"1")])
+    alone = brought_files.brought()["plot"]
+    assert alone.source == Upload("a.shp", b"1")
+    assert alone.key != both.key
+    brought_files.keep("plot", [])
+    assert brought_files.brought() == {}
+
+
+@pytest.mark.usefixtures("session")
+def test_the_same_bytes_under_another_name_are_another_file():
+    keys = set()
+    for name, data in (("a.csv", b"1"), ("b.csv", b"1"), ("a.csv", b"2"), ("a.csv", b"1")):
+        brought_files.keep("record", [part(name, data)])
+        keys.add(brought_files.brought()["record"].key)
+    assert len(keys) == 3
+
+
+@pytest.mark.usefixtures("session")
+def test_answers_about_a_file_settle_its_options_and_are_taken_back_in_order():
+    file = brought_files.File("key", Upload("a.csv", b""))
+    brought_files.answer("key", "crs", "EPSG:2039")
+    brought_files.answer("key", "crs", "")
+    brought_files.answer("key", "crs", "EPSG:4326")
+    brought_files.answer("other", "crs", "EPSG:25831")
+    assert brought_files.settled(file, PlotOptions()).crs == "EPSG:4326"
+    assert brought_files.asking() == "key"
+    brought_files.take_back("key")
+    assert brought_files.settled(file, PlotOptions()).crs == "EPSG:2039"
+    brought_files.take_back("key")
+    assert brought_files.settled(file, PlotOptions()) == PlotOptions()

@@ -1,0 +1,60 @@
+"""What the app keeps between clicks, all sessions together."""
+
+import numpy as np
+
+from app.state import cached
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.prior import start_infested
+from fieldmon.plot.robot import Robot
+from tests.app.chosen import a_plot
+from tests.app.driving import go, metric, opened, tap
+from tests.monitoring.seasons import a_season
+
+
+def test_two_windows_on_one_season_see_each_other(season_app):
+    other = opened("Gate 2026")
+    go(season_app, "scout")
+    tap(season_app, "scout_found")
+    go(other, "season")
+    assert metric(other, "Found") == "1"
+
+
+def test_plots_that_differ_in_one_plant_are_kept_apart_by_their_keys():
+    """Streamlit hashes a sample of an array: plants must not be what a value is kept by."""
+    plot = a_plot()
+    other = plot.without(np.arange(len(plot.grid)) == 7)
+    kept = [cached.chance_map(f"plot {k}", "2026-11-16", one, (Observations.none(), None))
+            for k, one in enumerate((plot, other))]  # fmt: skip
+    assert len(kept[0]) == len(kept[1]) + 1
+    again = cached.chance_map("plot 0", "2026-11-16", other, (Observations.none(), None))
+    assert again is kept[0]
+
+
+def test_a_season_that_was_replaced_by_another_of_its_name_is_opened_anew(tmp_path):
+    path = tmp_path / "s.gpkg"
+    a_season(path)
+    first = cached.season(path)
+    assert cached.season(path) is first
+    path.rename(tmp_path / "kept.gpkg")  # its inode stays taken
+    a_season(path)
+    assert cached.season(path) is not first
+
+
+def test_layers_are_made_once_for_a_key():
+    made = []
+    for key in ("a", "a", "b"):
+        cached.layers(f"test {key}", lambda key=key: [*made, made.append(key)])
+    assert made == ["a", "b"]
+
+
+def test_a_simulated_season_is_the_one_that_the_library_simulates():
+    plot, robot, seed = a_plot(), Robot(hours=1.0), 3
+    chance = np.full(len(plot.grid), 0.05)
+    days, figures = cached.simulated_season(
+        "test", "dynamic", (4, 0.05, 0.1, seed), robot, plot, chance
+    )
+    assert len(days) == len(figures.found) == 4
+    starts = start_infested(chance, 0.05, RandomStreams(seed).of("start"))
+    assert days[0].infested.tolist() == starts[plot.grid.vine].tolist()
+    assert [day.found for day in days] == figures.found.tolist()

@@ -1,0 +1,39 @@
+"""What the person chose, as every page gets it."""
+
+from datetime import date
+
+import pytest
+
+from tests.app.chosen import a_plot, chosen, in_season, records_at
+from tests.monitoring.seasons import BEGINS, Insects, a_season
+
+
+@pytest.fixture(scope="module")
+def plot():
+    return a_plot()
+
+
+def test_the_day_is_a_date_and_the_name_keeps_to_itself(plot):
+    choices = chosen(plot, day="2026-11-17")
+    assert choices.on == date(2026, 11, 17)
+    assert choices.name == "\u2068square\u2069"
+    assert choices.revision == ""
+
+
+def test_a_plan_without_a_season_is_made_of_records_once(plot):
+    choices = chosen(plot, records_at(plot, [50], [1]))
+    plan = choices.plan()
+    assert plan.chance.argmax() == 50
+    assert choices.plan() is plan
+    assert plan.scene.robot == choices.robot
+
+
+def test_a_plan_in_a_season_is_what_is_left_of_the_day(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    choices = in_season(season, BEGINS)
+    first, revision = choices.plan().route.plant, choices.revision
+    season.record(Insects(season).look(0, first[:4]), "test")
+    assert choices.revision != revision
+    rest = choices.plan().route.plant
+    assert len(rest) < len(first)
+    assert not set(rest.tolist()) & set(first[:4].tolist())

@@ -1,0 +1,81 @@
+"""Strategies are compared on the same insects, seed by seed."""
+
+import numpy as np
+import pytest
+
+from app.state.comparison import (
+    Comparison,
+    ComparisonSettings,
+    Strategy,
+    curve,
+    outcomes,
+)
+from fieldmon.plot.field import Field
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.robot import Robot
+from tests.app.driving import SQUARE, until
+
+SHORT = [Strategy(name, 1.0, 40.0) for name in ("naive", "dynamic")]
+
+
+@pytest.fixture(scope="module")
+def plot():
+    return Plot.of(Field("square", SQUARE, gate=(35.15, 30.36)))
+
+
+def compared(plot, strategies, seeds=4):
+    rng = np.random.default_rng(3)
+    chance = np.where(rng.random(len(plot.grid)) < 0.1, 0.5, 0.001)
+    settings = ComparisonSettings(tuple(strategies), n_days=5, share=0.05, rate=0.1, seeds=seeds)
+    running = Comparison(settings, plot, chance, Robot())
+    running.start()
+    running.wait(120)
+    assert running.done == running.total
+    return running
+
+
+def test_a_strategy_compared_with_its_own_twin_differs_by_nothing(plot):
+    once, again = (compared(plot, SHORT).seasons() for _ in range(2))
+    for strategy in SHORT:
+        for one, other in zip(once[strategy], again[strategy], strict=True):
+            assert one.left.tolist() == other.left.tolist()
+
+
+def test_every_strategy_meets_the_same_insects_on_the_first_morning(plot):
+    seasons = compared(plot, SHORT).seasons()
+    starts = [[int(s.new[0]) for s in walked] for walked in seasons.values()]
+    assert starts[0] == starts[1]
+    assert len(set(starts[0])) > 1
+
+
+def test_longer_inspections_and_more_hours_lose_less(plot):
+    strategies = [Strategy("dynamic", 1.0, 20.0), Strategy("dynamic", 4.0, 40.0)]
+    ranked = outcomes(compared(plot, strategies).seasons())
+    assert ranked[0].strategy == strategies[1]
+    assert ranked[0].behind is None
+    assert ranked[1].behind.mean == pytest.approx(ranked[1].loss.mean - ranked[0].loss.mean)
+
+
+def test_a_stopped_comparison_goes_on_where_it_stood(plot):
+    settings = ComparisonSettings(tuple(SHORT), n_days=3, share=0.05, rate=0.1, seeds=200)
+    running = Comparison(settings, plot, np.full(len(plot.grid), 0.01), Robot())
+    running.start()
+    running.stop()
+    running.wait(60)
+    part = running.done
+    assert part < running.total
+    assert not running.running
+    running.start()
+    until(lambda: running.done > part)
+    running.stop()
+    running.wait(60)
+    assert running.done > part
+
+
+def test_curves_stay_within_their_interval_and_percent(plot):
+    walked = next(iter(compared(plot, SHORT).seasons().values()))
+    mean, low, high = curve(walked)
+    assert (low <= mean).all()
+    assert (mean <= high).all()
+    assert low.min() >= 0
+    assert high.max() <= 100

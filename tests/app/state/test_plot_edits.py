@@ -1,0 +1,34 @@
+"""What a person draws on a plot changes it where it was drawn, or is refused in a sentence."""
+
+import pytest
+
+from app.state.plot_edits import Edit, edited, points_of
+from fieldmon.errors import SettingError
+from fieldmon.plot.field import Field
+from tests.app.driving import SQUARE
+
+
+def test_a_no_go_area_leaves_the_plot_and_a_gate_moves():
+    field = Field("square", SQUARE)
+    area = Edit("no_go", ((35.1502, 30.3602), (35.1504, 30.3602), (35.1504, 30.3604)))
+    made = edited(field, (area, Edit("gate", ((35.15, 30.3603),))))
+    assert made.gate == (35.15, 30.3603)
+    assert made.drivable().area == pytest.approx(SQUARE.area - 0.5 * 0.0002 * 0.0002)
+    path = Edit("path", ((35.15, 30.36), (35.1506, 30.3606)))
+    assert len(edited(field, (path, path)).paths.geoms) == 2
+
+
+@pytest.mark.parametrize("kind", ["gate", "path", "no_go"])
+def test_too_few_points_are_refused(kind):
+    with pytest.raises(SettingError, match="needs"):
+        Edit(kind, ())
+
+
+@pytest.mark.parametrize("text", ["35", "x,y", "35.1,91", "200,3", "1,2,3"])
+def test_typed_positions_that_are_none_are_refused(text):
+    with pytest.raises(SettingError):
+        points_of(text)
+
+
+def test_typed_positions_are_read_in_any_layout():
+    assert points_of("35.1,30.2 35.3,30.4;\n1, 2") == ((35.1, 30.2), (35.3, 30.4), (1.0, 2.0))

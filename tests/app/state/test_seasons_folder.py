@@ -1,0 +1,29 @@
+"""The seasons on this machine: files of one folder, by names that stay in it."""
+
+import pytest
+
+from app.state import seasons_folder as folder
+from fieldmon.errors import SettingError
+from tests.monitoring.seasons import a_season
+
+
+@pytest.mark.parametrize("name", ["..", "../x", "a/b", "a\\b", "", ".hidden", "x" * 90])
+def test_names_that_lead_out_of_the_folder_are_refused(name):
+    with pytest.raises(SettingError):
+        folder.path_of(name)
+
+
+def test_a_name_of_any_script_is_a_file_of_the_folder(seasons_folder):
+    path = folder.path_of("מטע 2026")
+    assert (path.parent, path.name) == (seasons_folder, "מטע 2026.gpkg")
+
+
+def test_only_seasons_are_named_in_order_and_no_folder_is_none(seasons_folder, monkeypatch):
+    for name in ("b", "a"):
+        a_season(folder.new_path(f" {name} "))
+    (seasons_folder / "c.gpkg").write_bytes(b"SQLite format 3\0")
+    (seasons_folder / "d.txt").write_text("no season", encoding="utf-8")
+    assert folder.names() == ["a", "b"]
+    monkeypatch.setenv(folder.FOLDER, str(seasons_folder / "nowhere"))
+    assert folder.names() == []
+    assert folder.new_path("first").parent.is_dir()

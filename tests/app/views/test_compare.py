@@ -1,0 +1,23 @@
+"""Strategies are compared while the page waits for nothing."""
+
+from tests.app.driving import go, press, texts_of
+
+
+def test_strategies_are_compared_and_the_best_is_put_to_use(app):
+    go(app, "compare")
+    app.number_input(key="seeds").set_value(3)
+    app.number_input(key="n_days").set_value(4).run()
+    assert "press Compare" in texts_of(app)
+    app.button(key="run").click().run()
+    for _ in range(300):
+        if len(app.dataframe) and app.button(key="stop").disabled:
+            break
+        app.run()
+    assert not app.exception
+    table = app.dataframe[0].value
+    assert len(table) == 3
+    assert table["verdict"].iloc[0] == "★ best"
+    naive = next(b for b in app.selectbox if b.label == "Strategy")
+    naive.set_value(next(o for o in naive.options if o.startswith("Naive"))).run()
+    press(app, "Use this strategy")
+    assert app.selectbox(key="sampler").value == "naive"

@@ -1,0 +1,43 @@
+"""`fieldmon init`: a season begins."""
+
+from datetime import date, time
+
+import pytest
+
+from fieldmon.monitoring import Season
+from tests.cli.estate import BEGINS, MITES, ZIP
+
+
+def test_a_season_keeps_what_it_is_told_and_what_the_files_said(run, tmp_path):
+    code, out, err, made = run(
+        *["init", "s.gpkg", ZIP, "--feature", "Nursery", "--observations", MITES],
+        *["--begins", BEGINS, "--start", "05:45", "--sampler", "bouncy", "--every", 3],
+        *["--flag-only", "--spread", 0.03, "--seed", 9, "--hours", 2, "--look", 25],
+    )
+    assert code == 0, err
+    assert made == {tmp_path / "s.gpkg"}
+    assert "Next: fieldmon plan s.gpkg -o route.geojson" in out
+    season = Season(tmp_path / "s.gpkg")
+    settings = season.settings
+    assert (settings.begins, settings.starts) == (date.fromisoformat(BEGINS), time(5, 45))
+    assert (settings.sampler, settings.sampler_settings) == ("bouncy", {"every": 3})
+    assert (settings.robot.hours, settings.robot.look_s, settings.seed) == (2.0, 25.0, 9)
+    assert (settings.belief.treated, settings.belief.spread.rate_per_day) == (False, 0.03)
+    kept = [(message.source, message.sentence) for message in season.messages()]
+    assert ("mite_records.csv", "Counts are in column 'count'.") in kept
+    assert ("paran_estate.zip", "Plots are named by column 'name'.") in kept
+    assert all(sentence in err for _, sentence in kept)
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["--begins", "soon"], "YYYY-MM-DD"),
+        (["--feature", "Moon"], "none called 'Moon'"),
+        (["--spread", "2"], "2"),
+    ],
+)
+def test_what_cannot_begin_is_a_sentence_and_no_file(run, words, says):
+    code, _, err, made = run("init", "s.gpkg", ZIP, "--feature", "Nursery", *words)
+    assert (code, made) == (2, set())
+    assert says in err

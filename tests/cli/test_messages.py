@@ -1,0 +1,92 @@
+"""What imports say and ask, at a terminal."""
+
+import numpy as np
+import pytest
+
+from fieldmon.cli.messages import Terminal, tell_unusable
+from fieldmon.errors import ChoiceNeeded
+from fieldmon.infestation.observations import PRESENT, Observations
+from fieldmon.io.import_report import Remedy, guessed
+from fieldmon.io.prepare import Assumed, Laid, SourceMessage
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.travel import Aisles
+
+MONTH = guessed("Read day first.", "date", Remedy("date_order", "mdy", "Read month first"))
+
+
+@pytest.mark.parametrize(
+    ("role", "flag"), [("records", "--record-option"), ("plants", "--plants-option")]
+)
+def test_a_message_is_printed_with_the_option_that_answers(capsys, role, flag):
+    Terminal().message(SourceMessage(role, "r.csv", MONTH))
+    said = f"guessed: date: Read day first. (Read month first: {flag} date_order=mdy)\n"
+    assert capsys.readouterr().err == said
+
+
+def test_a_command_without_such_options_names_none(capsys):
+    Terminal(flags={}).message(SourceMessage("records", "r.csv", MONTH))
+    assert "(Read month first: date_order=mdy)" in capsys.readouterr().err
+
+
+def test_a_plot_is_described_with_what_was_assumed_for_it(capsys):
+    grid = rectangle(3, 4)
+    field = Field("Gate", grid.frame.geometry_lonlat(grid.drivable_m))
+    laid = Laid(Plot(field, Aisles.of(grid)), (Assumed("row_spacing_m", 4.0),))
+    Terminal(shows_plot=False).laid(laid)
+    assert capsys.readouterr() == ("", "")
+    Terminal().laid(laid)
+    out, err = capsys.readouterr()
+    assert out.startswith("Gate: 12 plants in 3 rows, bearing 90.0 degrees, rows 4.00 m and")
+    assert err == "guessed: row spacing 4 m [--row-spacing]\n"
+
+
+@pytest.mark.parametrize(
+    ("question", "flags", "how"),
+    [
+        (("", "feature", ("A", "B")), None, 'Which: --feature "A" or --feature 1.'),
+        (("plot", "feature", ("A",)), None, 'Which. Answer with --feature "A", for instance.'),
+        (("plot", "crs", ("EPSG:1",)), None, 'Which. Answer with --crs "EPSG:1", for instance.'),
+        (
+            ("plot", "where", ()),
+            None,
+            'Which. Answer with --plot-option where="...", for instance.',
+        ),
+        (
+            ("records", "crs", ("EPSG:1",)),
+            None,
+            'Which. Answer with --record-option crs="EPSG:1", for instance.',
+        ),
+        (
+            ("risk", "band", ("1",)),
+            None,
+            'Which. Answer with --risk-option band="1", for instance.',
+        ),
+        (
+            ("records", "plot", ("A",)),
+            None,
+            'Which. Answer with --record-option plot="A", for instance.',
+        ),
+        (("records", "plot", ("A",)), {}, 'Which. Answer with --feature "A", for instance.'),
+        (("plot", "feature", ("A",)), {}, 'Which. Answer with --feature "A", for instance.'),
+        (("records", "crs", ("EPSG:1",)), {}, "Which."),
+    ],
+)
+def test_a_question_is_asked_with_how_this_command_answers_it(question, flags, how):
+    role, option, choices = question
+    terminal = Terminal() if flags is None else Terminal(flags=flags)
+    with pytest.raises(ChoiceNeeded) as raised, terminal.answering():
+        raise ChoiceNeeded("Which.", option, choices, role)
+    assert str(raised.value) == how
+    assert (raised.value.option, raised.value.choices) == (option, choices)
+
+
+def test_records_that_say_nothing_about_a_day_are_named(capsys):
+    day = np.datetime64("2026-11-02")
+    dates = np.array([day + 5, day - 1])
+    records = Observations.of(np.zeros((2, 2)), np.array([PRESENT, PRESENT]), dates)
+    tell_unusable(records, day)
+    assert "1 of the records are of a later day" in capsys.readouterr().err
+    tell_unusable(records.take(np.array([1])), day)
+    assert capsys.readouterr().err == ""

@@ -1,0 +1,65 @@
+"""`fieldmon plan` with a season: from plan to status, and again."""
+
+import json
+from datetime import date, timedelta
+
+import numpy as np
+
+from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.monitoring import Season
+from tests.cli.estate import BEGINS, filled_in
+
+
+def test_a_day_from_plan_to_status(run, season, tmp_path):
+    code, out, err, made = run("plan", season, "--date", BEGINS, "-o", "r.csv", "-o", "r.geojson")
+    assert code == 0, err
+    assert {path.name for path in made} == {"r.csv", "r.geojson"}
+    plants = filled_in(tmp_path / "r.csv", finds={1, 4}, n=10)
+    code, out, err, _ = run("record", season, "r.csv", "--date", BEGINS, "--who", "Ann")
+    assert code == 0, err
+    assert "10 new, 0 known" in out
+    assert "2 found infested" in out
+    code, out, _, _ = run("record", season, "r.csv", "--date", BEGINS, "--who", "Ben")
+    assert "0 new, 10 known" in out
+    history = Season(season).history
+    assert sorted(history.inspections.plant) == sorted(plants)
+    assert np.count_nonzero(history.inspections.result == FOUND) == 2
+    code, out, _, _ = run("status", season, "--batches", "--rows")
+    assert "r.csv" in out
+    assert "by Ann" in out
+    assert "never" in out
+    assert "chance it is clean" in out
+
+
+def test_half_way_the_rest_of_the_day_is_planned(run, season, tmp_path):
+    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    plants = filled_in(tmp_path / "r.csv", finds={0}, n=5)
+    run("record", season, "r.csv", "--date", BEGINS)
+    code, out, err, _ = run("plan", season, "--date", BEGINS, "--now", "06:30", "-o", "r2.geojson")
+    assert code == 0, err
+    assert "5 done" in out
+    features = json.loads((tmp_path / "r2.geojson").read_text(encoding="utf-8"))["features"]
+    assert features[0]["properties"]["start"] == f"{BEGINS}T06:30:00"
+    assert not {f["properties"].get("plant") for f in features} & set(plants)
+
+
+def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):
+    """The app calls the library: the same findings give the same belief and the same routes."""
+    with_library = Season.create(
+        tmp_path / "library.gpkg",
+        Season(season).plot,
+        Season(season).observations,
+        Season(season).settings,
+    )
+    for day in range(10):
+        on = date.fromisoformat(BEGINS) + timedelta(days=day)
+        code, _, err, _ = run("plan", season, "--date", on, "-o", "r.csv")
+        assert code == 0, err
+        plants = filled_in(tmp_path / "r.csv", finds={day, day + 3}, n=12)
+        code, _, err, _ = run("record", season, "r.csv", "--date", on)
+        assert code == 0, err
+        assert with_library.plan(on).route.plant[:12].tolist() == plants
+        found = np.isin(np.arange(12), [day, day + 3])
+        with_library.record(Inspections.of(np.array(plants), found, np.datetime64(on)), "app")
+        assert np.array_equal(with_library.evening(on), Season(season).evening(on))
+    assert len(with_library.history.inspections) == 120

@@ -1,0 +1,35 @@
+"""`fieldmon record`: what was found."""
+
+import shutil
+
+import numpy as np
+import pyogrio
+import shapely
+
+from fieldmon.monitoring import Season
+from tests.cli.estate import BEGINS, filled_in
+
+
+def test_what_qfield_adds_to_a_copy_comes_back_and_what_was_undone_does_not(
+    run,
+    season,
+    tmp_path,
+):
+    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    filled_in(tmp_path / "r.csv", finds={0}, n=5)
+    run("record", season, "r.csv", "--date", BEGINS)
+    copy = shutil.copy(season, tmp_path / "copy.gpkg")
+    grid = Season(season).plot.grid
+    extra = pyogrio.read_dataframe(copy, layer="inspections").tail(1)
+    extra.geometry = shapely.points(grid.lonlat(np.array([77])))
+    extra[["digest", "batch", "undone", "plant", "line", "number", "day"]] = None
+    extra[["result", "count"]] = ["found", 4]
+    pyogrio.write_dataframe(extra, copy, layer="inspections", append=True)
+    code, out, err, _ = run("record", season, copy)
+    assert code == 0, err
+    assert "1 new, 5 known" in out
+    assert Season(season).history.inspections.plant[-1] == 77
+    run("undo", season, "--batch", 1)
+    copy = shutil.copy(season, tmp_path / "later.gpkg")
+    code, out, err, _ = run("record", season, copy)
+    assert "0 new, 1 known" in out

@@ -1,0 +1,21 @@
+"""`fieldmon status`: where a season stands."""
+
+from fieldmon.cli.status import lines
+from fieldmon.monitoring import Season
+from tests.cli.estate import BEGINS
+
+
+def test_a_season_is_told_in_the_lines_of_its_status(run, season):
+    code, out, err, _ = run("status", season, "--date", BEGINS)
+    assert code == 0, err
+    kept = Season(season)
+    now = kept.status(kept.last_date())
+    assert out.splitlines() == list(lines(kept, now))
+    assert f"{now.plants} plants (0 %), 0 found infested" in out
+    assert out.startswith(f"Nursery, {BEGINS} (day 1 of the season)")
+
+
+def test_rows_that_nobody_was_in_are_told(run, season):
+    _, out, _, _ = run("status", season, "--date", BEGINS, "--rows")
+    n_rows = Season(season).plot.grid.row_line.max() + 1
+    assert sum(line.endswith("never") for line in out.splitlines()) == n_rows

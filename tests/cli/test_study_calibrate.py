@@ -1,0 +1,19 @@
+"""`fieldmon study calibrate`, as a person runs it."""
+
+from tests.cli.estate import table
+
+
+def test_a_search_tells_its_best_and_writes_what_it_tried(run, tmp_path):
+    code, out, err, _ = run(
+        *["study", "calibrate", "--drawn", 2, "--kept", 1, "--steps", 0, "--seeds", 2]
+    )
+    assert code == 0, err
+    assert "Best joint fit" in out
+    assert "Best fit of C alone" in out
+    assert len(table(tmp_path / "prior_calibration.csv")) >= 1
+
+
+def test_a_folder_that_is_not_there_is_said_before_anything_is_searched(run):
+    code, _, err, made = run("study", "calibrate", "-o", "none")
+    assert (code, made) == (2, set())
+    assert "must exist" in err

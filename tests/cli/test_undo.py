@@ -1,0 +1,32 @@
+"""`fieldmon undo`: what was recorded is taken back."""
+
+from datetime import date
+
+import numpy as np
+
+from fieldmon.monitoring import Season
+from tests.cli.estate import BEGINS, filled_in
+
+ON = date.fromisoformat(BEGINS)
+
+
+def test_what_was_recorded_last_is_as_if_it_had_not_been(run, season, tmp_path):
+    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    filled_in(tmp_path / "r.csv", finds={0}, n=5)
+    before = Season(season).evening(ON)
+    run("record", season, "r.csv", "--date", BEGINS)
+    assert not np.array_equal(Season(season).evening(ON), before)
+    code, out, _, _ = run("undo", season)
+    assert (code, "5 findings from r.csv" in out) == (0, True)
+    assert np.array_equal(Season(season).evening(ON), before)
+
+
+def test_one_inspection_alone_is_taken_back(run, season, tmp_path):
+    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    plants = filled_in(tmp_path / "r.csv", finds={0}, n=3)
+    run("record", season, "r.csv", "--date", BEGINS)
+    code, _, err, _ = run("undo", season, "--inspection", 2)
+    assert code == 0, err
+    left = Season(season).history.inspections.plant.tolist()
+    assert len(left) == 2
+    assert set(left) < set(plants)

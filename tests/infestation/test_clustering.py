@@ -1,0 +1,78 @@
+"""How much infested plants stand together, held against sums over pairs of neighbours."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fieldmon.infestation.clustering import (
+    ClusterEstimate,
+    clustering_scale,
+    scale_clustering,
+    update_clusters,
+)
+from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.plot.layout import rectangle
+
+GRID = rectangle(6, 7)
+N = len(GRID)
+START, NEIGHBOUR = GRID.adjacent
+OWN = np.repeat(np.arange(N), np.diff(START))
+MORNING = PairApproximation.of(GRID, np.linspace(0.02, 0.3, N))
+
+
+def estimate(inspections):
+    """Note inspections (plant, found, detection) one after the other, as the compiled loops do."""
+    clusters = ClusterEstimate.none(N)
+    believed = MORNING.chance, MORNING.pair_chance
+    for plant, found, detects in inspections:
+        update_clusters.py_func(believed, GRID.linked, (plant, found, detects), clusters)
+    return clusters
+
+
+def finds_beside_finds(inspections):
+    """Sum over all pairs of neighbours that were inspected: finds beside finds beyond chance."""
+    known = {plant: (found, detects) for plant, found, detects in inspections}
+    there, expected = 3.0, 3.0
+    for i, j, both in zip(OWN, NEIGHBOUR, MORNING.pair_chance, strict=True):
+        if i in known and j in known and known[i][0]:
+            found, detects = known[j]
+            p, q = MORNING.chance[i], MORNING.chance[j]
+            there += found - detects * q
+            expected += detects * (both / p - q)
+    return there, expected
+
+
+some_inspections = st.lists(
+    st.tuples(st.integers(0, N - 1), st.booleans(), st.sampled_from((0.5, 0.84, 1.0))),
+    unique_by=lambda one: one[0],
+    max_size=N,
+)
+
+
+@given(some_inspections)
+def test_finds_beside_finds_are_counted_once_a_pair_in_whatever_order(inspections):
+    for order in (inspections, inspections[::-1]):
+        assert estimate(order).finds == pytest.approx(finds_beside_finds(inspections))
+
+
+def test_before_anybody_inspected_the_belief_of_the_morning_stands():
+    assert clustering_scale.py_func(ClusterEstimate.none(N)) == 1.0
+
+
+def test_finds_side_by_side_say_more_and_finds_alone_say_less_up_to_a_bound():
+    together = [(i, True, 0.84) for i in range(20)]
+    alone = [(i, i % 8 == 0, 0.84) for i in range(N)]
+    assert clustering_scale.py_func(estimate(together)) == 1.5
+    assert 0.0 <= clustering_scale.py_func(estimate(alone)) < 1.0
+
+
+@given(st.floats(0.0, 1.5))
+def test_scaling_moves_what_pairs_have_in_common_and_no_chance(scale):
+    chance, pair_chance = MORNING.chance.copy(), MORNING.pair_chance.copy()
+    scale_clustering.py_func((chance, pair_chance), GRID.linked, scale)
+    np.testing.assert_array_equal(chance, MORNING.chance)
+    apart = chance[OWN] * chance[NEIGHBOUR]
+    np.testing.assert_allclose(
+        pair_chance - apart, scale * (MORNING.pair_chance - apart), atol=1e-12
+    )

@@ -1,0 +1,87 @@
+"""Inspections: columns of one length, unknown where not said, and nobody can change them."""
+
+from datetime import date
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fieldmon.errors import ObservationError
+from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED, Inspections
+
+MONDAY, TUESDAY = np.datetime64("2026-04-06"), np.datetime64("2026-04-07")
+
+
+def week():
+    return Inspections.of(
+        np.array([7, 3, 5, 7]),
+        np.array([CLEAN, FOUND, SKIPPED, CLEAN]),
+        np.array([MONDAY, MONDAY, TUESDAY, TUESDAY]),
+        second=np.array([600.0, np.nan, 30.5, 40.0]),
+        count=np.array([np.nan, 4.0, np.nan, np.nan]),
+        who=np.array(["Ann", "Ann", "Ben", ""]),
+        notes=np.array(["", "yellow leaves", "", ""], object),
+    )
+
+
+def test_what_is_not_given_is_unknown():
+    one = Inspections.of(np.array([3]), np.array([FOUND]), MONDAY)
+    assert np.isnan([one.second[0], one.count[0]]).all()
+    assert (one.who.tolist(), one.notes.tolist()) == ([""], [""])
+    assert len(Inspections.none()) == 0
+    assert np.isnat(Inspections.of(np.array([3]), np.array([0]), np.datetime64("NaT")).date).all()
+
+
+@pytest.mark.parametrize("on", [date(2026, 4, 6), MONDAY, np.datetime64("2026-04-06T17:30")])
+def test_one_date_is_that_of_all(on):
+    two = Inspections.of(np.array([3, 4]), np.array([FOUND, CLEAN]), on)
+    assert two.date.tolist() == [date(2026, 4, 6)] * 2
+
+
+def test_columns_have_the_same_types_wherever_they_come_from():
+    made = Inspections.of(
+        np.array([3], np.int64), np.array([True]), MONDAY, count=np.array([2]), who=np.array(["x"])
+    )
+    for other in (made, week(), Inspections.none()):
+        kinds = [str(getattr(other, name).dtype) for name in vars(week())]
+        assert kinds == ["int32", "int8", "datetime64[D]", "float64", "float64", "object", "object"]
+
+
+def test_columns_of_another_length_are_refused_by_name():
+    with pytest.raises(ObservationError, match="4 entries, but count has 2"):
+        Inspections(**(vars(week()) | {"count": np.zeros(2)}))
+
+
+@pytest.mark.parametrize("plant", [2**40, -(2**31) - 1, 1.5])
+def test_what_is_no_number_of_a_plant_is_refused_rather_than_cut(plant):
+    with pytest.raises(ObservationError, match="plant of inspections must be whole"):
+        Inspections.of(np.array([plant]), np.array([CLEAN]), MONDAY)
+
+
+def test_nobody_can_change_them_and_the_callers_arrays_stay_his_own():
+    plants = np.array([3, 4], np.int32)
+    made = Inspections.of(plants, np.array([CLEAN, CLEAN]), MONDAY)
+    with pytest.raises(ValueError, match="read-only"):
+        made.plant[0] = 9
+    plants[0] = 8
+    assert plants.flags.writeable
+
+
+def test_those_of_a_date_and_those_really_inspected():
+    assert week().on(MONDAY).plant.tolist() == week().on(date(2026, 4, 6)).plant.tolist() == [7, 3]
+    assert week().on(np.datetime64("2026-05-01")).plant.tolist() == []
+    assert week().inspected.plant.tolist() == [7, 3, 7]
+
+
+@given(st.lists(st.integers(0, 3)))
+def test_taking_some_takes_the_same_of_every_column(which):
+    some = week().take(np.array(which, np.intp))
+    for name, values in vars(week()).items():
+        wanted = [values[k] for k in which]
+        assert [str(v) for v in getattr(some, name)] == [str(v) for v in wanted]
+
+
+def test_every_result_has_a_name_of_its_own():
+    assert sorted(RESULT_NAMES) == [CLEAN, FOUND, SKIPPED]
+    assert len(set(RESULT_NAMES.values())) == 3

@@ -1,0 +1,56 @@
+"""Pest records as they were brought, and which of them speak on a day."""
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import ObservationError
+from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN, Observations, usable
+from tests.infestation.placed_records import GRID, TODAY, at_middle, together
+
+
+def test_columns_that_are_not_given_are_unknown():
+    records = Observations.of([[35.0, 30.0], [35.1, 30.1]], [PRESENT, ABSENT])
+    assert records.lonlat.shape == (2, 2)
+    assert records.present.dtype == np.int8
+    assert np.isnat(records.day).all()
+    assert np.isnan([records.count, records.accuracy_m, records.leaves_sampled]).all()
+    assert records.species.tolist() == records.stage.tolist() == ["", ""]
+
+
+def test_columns_of_other_lengths_are_refused_by_name():
+    with pytest.raises(ObservationError, match="2 entries, but count has 3"):
+        Observations.of([[35.0, 30.0]] * 2, [PRESENT, ABSENT], count=np.zeros(3))
+
+
+def test_some_of_them_are_taken_by_mask_or_by_number_in_that_order():
+    records = Observations.of(
+        [[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]], [1, 0, -1], count=np.array([7.0, 8.0, 9.0])
+    )
+    assert records.take(np.array([2, 0])).count.tolist() == [9.0, 7.0]
+    assert records.take(records.present == ABSENT).lonlat.tolist() == [[3.0, 4.0]]
+    assert len(Observations.none()) == 0
+
+
+def test_nobody_can_change_them():
+    records = at_middle(PRESENT)
+    with pytest.raises(ValueError, match="read-only"):
+        records.lonlat[0, 0] = 0.0
+
+
+def test_a_record_of_today_is_not_of_the_future_at_any_hour():
+    assert usable(at_middle(PRESENT), np.datetime64("2026-05-20T05:00")).future == 0
+
+
+def test_records_that_say_neither_and_those_of_tomorrow_are_left_out_and_told_of():
+    observations = together(
+        at_middle(PRESENT, 3),
+        at_middle(UNKNOWN, 3),
+        at_middle(UNKNOWN, -3),
+        at_middle(PRESENT, -1),
+        Observations.of(GRID.lonlat()[:2], [PRESENT, ABSENT]),
+    )
+    kept = usable(observations, TODAY)
+    assert len(kept.observations) == 3
+    assert (kept.undecided, kept.future, kept.undated) == (2, 1, 2)
+    assert [sentence.split()[0] for sentence in kept.messages()] == ["2", "1", "2"]
+    assert not usable(at_middle(PRESENT), TODAY).messages()

@@ -1,0 +1,122 @@
+"""From a source and what was chosen to one layer, or to the question which."""
+
+import io
+import zipfile
+
+import geopandas as gpd
+import pandas as pd
+import pyogrio
+import pytest
+from shapely import Point
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.formats.open_layer import layers_of, open_layer
+from fieldmon.io.options import ReadOptions, Upload
+from fieldmon.io.sandbox.unpack import Workroom
+from tests.io.tables_of_cells import sentences
+
+POINTS = gpd.GeoDataFrame({"name": ["a", "b"]}, geometry=[Point(1, 2), Point(3, 4)], crs=4326)
+NOTHING = ReadOptions()
+
+
+@pytest.fixture
+def room(tmp_path):
+    (tmp_path / "room").mkdir()
+    return Workroom(tmp_path / "room")
+
+
+def zipped(**contents):
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w") as archive:
+        for name, content in contents.items():
+            archive.writestr(name.replace("__", "."), content)
+    return Upload("estate.zip", data.getvalue())
+
+
+@pytest.mark.parametrize("ending", ["geojson", "gpkg", "fgb", "parquet", "csv", "xlsx", "shp"])
+def test_the_one_layer_of_a_file_is_opened_whatever_its_kind(tmp_path, room, ending):
+    path = tmp_path / f"x.{ending}"
+    if ending == "csv":
+        pd.DataFrame({"name": ["a", "b"], "lat": [2, 4]}).to_csv(path, index=False)
+    elif ending == "xlsx":
+        pd.DataFrame({"name": ["a", "b"], "lat": [2, 4]}).to_excel(path, index=False)
+    elif ending == "parquet":
+        POINTS.to_parquet(path)
+    else:
+        POINTS.to_file(path)
+    layer = open_layer(path, NOTHING, room)
+    assert sorted(layer.columns["name"].tolist()) == ["a", "b"]
+    assert (layer.geometry is None) == (ending in {"csv", "xlsx"})
+    (listed,) = layers_of(path, room)
+    assert listed.member == path.name
+
+
+def estate(tmp_path, *names):
+    path = tmp_path / "estate.gpkg"
+    for name in names:
+        POINTS.to_file(path, layer=name)
+    return path
+
+
+def test_of_several_layers_one_is_asked_for(tmp_path, room):
+    path = estate(tmp_path, "peppers", "vines")
+    with pytest.raises(ChoiceNeeded) as asked:
+        open_layer(path, NOTHING, room)
+    assert (asked.value.option, asked.value.choices) == ("layer", ("peppers", "vines"))
+    assert len(open_layer(path, ReadOptions(layer="vines"), room)) == 2
+    with pytest.raises(ChoiceNeeded, match="none is called 'wheat'"):
+        open_layer(path, ReadOptions(layer="wheat"), room)
+    assert [info.layer for info in layers_of(path, room)] == ["peppers", "vines"]
+
+
+def test_the_only_layer_with_anything_in_it_is_read_and_that_is_said(tmp_path, room):
+    path = estate(tmp_path, "vines")
+    POINTS.iloc[:0].to_file(path, layer="empty")
+    layer = open_layer(path, NOTHING, room)
+    assert len(layer) == 2
+    assert "Layer vines was read; 1 other(s) hold nothing." in sentences(layer)
+
+
+def test_layers_that_hold_nothing_are_refused(tmp_path, room):
+    path = tmp_path / "x.gpkg"
+    for name in ("a", "b"):
+        POINTS.iloc[:0].to_file(path, layer=name)
+    with pytest.raises(FileProblem, match="something in it, but holds none"):
+        open_layer(path, NOTHING, room)
+
+
+def test_a_plain_table_beside_maps_is_read_only_by_its_name(tmp_path, room):
+    path = estate(tmp_path, "vines")
+    pyogrio.write_dataframe(pd.DataFrame({"n": [1, 2, 3]}), path, layer="notes", append=True)
+    assert len(open_layer(path, NOTHING, room)) == 2
+    assert len(open_layer(path, ReadOptions(layer="notes"), room)) == 3
+
+
+def test_of_an_archive_maps_come_before_tables_and_tables_before_notes(room):
+    point = POINTS.to_json()
+    table = "lon,lat\n1,2\n"
+    several = zipped(plots__geojson=point, list__csv=table, readme__txt="a b\nc d\n")
+    assert open_layer(several, NOTHING, room).geometry is not None
+    tables = zipped(list__csv=table, readme__txt="a b\nc d\n")
+    assert list(open_layer(tables, NOTHING, room).columns) == ["lon", "lat"]
+    notes = zipped(readme__txt="lon lat\n1 2\n")
+    assert len(open_layer(notes, NOTHING, room)) == 1
+
+
+def test_of_several_files_one_is_asked_for_and_named(room):
+    both = zipped(a__geojson=POINTS.to_json(), b__geojson=POINTS.iloc[:1].to_json())
+    with pytest.raises(ChoiceNeeded) as asked:
+        open_layer(both, NOTHING, room)
+    assert (asked.value.option, asked.value.choices) == ("member", ("a.geojson", "b.geojson"))
+    assert len(open_layer(both, ReadOptions(member="b.geojson"), room)) == 1
+
+
+def test_features_are_chosen_before_anything_else_is_done(tmp_path, room):
+    POINTS.to_file(tmp_path / "x.geojson")
+    layer = open_layer(tmp_path / "x.geojson", ReadOptions(where="name=b"), room)
+    assert [g.x for g in layer.geometry] == [3.0]
+
+
+def test_a_raster_alone_holds_no_plots(room):
+    with pytest.raises(FileProblem, match="is a raster"):
+        open_layer(Upload("x.tif", b"II*\x00" + b"\x00" * 40), NOTHING, room)

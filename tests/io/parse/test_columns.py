@@ -1,0 +1,49 @@
+"""Columns are known by what people call them."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fieldmon.io.options import ROLES
+from fieldmon.io.parse.columns import _SYNONYMS, find, plain, recognised
+
+
+@pytest.mark.parametrize("role", ROLES)
+def test_every_role_is_found_by_each_of_its_names(role):
+    for name in _SYNONYMS[role]:
+        assert find(role, ["other", name]) == name
+
+
+@given(st.sampled_from(sorted(ROLES)), st.data())
+def test_capitals_units_and_punctuation_do_not_matter(role, data):
+    name = data.draw(st.sampled_from(_SYNONYMS[role]))
+    for written in (name.upper(), f" {name}_", f"{name} (m)", f"{name} [deg]"):
+        assert find(role, [written]) == written
+
+
+@pytest.mark.parametrize(
+    ("name", "bare"),
+    [("Décimal_Longitude", "decimallongitude"), ("Höhe (m)", "hohe"), ("(a)", "a"), ("X [m]", "x")],
+)
+def test_a_plain_name_has_no_accents_capitals_or_units(name, bare):
+    assert plain(name) == bare
+
+
+def test_names_cut_to_ten_letters_by_a_shapefile_are_known():
+    assert find("lon", ["decimalLon"]) == "decimalLon"
+    assert find("count", ["individual"]) == "individual"
+    assert find("lon", ["decimalLo"]) is None
+
+
+def test_the_likeliest_of_several_is_taken_and_of_equals_the_first():
+    assert find("count", ["mites", "count"]) == "count"
+    assert find("lat", ["Lat", "LAT"]) == "Lat"
+
+
+def test_a_column_taken_already_plays_no_second_role():
+    assert find("name", ["plot", "title"], frozenset({"plot"})) == "title"
+    assert find("name", ["plot"], frozenset({"plot"})) is None
+
+
+def test_those_that_could_play_some_role_are_recognised():
+    assert recognised(["Lon", "colour", "תאריך"]) == {"Lon", "תאריך"}

@@ -1,0 +1,106 @@
+"""Coordinates are put on the earth, or asked for, but never taken for what they are not."""
+
+import numpy as np
+import pyproj
+import pytest
+import shapely
+from shapely import Point
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.import_report import Severity
+from fieldmon.io.options import ReadOptions
+from fieldmon.io.parse.georeference import place, place_geometry
+
+PARAN = np.array([[35.15, 30.36], [35.151, 30.361]])
+NOTHING = ReadOptions()
+
+
+def projected(crs, lonlat=PARAN):
+    x, y = pyproj.Transformer.from_crs(4326, crs, always_xy=True).transform(*lonlat.T)
+    return np.stack([x, y], axis=1)
+
+
+@pytest.mark.parametrize("crs", ["EPSG:32636", "EPSG:2039", "EPSG:3857"])
+def test_metres_become_degrees_with_the_system_stated_or_named(crs):
+    xy = projected(crs)
+    for placed in (
+        place(xy, crs, NOTHING),
+        place(xy, None, ReadOptions(crs=crs)),
+        place(xy, "EPSG:27700", ReadOptions(crs=crs)),
+    ):
+        np.testing.assert_allclose(placed.lonlat, PARAN, atol=2e-8)
+
+
+def test_a_system_named_by_hand_goes_before_the_stated_one_and_that_is_said():
+    placed = place(projected("EPSG:32636"), "EPSG:2039", ReadOptions(crs="EPSG:32636"))
+    assert any("EPSG:32636, was used" in m.sentence for m in placed.messages)
+
+
+def test_without_a_system_it_is_a_question():
+    with pytest.raises(ChoiceNeeded, match="does not say") as asked:
+        place(projected("EPSG:2039"), None, ReadOptions(country="Israel"))
+    assert asked.value.choices[0] == "EPSG:2039"
+
+
+def test_degrees_in_the_wrong_order_are_offered_to_be_exchanged():
+    lonlat = np.array([[121.0, 24.0], [121.1, 24.1]])
+    with pytest.raises(ChoiceNeeded, match="wrong order") as asked:
+        place(lonlat[:, ::-1], "EPSG:4326", NOTHING)
+    assert (asked.value.option, asked.value.choices) == ("swap_axes", ("yes",))
+    exchanged = place(lonlat[:, ::-1], "EPSG:4326", ReadOptions(swap_axes=True))
+    np.testing.assert_array_equal(exchanged.lonlat, lonlat)
+
+
+def test_metres_called_degrees_are_a_question_for_the_system():
+    with pytest.raises(ChoiceNeeded, match="are no degrees") as asked:
+        place(projected("EPSG:2039"), "EPSG:4326", ReadOptions(near=(35.1, 30.3)))
+    assert asked.value.choices[0] == "EPSG:2039"
+
+
+def test_a_zone_number_before_the_eastings_is_taken_off_and_said():
+    xy = projected("EPSG:32636") + np.array([36e6, 0.0])
+    placed = place(xy, "EPSG:32636", NOTHING)
+    np.testing.assert_allclose(placed.lonlat, PARAN, atol=1e-8)
+    assert any("zone number 36" in m.sentence for m in placed.messages)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_coordinates_that_are_no_numbers_are_refused(bad):
+    with pytest.raises(FileProblem, match="must be numbers"):
+        place(np.array([[bad, 30.0]]), "EPSG:4326", NOTHING)
+
+
+def test_coordinates_where_the_system_does_not_reach_are_refused():
+    with pytest.raises(FileProblem, match="is defined"):
+        place(np.array([[1e12, 1e12]]), "EPSG:32636", NOTHING)
+
+
+def test_what_lies_far_from_the_place_named_is_doubtful_and_a_swap_is_offered():
+    near = ReadOptions(near=(35.15, 30.36))
+    assert not place(PARAN, "EPSG:4326", near).messages
+    (said,) = place(PARAN[:, ::-1], "EPSG:4326", near).messages
+    assert (said.severity, said.remedy.option) == (Severity.DOUBTFUL, "swap_axes")
+    (far,) = place(PARAN + np.array([2.0, 0.0]), "EPSG:4326", near).messages
+    assert far.remedy is None
+    assert "km from the place nearby" in far.sentence
+
+
+@pytest.mark.parametrize(("decimals", "step_m"), [(3, 111.32), (5, 1.1132), (0, 111_320.0)])
+def test_the_step_of_rounding_is_that_of_all_coordinates(decimals, step_m):
+    rounded = np.round(PARAN + 0.00012345, decimals)
+    assert place(rounded, "EPSG:4326", NOTHING).step_m == pytest.approx(step_m)
+
+
+def test_coordinates_that_are_not_rounded_have_no_step():
+    rough = PARAN + np.random.default_rng(1).random(PARAN.shape) * 1e-3
+    assert place(rough, "EPSG:4326", NOTHING).step_m < 1e-3
+
+
+def test_geometries_move_as_their_coordinates_do_and_stay_what_they_are():
+    shapes = np.array([Point(x, y).buffer(50.0) for x, y in projected("EPSG:32636")], object)
+    moved, messages = place_geometry(shapes, "EPSG:32636", NOTHING)
+    centres = shapely.get_coordinates(shapely.centroid(moved))
+    np.testing.assert_allclose(centres, PARAN, atol=1e-7)
+    assert [shape.geom_type for shape in moved] == ["Polygon", "Polygon"]
+    assert messages
+    assert shapely.get_coordinates(shapes[0]).max() > 1e5

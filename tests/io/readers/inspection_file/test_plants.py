@@ -1,0 +1,79 @@
+"""Which plants a file names, and where it says they are."""
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import ChoiceNeeded
+from fieldmon.io.readers.inspection_file.columns import columns_of
+from fieldmon.io.readers.inspection_file.plants import named_plants, positions_in
+from fieldmon.io.readers.inspection_options import InspectionOptions
+from tests.io.tables_of_cells import table
+
+NOTHING = InspectionOptions()
+
+
+def named(**columns):
+    layer = table(**columns)
+    return [each.tolist() for each in named_plants(layer, columns_of(layer, NOTHING))]
+
+
+def positions(layer, options=NOTHING):
+    return positions_in(layer, columns_of(layer, options), options)
+
+
+@pytest.mark.parametrize(
+    ("label", "place"),
+    [
+        ("R2/3", (2, 3, 0)),
+        ("2-3", (2, 3, 0)),
+        ("row 12, plant 7b", (12, 7, 2)),
+        ("שורה 2 עץ 3", (2, 3, 0)),
+        ("2.3a", (2, 3, 1)),
+    ],
+)
+def test_a_label_that_holds_row_and_number_is_taken_apart(label, place):
+    plant, line, number, face = named(plant=[label], found=["x"])
+    assert (plant, (line[0], number[0], face[0])) == ([-1], place)
+
+
+@pytest.mark.parametrize("label", ["7", 7, 7.0])
+def test_a_whole_number_is_the_plants_own(label):
+    plant, line, *_ = named(plant=[label], found=["x"])
+    assert (plant, line) == ([7], [0])
+
+
+@pytest.mark.parametrize("label", ["", None, "tree", 2.0**40])
+def test_what_is_neither_names_no_plant(label):
+    plant, line, *_ = named(plant=[label], found=["x"])
+    assert (plant, line) == ([-1], [0])
+
+
+def test_a_row_counts_only_with_a_number_in_it():
+    _, line, number, face = named(
+        row=[2, 2, 0, None], number=[3, None, 3, 3], found=["x"] * 4, side=["b", 1, "A", "?"]
+    )
+    assert (line, number) == ([2, 0, 0, 0], [3, 0, 0, 0])
+    assert face == [2, 1, 1, 0]
+
+
+def test_the_name_of_a_waypoint_given_out_holds_its_plant():
+    _, line, number, face = named(name=["012 R3/17b found", "001", "R1/2"])
+    assert (line, number, face) == ([3, 0, 1], [17, 0, 2], [2, 0, 0])
+
+
+def test_a_file_that_names_plants_needs_no_positions():
+    lonlat, accuracy_m, messages = positions(table(plant=[7], found=["x"]))
+    assert np.isnan(lonlat).all()
+    assert np.isnan(accuracy_m).all()
+    assert messages == ()
+
+
+def test_positions_that_cannot_be_read_do_not_matter_where_plants_are_named():
+    lonlat, *_ = positions(table(plant=[7], x=["207000"], y=["470000"], found=["x"]))
+    assert np.isnan(lonlat).all()
+
+
+def test_a_file_that_says_neither_is_a_question():
+    with pytest.raises(ChoiceNeeded, match="which plants") as asked:
+        positions(table(found=["yes"], colour=["red"]))
+    assert asked.value.choices == ("found", "colour")

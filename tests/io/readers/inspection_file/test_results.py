@@ -1,0 +1,125 @@
+"""What was found, as cells say it, in the words, signs and counts that people write."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.io.import_report import Severity
+from fieldmon.io.readers.inspection_file.columns import columns_of
+from fieldmon.io.readers.inspection_file.results import results_in
+from fieldmon.io.readers.inspection_options import InspectionOptions
+from tests.io.tables_of_cells import sentences, table
+
+
+def read(options=None, **columns):
+    layer, chosen = table(**columns), options or InspectionOptions()
+    return results_in(layer, columns_of(layer, chosen), chosen)
+
+
+@pytest.mark.parametrize(
+    ("word", "result"),
+    [
+        *((w, PRESENT) for w in ("yes", "TRUE", "1", "found", "x", "✓", "ja", "sí", "oui", "כן")),
+        *((w, PRESENT) for w in ("+", "+3", "7", "<5", "3-5", "befall", "נגוע", "gefunden")),
+        *((w, ABSENT) for w in ("no", "False", "0", "clean", "nein", "לא", "נקי", "not found")),
+        *((w, UNKNOWN) for w in ("not inspected", "could_not_inspect", "skipped", "לא נבדק")),
+    ],
+)
+def test_results_are_read_in_many_spellings(word, result):
+    seen = read(plant=[7, 8], found=[word, "clean"])
+    assert seen.result.tolist() == [result, ABSENT]
+    assert seen.said.all()
+
+
+@pytest.mark.parametrize("blank", ["", "  ", "NA", "?", "nan", "-", None])
+def test_what_is_not_filled_in_says_nothing(blank):
+    seen = read(plant=[7, 8], found=[blank, "no"])
+    assert seen.said.tolist() == [False, True]
+
+
+def test_a_minus_is_clean_only_in_a_column_with_a_plus():
+    assert read(plant=[7, 8], found=["-", "+"]).result.tolist() == [ABSENT, PRESENT]
+    assert read(plant=[7, 8], found=["-", "x"]).said.tolist() == [False, True]
+
+
+def test_a_word_that_says_nothing_is_named():
+    seen = read(plant=[7, 8], found=["maybe", "no"])
+    assert seen.said.tolist() == [False, True]
+    (doubt,) = [m for m in seen.messages if m.severity == Severity.DOUBTFUL]
+    assert "'maybe'" in doubt.sentence
+
+
+@pytest.mark.parametrize(
+    ("cell", "result", "count"),
+    [
+        ("0", ABSENT, 0.0),
+        ("4", PRESENT, 4.0),
+        ("+2", PRESENT, 2.0),
+        ("<5", PRESENT, np.nan),
+        ("2-6", PRESENT, np.nan),
+        ("skipped", UNKNOWN, np.nan),
+    ],
+)
+def test_a_count_says_whether_and_how_many_but_a_range_is_no_number(cell, result, count):
+    seen = read(plant=[7], count=[cell])
+    assert seen.result[0] == result
+    np.testing.assert_equal(seen.how_many[0], count)
+
+
+def test_a_number_in_the_column_of_results_is_a_count_but_one_is_yes():
+    seen = read(plant=[1, 2, 3, 4], found=["7", "1", "+2", "yes"], count=[None, None, None, "9"])
+    np.testing.assert_array_equal(seen.how_many, [7, np.nan, 2, 9])
+
+
+def test_a_result_and_a_count_that_contradict_are_a_find_in_doubt():
+    seen = read(
+        plant=[1, 2, 3, 4, 5],
+        found=["clean", "found", "", "skipped", "clean"],
+        count=["4", "0", "0", "0", "0"],
+    )
+    assert seen.result.tolist() == [PRESENT, PRESENT, ABSENT, UNKNOWN, ABSENT]
+    assert [bool(doubt) for doubt in seen.doubt] == [True, True, True, False, False]
+
+
+@given(st.lists(st.sampled_from(("", "0")), min_size=1, max_size=5))
+def test_in_a_file_without_results_zeros_are_clean_plants(counts):
+    seen = read(plant=list(range(len(counts))), count=counts)
+    assert seen.said.tolist() == [bool(cell) for cell in counts]
+    assert not any(seen.doubt)
+
+
+@pytest.mark.parametrize(
+    ("name", "result", "count"),
+    [
+        ("+3", PRESENT, 3.0),
+        ("+", PRESENT, np.nan),
+        ("-", ABSENT, np.nan),
+        ("0", ABSENT, np.nan),
+        ("clean", ABSENT, np.nan),
+        ("R1/9 +2", PRESENT, 2.0),
+        ("012 R3/17 found", PRESENT, np.nan),
+        ("not inspected", UNKNOWN, np.nan),
+    ],
+)
+def test_the_name_of_a_waypoint_can_be_a_result(name, result, count):
+    seen = read(name=[name])
+    assert (seen.result[0], seen.said[0]) == (result, True)
+    np.testing.assert_equal(seen.how_many[0], count)
+
+
+@pytest.mark.parametrize("name", ["001", "R3/17", "17", "Gate", "", "7 R1/2a"])
+def test_the_name_of_a_waypoint_need_not_be_one(name):
+    assert not read(name=[name]).said[0]
+
+
+def test_where_results_and_counts_were_found_is_said():
+    told = sentences(read(plant=[1], found=["x"], count=["2"]))
+    assert "Results are in column 'found'." in told
+    assert "Counts are in column 'count'." in told
+
+
+def test_a_decimal_mark_told_by_hand_is_taken():
+    options = InspectionOptions(decimal=",")
+    assert read(options, plant=[1], count=["1,5"]).how_many[0] == 1.5

@@ -1,0 +1,66 @@
+"""When plants were inspected: from one column or two, from the plan, or as told."""
+
+import numpy as np
+import pytest
+
+from fieldmon.io.import_report import Severity
+from fieldmon.io.readers.inspection_file.columns import columns_of
+from fieldmon.io.readers.inspection_file.times import times_in
+from fieldmon.io.readers.inspection_options import InspectionOptions
+from tests.io.tables_of_cells import table
+
+
+def read(options=None, **columns):
+    chosen = options or InspectionOptions()
+    n = len(next(iter(columns.values())))
+    layer = table(plant=list(range(n)), found=["x"] * n, **columns)
+    return times_in(layer, columns_of(layer, chosen), chosen)
+
+
+@pytest.mark.parametrize(
+    ("columns", "noted"),
+    [
+        ({"time": "2026-11-18T08:30:05"}, "2026-11-18T08:30:05"),
+        ({"time": "2026-11-18 08:30"}, "2026-11-18T08:30:00"),
+        ({"date": "18.11.2026", "time": "08:30"}, "2026-11-18T08:30:00"),
+        ({"date": "18/11/2026 8:30 PM", "hour": None}, "2026-11-18T20:30:00"),
+        ({"when": "45979.5"}, "2025-11-18T12:00:00"),
+        ({"time": "2026-11-18T08:30:05+02:00"}, "2026-11-18T08:30:05"),
+        ({"תאריך": "18.11.2026", "שעה": "7:05"}, "2026-11-18T07:05:00"),
+    ],
+)
+def test_times_are_read_as_people_write_them(columns, noted):
+    times = read(**{name: [cell] for name, cell in columns.items()})
+    assert (str(times.when[0]), str(times.day[0])) == (noted, noted[:10])
+
+
+def test_times_in_utc_become_local_where_the_zone_is_told_and_else_the_guess_is():
+    kept = read(time=["2026-11-18T22:30:00Z"])
+    assert str(kept.when[0]) == "2026-11-18T22:30:00"
+    assert [(m.severity, m.remedy.option) for m in kept.messages] == [(Severity.GUESSED, "zone")]
+    moved = read(InspectionOptions(zone="Asia/Jerusalem"), time=["2026-11-18T22:30:00Z"])
+    assert (str(moved.when[0]), str(moved.day[0])) == ("2026-11-19T00:30:00", "2026-11-19")
+    assert moved.messages == []
+
+
+def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
+    told = InspectionOptions(day=np.datetime64("2026-11-20"))
+    times = read(told, arrive=["2026-11-18T08:30:00", None])
+    assert np.isnat(times.when).all()
+    assert times.day.astype(str).tolist() == ["2026-11-18", "2026-11-20"]
+    assert read(told, date=["17.11.2026"]).day.astype(str).tolist() == ["2026-11-17"]
+    assert np.isnat(read(colour=["red"]).day).all()
+
+
+def test_times_that_are_none_are_left_open_and_shown():
+    times = read(time=["soon", "2026-11-18 8:30"])
+    assert np.isnat(times.when).tolist() == [True, False]
+    assert "1 time(s) are none ('soon')" in times.messages[0].sentence
+
+
+def test_days_that_could_be_months_are_told():
+    times = read(date=["03/04/2026"])
+    assert times.day[0] == np.datetime64("2026-04-03")
+    assert [m.remedy.option for m in times.messages] == ["date_order"]
+    read_as_told = read(InspectionOptions(date_order="mdy"), date=["03/04/2026"])
+    assert read_as_told.day[0] == np.datetime64("2026-03-04")

@@ -1,0 +1,143 @@
+"""One door for every format: told by its name, read back by readers that are none of ours."""
+
+import json
+import sys
+from dataclasses import replace
+from io import BytesIO
+from types import ModuleType
+from zipfile import ZipFile
+
+import pandas as pd
+import pyogrio
+import pytest
+import yaml
+
+from fieldmon.errors import FileProblem, SettingError
+from fieldmon.io.writers import FORMATS, write_handoff
+from fieldmon.io.writers.handoff import HandoffFormat
+from tests.io.writers.handed import DAYS, crooked, usual
+from tests.pages import Page
+
+
+@pytest.fixture(params=DAYS)
+def plan(request):
+    return DAYS[request.param]()
+
+
+def by_gdal(layer, column="plant"):
+    """Return a reader of one column of a layer, by GDAL."""
+    return lambda paths: pyogrio.read_dataframe(paths[0], layer=layer)[column]
+
+
+def zipped(paths):
+    return pyogrio.read_dataframe(f"/vsizip/{paths[0]}/stops.shp")["plant"]
+
+
+def of_graph(paths):
+    """Return the plants that a Nav2 graph's nodes and waypoints name, which must be the same."""
+    graph, datum, waypoints = (path.read_text("utf-8") for path in paths)
+    assert "datum" in yaml.safe_load(datum)["/**"]["ros__parameters"]
+    named = [f["properties"].get("metadata", {}) for f in json.loads(graph)["features"]]
+    stops = [
+        pair for node in named if node for pair in zip(node["stops"], node["plants"], strict=True)
+    ]
+    plants = [plant for _, plant in sorted(stops)]
+    assert plants == [stop["plant"] for stop in yaml.safe_load(waypoints)["waypoints"]]
+    return plants
+
+
+#: by format, who reads it here: plants in order, from the files written
+READERS = {
+    "nav2": of_graph,
+    "waypoints": lambda paths: [
+        stop["plant"] for stop in yaml.safe_load(paths[0].read_text("utf-8"))["waypoints"]
+    ],
+    "geojson": lambda paths: pyogrio.read_dataframe(paths[0], where="kind = 'stop'")["plant"],
+    "gpkg": by_gdal("stops"),
+    "shapefile": zipped,
+    "csv": lambda paths: pd.read_csv(paths[0])["plant"],
+    "kml": by_gdal("stops"),
+    "gpx": lambda paths: by_gdal("waypoints", "cmt")(paths).str.removeprefix("plant "),
+    "sheet": lambda paths: [
+        row["data-plant"]
+        for row in Page(paths[0].read_text("utf-8")).all("tr")
+        if "data-plant" in row
+    ],
+}
+
+
+@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("make", [usual, crooked])
+def test_every_format_is_read_back_by_another_program(tmp_path, name, make):
+    plan = make()
+    paths = write_handoff(plan, tmp_path / f"day{FORMATS[name].endings[0]}")
+    assert [int(plant) for plant in READERS[name](paths)] == plan.route.plant.tolist()
+
+
+@pytest.mark.parametrize("name", ["geojson", "gpkg", "shapefile", "kml", "gpx", "sheet"])
+def test_a_file_with_room_for_it_says_what_no_other_route_can_expect(name):
+    plan = usual()
+    known = replace(plan, route=replace(plan.route, found_bound=2.0 * plan.route.expected_found))
+    made = FORMATS[name].make(known)
+    whole = b"".join(made.values())
+    if name == "shapefile":
+        with ZipFile(BytesIO(whole)) as archive:
+            whole = archive.read("route.dbf")
+    assert b"no route of these hours can expect more than" in whole
+    assert b"no route of these hours" not in b"".join(FORMATS[name].make(plan).values())
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_ending_of_a_format_is_its_own(tmp_path, name):
+    wanted = FORMATS[name].make(usual())
+    for ending in FORMATS[name].endings:
+        paths = write_handoff(usual(), tmp_path / f"day{ending}")
+        assert len(paths) == len(wanted)
+        assert paths[0].name == f"day{ending}"
+
+
+def test_a_new_format_is_a_file_and_a_line(tmp_path, monkeypatch):
+    module = ModuleType("fieldmon.io.writers.plain")
+    module.route_plain = lambda plan: " ".join(stop.label for stop in plan.stops).encode()
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    monkeypatch.setitem(FORMATS, "plain", HandoffFormat("plain:route_plain", (".txt",), "people"))
+    plan = usual()
+    (path,) = write_handoff(plan, tmp_path / "day.txt")
+    assert path.read_text("utf-8").startswith(plan.stops[0].label)
+    assert write_handoff(plan, tmp_path / "day.csv", "plain")[0].read_bytes() == path.read_bytes()
+
+
+def test_the_ending_or_the_name_tells_the_format(tmp_path):
+    plan = usual()
+    (by_ending,) = write_handoff(plan, tmp_path / "a.CSV")
+    (by_name,) = write_handoff(plan, tmp_path / "a.txt", "csv")
+    assert by_ending.read_bytes() == by_name.read_bytes()
+    with pytest.raises(SettingError, match="must end in one of"):
+        write_handoff(plan, tmp_path / "a.docx")
+    with pytest.raises(SettingError, match=r"written as nav2, .* not as 'docx'"):
+        write_handoff(plan, tmp_path / "a.csv", "docx")
+
+
+def test_every_ending_tells_one_format_only():
+    endings = [ending for chosen in FORMATS.values() for ending in chosen.endings]
+    assert len(set(endings)) == len(endings)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_place_that_cannot_be_written_to_is_a_sentence(tmp_path, name):
+    with pytest.raises(FileProblem, match="must exist"):
+        write_handoff(usual(), tmp_path / "none" / f"a{FORMATS[name].endings[0]}")
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format_is_written_for_every_day(tmp_path, name, plan):
+    to = tmp_path / f"a{FORMATS[name].endings[0]}"
+    if name in {"nav2", "waypoints"} and not len(plan.route):
+        with pytest.raises(SettingError, match="drives nowhere"):
+            write_handoff(plan, to)
+        assert list(tmp_path.iterdir()) == []
+        return
+    paths = write_handoff(plan, to)
+    assert sorted(tmp_path.iterdir()) == sorted(paths)
+    assert all(path.stat().st_size for path in paths)
+    assert FORMATS[name].several == (len(paths) > 1)

@@ -1,0 +1,34 @@
+"""Seasons that tests of this room begin from."""
+
+import shutil
+import sqlite3
+from contextlib import closing
+
+import pytest
+
+from fieldmon.monitoring import schema
+from tests.monitoring.seasons import BEGINS, a_season, some_results
+
+
+@pytest.fixture(scope="session")
+def recorded(tmp_path_factory):
+    """Make a season with a route and twelve inspections, three of them finds; once."""
+    path = tmp_path_factory.mktemp("recorded") / "season.gpkg"
+    season = a_season(path)
+    season.plan(BEGINS)
+    season.record(some_results(season, n=12, found=[2, 3, 4]), "monday.csv", "Ann")
+    return path
+
+
+@pytest.fixture
+def path(recorded, tmp_path):
+    """Give a copy of that season."""
+    return shutil.copy(recorded, tmp_path / "season.gpkg")
+
+
+@pytest.fixture
+def db():
+    """Give an empty season in memory: its tables, and nothing in them."""
+    with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
+        schema.lay_out(connection)
+        yield connection

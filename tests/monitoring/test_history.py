@@ -1,0 +1,118 @@
+"""What was done on a plot, day by day, and what that says each morning."""
+
+from datetime import date
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
+from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.spread import Spread
+from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import GATE
+from fieldmon.samplers.base import NEVER
+from tests.monitoring.seasons import a_plot
+
+PLOT = a_plot()
+N = len(PLOT.grid)
+BEGINS = date(2026, 4, 6)
+MORNING = PairApproximation.of(PLOT.grid, np.full(N, 0.02))
+DONE = Inspections.of(
+    np.array([5, 6, 7, 6, 9, 5]),
+    np.array([CLEAN, FOUND, SKIPPED, CLEAN, FOUND, CLEAN]),
+    np.array(["2026-04-06"] * 3 + ["2026-04-08"] * 2 + ["2026-04-10"], "datetime64[D]"),
+    second=np.array([21_700.0, 21_800.0, np.nan, np.nan, np.nan, 22_000.0]),
+)
+HISTORY = History(PLOT.grid, BEGINS, MORNING, DONE)
+SHIFT = Shift(PLOT.aisles, Robot(hours=2.0))
+
+
+def test_days_are_counted_from_the_first():
+    assert HISTORY.days.tolist() == [0, 0, 0, 2, 2, 4]
+    assert [HISTORY.date_of(day) for day in (0, 30)] == [BEGINS, date(2026, 5, 6)]
+    assert HISTORY.on(2).plant.tolist() == [6, 9]
+    assert HISTORY.on(1).plant.tolist() == []
+    assert HISTORY.until(2).plant.tolist() == [5, 6, 7, 6, 9]
+    assert len(HISTORY.until(-1)) == 0
+
+
+def test_inspections_must_come_in_the_order_of_their_days():
+    with pytest.raises(ObservationError, match="in the order of their days"):
+        History(PLOT.grid, BEGINS, MORNING, DONE.take(np.array([3, 0])))
+
+
+def test_a_plant_found_once_stays_found_and_one_only_skipped_was_never_seen():
+    states = HISTORY.states(4)
+    assert states[[5, 6, 9]].tolist() == [CLEAN, FOUND, FOUND]
+    assert states[7] == -1
+    assert np.count_nonzero(states >= 0) == 3
+    assert HISTORY.states(1)[9] == -1
+
+
+def test_the_last_inspection_of_a_plant_is_that_up_to_the_day_asked():
+    assert HISTORY.last_inspected(4)[[5, 6, 7, 9]].tolist() == [4, 2, NEVER, 2]
+    assert HISTORY.last_inspected(2)[[5, 6, 7, 9]].tolist() == [0, 2, NEVER, 2]
+
+
+def test_an_evening_is_its_morning_after_the_days_findings_and_treatments():
+    learning = HISTORY.belief.learning(HISTORY.detection)
+    known = MORNING.learn(np.array([5, 6], np.int32), np.array([False, True]), learning)
+    np.testing.assert_array_equal(HISTORY.evening(MORNING, 0).chance, known.chance)
+    plants = np.arange(N) < 50
+    treated = History(PLOT.grid, BEGINS, MORNING, DONE, (Treatment(0, plants, 0.75),))
+    wanted = known.treated(np.where(plants, 0.25, 1.0))
+    np.testing.assert_array_equal(treated.evening(MORNING, 0).chance, wanted.chance)
+    np.testing.assert_array_equal(treated.evening(MORNING, 3).chance, MORNING.chance)
+
+
+def test_the_next_morning_comes_of_the_evening_by_the_spread_that_is_believed():
+    spread = Spread(0.3, "one", arrivals_per_day=0.01)
+    history = History(PLOT.grid, BEGINS, MORNING, DONE, belief=BeliefSettings(spread))
+    wanted = history.evening(MORNING, 0).overnight(spread)
+    np.testing.assert_array_equal(history.night_after(MORNING, 0).chance, wanted.chance)
+
+
+def test_finds_left_alone_are_known_and_so_no_longer_counted_as_out_there():
+    flagged = History(PLOT.grid, BEGINS, MORNING, DONE, belief=BeliefSettings(treated=False))
+    evening = flagged.evening(MORNING, 0)
+    assert evening.chance[6] > 0.99
+    assert flagged.estimate(MORNING, 0).expected == pytest.approx(
+        evening.chance.sum() - 1, abs=0.01
+    )
+
+
+def test_the_scene_of_a_day_stands_where_and_when_its_last_inspection_was_made():
+    scene = HISTORY.scene(SHIFT, 4, MORNING)
+    assert (scene.at, scene.day) == (5, 4)
+    assert scene.seconds_left == SHIFT.robot.day_s - (22_000.0 - SHIFT.starts_s)
+    assert scene.trail.tolist() == [6, 9]
+    assert scene.last_inspected[5] == 4
+
+
+def test_without_noted_times_the_work_took_what_driving_and_looking_cost():
+    scene = HISTORY.scene(SHIFT, 2, MORNING)
+    assert scene.at == 9
+    gone_s = SHIFT.robot.day_s - scene.seconds_left
+    assert gone_s > 2 * SHIFT.robot.visit_s
+    later = HISTORY.scene(SHIFT, 2, MORNING, now_s=SHIFT.starts_s + 3600.0)
+    assert later.seconds_left == SHIFT.robot.day_s - 3600.0
+    assert HISTORY.scene(SHIFT, 2, MORNING, now_s=86_000.0).seconds_left == 0.0
+
+
+def test_nobody_is_sent_again_to_a_plant_that_could_not_be_inspected_today():
+    assert HISTORY.scene(SHIFT, 0, MORNING).last_inspected[7] == 0
+    assert HISTORY.scene(SHIFT, 1, MORNING).last_inspected[7] == NEVER
+
+
+def test_a_day_on_which_nothing_was_done_begins_at_the_gate_or_where_one_stayed():
+    assert HISTORY.scene(SHIFT, 3, MORNING).at == GATE
+    stays = Shift(PLOT.aisles, Robot(hours=2.0, returns=False))
+    assert HISTORY.scene(stays, 3, MORNING).at == 9
+    assert History(PLOT.grid, BEGINS, MORNING).scene(stays, 0, MORNING).at == GATE
+
+
+def test_an_impossible_efficacy_is_refused():
+    with pytest.raises(SettingError, match="efficacy"):
+        Treatment(0, np.ones(N, np.bool_), 1.5)

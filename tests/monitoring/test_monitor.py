@@ -1,0 +1,149 @@
+"""Ask and tell: the same day as the compiled one, plant by plant."""
+
+import numpy as np
+import pytest
+
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.spread import Spread
+from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.monitor import Monitor
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
+from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
+
+SEED = 5
+SPREAD = Spread(rate_per_day=0.2, arrivals_per_day=0.001)
+
+
+@pytest.fixture(scope="module")
+def plot():
+    grid = rectangle(12, 20, Planting())
+    return Plot(Field("square", grid.frame.geometry_lonlat(grid.drivable_m)), Aisles.of(grid))
+
+
+@pytest.fixture(scope="module")
+def start(plot):
+    rng = np.random.default_rng(1)
+    chance = rng.uniform(0.005, 0.3, len(plot.grid))
+    return Start(rng.random(len(chance)) < chance, chance)
+
+
+def compiled(plot, name, robot, start):
+    settings = SeasonSettings(n_days=4, spread=SPREAD, learning=None)
+    return list(
+        simulated_days(plot.aisles, robot, sampler(name), start, settings, RandomStreams(SEED))
+    )
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("name", SAMPLERS)
+def test_a_season_asked_and_told_is_the_compiled_one_stop_for_stop(plot, start, name, returns):
+    robot = Robot(hours=1.5, returns=returns)
+    monitor = Monitor(plot, name, robot, start.chance, BeliefSettings(spread=SPREAD), SEED)
+    some_found = 0
+    for simulated in compiled(plot, name, robot, start):
+        assert np.array_equal(monitor.chance, simulated.chance)
+        truth = dict(zip(simulated.work.plant.tolist(), simulated.work.found.tolist(), strict=True))
+        asked = []
+        with monitor.day() as day:
+            while (stop := day.ask()) is not None:
+                asked.append(stop)
+                day.tell(found=truth[stop.plant])
+        assert [stop.plant for stop in asked] == simulated.work.plant.tolist()
+        assert [stop.arrive_s for stop in asked] == simulated.work.arrive_s.tolist()
+        assert [stop.inspect_s for stop in asked] == simulated.work.stop_s.tolist()
+        assert np.array_equal(day.found, simulated.work.found)
+        some_found += int(day.found.sum())
+        monitor.night()
+    assert some_found > 0
+
+
+def test_the_same_plant_is_asked_for_until_it_is_told_of(plot):
+    with Monitor(plot, robot=Robot(hours=1)).day() as day:
+        assert day.ask() == day.ask()
+        day.tell(found=False)
+        with pytest.raises(ObservationError, match="asked for"):
+            day.tell(found=False)
+
+
+def test_a_plant_that_cannot_be_inspected_stays_unknown_and_is_not_asked_for_again(plot):
+    monitor = Monitor(plot, robot=Robot(hours=1))
+    before = monitor.chance.copy()
+    with monitor.day() as day:
+        skipped = day.ask().plant
+        day.tell(found=None)
+        rest = []
+        while (stop := day.ask()) is not None:
+            rest.append(stop.plant)
+            day.tell(found=False)
+    assert skipped not in rest
+    assert skipped not in day.plants
+    assert monitor.last_inspected[skipped] == -1
+    assert monitor.last_inspected[rest].tolist() == [0] * len(rest)
+    assert monitor.chance[rest].max() < before[rest].max()
+
+
+def test_a_robot_that_is_slower_than_charged_visits_fewer_plants_and_never_ends_late(plot):
+    robot = Robot(hours=1)
+    whole = len(Monitor(plot, "naive", robot).plan().route)
+    clock = 0.0
+    with Monitor(plot, "naive", robot).day() as day:
+        while (stop := day.ask()) is not None:
+            assert stop.arrive_s >= clock
+            clock = stop.arrive_s + stop.inspect_s + 30.0
+            day.tell(found=False, at_s=clock)
+    assert 0 < len(day.plants) < whole
+    assert clock <= robot.day_s + 30.0
+
+
+def test_what_was_told_before_an_error_is_learnt(plot):
+    monitor = Monitor(plot, robot=Robot(hours=1))
+    day = monitor.day()
+    plant = day.ask().plant
+    day.tell(found=True)
+    with pytest.raises(ZeroDivisionError), day:
+        assert 1 / 0
+    assert monitor.last_inspected[plant] == 0
+
+
+def test_days_and_nights_take_turns(plot):
+    monitor = Monitor(plot)
+    with monitor.day():
+        with pytest.raises(SettingError, match="before the night"):
+            monitor.night()
+        with pytest.raises(SettingError, match="night"):
+            monitor.day()
+    monitor.night()
+    assert monitor.day_number == 1
+    assert "day 2" in repr(monitor)
+
+
+def test_a_clock_that_goes_backwards_is_refused(plot):
+    with Monitor(plot, robot=Robot(hours=1)).day() as day:
+        day.ask()
+        day.tell(found=False, at_s=500.0)
+        day.ask()
+        with pytest.raises(ObservationError, match="go on"):
+            day.tell(found=False, at_s=400.0)
+
+
+@pytest.mark.parametrize("chance", [np.zeros(3), np.full(240, 2.0)])
+def test_a_chance_map_that_does_not_fit_is_refused(plot, chance):
+    with pytest.raises(SettingError, match="240 plants"):
+        Monitor(plot, chance=chance)
+
+
+def test_finds_that_are_only_flagged_stay_infested(plot):
+    monitor = Monitor(plot, robot=Robot(hours=1), belief_settings=BeliefSettings(treated=False))
+    with monitor.day() as day:
+        plant = day.ask().plant
+        day.tell(found=True)
+    assert monitor.chance[plant] > 0.99
+    assert Learning().treated

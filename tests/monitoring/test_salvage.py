@@ -1,0 +1,75 @@
+"""What can be saved of a damaged season is saved."""
+
+import random
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import FieldmonError, FileProblem
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.salvage import salvage
+from tests.monitoring.seasons import BEGINS, state
+
+
+def test_a_damaged_file_is_refused_or_right_and_mostly_salvaged(path, tmp_path):
+    whole = path.read_bytes()
+    saved = []
+    for seed in range(20):
+        data, rng = bytearray(whole), random.Random(seed)
+        for _ in range(3):
+            page = rng.randrange(1, len(data) // 4096)
+            data[page * 4096 : page * 4096 + 4096] = rng.randbytes(4096)
+        path.write_bytes(data)
+        said = "salvage"
+        try:
+            season = Season(path)
+            season.store.check()
+            season.status(BEGINS)
+        except FieldmonError as problem:
+            said = str(problem)
+        assert "salvage" in said
+        rescued = tmp_path / f"rescued{seed}.gpkg"
+        try:
+            done = salvage(path, rescued)
+        except FileProblem as problem:
+            said = str(problem)
+            assert "nothing is" in said
+            assert not rescued.exists()
+            continue
+        saved.append(done.rows["inspections"])
+        if done.whole:
+            assert len(Season(rescued).history.inspections) == done.rows["inspections"]
+    assert sum(n == 12 for n in saved) >= 10
+
+
+def test_half_a_file_is_refused_and_what_is_left_is_saved(path, tmp_path):
+    data = path.read_bytes()
+    path.write_bytes(data[: int(len(data) * 0.9)])
+    with pytest.raises(FileProblem, match="salvage"):
+        Season(path).store.check()
+    saved = salvage(path, tmp_path / "rescued.gpkg")
+    assert saved.rows["plants"] > 0
+
+
+def test_a_whole_file_is_salvaged_whole(path, tmp_path):
+    saved = salvage(path, tmp_path / "rescued.gpkg")
+    assert (saved.lost, saved.whole) == ((), True)
+    one, other = Season(path), Season(tmp_path / "rescued.gpkg")
+    assert np.array_equal(one.evening(BEGINS), other.evening(BEGINS))
+    assert state(tmp_path / "rescued.gpkg") == 12
+
+
+def test_what_is_no_file_or_no_season_cannot_be_saved(tmp_path):
+    with pytest.raises(FileProblem, match="there is none"):
+        salvage(tmp_path / "none.gpkg", tmp_path / "x.gpkg")
+    (tmp_path / "text.gpkg").write_text("hello" * 1000)
+    with pytest.raises(FileProblem, match="nothing is"):
+        salvage(tmp_path / "text.gpkg", tmp_path / "x.gpkg")
+    assert not (tmp_path / "x.gpkg").exists()
+
+
+def test_a_file_that_exists_is_never_overwritten(path, tmp_path):
+    (tmp_path / "mine.gpkg").write_text("mine")
+    with pytest.raises(FileProblem, match="exists already"):
+        salvage(path, tmp_path / "mine.gpkg")
+    assert (tmp_path / "mine.gpkg").read_text() == "mine"

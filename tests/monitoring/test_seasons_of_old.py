@@ -1,0 +1,86 @@
+"""Season files made by earlier versions open, say what they said, and know their findings again.
+
+They were made by version 0.1 on a plot of 30 plants (then packed by SQLite's VACUUM, no row
+changed): planned, recorded, undone, treated, changed. Beside each lies what ``fieldmon status
+--rows --batches --date 2026-04-09`` said of it, and the files that were recorded.
+"""
+
+import shutil
+import subprocess
+import sys
+from datetime import date
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.inspections import CLEAN, Inspections
+from fieldmon.io.readers.inspection_options import InspectionOptions
+from fieldmon.io.readers.inspections import read_inspections
+from fieldmon.monitoring import Season
+from tests.paths import ROOT
+
+FOLDER = Path(__file__).with_name("seasons_of_old")
+LAST = date(2026, 4, 9)
+# season, file, day of findings whose file names none, inspections known again, and those undone
+RECORDED = [
+    ("adaptive", "monday", "2026-04-06", 8, 1),
+    ("adaptive", "tuesday", "2026-04-07", 8, 0),
+    ("both_faces_flagged", "monday", "2026-04-06", 12, 0),
+]
+
+
+@pytest.fixture(params=["adaptive", "both_faces_flagged"])
+def season(request, tmp_path):
+    return Season(shutil.copy(FOLDER / f"{request.param}.gpkg", tmp_path))
+
+
+def test_a_season_says_what_it_said(season):
+    command = [sys.executable, "-m", "fieldmon.cli", "status", str(season.path)]
+    asked = [*command, "--rows", "--batches", "--date", str(LAST)]
+    done = subprocess.run(asked, capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stdout == (FOLDER / f"{season.path.stem}.status.txt").read_text("utf-8")
+    assert "doubtful" not in done.stderr
+
+
+def test_its_mornings_come_out_as_they_were_kept(season):
+    assert season.verify() == ()
+    season.store.check()
+
+
+@pytest.mark.parametrize(("name", "file", "day", "known", "undone"), RECORDED)
+def test_what_was_recorded_then_is_known_now(tmp_path, name, file, day, known, undone):
+    season = Season(shutil.copy(FOLDER / f"{name}.gpkg", tmp_path))
+    options = InspectionOptions(day=np.datetime64(day))
+    read = read_inspections(FOLDER / f"{name}.{file}.csv", season.plot.grid, options)
+    again = season.record(read.value, "again")
+    assert (again.known, again.new) == (known, undone)
+
+
+def test_the_last_route_is_planned_again_as_it_was(tmp_path):
+    season = Season(shutil.copy(FOLDER / "adaptive.gpkg", tmp_path))
+    count = "SELECT count(*) FROM routes"
+    with season.store.reading() as db:
+        before = db.execute(count).fetchone()
+    assert np.array_equal(season.plan(LAST).route.plant, season.kept_route(LAST))
+    with season.store.reading() as db:  # the same route, by its digest, is not kept twice
+        assert db.execute(count).fetchone() == before
+
+
+def test_a_day_goes_on_from_there(season):
+    today = season.plan(LAST)
+    before = season.evening(LAST)
+    first = today.route.plant[:3]
+    season.record(Inspections.of(first, np.full(3, CLEAN), LAST), "today")
+    assert (season.evening(LAST)[first] < before[first]).all()
+    assert "3 findings from today" in season.undo()
+    np.testing.assert_array_equal(season.evening(LAST), before)
+
+
+def test_changes_of_then_are_taken_back_now(tmp_path):
+    season = Season(shutil.copy(FOLDER / "adaptive.gpkg", tmp_path))
+    assert (season.settings.sampler, season.settings.robot.hours) == ("naive", 0.4)
+    assert season.undo_change().sampler == "adaptive"
+    flagged = Season(shutil.copy(FOLDER / "both_faces_flagged.gpkg", tmp_path))
+    assert not flagged.settings.belief.treated
+    assert flagged.before_change() is None

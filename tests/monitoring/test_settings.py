@@ -1,0 +1,84 @@
+"""Settings of a season: as values and as JSON, and the days that are of it."""
+
+from datetime import date, time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fieldmon.errors import FileProblem, SettingError
+from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.spread import Spread
+from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
+from fieldmon.plot.robot import Robot, Viewpoints
+
+BEGINS = date(2026, 4, 6)
+
+
+@given(
+    st.sampled_from(("adaptive", "naive", "dynamic", "random")),
+    st.integers(0, 2**40),
+    st.times(),
+    st.floats(0.1, 24.0),
+    st.floats(0.0, 1.0),
+    st.booleans(),
+)
+def test_settings_come_back_from_json_as_they_were(sampler, seed, starts, hours, rate, treated):
+    settings = MonitoringSettings(
+        BEGINS,
+        starts,
+        Robot(hours=hours, viewpoints=Viewpoints(((20.0, 0.5), (60.0, 0.9)))),
+        sampler,
+        prior=PriorSettings(half_life_days=3.5),
+        belief=BeliefSettings(Spread(rate, "one"), treated),
+        seed=seed,
+    )
+    assert from_json(as_json(settings)) == settings
+
+
+def test_a_season_file_keeps_settings_under_the_names_that_it_always_had():
+    assert sorted(as_json(MonitoringSettings(BEGINS))) == [
+        *("beliefs", "prior", "robot", "sampler", "season"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("season", "{}"),
+        ("season", "no json"),
+        ("sampler", '{"name": "best", "settings": {}}'),
+        ("robot", '{"viewpoints": {"steps": [[1, 2]], "longer": null}, "colour": 3}'),
+        ("beliefs", '{"spread": {"rate_per_day": 7}, "treated": true}'),
+    ],
+)
+def test_settings_changed_by_hand_into_something_else_are_a_sentence(name, text):
+    with pytest.raises(FileProblem, match="as fieldmon wrote them"):
+        from_json(as_json(MonitoringSettings(BEGINS)) | {name: text})
+
+
+@given(st.integers(0, 800))
+def test_a_day_is_the_number_of_its_date_and_the_other_way_round(day):
+    settings = MonitoringSettings(BEGINS)
+    assert settings.day(settings.date(day)) == day
+
+
+@pytest.mark.parametrize(
+    ("on", "says"),
+    [(date(2026, 4, 5), "began on 2026-04-06"), (date(2028, 6, 15), "lasts 800 days")],
+)
+def test_dates_outside_the_season_are_a_sentence(on, says):
+    with pytest.raises(SettingError, match=says):
+        MonitoringSettings(BEGINS).day(on)
+
+
+def test_a_sampler_must_exist_and_look_equally_long_at_every_plant():
+    with pytest.raises(SettingError, match="equally long"):
+        MonitoringSettings(BEGINS, sampler="adaptive-looks")
+    with pytest.raises(SettingError, match="must be one of"):
+        MonitoringSettings(BEGINS, sampler="best")
+
+
+def test_seconds_are_counted_from_midnight():
+    assert seconds(time(6, 30, 5)) == 6 * 3600 + 30 * 60 + 5

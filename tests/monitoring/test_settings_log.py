@@ -1,0 +1,49 @@
+"""What was chosen, choice after choice; going back is a choice too."""
+
+import pytest
+
+from fieldmon.errors import SettingError
+from fieldmon.monitoring import settings_log
+from fieldmon.monitoring.settings import MonitoringSettings, as_json
+from tests.monitoring.seasons import BEGINS, ROBOT
+
+FIRST = as_json(MonitoringSettings(BEGINS, robot=ROBOT))
+LONGER = as_json(MonitoringSettings(BEGINS, robot=ROBOT.with_hours(3.0)))
+OTHER = as_json(MonitoringSettings(BEGINS, robot=ROBOT.with_hours(4.0), sampler="naive"))
+
+
+def rows(db):
+    return db.execute("SELECT count(*) FROM settings").fetchone()[0]
+
+
+def test_what_was_written_last_counts_and_only_what_differs_is_written(db):
+    settings_log.write(db, FIRST)
+    assert (settings_log.now(db), rows(db)) == (FIRST, 5)
+    settings_log.write(db, FIRST)
+    assert rows(db) == 5
+    settings_log.write(db, OTHER)
+    assert (settings_log.now(db), rows(db)) == (OTHER, 7)
+
+
+def test_a_change_of_two_parts_is_taken_back_as_one(db):
+    settings_log.write(db, FIRST)
+    settings_log.write(db, OTHER)
+    assert settings_log.before_now(db) == FIRST
+    assert as_json(settings_log.undo(db)) == FIRST
+    assert settings_log.now(db) == FIRST
+
+
+def test_changes_are_taken_back_one_by_one_until_there_is_none(db):
+    for parts in (FIRST, LONGER, OTHER):
+        settings_log.write(db, parts)
+    assert as_json(settings_log.undo(db)) == LONGER
+    assert as_json(settings_log.undo(db)) == FIRST
+    assert settings_log.before_now(db) is None
+    with pytest.raises(SettingError, match="there is none"):
+        settings_log.undo(db)
+
+
+def test_whoever_goes_back_by_hand_has_taken_the_change_back(db):
+    for parts in (FIRST, LONGER, FIRST):
+        settings_log.write(db, parts)
+    assert settings_log.before_now(db) is None

@@ -1,0 +1,111 @@
+"""What a season's file holds comes back bit for bit."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import array_shapes, arrays
+from shapely import MultiLineString, MultiPolygon, box
+
+from fieldmon.errors import FileProblem
+from fieldmon.infestation.observations import Observations
+from fieldmon.io.import_report import Remedy, guessed, seen
+from fieldmon.monitoring import tables
+from fieldmon.monitoring.tables import KeptMessage
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting
+from fieldmon.plot.plot import Plot
+from tests.monitoring.seasons import a_plot
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    arrays(
+        st.sampled_from((np.float64, np.int32, np.int8, np.bool_)),
+        array_shapes(min_dims=1, max_dims=3, min_side=0),
+    )
+)
+def test_an_array_comes_back_with_its_type_and_its_shape(db, values):
+    db.execute("DELETE FROM arrays")
+    tables.write_array(db, "some.values", values)
+    again = tables.read_arrays(db, "some.%")["some.values"]
+    assert (again.dtype, again.shape) == (values.dtype, values.shape)
+    assert again.tobytes() == values.tobytes()
+
+
+def test_arrays_are_asked_for_by_the_beginning_of_their_names(db):
+    for name in ("grid.a", "grid.b", "risk"):
+        tables.write_array(db, name, np.arange(3))
+    assert sorted(tables.read_arrays(db, "grid.%")) == ["grid.a", "grid.b"]
+    assert tables.read_arrays(db, "none") == {}
+
+
+def full_field():
+    boundary = MultiPolygon([box(35.15, 30.36, 35.1508, 30.3607)])
+    measured = a_plot().grid.lonlat()[::3].copy()
+    return Field(
+        "מטע",
+        boundary,
+        no_go=MultiPolygon([box(35.1502, 30.3602, 35.15025, 30.36025)]),
+        gate=(35.15, 30.36),
+        paths=MultiLineString([[(35.15, 30.36), (35.1508, 30.36)]]),
+        plants=measured,
+        row_bearing_deg=12.5,
+        row_spacing_m=4.0,
+    )
+
+
+@pytest.mark.parametrize("faces", [1, 2])
+def test_a_plot_comes_back_exactly_as_it_was_laid(db, faces):
+    plot = Plot.of(full_field(), Planting(row_bearing_deg=12.5, row_spacing_m=4.0, faces=faces))
+    tables.write_plot(db, plot)
+    again = tables.read_plot(db)
+    for name in (each.name for each in fields(plot.grid)):
+        value, other = getattr(plot.grid, name), getattr(again.grid, name)
+        same = np.array_equal(value, other) if isinstance(value, np.ndarray) else value == other
+        assert same, name
+    for name in (each.name for each in fields(plot.field)):
+        value, other = getattr(plot.field, name), getattr(again.field, name)
+        same = np.array_equal(value, other) if isinstance(value, np.ndarray) else value == other
+        assert same, name
+    assert np.array_equal(again.aisles.travel.between_m, plot.aisles.travel.between_m)
+
+
+def test_plants_that_cannot_be_read_are_a_sentence(db):
+    tables.write_plot(db, a_plot())
+    db.execute("DELETE FROM arrays WHERE name = 'grid.xy_m'")
+    with pytest.raises(FileProblem, match="fieldmon salvage"):
+        tables.read_plot(db)
+
+
+def test_records_come_back_with_what_is_unknown(db):
+    records = Observations.of(
+        [[35.0, 30.0], [35.1, 30.1]],
+        [1, -1],
+        np.array(["2026-03-30", "NaT"], "datetime64[D]"),
+        count=np.array([4.0, np.nan]),
+        species=np.array(["Tetranychus urticae", ""]),
+    )
+    tables.write_observations(db, records)
+    again = tables.read_observations(db)
+    for name, values in vars(records).items():
+        np.testing.assert_array_equal(getattr(again, name), values, err_msg=name)
+
+
+def test_without_records_there_are_none(db):
+    tables.write_observations(db, Observations.none())
+    assert len(tables.read_observations(db)) == 0
+
+
+def test_what_imports_had_to_say_is_kept_with_its_source_and_its_way_out(db):
+    remedy = Remedy("date_order", "mdy", "Read month first")
+    said = [guessed("Dates could be either.", "row 3", remedy), seen("All was well.")]
+    kept = tuple(KeptMessage.of("mites.csv", message) for message in said)
+    tables.write_messages(db, kept)
+    assert tables.read_messages(db) == kept
+    assert kept[0] == KeptMessage(
+        "mites.csv", "guessed", "row 3", "Dates could be either.", "date_order=mdy"
+    )
+    assert kept[1].remedy is None

@@ -1,0 +1,46 @@
+"""The route of a day as it was worked: in the order of the times noted, else as recorded."""
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import worked_route
+from fieldmon.monitoring.settings import seconds
+from fieldmon.plot.travel import GATE, driven_s
+from tests.monitoring.seasons import BEGINS, a_season
+
+PLANTS = np.array([90, 5, 40])
+
+
+def worked(path, second):
+    season = a_season(path / "s.gpkg")
+    on, clean = np.datetime64(BEGINS), np.zeros(len(PLANTS), np.int8)
+    season.record(Inspections.of(PLANTS, clean, on, second=np.array(second)), "test")
+    return season, worked_route(season, BEGINS)
+
+
+def test_times_noted_set_the_order_and_the_clock(tmp_path):
+    season, route = worked(tmp_path, [25_200.0, 21_660.0, 28_800.0])
+    assert route.plant.tolist() == [5, 90, 40]
+    begins = seconds(season.settings.starts)
+    assert route.leave_s.tolist() == [21_660.0 - begins, 25_200.0 - begins, 28_800.0 - begins]
+    assert route.line_m[route.line_stop] == pytest.approx(route.aisles.stop_m[route.plant])
+
+
+def test_one_time_missing_leaves_the_order_of_recording_and_what_the_work_costs(tmp_path):
+    season, route = worked(tmp_path, [25_200.0, np.nan, 28_800.0])
+    recorded = season.history.on(0).plant
+    assert route.plant.tolist() == recorded.tolist()
+    assert sorted(recorded.tolist()) == sorted(PLANTS.tolist())
+    scene = season.plan(BEGINS, keep=False).scene
+    places = np.concatenate([[GATE], recorded]).astype(np.int64)
+    travel = season.plot.aisles.travel
+    legs = [driven_s(travel, scene.clock, places[k : k + 2]) for k in range(3)]
+    gone = np.cumsum(np.array(legs) + season.settings.robot.visit_s)
+    assert route.leave_s == pytest.approx(gone)
+    assert route.end_s > route.leave_s[-1]
+
+
+def test_a_day_of_which_nothing_was_recorded_has_no_route(tmp_path):
+    season, _ = worked(tmp_path, [25_200.0] * 3)
+    assert len(worked_route(season, BEGINS.replace(day=BEGINS.day + 1))) == 0

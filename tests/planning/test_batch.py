@@ -1,0 +1,104 @@
+"""The same day on many plots: one of them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+from shapely import MultiPolygon, box
+
+from fieldmon.errors import SettingError
+from fieldmon.infestation.observations import PRESENT, Observations
+from fieldmon.planning.batch import Orders, Task, plan_task
+from fieldmon.planning.plan import PlanSettings, first_day
+from fieldmon.plot.field import Field
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.projection import Frame
+from fieldmon.plot.robot import Robot, scout
+from fieldmon.samplers import sampler
+
+FRAME = Frame(5.0, 45.0)
+FIELD = Field("square", FRAME.geometry_lonlat(MultiPolygon([shapely.box(-30, -25, 30, 25)])))
+PLOT = Plot.of(FIELD)
+DAY = np.datetime64("2026-11-02")
+ORDERS = Orders(DAY, "naive")
+RECORDS = Observations.of(
+    FRAME.lonlat(np.array([[5.0, 5.0]])), np.array([PRESENT]), np.array([DAY - 1])
+)
+HALF_AN_HOUR = {"hours": 0.5}
+
+
+def by_itself(robot, name="naive", **settings):
+    plans = PlanSettings(robot, sampler(name, **settings))
+    return first_day(PLOT, RECORDS, DAY, plans).route
+
+
+@pytest.mark.parametrize(
+    ("task", "robot"),
+    [
+        (Task(FIELD, None, HALF_AN_HOUR, ORDERS), Robot(hours=0.5)),
+        (Task(FIELD, "Scout", HALF_AN_HOUR, ORDERS), replace(scout(), hours=0.5)),
+        # what is ordered by hand goes before what the plot's file states
+        (
+            Task(FIELD, "robot", HALF_AN_HOUR, replace(ORDERS, on_foot=True)),
+            replace(scout(), hours=0.5),
+        ),
+        (Task(FIELD, None, HALF_AN_HOUR, replace(ORDERS, robot={"hours": 1.0})), Robot(hours=1.0)),
+    ],
+)
+def test_a_plot_is_worked_by_who_is_stated_or_ordered(task, robot):
+    route, expected = plan_task(task, PLOT, RECORDS).route, by_itself(robot)
+    np.testing.assert_array_equal(route.plant, expected.plant)
+    np.testing.assert_array_equal(route.arrive_s, expected.arrive_s)
+
+
+def test_a_sampler_leaves_out_as_many_as_ordered():
+    task = Task(FIELD, None, HALF_AN_HOUR, Orders(DAY, "bouncy", every=3))
+    expected = by_itself(Robot(hours=0.5), "bouncy", every=3)
+    np.testing.assert_array_equal(plan_task(task, PLOT, RECORDS).route.plant, expected.plant)
+
+
+@pytest.mark.parametrize(
+    ("task", "says"),
+    [
+        (Task(FIELD, "donkey", {}, ORDERS), "'donkey'"),
+        (Task(FIELD, None, {"hours": 0.001}, ORDERS), "0.001 h are not"),
+    ],
+)
+def test_what_cannot_be_done_is_a_sentence(task, says):
+    with pytest.raises(SettingError, match=says):
+        plan_task(task, PLOT, RECORDS)
+
+
+def test_a_task_is_told_from_any_other_and_known_again():
+    task = Task(FIELD, "robot", HALF_AN_HOUR, ORDERS)
+    moved = replace(FIELD, boundary=shapely.affinity.translate(FIELD.boundary, 1e-7))
+    others = [
+        (replace(task, plot=moved), RECORDS),
+        (replace(task, plot=replace(FIELD, name="other")), RECORDS),
+        (replace(task, plot=replace(FIELD, gate=(5.0, 45.0))), RECORDS),
+        (replace(task, who="scout"), RECORDS),
+        (replace(task, stated={"hours": 0.6}), RECORDS),
+        (replace(task, orders=replace(ORDERS, sampler="bouncy")), RECORDS),
+        (replace(task, orders=replace(ORDERS, day=DAY + 1)), RECORDS),
+        (replace(task, orders=replace(ORDERS, planting={"row_spacing_m": 5.0})), RECORDS),
+        (task, Observations.none()),
+    ]
+    digests = {each.digest(records) for each, records in [(task, RECORDS), *others]}
+    assert len(digests) == 1 + len(others)
+    again = Task(replace(FIELD), "robot", dict(HALF_AN_HOUR), replace(ORDERS))
+    assert again.digest(RECORDS.take(np.array([True]))) == task.digest(RECORDS)
+
+
+def test_a_task_has_the_digest_that_folders_of_routes_hold():
+    field = Field("Gate", MultiPolygon([box(35.15, 30.36, 35.1508, 30.3607)]), gate=(35.15, 30.36))
+    records = Observations.of(
+        np.array([[35.1501, 30.3601], [35.1502, 30.3602]]),
+        np.array([1, 0], np.int8),
+        np.array(["2026-04-01", "NaT"], "datetime64[D]"),
+        count=np.array([3.0, np.nan]),
+    )
+    by_hand = {"robot": {"hours": 2.0}, "planting": {"row_spacing_m": 3.0}}
+    orders = Orders(np.datetime64("2026-04-06"), "bouncy", 3, **by_hand)
+    task = Task(field, "scout", {"look_s": 30.0, "hours": 4.0}, orders)
+    assert task.digest(records) == "7675b30d2cc3e467"

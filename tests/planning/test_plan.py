@@ -1,0 +1,109 @@
+"""A day planned by the library: what the command plans, as Python objects."""
+
+from datetime import date, datetime
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import SettingError
+from fieldmon.infestation.observations import PRESENT, Observations
+from fieldmon.planning.plan import plan_day
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
+from fieldmon.samplers.sweeps import Naive
+
+ROBOT = Robot(hours=1)
+
+
+@pytest.fixture(scope="module")
+def plot():
+    grid = rectangle(12, 20, Planting())
+    return Plot(Field("Square", grid.frame.geometry_lonlat(grid.drivable_m)), Aisles.of(grid))
+
+
+@pytest.fixture(scope="module")
+def day(plot):
+    return plan_day(plot, on="2026-11-18", robot=ROBOT)
+
+
+@pytest.mark.parametrize(
+    "on", ["2026-11-18", date(2026, 11, 18), np.datetime64("2026-11-18"), datetime(2026, 11, 18, 6)]
+)
+def test_a_day_is_named_in_any_usual_way(plot, day, on):
+    same = plan_day(plot, on=on, robot=ROBOT)
+    assert same.route.plant.tolist() == day.route.plant.tolist()
+    assert same.route.notes == day.route.notes
+    assert same.route.notes.start == datetime(2026, 11, 18, 6)
+
+
+def test_no_day_is_today(plot):
+    assert plan_day(plot, robot=ROBOT).route.notes.start.date() == date.today()
+
+
+def test_a_record_raises_the_chance_about_it_on_its_day_and_less_later(plot):
+    at = plot.grid.lonlat(np.array([130]))
+    records = Observations.of(at, np.array([PRESENT], np.int8), np.array(["2026-11-18"], "M8[D]"))
+    plain, soon, late = (
+        plan_day(plot, given, on, ROBOT).chance[130]
+        for given, on in [(None, "2026-11-18"), (records, "2026-11-18"), (records, "2026-12-18")]
+    )
+    assert plain < late < soon
+
+
+def test_a_sampler_is_named_or_brought(plot):
+    named = plan_day(plot, on="2026-11-18", robot=ROBOT, sampler="naive").route
+    brought = plan_day(plot, on="2026-11-18", robot=ROBOT, sampler=Naive()).route
+    assert named.plant.tolist() == brought.plant.tolist()
+    assert (named.notes.sampler, brought.notes.sampler) == ("naive", "Naive")
+
+
+def test_plants_tell_chance_and_place_on_the_route(day):
+    plants = day.plants
+    assert plants["chance"].tolist() == day.chance.tolist()
+    route = plants.dropna(subset="order").sort_values("order")
+    assert route["plant"].tolist() == day.route.plant.tolist()
+    assert route["arrive_s"].tolist() == day.route.arrive_s.tolist()
+    assert plants["order"].isna().sum() == len(plants) - len(day.route)
+
+
+def test_stops_come_out_in_order_and_the_line_begins_at_the_first_row_end(day, plot):
+    stops = day.route.to_geopandas()
+    assert stops.index.tolist() == list(range(1, len(stops) + 1))
+    assert stops["arrive_s"].is_monotonic_increasing
+    assert ((stops["leave_s"] - stops["arrive_s"]).round(6) == ROBOT.look_s).all()
+    assert np.allclose(np.c_[stops.geometry.x, stops.geometry.y], day.route.stops_lonlat())
+    gate = plot.grid.frame.lonlat(plot.aisles.gate_m[None])[0]
+    assert day.route.line.coords[0] == pytest.approx(tuple(gate))
+
+
+def test_a_route_is_written_with_its_plot_sampler_and_start(day, tmp_path):
+    (written,) = day.route.to_file(tmp_path / "day.geojson")
+    text = written.read_text()
+    assert '"plot":"Square"' in text
+    assert '"sampler":"adaptive"' in text
+    assert '"start":"2026-11-18T06:00:00"' in text
+
+
+def test_a_map_for_notebooks_asks_no_map_provider_and_shows_every_plant(day):
+    deck = day.explore()
+    layers = {layer.id: layer for layer in deck.layers}
+    assert list(layers) == ["plot", "plants", "route", "stops"]
+    assert len(layers["plants"].data) == len(day.chance)
+    assert len(layers["stops"].data) == len(day.route)
+    assert '"mapProvider": null' in deck.to_json() or "mapProvider" not in deck.to_json()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "sentence"),
+    [
+        ({"on": "tomorrow"}, "2026-11-18"),
+        ({"sampler": "best"}, "must be one of"),
+        ({"robot": Robot(hours=0.001)}, "long enough"),
+    ],
+)
+def test_what_cannot_be_planned_is_said(plot, wrong, sentence):
+    with pytest.raises(SettingError, match=sentence):
+        plan_day(plot, **({"robot": ROBOT} | wrong))

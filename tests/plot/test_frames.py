@@ -1,0 +1,83 @@
+"""Plots as GeoDataFrames: the same places in as out."""
+
+import geopandas
+import numpy as np
+import pytest
+from shapely import LineString, MultiPolygon, Point, box
+
+from fieldmon.errors import PlotError, SettingError
+from fieldmon.plot.frames import plant_frame
+from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.plot import Plot
+
+UTM = "EPSG:32636"
+SQUARE = box(700_000, 3_360_000, 700_200, 3_360_100)
+PLANTING = Planting(row_bearing_deg=90, row_spacing_m=4, plant_spacing_m=2)
+
+
+def frame(*shapes, crs=UTM):
+    return geopandas.GeoDataFrame(geometry=list(shapes), crs=crs)
+
+
+def test_plants_come_out_where_they_stand_with_row_and_number():
+    grid = rectangle(3, 4, Planting())
+    plants = plant_frame(grid)
+    assert plants.crs.to_epsg() == 4326
+    assert np.allclose(np.c_[plants.geometry.x, plants.geometry.y], grid.lonlat(), atol=1e-12)
+    assert plants["row"].tolist() == [1] * 4 + [2] * 4 + [3] * 4
+    assert plants["number"].tolist() == [1, 2, 3, 4] * 3
+    assert plants["plant"].tolist() == list(range(12))
+    assert "face" not in plants
+
+
+def test_some_plants_come_out_in_the_order_asked_for():
+    grid = rectangle(3, 4, Planting())
+    assert plant_frame(grid, np.array([7, 2]))["plant"].tolist() == [7, 2]
+
+
+def test_faces_are_told_apart_where_both_are_inspected():
+    grid = rectangle(2, 3, Planting(faces=2))
+    plants = plant_frame(grid)
+    first = plants[plants["face"] == 1]["plant"].to_numpy()
+    assert (grid.twin[first] > first).all() | (grid.twin[first] < 0).any()
+    assert set(plants["face"]) == {1, 2}
+
+
+def test_a_plot_from_an_area_in_metres_lies_on_that_ground():
+    plot = Plot.from_geopandas(frame(SQUARE), PLANTING, "square")
+    back = plot.to_geopandas().to_crs(UTM)
+    assert plot.field.name == "square"
+    assert plot.n_plants == len(back) > 1000
+    assert back.within(SQUARE.buffer(0.01)).all()
+
+
+def test_measured_plants_are_taken_as_they_stand_with_and_without_an_area():
+    laid = Plot.from_geopandas(frame(SQUARE), PLANTING)
+    plants = laid.to_geopandas()[["geometry"]]
+    alone = Plot.from_geopandas(plants)
+    area = frame(SQUARE).to_crs(4326)
+    both = Plot.from_geopandas(geopandas.GeoDataFrame(
+        geometry=[*area.geometry, *plants.geometry], crs=4326))  # fmt: skip
+    for plot in (alone, both):
+        assert plot.n_plants == laid.n_plants
+        assert plot.grid.row_spacing_m == pytest.approx(4, abs=1e-3)
+        assert plot.grid.plant_spacing_m == pytest.approx(2, abs=1e-3)
+    moved = alone.to_geopandas().to_crs(UTM).geometry
+    known = {(round(p.x, 2), round(p.y, 2)) for p in plants.to_crs(UTM).geometry}
+    assert {(round(p.x, 2), round(p.y, 2)) for p in moved} == known
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "sentence"),
+    [
+        (frame(SQUARE, crs=None), SettingError, "set_crs"),
+        (frame(SQUARE, SQUARE), PlotError, "holds 2"),
+        (frame(LineString([(0, 0), (1, 1)])), PlotError, "LineString"),
+        (frame(), PlotError, "nothing"),
+        (frame(MultiPolygon()), PlotError, "nothing"),
+        (frame(SQUARE, Point(0, 0), LineString([(0, 0), (1, 1)])), PlotError, "LineString"),
+    ],
+)
+def test_what_is_no_plot_is_refused_with_what_to_do(given, error, sentence):
+    with pytest.raises(error, match=sentence):
+        Plot.from_geopandas(given, PLANTING)

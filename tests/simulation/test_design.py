@@ -1,0 +1,95 @@
+"""What a study compares, and its chunks: by name those of every version before."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+import shapely
+from shapely import MultiPolygon
+
+from fieldmon.errors import SettingError
+from fieldmon.infestation.observations import PRESENT, Observations
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting
+from fieldmon.plot.plot import Plot
+from fieldmon.simulation.design import Combination, Design, StudyPlot, study_of
+from tests.simulation.study_plots import DAY, SMALL, plot
+
+SQUARE = StudyPlot(
+    Field("square", MultiPolygon([shapely.box(35.15, 30.36, 35.1506, 30.3606)])),
+    Planting(),
+    Observations.none(),
+    DAY,
+)
+
+
+def test_every_level_meets_every_other():
+    asked = Design(("naive", "dynamic"), (1.0, 2.0), (20.0, 40.0), (0.1,), (0.2, 0.3))
+    levels = product(("naive", "dynamic"), (1.0, 2.0), (20.0, 40.0), (0.1,), (0.2, 0.3))
+    assert asked.combinations == tuple(Combination(*each) for each in levels)
+
+
+def test_chunks_hold_every_season_once_whatever_the_size_of_the_plot():
+    for size_m in (10.0, 400.0):
+        study = study_of([plot(size_m)], SMALL)
+        seasons = [(chunk.setting[1], seed) for chunk in study.chunks() for seed in chunk.seeds]
+        assert len(seasons) == len(set(seasons)) == len(SMALL.combinations) * SMALL.n_seeds
+
+
+def test_a_bigger_plot_and_a_dearer_sampler_have_fewer_seasons_a_chunk():
+    def size(plot, sampler):
+        asked = Design((sampler,), n_seeds=10**6)
+        return len(next(iter(study_of([plot], asked).chunks())))
+
+    assert size(plot(10.0), "naive") > size(plot(400.0), "naive") > 1
+    assert size(plot(400.0), "naive") > size(plot(400.0), "dynamic") > size(plot(400.0), "adaptive")
+
+
+def test_a_study_begun_by_an_earlier_version_goes_on():
+    """Digest and keys as fieldmon 0.1 wrote them: its folders name their files so."""
+    assert SQUARE.digest == "ab915b8df166c3772975"
+    asked = Design(samplers=("naive", "adaptive"), hours=(1.0, 3.0), n_days=40, n_seeds=4000)
+    chunks = {chunk.key: chunk for chunk in study_of([SQUARE], asked).chunks()}
+    for sampler, hours, seeds, digest in (
+        ("naive", 1.0, range(1, 328), "27246bd7ff4a5641b25c"),
+        ("naive", 3.0, range(3925, 4001), "c745b94ce1e372e918c7"),
+        ("adaptive", 3.0, range(638, 729), "0c5335d71ff665c4cd80"),
+    ):
+        chunk = chunks[sampler, digest]
+        assert (chunk.setting[1].hours, chunk.seeds) == (hours, seeds)
+
+
+def test_another_plot_setting_or_seed_has_other_keys():
+    def keys(one, asked):
+        return {chunk.key for chunk in study_of([one], asked).chunks()}
+
+    base = keys(plot(), SMALL)
+    assert base == keys(plot(), SMALL)
+    record = Observations.of(np.array([(5.0, 45.0)]), np.array([PRESENT]))
+    heard = StudyPlot(plot().field, Planting(), record, DAY)
+    for other in (plot(41.0), plot(name="other"), heard):
+        assert not base & keys(other, SMALL)
+    assert not base & keys(plot(), Design(hours=(1.0, 3.0), n_days=5, n_seeds=60))
+
+
+def test_the_guess_of_plants_is_near_what_is_laid():
+    for one in (SQUARE, plot(40.0), plot(120.0)):
+        laid = len(Plot.of(one.field, one.planting).grid)
+        assert 0.7 * one.about_plants < laid < 1.3 * one.about_plants
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"samplers": ("best",)},
+        {"hours": ()},
+        {"n_days": 0},
+        {"n_seeds": 0},
+        {"first_seed": -1},
+        {"infested": (0.0,)},
+        {"spread": (1, 1)},
+    ],
+)
+def test_impossible_designs_are_refused(settings):
+    with pytest.raises(SettingError):
+        Design(**settings)

@@ -1,0 +1,93 @@
+"""The folder of a study: whole parts, of one study, for any reader of Parquet."""
+
+import json
+
+import pyarrow.parquet as pq
+import pytest
+
+from fieldmon.errors import FileProblem, SettingError
+from fieldmon.simulation import executor, results
+from fieldmon.simulation.design import Design, study_of
+from fieldmon.simulation.experiment import run
+from fieldmon.simulation.results import MANIFEST, SCHEMA, StudyFolder
+from fieldmon.simulation.worker import RefusedPlot
+from tests.simulation.study_plots import SMALL, plot
+
+SHORT = Design(samplers=("naive", "bouncy"), n_days=2, n_seeds=3)
+
+
+def simulated(folder, plots, asked=SHORT):
+    store = StudyFolder(folder, plots, asked)
+    run(study_of(plots, asked), executor.here(), store)
+    return store
+
+
+def test_seasons_come_back_in_the_order_of_their_settings(tmp_path):
+    simulated(tmp_path, [plot(name="b"), plot(30.0, "a")])
+    table = results.seasons(tmp_path)
+    order = [(r["plot"], r["sampler"], r["seed"]) for r in table.to_pylist()]
+    assert order == sorted(order)
+    assert len(order) == 2 * 2 * 3
+    assert set(table.column_names) == set(SCHEMA.names)
+
+
+def test_a_season_that_two_parts_hold_counts_once(tmp_path):
+    store = simulated(tmp_path, [plot()])
+    once = results.seasons(tmp_path)
+    rows = [row for row in once.to_pylist() if row["sampler"] == "naive" and row["seed"] > 1]
+    store.keep(("naive", "cut in another way"), rows)
+    assert results.seasons(tmp_path).equals(once)
+
+
+def test_the_dataset_is_read_by_any_reader_of_parquet(tmp_path):
+    simulated(tmp_path, [plot()])
+    table = pq.read_table(tmp_path)
+    assert table.num_rows == 6
+    assert set(table["sampler"].to_pylist()) == {"naive", "bouncy"}
+
+
+def test_the_manifest_says_what_was_asked_for(tmp_path):
+    simulated(tmp_path, [plot()])
+    said = json.loads((tmp_path / MANIFEST).read_text(encoding="utf-8"))
+    assert list(said) == [
+        *("samplers", "hours", "look_s", "infested", "spread"),
+        *("n_days", "n_seeds", "first_seed", "plots"),
+    ]
+    assert said["plots"] == [f"plot {plot().digest}"]
+
+
+def test_what_is_there_is_known(tmp_path):
+    store = simulated(tmp_path, [plot()])
+    again = StudyFolder(tmp_path, [plot()], SHORT)
+    keys = [chunk.key for chunk in study_of([plot()], SHORT).chunks()]
+    assert all(again.holds(key) for key in keys)
+    store.part(keys[0]).unlink()
+    assert [again.holds(key) for key in keys] == [False, *[True] * (len(keys) - 1)]
+
+
+def test_a_folder_with_another_study_is_refused(tmp_path):
+    StudyFolder(tmp_path, [plot()], SMALL)
+    StudyFolder(tmp_path, [plot()], SMALL)
+    for plots, asked in (([plot()], Design()), ([plot(41.0)], SMALL)):
+        with pytest.raises(SettingError, match="another study"):
+            StudyFolder(tmp_path, plots, asked)
+
+
+def test_a_file_is_no_folder(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(FileProblem, match="folder to write to"):
+        StudyFolder(tmp_path / "file", [plot()], SMALL)
+
+
+def test_a_folder_without_seasons_is_refused(tmp_path):
+    with pytest.raises(FileProblem, match="finished seasons"):
+        results.seasons(tmp_path)
+
+
+def test_a_plot_without_room_is_refused_and_the_others_go_on(tmp_path):
+    store = simulated(tmp_path, [plot(), plot(1.0, "tiny")])
+    assert set(store.refused) == {"tiny"}
+    assert set(results.seasons(tmp_path)["plot"].to_pylist()) == {"plot"}
+    store.keep(("naive", "x"), RefusedPlot("other", "It is wet."))
+    assert store.refused["other"] == "It is wet."
+    assert not store.holds(("naive", "x"))

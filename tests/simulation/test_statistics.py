@@ -1,0 +1,53 @@
+"""Means and their intervals."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from scipy import stats
+
+from fieldmon.simulation.statistics import half_interval, summary_statistics
+
+
+def test_the_interval_is_students():
+    values = np.array([3.0, 5.0, 4.0, 9.0, math.nan, 2.0])
+    ours = summary_statistics(values)
+    known = values[~np.isnan(values)]
+    low, high = stats.t.interval(0.95, 4, known.mean(), stats.sem(known))
+    assert (ours.low, ours.high) == pytest.approx((low, high))
+    assert ours.replicates == 5
+
+
+@given(arrays(float, st.integers(2, 30), elements=st.floats(-1e6, 1e6)))
+def test_mean_and_quantiles_lie_between_the_ends(values):
+    ours = summary_statistics(values)
+    slack = 1e-9 * max(1.0, np.abs(values).max())
+    assert values.min() - slack <= ours.q05 <= ours.q95 <= values.max() + slack
+    assert ours.low - slack <= ours.mean <= ours.high + slack
+    assert ours.sd == pytest.approx(values.std(ddof=1), abs=slack)
+
+
+def test_one_value_has_no_interval_none_has_no_mean_and_equal_ones_no_spread():
+    assert math.isnan(summary_statistics(np.array([3.0, math.nan])).low)
+    assert math.isnan(summary_statistics(np.array([math.nan])).mean)
+    tenths = summary_statistics(np.full(400, 52.8))
+    assert (tenths.mean, tenths.sd, tenths.low) == (52.8, 0.0, 52.8)
+
+
+def test_the_interval_holds_the_mean_as_often_as_it_says():
+    rng = np.random.default_rng(1)
+    inside = [
+        (e := summary_statistics(rng.normal(5, 2, 8))).low <= 5 <= e.high for _ in range(2000)
+    ]
+    assert np.mean(inside) == pytest.approx(0.95, abs=0.02)
+
+
+def test_half_an_interval_is_that_of_every_column():
+    values = np.random.default_rng(2).normal(size=(7, 3))
+    half = half_interval(values.std(axis=0, ddof=1), 7)
+    for k in range(3):
+        ours = summary_statistics(values[:, k])
+        assert half[k] == pytest.approx((ours.high - ours.low) / 2)

@@ -1,0 +1,71 @@
+"""Samplers on mapped plots whose truth is known."""
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import FileProblem
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.travel import Aisles
+from fieldmon.samplers.sweeps import Naive
+from fieldmon.studies.samplers.mapped_plots import (
+    FILES,
+    SHARES,
+    DatedMap,
+    found_at,
+    plots_in,
+    table,
+    table_csv,
+)
+
+
+def mapped(*infested):
+    states = np.zeros(200, np.bool_)
+    states[list(infested)] = True
+    return DatedMap("made up", Aisles.of(rectangle(10, 20)), states)
+
+
+def test_naive_finds_what_stands_in_its_first_rows():
+    assert found_at(mapped(0, 5, 19, 39, 100), Naive()) == [2, 3, 4, 4]
+
+
+def test_where_all_are_infested_every_look_finds_one():
+    rows = table([mapped(*range(200))])
+    assert [row[1] for row in rows] == ["adaptive", "dynamic", "naive", "random"]
+    assert all(values == [1.0] * len(SHARES) for _, _, values in rows)
+
+
+def test_who_begins_at_every_corner_meets_a_corner_as_often_as_there_are_corners():
+    corner = [row * 20 + k for row in range(2) for k in range(20)]
+    naive = next(values for _, who, values in table([mapped(*corner)]) if who == "naive")
+    assert naive[0] == pytest.approx(0.5)
+
+
+def test_adaptive_stays_beside_what_it_found():
+    block = [row * 20 + k for row in range(3, 7) for k in range(5, 12)]
+    found = {who: values[-1] for _, who, values in table([mapped(*block)])}
+    assert found["adaptive"] > 1.5 * found["random"]
+
+
+def test_plots_are_named_by_file_and_date_or_part(tmp_path):
+    (tmp_path / FILES[0]).write_text("x,y,t,i\n1,1,1991,1\n2,1,1991,0\n1,1,1992,1\n2,1,1992,1\n")
+    (tmp_path / FILES[2]).write_text("field\tquadrat\trow\tdisease\nF1\t1\t1\tY\nF2\t1\t1\tN\n")
+    made = [(each.name, each.infested.tolist()) for each in plots_in(tmp_path)]
+    assert made == [
+        ("citrus_ctv_IVI3and4 1991", [True, False]),
+        ("citrus_ctv_IVI3and4 1992", [True, True]),
+        ("gumpertz F1", [True]),
+        ("gumpertz F2", [False]),
+    ]
+
+
+def test_a_folder_without_maps_is_refused(tmp_path):
+    with pytest.raises(FileProblem, match="must hold one of"):
+        plots_in(tmp_path)
+
+
+def test_the_table_is_csv():
+    text = table_csv([("a map", "naive", [0.1, 0.25, 0.3, 1 / 3])])
+    head, line = text.splitlines()
+    shares = [f"finds_per_look_at_{share}_pct" for share in (5, 10, 20, 40)]
+    assert head.split(",") == ["map", "sampler", *shares]
+    assert line == "a map,naive,0.1000,0.2500,0.3000,0.3333"

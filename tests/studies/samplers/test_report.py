@@ -1,0 +1,89 @@
+"""The study of samplers as a page: every mean in its place, every name a text."""
+
+import numpy as np
+import pytest
+
+from fieldmon.studies.samplers.calibration import Calibration
+from fieldmon.studies.samplers.calibration import report_html as beliefs_html
+from fieldmon.studies.samplers.contenders import NAMES
+from fieldmon.studies.samplers.outcome_table import outcomes_from
+from fieldmon.studies.samplers.report import report_html
+from fieldmon.studies.samplers.seasons import MEASURES, SeasonOutcome
+from fieldmon.studies.samplers.summary import means, sentences
+from tests.pages import HOSTILE, Page, held
+
+
+def outcomes(cells, seeds=3):
+    """Return outcomes of numbers that are all different."""
+    values = iter(np.random.default_rng(5).uniform(1, 30_000, 10_000).round(3).tolist())
+    return [
+        SeasonOutcome(cell, seed, who, *(next(values) for _ in MEASURES))
+        for cell in cells
+        for seed in range(seeds)
+        for who in NAMES
+    ]
+
+
+@pytest.fixture(scope="module")
+def made():
+    return outcomes(["A, spread 10%", "B, spread 30%"])
+
+
+def test_every_mean_stands_under_its_measure_cell_and_sampler(made):
+    page = Page(report_html(made))
+    assert len(page.tables) == len(MEASURES)
+    for table, (_, cells) in zip(page.tables, means(made).items(), strict=True):
+        heads, *rows = table
+        assert heads == ["cell", *NAMES]
+        assert [row[0] for row in rows] == list(cells)
+        for name, *shown in rows:
+            assert shown == [f"{cells[name][who]:.1f}" for who in NAMES]
+
+
+def test_what_was_found_is_said_in_sentences_over_two_charts(made):
+    page = Page(report_html(made))
+    assert page.items == sentences(made)
+    assert len(page.all("svg")) == 2
+    assert len(page.all("circle")) == 4  # a dot a cell and chart
+    assert "3 seasons of 25 days a cell" in page.text
+    assert page.headings[0] == "Samplers compared"
+    assert page.runs == page.asks_for == []
+
+
+def test_names_of_cells_in_a_table_that_is_gone_on_with_are_texts():
+    head = "cell,seed,who,infested_plant_days,d50,d80,inspected,found,visited_pct"
+    quoted = ['"' + text.replace('"', '""') + '"' for text in HOSTILE]
+    lines = [f'{cell},{k},"{who}",1,2,3,4,5,6' for cell in quoted for k in (0, 1) for who in NAMES]
+    page = held(report_html(outcomes_from("\n".join([head, *lines]), "samplers.csv")))
+    assert [row[0] for row in page.tables[0][1:]] == list(HOSTILE)
+
+
+def a_calibration(seed):
+    rng = np.random.default_rng(seed)
+    said, was, count = rng.random(9), rng.random(9), rng.integers(10, 90, 9)
+    clean = (rng.random(6), rng.random(6), np.array([0, 3, 0, 1, 2, 0]))
+    return Calibration(said, was, count, *rng.random(4).tolist(), *clean, 0.0123)
+
+
+def test_every_score_of_a_belief_stands_in_its_row():
+    made = {"pairs": a_calibration(1), "ensemble": a_calibration(2)}
+    page = Page(beliefs_html(made, "B, for a test"))
+    ((_, *rows),) = page.tables
+    for (name, c), row in zip(made.items(), rows, strict=True):
+        scores = [f"{c.brier:.5f}", f"{c.log_score:.4f}", f"{c.suspicious_log_score:.4f}"]
+        assert row == [name, *scores, f"{c.covered:.0%}", "12"]
+    assert "B, for a test" in page.text
+    assert page.runs == page.asks_for == []
+
+
+def test_a_chart_of_beliefs_shows_chances_that_came_up_often_enough():
+    made = {"pairs": a_calibration(1)}
+    plants, clean = Page(beliefs_html(made, "about")).all("polyline")[1::2]
+    assert len(plants["points"].split()) == np.count_nonzero(made["pairs"].count >= 50)
+    assert len(clean["points"].split()) == 3
+
+
+def test_names_of_beliefs_are_texts():
+    made = {text: a_calibration(k) for k, text in enumerate(HOSTILE)}
+    page = held(beliefs_html(made, " ".join(HOSTILE)))
+    assert [row[0] for row in page.tables[0][1:]] == list(HOSTILE)

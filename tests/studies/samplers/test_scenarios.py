@@ -1,0 +1,89 @@
+"""The situations in which samplers are compared."""
+
+import numpy as np
+import pytest
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.errors import SettingError
+from fieldmon.infestation.spread import Spread
+from fieldmon.plot.robot import Robot
+from fieldmon.studies.samplers.scenarios import (
+    PRIORS,
+    SIDES,
+    STARTS,
+    Scenario,
+    all_scenarios,
+    usual_scenarios,
+)
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_a_season_starts_with_the_share_of_infested_plants_that_it_says(start):
+    starts = [Scenario("B", start=start).draw_start(RandomStreams(s)) for s in range(20)]
+    assert np.mean([s.infested.mean() for s in starts]) == pytest.approx(0.015, rel=0.15)
+
+
+@pytest.mark.parametrize("prior", PRIORS)
+def test_a_prior_expects_about_as_many_as_there_are(prior):
+    start = Scenario("B", prior=prior).draw_start(RandomStreams(3))
+    assert start.chance.mean() == pytest.approx(0.015, rel=0.5)
+    assert ((start.chance > 0) & (start.chance < 1)).all()
+
+
+def test_what_is_known_does_not_change_where_the_insects_are():
+    first = Scenario("B").draw_start(RandomStreams(5)).infested
+    for prior in PRIORS:
+        assert (Scenario("B", prior=prior).draw_start(RandomStreams(5)).infested == first).all()
+
+
+def test_clusters_hang_together_and_scattered_plants_do_not():
+    grid = Scenario("B").aisles.grid
+    row = np.repeat(np.arange(len(grid)), np.diff(grid.adjacent.start))
+
+    def size(start):
+        infested = Scenario("B", start=start).draw_start(RandomStreams(1)).infested
+        both = infested[row] & infested[grid.adjacent.plant]
+        links = coo_matrix(
+            (np.ones(both.sum()), (row[both], grid.adjacent.plant[both])), shape=[len(grid)] * 2
+        )
+        return infested.sum() / (connected_components(links)[0] - (~infested).sum())
+
+    assert size("clusters") > 5
+    assert size("scattered") < 1.5
+
+
+def test_records_point_to_infested_plants_and_a_wrong_prior_to_a_quarter():
+    told = Scenario("B", prior="records 5 %")
+    chances = [told.draw_start(RandomStreams(s)) for s in range(10)]
+    known = np.mean([s.chance[s.infested].mean() / s.chance.mean() for s in chances])
+    assert known > 2
+    wrong = Scenario("B", prior="wrong").draw_start(RandomStreams(1)).chance
+    assert (wrong > 5 * wrong.min()).mean() == pytest.approx(0.25, abs=0.02)
+
+
+def test_scenarios_have_names_of_their_own_and_cover_every_level():
+    everything, usual = all_scenarios(), usual_scenarios()
+    assert len({each.name for each in everything}) == len(everything) > len(usual)
+    assert {each.prior for each in usual} == set(PRIORS)
+    assert {each.start for each in usual} == set(STARTS)
+    assert {each.plot for each in usual} == set(SIDES)
+    assert len(everything) == 3 * 3 * len(STARTS) * len(PRIORS) + 7
+
+
+def test_a_flaw_is_in_what_is_believed_and_not_in_what_is():
+    spread = Scenario(flaw="spread")
+    assert spread.settings.spread == Spread(0.3, "one")
+    assert spread.settings.believed_spread == Spread(0.8, "one")
+    detection = Scenario(flaw="detection")
+    assert detection.robot.detects == 0.5
+    assert detection.settings.learning.detection == Robot().detects
+    assert Scenario().settings.believed_spread is None
+
+
+@pytest.mark.parametrize("levels", [{"plot": "D"}, {"start": "x"}, {"prior": "x"}, {"flaw": "x"}])
+def test_an_unknown_level_is_refused(levels):
+    (name,) = levels
+    with pytest.raises(SettingError, match=f"The {name} must be one of"):
+        Scenario(**levels)

@@ -1,0 +1,75 @@
+"""What outcomes say: paired ratios, and sentences that fall whichever way they fall."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fieldmon.studies.samplers.contenders import ADAPTIVE, CLAIRVOYANT, NAMES, TUNED, WORDED
+from fieldmon.studies.samplers.seasons import MEASURES, SeasonOutcome
+from fieldmon.studies.samplers.summary import by_scenario, means, ratio, sentences
+
+
+def outcome(scenario, seed, contender, loss=10.0, days=5.0):
+    return SeasonOutcome(scenario, seed, contender, loss, days, days, 100.0, 20.0, 50.0)
+
+
+MADE = [
+    outcome(scenario, seed, name, loss=10.0 + seed + 5.0 * (name != ADAPTIVE))
+    for scenario in ("one", "other")
+    for seed in range(4)
+    for name in (ADAPTIVE, WORDED, TUNED, "naive")
+]
+
+
+def test_a_ratio_of_twice_as_much_is_two_and_its_interval_holds_it():
+    values = np.random.default_rng(1).gamma(2.0, size=40)
+    twice = ratio(2 * values, values)
+    assert (twice.value, twice.low, twice.high) == pytest.approx((2.0, 2.0, 2.0))
+    noisy = ratio(2 * np.random.default_rng(2).gamma(2.0, size=40), values)
+    assert noisy.low < 2.0 < noisy.high
+    assert str(twice) == "2.00 (2.00-2.00)"
+
+
+def test_values_stand_by_scenario_and_contender_in_the_order_of_their_seeds():
+    table = by_scenario(MADE[::-1], "infested_plant_days")
+    assert set(table) == {"one", "other"}
+    assert table["one"][ADAPTIVE].tolist() == [10.0, 11.0, 12.0, 13.0]
+    assert set(table["one"]) == set(NAMES)
+    assert not len(table["one"][CLAIRVOYANT])
+
+
+def test_means_are_of_those_who_took_part():
+    made = means(MADE)
+    assert set(made) == set(MEASURES)
+    assert made["infested_plant_days"]["other"] == {
+        ADAPTIVE: 11.5, WORDED: 16.5, TUNED: 16.5, "naive": 16.5,
+    }  # fmt: skip
+
+
+def test_a_sampler_that_is_worse_is_called_worse():
+    worse = [
+        replace(o, infested_plant_days=99.0 if o.contender == ADAPTIVE else 10.0) for o in MADE
+    ]
+    said = " ".join(sentences(worse))
+    assert "fewer in 0; geometric mean 9.90 x" in said
+    assert f"More than 5 % worse than {WORDED} in: one; other." in said
+
+
+def test_a_sampler_that_is_better_is_called_better():
+    said = " ".join(sentences(MADE))
+    assert f"against {TUNED}: at most half in 0 of 2 cells, fewer in 2" in said
+    assert "worse than" not in said
+    assert f"no later than {TUNED} in 2 of 2 cells." in said
+
+
+def test_who_finds_half_later_is_named():
+    late = [replace(o, d50=9.0) if (o.scenario, o.contender) == ("one", ADAPTIVE) else o
+            for o in MADE]  # fmt: skip
+    assert any(said.endswith("in 1 of 2 cells; later in one.") for said in sentences(late))
+
+
+def test_inspections_per_find_are_compared():
+    idle = [replace(o, inspected=500.0) if o.contender == ADAPTIVE else o for o in MADE]
+    assert f"fewer than {TUNED} in 0 of 2 cells" in sentences(idle)[-1]
+    assert f"fewer than {TUNED} in 2 of 2 cells" in sentences(MADE)[-1]

@@ -146,6 +146,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
         on_foot=worker.scout,
         robot=worker.given(),
         planting=request.planting.given(),
+        bound=options.bound,
     )
     plots = estate(request)
     tell_unusable(plots.records.anywhere, orders.day)

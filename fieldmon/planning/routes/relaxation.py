@@ -65,33 +65,54 @@ class Ladder(NamedTuple):
     cross_links: int
 
 
-class _Rungs(NamedTuple):
+class Rungs(NamedTuple):
     """Each aisle as a rung: its ends, and true metres between all of them and the gate.
 
-    ``low``, ``high`` ``(k,)``: x of the rung's ends. ``apart_m`` ``(2, 2, k + 1, k + 1)``: from
-    the left (0) or right (1) end of an aisle to the left or right end of another; the last is the
-    gate, whose two ends are one.
+    ``low``, ``high`` ``(k,)``: x of the rung's ends; ``up`` ``(k,)`` its y. ``apart_m``
+    ``(2, 2, k + 1, k + 1)``: from the left (0) or right (1) end of an aisle to the left or right
+    end of another; the last is the gate, whose two ends are one.
     """
 
     low: Float
     high: Float
+    up: Float
     apart_m: Float
 
 
 def ladder_below(aisles: Aisles) -> Ladder:
     """Return a ladder on which no way is longer than the true one."""
-    rungs = _rungs(aisles.travel)
-    order = _order(aisles, rungs)
-    apart_m = rungs.apart_m[:, :, order][:, :, :, order]
-    gate = int(np.flatnonzero(order == len(order) - 1)[0])
-    across_m = np.append(rungs.high - rungs.low, np.inf)[order]
-    left, right, links = _fitted(apart_m, across_m, gate)
-    stub_m = np.array([_stub(left, apart_m[0, 0], gate), _stub(right, apart_m[1, 1], gate)])
-    return _assembled(aisles.travel, rungs, order, (left, right), (links, across_m, stub_m))
+    rungs = rungs_of(aisles)
+    every = np.arange(len(rungs.low))
+    return ladder_among(
+        aisles, rungs, every, (rungs.apart_m[:, 0, :-1, -1], float(aisles.gate_m[1]))
+    )
 
 
-def _rungs(travel: TravelTable) -> _Rungs:
+def ladder_among(aisles: Aisles, rungs: Rungs, members: Int, gate: tuple[Float, float]) -> Ladder:
+    """Return a ladder of some aisles on which no way is longer than the true one.
+
+    ``gate``: metres ``(2, k)`` from the left and right ends of the members to a gate, and its y.
+    """
+    apart_m = rungs.apart_m[:, :, members[:, None], members]
+    apart_m = np.pad(apart_m, ((0, 0), (0, 0), (0, 1), (0, 1)), constant_values=np.inf)
+    for side in range(2):
+        apart_m[side, :, :-1, -1] = gate[0][side]
+        apart_m[:, side, -1, :-1] = gate[0][side]
+    up = rungs.up[members]
+    order = np.lexsort((rungs.low[members], np.round(up, 3)))
+    order = np.insert(order, np.searchsorted(up[order], gate[1]), len(up))
+    apart_m = apart_m[:, :, order][:, :, :, order]
+    at = int(np.flatnonzero(order == len(up))[0])
+    across_m = np.append(rungs.high[members] - rungs.low[members], np.inf)[order]
+    left, right, links = _fitted(apart_m, across_m, at)
+    stub_m = np.array([_stub(left, apart_m[0, 0], at), _stub(right, apart_m[1, 1], at)])
+    placed = np.append(members, -1)[order]
+    return _assembled(aisles.travel, rungs, placed, (left, right), (links, across_m, stub_m))
+
+
+def rungs_of(aisles: Aisles) -> Rungs:
     """Join rows that are inspected from one aisle."""
+    travel = aisles.travel
     n_aisles = int(travel.corridor.max()) + 1
     first, last = np.full(n_aisles, np.inf), np.full(n_aisles, -np.inf)
     np.minimum.at(first, travel.corridor, travel.end_x_m[:, 0])
@@ -120,7 +141,9 @@ def _rungs(travel: TravelTable) -> _Rungs:
     middle = (first + last) / 2
     crossed = first > last
     first[crossed] = last[crossed] = middle[crossed]
-    return _Rungs(first, last, np.maximum(apart_m, 0.0))
+    up = np.zeros(n_aisles)
+    up[travel.corridor] = aisles.grid.lane_y_m
+    return Rungs(first, last, up, np.maximum(apart_m, 0.0))
 
 
 def _some_short(short: Float, corridor: NDArray[np.int32], n_aisles: int) -> NDArray[np.bool_]:
@@ -148,14 +171,6 @@ def _between_aisles(travel: TravelTable, short: Float) -> Float:
     # from an aisle to itself nothing is asked
     apart_m[:, :, np.arange(n_aisles), np.arange(n_aisles)] = np.inf
     return apart_m
-
-
-def _order(aisles: Aisles, rungs: _Rungs) -> Int:
-    """Return the aisles and the gate (the last) in order up the plot."""
-    y = np.zeros(len(rungs.low))
-    y[aisles.travel.corridor] = aisles.grid.lane_y_m
-    order = np.lexsort((rungs.low, np.round(y, 3)))
-    return np.insert(order, np.searchsorted(y[order], aisles.gate_m[1]), len(y))
 
 
 def _hull(apart_m: Float) -> Float:
@@ -233,26 +248,27 @@ def _stub(place: Float, apart_m: Float, gate: int) -> float:
 
 def _assembled(
     travel: TravelTable,
-    rungs: _Rungs,
-    order: Int,
+    rungs: Rungs,
+    placed: Int,
     places: tuple[Float, Float],
     fitted: tuple[list[tuple[int, float]], Float, Float],
 ) -> Ladder:
-    """Return the ladder with its cross links as elements of their own."""
+    """Return the ladder of aisles in order (the gate: -1), cross links being their own elements."""
     links, across_m, stub_m = fitted
-    n_aisles = len(rungs.low)
-    rank = np.empty(n_aisles + 1, np.int64)
-    rank[order] = np.arange(len(order))
+    rank = np.full(len(rungs.low), -1)
+    rank[placed[placed >= 0]] = np.flatnonzero(placed >= 0)
     aisle = travel.corridor[travel.row]
     x = np.clip(travel.x_m, rungs.low[aisle], rungs.high[aisle])
     in_m = x - rungs.low[aisle]
     plant = np.lexsort((in_m, rank[aisle]))
-    count = np.bincount(rank[aisle], minlength=len(order))
+    plant = plant[rank[aisle[plant]] >= 0]
+    count = np.bincount(rank[aisle[plant]], minlength=len(placed))
     after = np.array([k for k, _ in links], np.int64) + 1
     left, right = (np.insert(p, after, p[after - 1]) for p in places)
     across = np.insert(across_m, after, [metres for _, metres in links])
     count = np.insert(count, after, 0)
-    gate = int(rank[-1] + (after <= rank[-1]).sum())
+    gate = int(np.flatnonzero(placed < 0)[0])
+    gate += int((after <= gate).sum())
     across[gate] = np.inf
     return Ladder(
         np.stack([np.diff(left), np.diff(right)], axis=1),

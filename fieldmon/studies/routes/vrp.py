@@ -54,13 +54,17 @@ def collect(reward: Float, budget: int, seconds: float = 10.0, seed: int = 1) ->
             if i != j:
                 model.add_edge(one, other, distance=int(steps[i, j]))
     result = model.solve(MaxRuntime(seconds), seed=seed, display=False)
-    walker = Walker(reward.shape[1])
-    if result.is_feasible():
-        for route in result.best.routes():
-            for stop in route:
-                if stop.is_client():
-                    # clients are numbered among themselves; the depot is the first place
-                    _walk(walker, *places[stop.idx + 1].tolist())
+    return _walked(places, reward.shape[1], result)
+
+
+def _walked(places: Int, n: int, result: Any) -> Int:  # noqa: ANN401 - PyVRP's own
+    """Return the places of the walk through the clients of a result, in its order."""
+    walker = Walker(n)
+    for route in result.best.routes() if result.is_feasible() else ():
+        for stop in route:
+            if stop.is_client():
+                # clients are numbered among themselves; the depot is the first place
+                _walk(walker, *places[stop.idx + 1].tolist())
     return _home(walker)
 
 

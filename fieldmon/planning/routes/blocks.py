@@ -8,14 +8,15 @@ How that bounds every route is in ``docs/best_routes.md``.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
+from fieldmon.planning.routes.binned import proposals
 from fieldmon.planning.routes.priced import Costs, Priced
-from fieldmon.planning.routes.relaxation import ladder_among
 from fieldmon.planning.routes.stops import stops_of
 
 if TYPE_CHECKING:
@@ -24,9 +25,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.planning.routes.priced import Drawn
-    from fieldmon.planning.routes.relaxation import Rungs
+    from fieldmon.planning.routes.relaxation import Ladders, Rungs
     from fieldmon.plot.robot import Robot
-    from fieldmon.plot.travel import Aisles
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 _NEAR_M = 15.0
 # all ways of choosing among more blocks than this would take long
 _MOST_BLOCKS = 9
+# drives that fill the hours: through so many of the best sets, with so many prices tried
+_SETS, _HALVINGS, _WIDE = 3, 12, 30.0
 _HALF = 0.5 * (1.0 - 1e-9)
 
 
@@ -61,43 +63,104 @@ class Tours(NamedTuple):
 class Blocks:
     """Best drives through blocks of a plot at any price, as `Priced` gives them on one ladder."""
 
-    def __init__(
-        self, aisles: Aisles, rungs: Rungs, block: Int, reward: Float, robot: Robot
-    ) -> None:
+    def __init__(self, ladders: Ladders, block: Int, reward: Float, robot: Robot) -> None:
+        rungs = ladders.rungs
         self.reward, self.robot, self.costs = reward, robot, Costs.of(robot)
         n, nearest = int(block.max()) + 1, _way_out(rungs, block)
         members = [np.flatnonzero(block == k) for k in range(n)]
-        self.tours = _tours(_between(rungs, block, nearest))
-        ladders = [ladder_among(aisles, rungs, own, _gate(rungs, own, nearest)) for own in members]
-        self.cross_links = sum(ladder.cross_links for ladder in ladders)
-        self.closed = [Priced(ladder, reward, _returning(robot, back=True)) for ladder in ladders]
-        self.open = [Priced(ladder, reward, _returning(robot, back=False)) for ladder in ladders]
+        self.tours = _tours(_apart_m(rungs, block, nearest))
+        own = [ladders.among(m, _gate(rungs, m, nearest), hanging=True) for m in members]
+        self.closed = [Priced(ladder, reward, replace(robot, returns=True)) for ladder in own]
+        self.open = [Priced(ladder, reward, replace(robot, returns=False)) for ladder in own]
         bits = np.arange(1 << n)[:, None] >> np.arange(n)
         self._in = (bits & 1).astype(np.float64)
 
+    @property
+    def how(self) -> str:
+        """Say what it is."""
+        return f"price of time on {len(self.closed)} ladders, one for each part of the plot"
+
     def best(self, price: float) -> Visited:
         """Return the best drive at a price of reward a second."""
+        closed, opened = self._each(price)
+        worths = self._worths(price, closed, opened)
+        chosen, last = (int(k) for k in np.unravel_index(np.argmax(worths), worths.shape))
+        return self._visited(chosen, last, float(worths[chosen, last]), (closed, opened))
+
+    def filling(self, price: float, seconds: float) -> Iterator[Int]:
+        """Yield stops that fill about so many seconds, through the best sets of blocks at a price.
+
+        At one price the best set may leave most of the time unused and, at the next lower price,
+        another set, or the same one, take far too long. So each set has a price of its own here,
+        and the block in which most time is won or lost is driven for the time that is left.
+        """
+        worths = self._worths(price, *self._each(price))
+        for at in np.argsort(worths.max(axis=1))[: -_SETS - 1 : -1].tolist():
+            last = int(np.argmax(worths[at]))
+            low, high = price / _WIDE, price * _WIDE
+            for _ in range(_HALVINGS):
+                middle = float(np.sqrt(low * high))
+                if self.seconds(self._through(at, last, middle), middle) > seconds:
+                    low = middle
+                else:
+                    high = middle
+            short, long = self._through(at, last, high), self._through(at, last, low)
+            if short.drives:
+                yield from self._between(short, long, (low, high), seconds)
+
+    def _between(
+        self, short: Visited, long: Visited, prices: tuple[float, float], seconds: float
+    ) -> Iterator[Int]:
+        """Yield stops that take longer than a short drive and less than a long one."""
+        low, high = prices
+        yield self.stops(short, high)
+        took_s = [
+            ((a[2].reward - a[2].worth) / high, (b[2].reward - b[2].worth) / low)
+            for a, b in zip(short.drives, long.drives, strict=True)
+        ]
+        k = int(np.argmax([after - before for before, after in took_s]))
+        block, ends, _ = short.drives[k]
+        left_s = seconds - self.seconds(short, high) + took_s[k][0]
+        priced = (self.open if ends else self.closed)[block]
+        if left_s > 0.0 and took_s[k][1] > 0.0:
+            for drawn, price in proposals(priced, low, left_s):
+                found = [self._stops_in(*drive, high) for drive in short.drives]
+                found[k] = self._stops_in(block, ends, drawn, price)
+                yield np.concatenate(found)
+
+    def _each(self, price: float) -> tuple[list[Drawn], list[Drawn]]:
+        """Return the best drive in each block at a price, closed and, on one-way days, open."""
+        opened = [] if self.robot.returns else [each.best(price) for each in self.open]
+        return [each.best(price) for each in self.closed], opened
+
+    def _worths(self, price: float, closed: list[Drawn], opened: list[Drawn]) -> Float:
+        """Return what each set of blocks is worth, ``(2^m, l)``, by the block it ends in."""
         metre = price * self.costs.metre_s
-        closed = [each.best(price) for each in self.closed]
         worth = self._in @ np.array([drawn.worth for drawn in closed])
         if self.robot.returns:
-            chosen = int(np.argmax(worth - metre * self.tours.closed_m))
-            total = float(worth[chosen] - metre * self.tours.closed_m[chosen])
-            return self._visited(chosen, -1, total, closed)
-        opened = [each.best(price) for each in self.open]
+            whole: Float = (worth - metre * self.tours.closed_m)[:, None]
+            return whole
         more = np.array([one.worth - two.worth for one, two in zip(opened, closed, strict=True)])
-        worths = worth[:, None] + more - metre * self.tours.open_m
-        chosen, last = (int(k) for k in np.unravel_index(np.argmax(worths), worths.shape))
-        if worths[chosen, last] <= 0.0:
-            return Visited(0.0, 0.0, ())
-        drawn = [*closed]
-        drawn[last] = opened[last]
-        return self._visited(chosen, last, float(worths[chosen, last]), drawn)
+        worths: Float = worth[:, None] + more - metre * self.tours.open_m
+        # a day on which nothing is driven
+        worths[0] = 0.0
+        return worths
 
-    def _visited(self, chosen: int, last: int, worth: float, drawn: list[Drawn]) -> Visited:
-        order = _order(self.tours, chosen, last)
-        drives = tuple((k, k == last, drawn[k]) for k in order)
-        return Visited(worth, sum(drawn[k].reward for k in order), drives)
+    def _through(self, chosen: int, last: int, price: float) -> Visited:
+        """Return the best drive through a set of blocks at a price."""
+        closed, opened = self._each(price)
+        worth = float(self._worths(price, closed, opened)[chosen, last])
+        return self._visited(chosen, last, worth, (closed, opened))
+
+    def _visited(
+        self, chosen: int, last: int, worth: float, drawn: tuple[list[Drawn], list[Drawn]]
+    ) -> Visited:
+        closed, opened = drawn
+        order = _order(self.tours, chosen, -1 if self.robot.returns else last)
+        drives = tuple(
+            (k, True, opened[k]) if opened and k == last else (k, False, closed[k]) for k in order
+        )
+        return Visited(worth, sum(drive.reward for _, _, drive in drives), drives)
 
     def bound(self, drawn: Visited, price: float, seconds: float) -> float:
         """Return what no drive in so many seconds can reach, by the best drive at a price."""
@@ -109,12 +172,13 @@ class Blocks:
 
     def stops(self, drawn: Visited, price: float) -> Int:
         """Return the plants of a drive in the order of one way to drive it."""
-        found = [np.empty(0, np.int64)]
-        for k, ends, drive in drawn.drives:
-            priced = self.open[k] if ends else self.closed[k]
-            robot = _returning(self.robot, back=not ends)
-            found.append(stops_of(priced, drive, np.full(len(drive.way), price), robot))
-        return np.concatenate(found)
+        found = [self._stops_in(*drive, price) for drive in drawn.drives]
+        return np.concatenate([np.empty(0, np.int64), *found])
+
+    def _stops_in(self, block: int, ends: bool, drive: Drawn, price: float | Float) -> Int:  # noqa: FBT001 - as in `Visited`
+        priced = (self.open if ends else self.closed)[block]
+        prices = np.broadcast_to(np.asarray(price, np.float64), drive.way.shape)
+        return stops_of(priced, drive, prices, replace(self.robot, returns=not ends))
 
 
 def blockings(rungs: Rungs) -> Iterator[Int]:
@@ -132,12 +196,6 @@ def blockings(rungs: Rungs) -> Iterator[Int]:
         if 1 < n <= _MOST_BLOCKS and n not in seen:
             seen.add(n)
             yield block
-
-
-def _returning(robot: Robot, *, back: bool) -> Robot:
-    from dataclasses import replace  # noqa: PLC0415
-
-    return replace(robot, returns=back)
 
 
 def _way_out(rungs: Rungs, block: Int) -> Float:
@@ -158,7 +216,7 @@ def _gate(rungs: Rungs, own: Int, nearest: Float) -> tuple[Float, float]:
     return nearest, float(rungs.up[own[int(np.argmin(nearest.min(axis=0)))]])
 
 
-def _between(rungs: Rungs, block: Int, nearest: Float) -> Float:
+def _apart_m(rungs: Rungs, block: Int, nearest: Float) -> Float:
     """Return the metres ``(m + 1, m + 1)`` left of the ways between blocks; the last is the gate.
 
     They are made to be no longer than any way round by other blocks.

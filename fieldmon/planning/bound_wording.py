@@ -15,7 +15,7 @@ def share_above(held: float, bound: float) -> float:
     return bound / held - 1.0 if held > 0.0 else math.inf
 
 
-def told(held: float, bound: float, what: str = "finds") -> str:
+def told(held: float, bound: float, what: str = "finds", routes: str = "route") -> str:
     """Return what a route is expected to hold and what no other can exceed.
 
     The bound and the share are rounded up: no route exceeds what is said.
@@ -28,7 +28,7 @@ def told(held: float, bound: float, what: str = "finds") -> str:
     '20.0 finds expected; no route of these hours can expect more.'
     """
     digits = _digits(bound)
-    begins = f"{held:.{digits}f} {what} expected; no route of these hours can expect more"
+    begins = f"{held:.{digits}f} {what} expected; no {routes} of these hours can expect more"
     gap = share_above(held, bound)
     if gap <= PROVED:
         return f"{begins}."

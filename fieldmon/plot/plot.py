@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fieldmon.plot.field import Field
@@ -144,6 +144,10 @@ class Plot:
         if not missing.any():
             return self
         return self._with(self.field, without(self.grid, missing))
+
+    def with_gate(self, gate: tuple[float, float]) -> Plot:
+        """Return the same plot with days that start and end elsewhere, ``(lon, lat)``."""
+        return self._with(replace(self.field, gate=gate), self.grid)
 
     @classmethod
     def _with(cls, field: Field, grid: PlantGrid) -> Plot:

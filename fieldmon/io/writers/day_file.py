@@ -168,9 +168,10 @@ class HandoffPlan:
 
     @property
     def title(self) -> str:
-        """Return what to call the day: the plot, and the date where it is known."""
-        start = self.notes.start
-        return plain_text(self.notes.plot if start is None else f"{self.notes.plot} {start:%F}")
+        """Return what to call the day: the plot, and date and member where they are known."""
+        start, who = self.notes.start, self.notes.who
+        title = self.notes.plot if start is None else f"{self.notes.plot} {start:%F}"
+        return plain_text(title if who is None else f"{title} {who}")
 
     @property
     def bound(self) -> str:

@@ -36,11 +36,14 @@ class RouteNotes:
         Who chose the plants.
     start
         Local date and time of the start, or None: only seconds are given then.
+    who
+        Who of a team drives it; None: it is the only one.
     """
 
     plot: str
     sampler: str
     start: datetime | None = None
+    who: str | None = None
 
 
 def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
@@ -48,6 +51,7 @@ def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
     return {
         "plot": notes.plot,
         "sampler": notes.sampler,
+        **({} if notes.who is None else {"who": notes.who}),
         "stops": len(route),
         "seconds": round(route.end_s, 3),
         "drive_m": round(route.drive_m, 3),

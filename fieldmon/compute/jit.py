@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import logging
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numba as nb
 from numba.core import event
+from numba.core.caching import FunctionCache
+from numba.core.dispatcher import Dispatcher
 
 from fieldmon.compute.jit_progress import FIRST_USE
 
@@ -16,7 +20,6 @@ F = TypeVar("F", bound="Callable[..., object]")
 
 # nothing here is called from C; numba's own stubs leave the last two out
 _BARE: dict[str, Any] = {
-    "cache": True,
     "error_model": "numpy",
     "_nrt": False,
     "no_cfunc_wrapper": True,
@@ -39,6 +42,55 @@ class _Compiling(event.Listener):
 event.register("numba:compile", _Compiling())  # type: ignore[no-untyped-call]
 
 
+class _KeptLoops(FunctionCache):
+    """What numba keeps of a loop on disk; what cannot be loaded of it is compiled anew.
+
+    Numba's own raises what unpickling raises: for files that were cut short, and for those of an
+    earlier version, where a named tuple that the loop takes had another name.
+    """
+
+    def load_overload(self, sig: object, target_context: object) -> object:
+        """Return the loop for these types, or None: it is to be compiled."""
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception as unloadable:  # noqa: BLE001 - a damaged pickle may raise anything
+            _say_once(unloadable)
+            self._forget()
+            return None
+
+    def _forget(self) -> None:
+        """Begin the loop's files anew; leave them alone where nothing can be written."""
+        self.disable()
+        with suppress(OSError):
+            self.flush()
+            self.enable()
+
+
+_SAID: list[str] = []
+
+
+def _say_once(unloadable: Exception) -> None:
+    if not _SAID:
+        _SAID.append(
+            "Compiled loops that were kept on this machine cannot be loaded and are compiled anew, "
+            f"once: they are damaged or of another version ({unloadable})."
+        )
+        logging.getLogger("fieldmon").warning(_SAID[0])
+
+
+def kept(function: F) -> F:
+    """Keep on disk what numba makes of a function (``@kept`` above its decorator)."""
+    if isinstance(function, Dispatcher):  # not where numba is told to compile nothing
+        function._cache = _KeptLoops(function.py_func)  # noqa: SLF001 - what enable_caching sets
+    return function
+
+
+def routine(function: F) -> F:
+    """Compile a function that may make arrays of its own."""
+    compiled: F = nb.njit(nogil=True)(function)
+    return kept(compiled)
+
+
 def loop(function: F) -> F:
     """Compile a function that makes no arrays of its own, but works in those it is handed.
 
@@ -47,7 +99,7 @@ def loop(function: F) -> F:
     by zero follow IEEE 754, for the same reason: a loop that cannot raise needs no way out.
     """
     compiled: F = nb.njit(nogil=True, **_BARE)(function)
-    return compiled
+    return kept(compiled)
 
 
 def part(function: F) -> F:
@@ -57,11 +109,11 @@ def part(function: F) -> F:
     small function takes to compile.
     """
     compiled: F = nb.njit(**_NOT_FOR_PYTHON)(function)
-    return compiled
+    return kept(compiled)
 
 
 def inlined(function: F) -> F:
     """Compile a function likewise, to be copied into the loops that call it."""
     # copied as machine code; as numba's own it would be worked through again in every loop
     compiled: F = nb.njit(forceinline=True, **_BARE)(function)
-    return compiled
+    return kept(compiled)

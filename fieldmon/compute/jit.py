@@ -52,7 +52,7 @@ class _KeptLoops(FunctionCache):
     def load_overload(self, sig: object, target_context: object) -> object:
         """Return the loop for these types, or None: it is to be compiled."""
         try:
-            return super().load_overload(sig, target_context)
+            return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
         except Exception as unloadable:  # noqa: BLE001 - a damaged pickle may raise anything
             _say_once(unloadable)
             self._forget()
@@ -60,10 +60,10 @@ class _KeptLoops(FunctionCache):
 
     def _forget(self) -> None:
         """Begin the loop's files anew; leave them alone where nothing can be written."""
-        self.disable()
+        self.disable()  # type: ignore[no-untyped-call]
         with suppress(OSError):
-            self.flush()
-            self.enable()
+            self.flush()  # type: ignore[no-untyped-call]
+            self.enable()  # type: ignore[no-untyped-call]
 
 
 _SAID: list[str] = []
@@ -80,14 +80,17 @@ def _say_once(unloadable: Exception) -> None:
 
 def kept(function: F) -> F:
     """Keep on disk what numba makes of a function (``@kept`` above its decorator)."""
-    if isinstance(function, Dispatcher):  # not where numba is told to compile nothing
-        function._cache = _KeptLoops(function.py_func)  # noqa: SLF001 - what enable_caching sets
+    made: Any = function
+    if isinstance(made, Dispatcher):  # it is not where numba is told to compile nothing
+        loops = _KeptLoops(made.py_func)  # type: ignore[no-untyped-call]
+        setattr(made, "_cache", loops)  # noqa: B010 - as numba's own enable_caching does
     return function
 
 
 def routine(function: F) -> F:
     """Compile a function that may make arrays of its own."""
-    compiled: F = nb.njit(nogil=True)(function)
+    options: dict[str, Any] = {"nogil": True}
+    compiled: F = nb.njit(**options)(function)
     return kept(compiled)
 
 

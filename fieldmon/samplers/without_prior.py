@@ -190,16 +190,8 @@ def _walked(
     wanted: NDArray[np.bool_],
     start: tuple[int, int, int, bool],
 ) -> Stops:
-    stops = scene.blank()
-    k = _walk(
-        scene.aisles.travel,
-        scene.clock,
-        stations,
-        (wanted, scene.last_inspected.copy()),
-        (*start, scene.at, scene.day, scene.key),
-        stops,
-    )
-    return Stops(stops.plant[:k], stops.arrive_s[:k])
+    plants = (wanted, scene.last_inspected.copy())
+    return scene.walked(_walk, stations, plants, (*start, scene.at, scene.day, scene.key))
 
 
 @loop

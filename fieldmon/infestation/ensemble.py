@@ -85,8 +85,8 @@ class Ensemble:
 
     def treated(self, left: NDArray[np.float64]) -> Ensemble:
         """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
-        luck = self.chances.of("treated", self.steps).random(self.fields.shape)
-        return Ensemble(self.grid, self.fields & (luck < left), self.chances, self.steps + 1)
+        drawn = self.chances.of("treated", self.steps).random(self.fields.shape)
+        return Ensemble(self.grid, self.fields & (drawn < left), self.chances, self.steps + 1)
 
     def estimate(self, sure: float = 0.9) -> PlotEstimate:
         """Return what the fields say of the whole plot."""
@@ -143,9 +143,9 @@ def _learn(
 
 
 @routine
-def _donor(was: NDArray[np.bool_], wanted: bool, luck: float) -> int:  # noqa: FBT001 - a state
+def _donor(was: NDArray[np.bool_], wanted: bool, drawn: float) -> int:  # noqa: FBT001 - a state
     """Return a field, drawn, in which the plant was as wanted; -1 if there is none."""
-    first = int(luck * was.size)
+    first = int(drawn * was.size)
     for step in range(was.size):
         k = (first + step) % was.size
         if was[k] == wanted:

@@ -40,6 +40,10 @@ class InspectionTimes(NamedTuple):
     stop_s: NDArray[np.float64]
     detects: NDArray[np.float64]
 
+    def __repr__(self) -> str:
+        pairs = zip(self.stop_s.tolist(), self.detects.tolist(), strict=True)
+        return f"<InspectionTimes: {', '.join(f'{s:g} s {d:.0%}' for s, d in pairs)}>"
+
 
 class Stops(NamedTuple):
     """The plants that a sampler inspects, in order.

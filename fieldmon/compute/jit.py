@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import logging
 from contextlib import suppress
+from pathlib import Path
+from types import FunctionType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numba as nb
 from numba.core import event
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.dispatcher import Dispatcher
 
 from fieldmon.compute.jit_progress import FIRST_USE
@@ -46,11 +48,19 @@ class _KeptLoops(FunctionCache):
     """What numba keeps of a loop on disk; what cannot be loaded of it is compiled anew.
 
     Numba's own raises what unpickling raises: for files that were cut short, and for those of an
-    earlier version, where a named tuple that the loop takes had another name.
+    earlier version, where a named tuple that the loop takes had another name. And it looks at the
+    loop's own source only: one whose callee in another file has changed would run as it was.
     """
+
+    _looked = False
 
     def load_overload(self, sig: object, target_context: object) -> object:
         """Return the loop for these types, or None: it is to be compiled."""
+        if not self._looked:  # only now are all it calls defined
+            self._looked = True
+            self._cache_file = IndexDataCacheFile(  # type: ignore[no-untyped-call]
+                self._cache_path, self._impl.filename_base, _stamps(self._py_func)
+            )
         try:
             return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
         except Exception as unloadable:  # noqa: BLE001 - a damaged pickle may raise anything
@@ -64,6 +74,21 @@ class _KeptLoops(FunctionCache):
         with suppress(OSError):
             self.flush()  # type: ignore[no-untyped-call]
             self.enable()  # type: ignore[no-untyped-call]
+
+
+def _stamps(function: FunctionType) -> tuple[tuple[str, float, int], ...]:
+    """Return name, time and size of the files of a loop and of all loops that it calls."""
+    waiting, seen = [function], {function}
+    while waiting:
+        caller = waiting.pop()
+        for name in caller.__code__.co_names:
+            called = getattr(caller.__globals__.get(name), "py_func", None)
+            if isinstance(called, FunctionType) and called not in seen:
+                seen.add(called)
+                waiting.append(called)
+    files = sorted({Path(loop.__code__.co_filename) for loop in seen})
+    stats = [(file.name, file.stat()) for file in files if file.exists()]
+    return tuple((name, stat.st_mtime, stat.st_size) for name, stat in stats)
 
 
 _SAID: list[str] = []

@@ -2,7 +2,9 @@
 
 import importlib
 import logging
+import os
 import re
+import shutil
 import sys
 
 import numba
@@ -131,6 +133,47 @@ def test_where_nothing_can_be_written_a_damaged_file_is_left_and_the_loop_runs(k
     monkeypatch.setattr(numba.core.caching.IndexDataCacheFile, "_open_for_write", full)
     assert started()[0] == RIGHT
     assert {file.read_bytes() for file in kept.rglob("*.nbi")} == {b""}
+
+
+CALLER = """
+from fieldmon.compute.jit import loop
+from callee_to_keep import sign
+
+@loop
+def signed(x):
+    return inner(x)
+
+@loop
+def inner(x):
+    return sign(x) * x
+"""
+CALLEE = """
+from fieldmon.compute.jit import part
+
+@part
+def sign(x):
+    return {sign}
+"""
+
+
+@pytest.mark.usefixtures("kept")
+def test_a_loop_is_compiled_anew_where_one_that_it_calls_has_changed_in_another_file(tmp_path):
+    (tmp_path / "caller_to_keep.py").write_text(CALLER)
+    counts = []
+    for sign in ("1.0", "1.0", "-1.0", "-1.0"):
+        (tmp_path / "callee_to_keep.py").write_text(CALLEE.format(sign=sign))
+        os.utime(tmp_path / "callee_to_keep.py", (1e9, 1e9))
+        importlib.invalidate_caches()
+        for name in ("caller_to_keep", "callee_to_keep"):
+            sys.modules.pop(name, None)
+        shutil.rmtree(tmp_path / "__pycache__", ignore_errors=True)
+        before = FIRST_USE.compiled
+        assert importlib.import_module("caller_to_keep").signed(2.0) == float(sign) * 2.0
+        counts.append(FIRST_USE.compiled - before)
+    assert counts[0] >= 3
+    assert counts[1:] == [0, 3, 0]
+    for name in ("caller_to_keep", "callee_to_keep"):
+        sys.modules.pop(name, None)
 
 
 @pytest.mark.usefixtures("kept")

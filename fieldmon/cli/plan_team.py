@@ -19,7 +19,7 @@ from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from fieldmon.cli.plan import PlanOptions
-    from fieldmon.planning.team import Member, TeamPlan
+    from fieldmon.planning.team import TeamMember, TeamPlan
 
 _NOT_IN_A_NAME = re.compile(r"[^\w-]+")
 
@@ -50,10 +50,10 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     write_chance_map(options.chance_map, plot, chance)
 
 
-def _members(options: PlanOptions, robots: str) -> tuple[tuple[Member, ...], datetime]:
+def _members(options: PlanOptions, robots: str) -> tuple[tuple[TeamMember, ...], datetime]:
     """Return the team, and when the first of it starts."""
     from fieldmon.io.readers.team import read_team  # noqa: PLC0415
-    from fieldmon.planning.team import Member, team_of  # noqa: PLC0415
+    from fieldmon.planning.team import TeamMember, team_of  # noqa: PLC0415
 
     begins, worker = options.begins(), options.worker
     if robots.isdigit():
@@ -65,7 +65,7 @@ def _members(options: PlanOptions, robots: str) -> tuple[tuple[Member, ...], dat
     ]
     first = min(starts)
     members = [
-        Member(
+        TeamMember(
             one.name,
             replace(replace(worker, scout=worker.scout or one.scout).robot(), **one.settings),  # type: ignore[arg-type]
             one.gate,
@@ -76,7 +76,7 @@ def _members(options: PlanOptions, robots: str) -> tuple[tuple[Member, ...], dat
     return tuple(members), first
 
 
-def _files(outputs: list[Path] | None, members: tuple[Member, ...]) -> list[list[Path]]:
+def _files(outputs: list[Path] | None, members: tuple[TeamMember, ...]) -> list[list[Path]]:
     """Return the files of each member: those asked for, with its name."""
     names = [_NOT_IN_A_NAME.sub("_", member.name) for member in members]
     if len({name.casefold() for name in names}) < len(names):

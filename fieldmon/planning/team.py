@@ -39,7 +39,7 @@ _PRICES = 10
 
 
 @dataclass(frozen=True)
-class Member:
+class TeamMember:
     """One of a team.
 
     Parameters
@@ -82,7 +82,7 @@ class TeamPlan:
         No routes of these members and hours can expect more finds together.
     """
 
-    members: tuple[Member, ...]
+    members: tuple[TeamMember, ...]
     days: tuple[DayPlan, ...]
     late_s: Float
     bound: float
@@ -120,7 +120,7 @@ class _Task(NamedTuple):
     starts_s: float = 0.0
 
 
-def team_of(n: int, robot: Robot | None = None) -> tuple[Member, ...]:
+def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
     """Return n robots of one kind.
 
     Examples
@@ -130,13 +130,13 @@ def team_of(n: int, robot: Robot | None = None) -> tuple[Member, ...]:
     """
     if n < 1:
         raise SettingError(f"A team must have 1 member or more, but it has {n}.")
-    return tuple(Member(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))
+    return tuple(TeamMember(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))
 
 
 def plan_team(
     plot: Plot,
     chance: Float,
-    members: Sequence[Member],
+    members: Sequence[TeamMember],
     done: NDArray[np.bool_] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> TeamPlan:
@@ -184,10 +184,11 @@ def plan_team(
         for one in members
     ]
     search = _Search(plot, tasks, progress or (lambda _done, _of: None))
-    alone = search.aisle_by_aisle()
-    shared = search.apart(search.plant_by_plant(alone))
-    found = [_kept_apart(tasks, days) for days in (search.turned(alone), search.turned(shared))]
-    timed = max(found, key=lambda each: _expected(each.days))
+    in_turn = search.in_turn()
+    exclusive = search.aisle_by_aisle(in_turn)
+    shared = search.apart(search.plant_by_plant(exclusive))
+    found = [search.turned(stops) for stops in (in_turn, exclusive, shared)]
+    timed = max((_kept_apart(tasks, days) for days in found), key=lambda each: _expected(each.days))
     if not _expected(timed.days):
         raise SettingError(
             "The hours of some member must be long enough to reach a plant and come back, but "
@@ -239,7 +240,7 @@ def _priced(tasks: Sequence[_Task], price: Float) -> float:
     return float(price.sum()) + sum(alone)
 
 
-def _must_differ(members: Sequence[Member]) -> None:
+def _must_differ(members: Sequence[TeamMember]) -> None:
     names = [member.name.casefold() for member in members]
     if not names or len(set(names)) < len(names):
         raise SettingError(
@@ -266,20 +267,26 @@ class _Search:
         self.progress(self.looked, max(self.expected, self.looked))
         return found.plant.astype(np.int64)
 
-    def aisle_by_aisle(self) -> list[Int]:
+    def in_turn(self) -> list[Int]:
+        """Return stops for each task, the best in the aisles that those before it leave.
+
+        The first has the plot to itself, and waits for nobody: a team finds no less than it alone.
+        """
+        free, found = np.ones(len(self.aisle), np.bool_), []
+        for k in range(len(self.tasks)):
+            found.append(self.look(k, free))
+            free &= ~np.isin(self.aisle, self.aisle[found[-1]])
+        return found
+
+    def aisle_by_aisle(self, in_turn: Sequence[Int]) -> list[Int]:
         """Return stops for each task; each aisle is visited by one only.
 
-        Aisles are given out twice: to one after the other, each taking the best that is left, and
-        in sections beside each other. From whichever is better each looks once more in what the
-        others leave.
+        Aisles are given out in sections beside each other, too. From whichever is better each looks
+        once more in what the others leave.
         """
-        free, in_turn = np.ones(len(self.aisle), np.bool_), []
-        for k in range(len(self.tasks)):
-            in_turn.append(self.look(k, free))
-            free &= ~np.isin(self.aisle, self.aisle[in_turn[-1]])
         section = _sections(self.plot, self.tasks, in_turn)
         beside = [self.look(k, section == k) for k in range(len(self.tasks))]
-        chosen = max(in_turn, beside, key=lambda each: _held(self.tasks, each))
+        chosen = [*max(in_turn, beside, key=lambda each: _held(self.tasks, each))]
         for k in range(len(self.tasks)):
             others = [self.aisle[own] for own in (*chosen[:k], *chosen[k + 1 :])]
             taken = np.isin(self.aisle, np.concatenate([self.aisle[:0], *others]))

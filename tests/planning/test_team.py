@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.planning.team import Member, plan_team, team_of
+from fieldmon.planning.team import TeamMember, plan_team, team_of
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.plot import Plot
@@ -106,9 +106,9 @@ def test_different_members_have_their_own_hours_gates_and_eyes():
     plot = plot_of()
     far = tuple(plot.grid.lonlat(np.array([len(plot.grid) - 1]))[0].tolist())
     members = (
-        Member("wheels", Robot(hours=0.5)),
-        Member("Ann", scout().with_hours(0.7), gate=far, starts_s=600.0),
-        Member("slow", Robot(hours=0.5, speed_m_s=0.3, detection=0.95, returns=False)),
+        TeamMember("wheels", Robot(hours=0.5)),
+        TeamMember("Ann", scout().with_hours(0.7), gate=far, starts_s=600.0),
+        TeamMember("slow", Robot(hours=0.5, speed_m_s=0.3, detection=0.95, returns=False)),
     )
     plan = plan_team(plot, chances(plot), members)
     check(plan)
@@ -155,7 +155,7 @@ def test_the_same_team_has_the_same_plan():
     ("members", "says"),
     [
         ((), "must have members of different names"),
-        ((Member("a"), Member("A")), "must have members of different names"),
+        ((TeamMember("a"), TeamMember("A")), "must have members of different names"),
         (team_of(2, Robot(hours=0.001)), "must be long enough"),
     ],
 )
@@ -169,4 +169,4 @@ def test_a_team_of_none_or_a_start_on_another_day_is_refused():
     with pytest.raises(SettingError, match="1 member or more"):
         team_of(0)
     with pytest.raises(SettingError, match="must start within a day"):
-        Member("late", starts_s=1e6)
+        TeamMember("late", starts_s=1e6)

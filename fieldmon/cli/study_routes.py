@@ -28,6 +28,10 @@ def routes(  # noqa: PLR0913 - one a command-line option
         int | None, typer.Option(help="Draw the published families from this seed, too.")
     ] = None,
     *,
+    team: Annotated[
+        list[int] | None,
+        typer.Option(min=1, help="Size of a team, each with the budget; repeat for more."),
+    ] = None,
     maps: Annotated[
         bool, typer.Option(help="With the families, maps of 240 x 500 and 274 x 214 plants.")
     ] = True,
@@ -53,8 +57,10 @@ def routes(  # noqa: PLR0913 - one a command-line option
         PYVRP,
         csv_text,
         run,
+        run_teams,
         sentences,
         table,
+        told_of_teams,
     )
 
     must_be_folder(output)
@@ -63,14 +69,15 @@ def routes(  # noqa: PLR0913 - one a command-line option
         raise SettingError(f"A budget must be a share above 0 and up to 1, but it is {shares}.")
     instances = _instances(files, seed, maps=maps)
     methods = [*_ALWAYS, *([PYVRP] if pyvrp else []), *([MILP] if milp else [])]
-    made = []
+    made, teams = [], []
     with progress("Instances", len(instances)) as bar:
         for instance in instances:
             made += list(run(instance, shares, methods, solver_seconds))
+            teams += list(run_teams(instance, shares, team or []))
             bar.update(1)
-    for sentence in sentences(made):
+    for sentence in (*sentences(made), *told_of_teams(teams)):
         typer.echo(sentence)
-    write_all(output, {"routes.csv": csv_text(made), "routes.md": table(made)})
+    write_all(output, {"routes.csv": csv_text([*made, *teams]), "routes.md": table(made)})
 
 
 def _instances(files: list[Path] | None, seed: int | None, *, maps: bool) -> list[Instance]:

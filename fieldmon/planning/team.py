@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
-from fieldmon.planning.bound_wording import told
+from fieldmon.planning.bound_wording import PROVED, told
 from fieldmon.planning.meetings import Meeting, meetings
 from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.routes import best, bound
+from fieldmon.planning.routes.best_route import bounded
 from fieldmon.planning.workday import Workday
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, travel_s
@@ -34,8 +36,9 @@ if TYPE_CHECKING:
 _PAUSE_S = 1.0
 # each route is looked for again so often in what the others leave, and so often where they meet
 _ROUNDS, _TRIES = 2, 3
-# prices of plants that are tried for a bound
-_PRICES = 10
+# so many prices of plants are tried for a bound, for so long; a step that gained nothing so often
+# is halved; directions are remembered so far
+_PRICES, _WITHIN_S, _PATIENCE, _MEMORY = 60, 20.0, 5, 0.7
 
 
 @dataclass(frozen=True)
@@ -196,7 +199,8 @@ def plan_team(
         )
     days = tuple(replace(day, scene=_seen(day.scene, chance, done)) for day in timed.days)
     days = tuple(replace(day, route=route_of(day.scene, day.work)) for day in days)
-    most = max(team_bound(tasks), _expected(days))
+    held = _expected(days)
+    most = max(team_bound(tasks, held), held)
     return TeamPlan(tuple(members), days, timed.late_s, most)
 
 
@@ -204,7 +208,7 @@ def _expected(days: Sequence[DayPlan]) -> float:
     return float(sum(day.route.expected_found for day in days))
 
 
-def team_bound(tasks: Sequence[_Task]) -> float:
+def team_bound(tasks: Sequence[_Task], held: float = 0.0) -> float:
     """Return what no routes of a team can hold together: the least of some bounds.
 
     Whatever is paid once for each plant, no more than all that and what each member could hold
@@ -212,11 +216,12 @@ def team_bound(tasks: Sequence[_Task]) -> float:
     back to it, what one robot could hold with the hours of all, as fast and sharp-eyed as the best
     of them in everything: it drives the routes of all one after the other. Between two it changes
     aisles once more than they do.
+
+    `held` is what routes are known to hold: the better it is known, the sooner prices are found.
     """
     values = np.array([task.value for task in tasks])
     most = values.max(axis=0)
-    kept = float(most.max()) * np.append(np.inf, np.geomspace(1.0, 0.01, _PRICES))
-    least = min(_priced(tasks, np.maximum(most - each, 0.0)) for each in kept)
+    least = _by_prices(tasks, most, held)
     robots = [task.robot for task in tasks]
     one_gate = all(task.plot is tasks[0].plot for task in tasks)
     if not one_gate or not all(robot.returns for robot in robots):
@@ -233,11 +238,33 @@ def team_bound(tasks: Sequence[_Task]) -> float:
     return min(least, bound(tasks[0].plot, most, quickest, seconds))
 
 
-def _priced(tasks: Sequence[_Task], price: Float) -> float:
-    """Return a bound in which each plant ``(n,)`` costs a price, which is paid back once."""
-    rests = [np.maximum(task.value - price, 0.0) for task in tasks]
-    alone = [bound(task.plot, rest, task.robot) for task, rest in zip(tasks, rests, strict=True)]
-    return float(price.sum()) + sum(alone)
+def _by_prices(tasks: Sequence[_Task], most: Float, held: float) -> float:
+    """Return the least bound of many prices of plants.
+
+    A plant that is visited by more than one gets dearer, one that is visited by none cheaper, by
+    steps as Polyak's, in a direction that remembers the last ones. Any price gives a bound.
+    """
+    until = monotonic() + _WITHIN_S
+    price = direction = np.zeros(len(most))
+    least, kept, step, in_vain = np.inf, price, 1.0, 0
+    for _ in range(_PRICES):
+        alone = [bounded(task.plot, np.maximum(task.value - price, 0.0), task.robot)
+                 for task in tasks]  # fmt: skip
+        value = float(price.sum()) + sum(each.value for each in alone)
+        if value < least:
+            least, kept, in_vain = value, price, 0
+        else:
+            in_vain += 1
+        if in_vain >= _PATIENCE:
+            price, step, in_vain = kept, step / 2, 0
+        slope = 1.0 - sum(each.visits for each in alone)
+        direction = slope + _MEMORY * direction
+        direction = np.where((price <= 0.0) & (direction > 0.0), 0.0, direction)
+        norm = float((direction**2).sum())
+        if norm == 0.0 or value <= held * (1.0 + PROVED) or monotonic() > until:
+            break
+        price = np.clip(price - step * (value - held) / norm * direction, 0.0, most)
+    return least
 
 
 def _must_differ(members: Sequence[TeamMember]) -> None:

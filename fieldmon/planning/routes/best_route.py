@@ -210,6 +210,42 @@ def bound(
     return min(found.value for found in _bounds(posed, within_s))
 
 
+class Bounded(NamedTuple):
+    """A bound, and how much of each plant ``(n,)`` the drives behind it visit, in 0..1."""
+
+    value: float
+    visits: Float
+
+
+def bounded(plot: Plot, reward: Float, robot: Robot) -> Bounded:
+    """Return what no route of a robot's day can hold, and what the drives behind it visit.
+
+    Two drives at about one price fill the hours, the one more, the other less: as much of each as
+    fills them just.
+    """
+    posed, visits = _posed(plot, reward, robot, None), np.zeros(len(reward))
+    if not posed.reward.any():
+        return Bounded(0.0, visits)
+    found = min(_bounds(posed), key=lambda each: each.value)
+    took_s = np.array([found.below.seconds(*met) for met in found.met])
+    share = np.ones(len(took_s))
+    if len(took_s) == 2 and took_s[0] != took_s[1]:
+        share[1] = (robot.day_s - took_s[0]) / (took_s[1] - took_s[0])
+        share = np.clip([1.0 - share[1], share[1]], 0.0, 1.0)
+    for met, of in zip(found.met, share, strict=True):
+        if of > 0.0:
+            visits[_stops_met(found.below, met, robot)] += of
+    return Bounded(found.value, np.minimum(visits, 1.0))
+
+
+def _stops_met(below: Priced | Blocks, met: tuple[Any, float], robot: Robot) -> Int:
+    """Return the plants of a drive in the order of one way to drive it."""
+    drawn, price = met
+    if isinstance(below, Blocks):
+        return below.stops(drawn, price)
+    return stops_of(below, drawn, np.full(len(drawn.way), price), robot)
+
+
 def _posed(
     plot: Plot | Aisles, reward: ArrayLike, robot: Robot | None, seconds: float | None
 ) -> _Posed:
@@ -278,12 +314,10 @@ def _starts(found: PriceBound, robot: Robot, seconds: float) -> Iterator[Int]:
     """Yield stops to begin with; drives that are far too long take long to be cut to the hours."""
     below = found.below
     fitting = [met for met in found.met if below.seconds(*met) <= _TOO_LONG * seconds]
+    yield from (_stops_met(below, met, robot) for met in fitting)
     if isinstance(below, Blocks):
-        yield from (below.stops(*met) for met in fitting)
         yield from below.filling(found.price, seconds)
         return
-    for drawn, price in fitting:
-        yield stops_of(below, drawn, np.full(len(drawn.way), price), robot)
     for drawn, prices in proposals(below, found.price, seconds):
         yield stops_of(below, drawn, prices, robot)
 

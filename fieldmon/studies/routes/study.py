@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import time
+from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.planning.routes.ladder import sweep
@@ -12,6 +13,7 @@ from fieldmon.studies.routes import milp, vrp
 from fieldmon.studies.routes.drive import driven
 from fieldmon.studies.routes.heuristics import HEURISTICS
 from fieldmon.studies.routes.instances import full_budget
+from fieldmon.studies.routes.team_walks import meetings, team_walks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -72,6 +74,40 @@ def _by_sweep(instance: Instance, share: float) -> MethodOutcome:
     most = checked.reward
     held = most, _share(most, total), checked.steps, took_s
     return MethodOutcome(instance.name, budget, share, EXACT, *held, most, True)
+
+
+def run_teams(
+    instance: Instance, shares: Sequence[float], sizes: Sequence[int]
+) -> Iterator[MethodOutcome]:
+    """Yield an outcome for each share of the full budget, which each has, and size of a team.
+
+    The cost is that of the longest walk.
+    """
+    reward = instance.reward
+    total = float(reward.sum())
+    for share, size in product(shares, sizes):
+        budget = int(full_budget(*reward.shape) * share)
+        began = time.perf_counter()
+        team = team_walks(reward, budget, size)
+        took_s = time.perf_counter() - began
+        steps = max(driven(places, reward).steps for places in team.places)
+        if steps > budget or meetings(team.places, reward.shape[1]):
+            raise AssertionError("a team must keep to its budgets, and nobody meet in a row")
+        about = instance.name, budget, share, f"team of {size}"
+        held = team.reward, _share(team.reward, total), steps, took_s
+        proved = team.bound <= team.reward * (1.0 + _SAME)
+        yield MethodOutcome(*about, *held, team.bound, proved)
+
+
+def told_of_teams(outcomes: Sequence[MethodOutcome]) -> list[str]:
+    """Return one line a team: its share of all reward, and what none can exceed."""
+    return [
+        f"{one.instance}, {one.method}, each {one.share:.0%} of the full budget: {one.of_all:.1%} "
+        f"of all reward, at most {one.bound / one.reward - 1.0:.1%} below the best "
+        f"({one.seconds:.1f} s)"
+        for one in outcomes
+        if one.bound is not None and one.reward > 0.0
+    ]
 
 
 def _by_heuristic(

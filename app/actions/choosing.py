@@ -1,4 +1,4 @@
-"""The sidebar: which plot or season, which day, who inspects; boxes in, one frozen value out."""
+"""The panel's boxes: which plot or season, which day, who inspects; one frozen value out."""
 
 from __future__ import annotations
 
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from datetime import date
 
+    from streamlit.delta_generator import DeltaGenerator
+
     from fieldmon.monitoring import KeptMessage
     from fieldmon.plot.field import Field
     from fieldmon.plot.robot import Robot
@@ -46,19 +48,23 @@ if TYPE_CHECKING:
 _DAY = "day {source}"
 
 
-def choose(wait: Wait) -> Chosen:
-    """Show the sidebar; return the choices, or the problem that keeps from them."""
-    with st.sidebar:
+def choose(head: DeltaGenerator, foot: DeltaGenerator, wait: Wait) -> Chosen:
+    """Show where and when in the head, who works and how numbers are written in the foot.
+
+    Returns the choices, or the problem that keeps from them.
+    """
+    with head:
         source = _source()
         try:
             if source in (texts.SAMPLE, texts.UPLOAD):
-                return Chosen(_from_files(source, wait))
+                return Chosen(_from_files(source, wait, foot))
             wait(None)
-            return Chosen(_from_season(source))
+            return Chosen(_from_season(source, foot))
         except FieldmonError as error:
             return Chosen(problem=error)
         finally:
-            _units()
+            with foot:
+                _units()
 
 
 def _source() -> str:
@@ -77,7 +83,7 @@ def _source() -> str:
 # -- a season
 
 
-def _from_season(name: str) -> Choices:
+def _from_season(name: str, foot: DeltaGenerator) -> Choices:
     season = cached.season(seasons_folder.path_of(name))
     settings, key, units = season.settings, str(season.path), chosen_units.units()
     day = widget_memory.show(
@@ -89,7 +95,8 @@ def _from_season(name: str) -> Choices:
         key, season.plot, season.observations, said, settings.robot, settings.sampler, str(day),
         units, season, key,
     )  # fmt: skip
-    changing.show(name, season)
+    with foot:
+        changing.show(name, season)
     return choices
 
 
@@ -101,7 +108,7 @@ def _message(kept: KeptMessage) -> ImportMessage:
 # -- files: the sample estate's, or those brought
 
 
-def _from_files(source: str, wait: Wait) -> Choices | None:
+def _from_files(source: str, wait: Wait, foot: DeltaGenerator) -> Choices | None:
     if source == texts.SAMPLE:
         st.caption(texts.SAMPLE_NOTE)
         files = plot_files.of_sample()
@@ -110,7 +117,9 @@ def _from_files(source: str, wait: Wait) -> Choices | None:
     outline = plot_files.outline(files, _which)
     wait(outline.field)
     made = plot_files.prepared(files, outline)
-    robot, sampler, day = _work(source)
+    day = _day(source)
+    with foot:
+        robot, sampler = _work()
     return Choices(
         made.key, made.plot, made.records, made.messages, robot, sampler, day,
         chosen_units.units(), None, outline.key, made.risk,
@@ -129,13 +138,17 @@ def _which(file: File, names: list[str]) -> int:
     return number or 0
 
 
-def _work(source: str) -> tuple[Robot, str, str]:
+def _day(source: str) -> str:
     first = sample_estate.LAST_DAY if source == texts.SAMPLE else _today()
     day = widget_memory.show(
         st.date_input, texts.DATE, key=_DAY.format(source=source), default=first,
         format=chosen_units.units().date_format,
     )  # fmt: skip
-    with st.expander(texts.WHO, expanded=True):
+    return str(day)
+
+
+def _work() -> tuple[Robot, str]:
+    with st.expander(texts.WHO):
         who = widget_memory.show(
             st.segmented_control, texts.WHO, [texts.ROBOT, texts.SCOUT], key="who",
             default=texts.ROBOT, required=True, label_visibility="collapsed",
@@ -152,7 +165,7 @@ def _work(source: str) -> tuple[Robot, str, str]:
             default=USUAL, **changing.NAMED,
         )  # fmt: skip
         st.caption(sampler_does(sampler))
-    return replace(base, hours=float(hours), look_s=float(inspection_s)), sampler, str(day)
+    return replace(base, hours=float(hours), look_s=float(inspection_s)), sampler
 
 
 # -- units

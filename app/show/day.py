@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
+from fieldmon.compute.wording import counted
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.planning.explain import explain
 from fieldmon.plot.grid import row_label
@@ -34,6 +35,19 @@ def stops(choices: Choices, plan: DayPlan) -> pd.DataFrame:
         texts.COLUMN_CHANCE: (100 * plan.route.chance).round(1),
     }
     return pd.DataFrame(columns, pd.RangeIndex(1, len(plan.route) + 1, name="stop"))
+
+
+def headline(choices: Choices, plan: DayPlan) -> str:
+    """Return what there is to do on the day, in one sentence."""
+    route, on = plan.route, choices.units.day(choices.day)
+    if not len(route):
+        return texts.HEADLINE_NONE.format(day=on)
+    line = row_label(choices.plot.grid, route.plant).line
+    low, high = int(line.min()), int(line.max())
+    return texts.HEADLINE.format(
+        plants=counted(len(route), "plant"), rows=f"{low}–{high}" if low < high else low, day=on,
+        hours=route.end_s / 3600, finds=route.expected_found,
+    )  # fmt: skip
 
 
 def route_figures(choices: Choices, plan: DayPlan) -> None:

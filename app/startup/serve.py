@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.io.sandbox import process
 
+from ..state import map_file, map_store
 from . import preload
 
 if TYPE_CHECKING:
@@ -32,13 +33,13 @@ if TYPE_CHECKING:
     Message = dict[str, Any]
     Receive = Callable[[], Awaitable[Message]]
     Send = Callable[[Message], Awaitable[None]]
+    Header = tuple[bytes, bytes]
 
 #: what Streamlit is told through its own variables; all else is in .streamlit/config.toml
 ADDRESS, PORT = "STREAMLIT_SERVER_ADDRESS", "STREAMLIT_SERVER_PORT"
 PAGE = Path(__file__).resolve().parents[1] / "streamlit_app.py"
-# what draws maps is three megabytes of script, which the page asks for late: at the first map
-_MAPS = "/static/js/DeckGlJsonChart.*.js"
-_FOR_GOOD = b"public, immutable, max-age=31536000"
+_FOR_GOOD, _ASK = b"public, immutable, max-age=31536000", b"no-cache"
+_OWN_FOR_GOOD = b"private, immutable, max-age=86400"
 # one thread must not keep the others waiting while libraries load (Python's default is 5 ms)
 _TURN_S = 0.0005
 _GOODBYE_S = 5
@@ -51,8 +52,7 @@ class Server:
     """An ASGI application: the page's files at once, all else from Streamlit once it is loaded."""
 
     def __init__(self) -> None:
-        self._files = page_files()
-        self._hint = next((name for name in self._files if Path(name).match(_MAPS)), None)
+        self._files = page_files() | {map_file.ADDRESS: map_file.FILE}
         self._streamlit: Any = None
         self._loaded = asyncio.Event()
 
@@ -62,6 +62,8 @@ class Server:
             await self._run(receive, send)
         elif scope["path"] in self._files and scope.get("method") == "GET":
             await self._hand_out(scope["path"], send)
+        elif scope["type"] == "http" and scope["path"].startswith(map_store.PATH):
+            await _hand_out_map(scope["path"], send)
         else:
             await self._loaded.wait()
             await self._streamlit(scope, receive, send)
@@ -69,15 +71,14 @@ class Server:
     async def _hand_out(self, path: str, send: Send) -> None:
         body = self._files[path].read_bytes()
         kind = _KINDS.guess_type(self._files[path].name)[0] or "application/octet-stream"
-        headers = [
-            (b"content-type", kind.encode()),
-            (b"content-length", b"%d" % len(body)),
-            (b"cache-control", _FOR_GOOD if path.startswith("/static/") else b"no-cache"),
-        ]
-        if path == "/" and self._hint is not None:
-            headers.append((b"link", f"<.{self._hint}>; rel=modulepreload".encode()))
-        await send({"type": "http.response.start", "status": 200, "headers": headers})
-        await send({"type": "http.response.body", "body": body})
+        lasting = path.startswith("/static/") or path == map_file.ADDRESS
+        more = []
+        if path == "/":
+            # what draws maps is a megabyte of script, which the page asks for late: at its map
+            more = [(b"link", f"<{map_file.ADDRESS}>; rel=modulepreload".encode())]
+        await _answer(
+            send, 200, kind, body, [(b"cache-control", _FOR_GOOD if lasting else _ASK), *more]
+        )
 
     async def _run(self, receive: Receive, send: Send) -> None:
         """Load Streamlit beside the first answers; stop it at the end."""
@@ -99,6 +100,25 @@ class Server:
             return
         self._loaded.set()
         preload.start()
+
+
+async def _hand_out_map(path: str, send: Send) -> None:
+    found = map_store.STORE.get(path)
+    if found is None:
+        await _answer(send, 404, "text/plain", b"", [(b"cache-control", b"no-store")])
+        return
+    await _answer(send, 200, *found, [(b"cache-control", _OWN_FOR_GOOD)])
+
+
+async def _answer(send: Send, status: int, kind: str, body: bytes, more: list[Header]) -> None:
+    headers = [
+        (b"content-type", kind.encode()),
+        (b"content-length", b"%d" % len(body)),
+        (b"x-content-type-options", b"nosniff"),
+        *more,
+    ]
+    await send({"type": "http.response.start", "status": status, "headers": headers})
+    await send({"type": "http.response.body", "body": body})
 
 
 def page_files() -> dict[str, Path]:

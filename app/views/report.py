@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..show import day, report
+from ..show import day, map_layers, plant_history, report
 from ..state import chosen_day
 from ..words import texts
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def show(choices: Choices) -> None:
     """Show the report, and hand it out."""
-    st.subheader(f"{choices.name}: {texts.REPORT}")
+    plant_history.want(choices, map_layers.day_map(choices))
     st.caption(texts.REPORT_INTRO)
     plan = choices.plan()
     days = [] if choices.season is None else chosen_day.figures_so_far(choices)

@@ -1,4 +1,4 @@
-"""The season: found and inspected by day, what is still out there; recording and undoing."""
+"""The season: found and inspected by day, and what is still out there."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from ..actions import beginning, recording
-from ..show import charts
+from ..actions import beginning
+from ..show import charts, map_layers, plant_history
 from ..state import chosen_day
 from ..words import texts
 
@@ -19,21 +19,15 @@ if TYPE_CHECKING:
 
 
 def show(choices: Choices) -> None:
-    """Show where the season stands, and take in what was found."""
-    st.subheader(f"{choices.name}: {texts.SEASON}")
+    """Show where the season stands."""
+    plant_history.want(choices, map_layers.day_map(choices))
     if choices.season is None:
         st.markdown(texts.NEEDS_SEASON)
         beginning.show(choices)
         return
     days, progress = chosen_day.figures_so_far(choices), chosen_day.progress(choices)
     _figures(choices, days[-1], progress)
-    left, right = st.columns([1, 1])
-    with left:
-        _charts(choices, days, progress)
-    with right:
-        recording.show(choices)
-        with st.expander(texts.BATCHES, expanded=True):
-            recording.show_batches(choices)
+    _charts(choices, days, progress)
 
 
 def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:

@@ -9,8 +9,15 @@ def isolated(name: str) -> str:
 
 
 TITLE = "fieldmon"
-TODAY, MAP, SEASON, SCOUTING, COMPARE = "Today", "Map", "Season", "Scout", "Compare"
-PLOT, REPORT, SIMULATE, STUDY = "Plot & records", "Report", "Simulate", "Study"
+# rooms, and the parts of each
+ROOMS = {"today": "Today", "season": "Season", "ahead": "Plan ahead", "plot": "Plot & data"}
+PARTS_OF = "What to see here"
+PARTS = {
+    "today": "Plan", "scout": "Scout", "record": "Record",
+    "season": "How it goes", "field": "Plants & hot spots", "report": "Report",
+    "compare": "Compare", "simulate": "Simulate",
+}  # fmt: skip
+RESEARCH, REPORT, STUDY = "Research", "Report", "The thesis, without records"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
 SAMPLE_NOTE = "A made-up estate near Paran, to try things out. Nothing of it exists."
 PLOT_FROM = "Plot or season"
@@ -65,26 +72,24 @@ SEVERITIES = {
     "doubtful": "Please look",
 }
 STOPS = "Stops in order"
-LAYERS = "Show"
-LAYER_NAMES = {
-    "plants": "plants",
-    "route": "route",
-    "numbers": "stop numbers",
-    "hot": "hot spots",
-    "records": "records",
-}
 LEGEND_CHANCE = "Chance that a plant is infested"
-LEGEND_ROUTE = (
-    "Route: blue line, arrows in driving direction; green ring: gate, start and end; numbers: stops"
-)
+LEGEND_ROUTE, LEGEND_GATE = "route, arrows show the way", "gate: start and end"
 LEGEND_DAYS, LEGEND_NEVER = "{n} days ago", "never inspected"
-LEGEND_HOT = "Purple outlines: hot spots, where finds cluster more than chance allows"
-LEGEND_RECORDS = "Records: filled where pests were seen, empty where not"
+LEGEND_HOT = "hot spot: finds cluster more than chance allows"
+LEGEND_SEEN, LEGEND_NOT_SEEN = "record: pests seen", "record: none seen"
 LEGEND_STATES = {"found": "found", "clean": "looked clean", "never": "never inspected"}
-LEGENDS = {"route": LEGEND_ROUTE, "hot": LEGEND_HOT, "records": LEGEND_RECORDS}
-LEGEND_TRUTH = "Black dots (white in the dark): infested, not yet found (only a simulation knows)"
-SCALE_FIRST = " (before zooming)"
-SCALE_ALT = "The scale bar is {bar} long; the arrow points north."
+LEGEND_TRUTH = "infested, not yet found (only a simulation knows)"
+# on the map itself, where the browser shows it
+MAP_WORDS = {
+    "zoom_in": "Closer", "zoom_out": "Further", "whole_plot": "The whole plot", "layers": "Layers",
+    "shade": "Plants by", "opacity": "Opacity", "select": "Select plants", "play": "Play the day",
+    "time_of_day": "Time of the day", "picture": "Save a picture", "picture_name": "map.png",
+    "fold": "Fold the panel away", "unfold": "Show the panel", "sheet": "Pull the day's work up",
+    "draw_hint": "Click on the map.", "draw_back": "Back", "draw_drop": "Drop",
+    "draw_done": "Finish",
+    "lasso_hint": "Draw round the plants.", "corners": "{n} point(s)",
+    "scale": "The scale bar is {bar} long; the arrow points north.",
+}  # fmt: skip
 SEASON_INTRO = (
     "A simulated season on this plot. The start is drawn from the chance map; insects spread to "
     "neighbouring plants at night; every sampler meets the same insects. Detection is all finds "
@@ -130,6 +135,10 @@ SEASON_NAMED = (
 SEASON_LONG = "A season's name must have {most} letters at most, but it has {n}."
 
 # -- today
+HEADLINE = (
+    "Inspect {plants} in rows {rows} on {day}, {hours:.1f} h: about {finds:.0f} finds expected."
+)
+HEADLINE_NONE = "Nothing to inspect on {day}."
 BEGIN_TITLE = "Keep this season"
 BEGIN_NOTE = (
     "Begin a season, and everything is kept from here on: routes, what was found, and what that "
@@ -172,6 +181,8 @@ FIXED = "The plants of a season are laid once and for all: its plant numbers sta
 DRAW, DRAW_KIND = "Gate, paths, no-go areas", "A click on the map sets"
 DRAW_KINDS = {"": "nothing", "gate": "the gate", "path": "points of a path",
               "no_go": "corners of a no-go area"}  # fmt: skip
+DRAW_HINTS = {"gate": "Click where the gate is.", "path": "Click along the path.",
+              "no_go": "Click the corners, one way round."}  # fmt: skip
 DRAW_TYPED = "or type positions (lon,lat lon,lat ...)"
 DRAW_ADD, DRAW_DONE, DRAW_UNDO, DRAW_DROP = "Add", "Finish", "Undo the last one", "Drop points"
 DRAW_POINTS = "{n} point(s) so far."
@@ -207,13 +218,12 @@ RECORDS_SHOWN = "{shown} of {all} records shown ({found} with pests, {clean} wit
 UNDATED = "Records without a date are always shown."
 
 # -- the map of the field
-SHADE_BY = "Plants by"
 SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspected",
           "age": "days since inspected"}  # fmt: skip
 MAP_LAYERS = {"route": "route", "numbers": "stop numbers", "hot": "hot spots",
-              "records": "records", "backdrop": "picture"}  # fmt: skip
-MAP_DAY, MAP_CLOCK, PLAY, PAUSE = "Day", "Time of the day", "Play", "Pause"
-ROWS_CLOSE, ROWS_CLOSE_HELP = "Rows shown plant by plant", "Other rows are shown as one picture."
+              "records": "records", "rows": "row numbers", "backdrop": "picture"}  # fmt: skip
+MAP_DAY = "Day"
+BACKDROP_TITLE, HOT_TITLE = "Picture of the ground", "Hot spots"
 BACKDROP = "Picture of the ground (GeoTIFF)"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
 HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
@@ -329,7 +339,7 @@ REPORT_FOUND, REPORT_IN_ROW = "Found that day", "Row {row}"
 REPORT_TICK = "found?"
 SPEED, DETECTS = "Speed", "Finds what is there with a chance of"
 
-PRIOR = "Study, prior"
+PRIOR = "The thesis, with records"
 PRIOR_TITLE = "The thesis's samplers with prior information"
 PRIOR_INTRO = (
     "Chapter 5 of A. Yehoshua's thesis (2023), made again: Dynamic, Naive and Bouncy with the "

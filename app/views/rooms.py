@@ -1,0 +1,29 @@
+"""A room in the panel: its parts side by side, the chosen one below."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from ..state import rooms, widget_memory
+from ..words import texts
+
+if TYPE_CHECKING:
+    from ..state.choices import Choices
+
+
+def show(name: str, choices: Choices) -> None:
+    """Show the chosen part of a room."""
+    parts = rooms.ROOMS[name].parts
+    part = parts[0]
+    if len(parts) > 1:
+        part = widget_memory.show(
+            st.segmented_control, texts.PARTS_OF, list(parts), key=rooms.key(name),
+            default=parts[0], format_func=texts.PARTS.__getitem__, required=True,
+            label_visibility="collapsed", width="stretch",
+        )  # fmt: skip
+    # a box that several parts have begins again with what was chosen, as on another page
+    widget_memory.turn(f"{name} {part}")
+    import_module(f".{part}", __package__).show(choices)

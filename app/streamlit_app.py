@@ -35,6 +35,13 @@ def view(name: str):  # noqa: ANN201 - a page's module
     return importlib.import_module(f".views.{name}", __package__)
 
 
+def links() -> None:
+    """Show the way to the other rooms where the window is too narrow for them at the top."""
+    with st.container(key="links", horizontal=True):
+        for name, page in ROOM_PAGES.items():
+            st.page_link(page, label=texts.ROOMS[name], icon=f":material/{rooms.ROOMS[name].icon}:")
+
+
 def page_of(name: str) -> st.Page:
     """Return the page of a room: what was chosen in the panel, or how to begin."""
 
@@ -53,6 +60,8 @@ def in_panel(name: str) -> None:
     head, said, body, foot = (
         st.container(key=f"panel_{k}") for k in ("head", "said", "body", "foot")
     )
+    with head:
+        links()
     with said:
         waiting = first_screen.Waiting(st.empty())
     preload.start().load(map_sent=waiting.begin())
@@ -100,9 +109,10 @@ def page_prior() -> None:
 plot_source.begin_from_address()
 field_map.clear()
 map_place = st.container(key="map_place")
+ROOM_PAGES = {name: page_of(name) for name in rooms.ROOMS}
 turned = st.navigation(
     {
-        "": [page_of(name) for name in rooms.ROOMS],
+        "": [*ROOM_PAGES.values()],
         texts.RESEARCH: [
             st.Page(page_study, title=texts.STUDY, icon=":material/science:", url_path="study"),
             st.Page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),

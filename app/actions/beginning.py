@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def show(choices: Choices) -> None:
     """Offer to keep what is chosen as a season."""
     with st.form("begin", border=True):
-        st.markdown(f"**{texts.BEGIN_TITLE}**")
+        st.markdown(f"### {texts.BEGIN_TITLE}")
         st.caption(texts.BEGIN_NOTE)
         proposed = f"{choices.plot.field.name} {choices.on.year}"
         st.text_input(texts.SEASON_NAME, proposed, key="season_name")

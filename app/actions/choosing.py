@@ -73,8 +73,8 @@ def _source() -> str:
     if widget_memory.value(plot_source.KEY) not in options:
         st.session_state[plot_source.KEY] = texts.SAMPLE
     chosen = widget_memory.show(
-        st.selectbox, texts.PLOT_FROM, options, key=plot_source.KEY, help=texts.PLOT_FROM_HELP,
-        filter_mode=None,
+        st.selectbox, texts.PLOT_FROM, options, key=plot_source.KEY, filter_mode=None,
+        label_visibility="collapsed",
     )  # fmt: skip
     plot_source.keep_in_address(chosen)
     return chosen
@@ -88,7 +88,7 @@ def _from_season(name: str, foot: DeltaGenerator) -> Choices:
     settings, key, units = season.settings, str(season.path), chosen_units.units()
     day = widget_memory.show(
         st.date_input, texts.DATE, min_value=settings.begins, key=_DAY.format(source=name),
-        default=season.last_date(), format=units.date_format,
+        default=season.last_date(), format=units.date_format, label_visibility="collapsed",
     )  # fmt: skip
     said = tuple(FileMessage(key, _message(kept)) for kept in cached.import_messages(key, season))
     choices = Choices(
@@ -110,14 +110,16 @@ def _message(kept: KeptMessage) -> ImportMessage:
 
 def _from_files(source: str, wait: Wait, foot: DeltaGenerator) -> Choices | None:
     if source == texts.SAMPLE:
-        st.caption(texts.SAMPLE_NOTE)
         files = plot_files.of_sample()
     elif (files := plot_files.of_session()) is None:
         return None
-    outline = plot_files.outline(files, _which)
+    which, when = st.columns([3, 2])
+    with which:
+        outline = plot_files.outline(files, _which)
     wait(outline.field)
     made = plot_files.prepared(files, outline)
-    day = _day(source)
+    with when:
+        day = _day(source)
     with foot:
         robot, sampler = _work()
     return Choices(
@@ -133,7 +135,7 @@ def _today() -> date:
 def _which(file: File, names: list[str]) -> int:
     number = widget_memory.show(
         st.selectbox, texts.WHICH_PLOT, range(len(names)), format_func=names.__getitem__,
-        key=f"feature {file.key}", default=0,
+        key=f"feature {file.key}", default=0, label_visibility="collapsed",
     )  # fmt: skip
     return number or 0
 
@@ -142,7 +144,7 @@ def _day(source: str) -> str:
     first = sample_estate.LAST_DAY if source == texts.SAMPLE else _today()
     day = widget_memory.show(
         st.date_input, texts.DATE, key=_DAY.format(source=source), default=first,
-        format=chosen_units.units().date_format,
+        format=chosen_units.units().date_format, label_visibility="collapsed",
     )  # fmt: skip
     return str(day)
 

@@ -51,7 +51,7 @@ def day_map(
     if play is not None:
         play["key"] = _route_key(choices, route)
     return MapContent(
-        **field_map.of_plot(choices, len(route)), layers=layers, switches=switches(layers, off),
+        **field_map.of_plot(choices, len(route)), layers=layers, switches=switches(layers, off, ("numbers", "rows")),
         shades=shades, legend=legend(choices), play=play,
         labels=[*labels.stops(route), *labels.rows(choices.plot.grid)],
     )  # fmt: skip
@@ -66,13 +66,15 @@ def shaded(choices: Choices, first: str = "chance") -> tuple[Switch, ...]:
     return tuple(Switch(name, texts.SHADES[name], own[name]) for name in names)
 
 
-def switches(layers: list, off: tuple[str, ...] = ()) -> tuple[Switch, ...]:
-    """Return the switches of what is there to be switched."""
+def switches(
+    layers: list, off: tuple[str, ...] = (), written: tuple[str, ...] = ("rows",)
+) -> tuple[Switch, ...]:  # fmt: skip
+    """Return the switches of the layers that there are, and of the labels that are `written`."""
     there = {layer.id for layer in layers}
     return tuple(
         Switch(name, texts.MAP_LAYERS[name], ids, name not in off)
         for name, ids in PARTS.items()
-        if not ids or there.intersection(ids)
+        if there.intersection(ids) or name in written
     )
 
 

@@ -168,7 +168,7 @@ MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {fin
 
 # -- what stands beside a thing on the map that is pointed at
 TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start and end", "path"
-TIP_CHANCE, TIP_STATE = ": {chance:.1%} chance", ": {state}"
+TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
 TIP_HOT = "hot spot: {found} found of {inspected} inspected"
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
 TIP_INFESTED, TIP_HERE, TIP_CORNER = "infested", "here", "corner"

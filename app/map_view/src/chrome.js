@@ -88,7 +88,7 @@ export function legendOf(parts) {
           element("div", { class: "item" }, [sign(kind, colour), element("span", { text })])),
       ].filter(Boolean));
     }
-    return element("div", { class: "part" }, [
+    return element("div", { class: "part scaled" }, [
       element("div", { class: "title", text: title }),
       element("div", { class: "steps" }, items.map(([, colour, text]) => {
         const box = element("span", { class: "step" }, [element("i"), element("span", { text })]);

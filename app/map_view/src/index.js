@@ -191,7 +191,12 @@ class MapPage {
 
   furnish() {
     const { words, switches, shades, legend } = this.data;
-    for (const one of switches ?? []) if (one.off && !this.touched.has(one.key)) this.hidden.add(one.key);
+    for (const { key, off } of switches ?? []) {
+      // what nobody has switched is as each page wants it
+      if (this.touched.has(key)) continue;
+      if (off) this.hidden.add(key);
+      else this.hidden.delete(key);
+    }
     const now = JSON.stringify([words, switches, shades, legend, this.data.select]);
     if (now === this.furnished) return;
     this.furnished = now;

@@ -1,5 +1,8 @@
 // Words and numbers on the map, as the page's own text: any script, any direction, never crowded.
 
+// which switch a kind of label belongs to
+const SWITCH = { leg: "numbers", stop: "numbers", row: "rows" };
+
 // `labels` are {p: [lon, lat], t: text, k: kind, from, to (zooms)}, the most important first.
 export class Labels {
   constructor(place) {
@@ -12,7 +15,7 @@ export class Labels {
     const boxes = [];
     let used = 0;
     for (const { p, t, k, from, to } of labels) {
-      if (hidden.has(k) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99)) continue;
+      if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99)) continue;
       const [x, y] = viewport.project(p);
       if (x < -20 || y < -20 || x > viewport.width + 20 || y > viewport.height + 20) continue;
       const half = 4 * t.length + 7, box = [x - half, y - 10, x + half, y + 10];

@@ -75,7 +75,7 @@ export function pointsOf({ places, ranks, table }, which) {
     length: n,
     attributes: {
       getPosition: { value: positions, size: 2 },
-      getFillColor: { value: colours, size: 4 },
+      getFillColor: { value: colours, size: 4, normalized: true },
     },
   };
 }

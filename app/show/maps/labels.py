@@ -43,10 +43,11 @@ def stops(route: Route) -> list[Label]:
 
 
 def rows(grid: PlantGrid) -> list[Label]:
-    """Return each row's number at its first plant, every tenth row before the others."""
+    """Return each row's number before its first plant, every tenth row before the others."""
     line = grid.row_line[grid.row]
     _, first = np.unique(line, return_index=True)
-    lonlat = np.round(grid.lonlat(first), 7).tolist()
+    before_m = grid.xy_m[first] - [1.5 * grid.plant_spacing_m, 0.0]
+    lonlat = np.round(grid.frame.lonlat(before_m), 7).tolist()
     made = [
         {"p": place, "t": f"{number + 1}", "k": "row"}
         for number, place in zip(line[first].tolist(), lonlat, strict=True)

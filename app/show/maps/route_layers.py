@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pydeck as pdk
 from pydeck import Layer
 
 from ...words import texts
@@ -29,12 +28,12 @@ def route(the_route: Route, *, dark: bool = False) -> list[Layer]:
     return [
         Layer(
             "PathLayer", [{"path": line}], id="casing", get_path="path",
-            get_color=[*(CASING_IN_DARK if dark else CASING), 200], get_width=5,
-            width_units=pdk.types.String("pixels"), joint_rounded=True, cap_rounded=True,
+            get_color=[*(CASING_IN_DARK if dark else CASING), 200], get_width=1.6,
+            width_min_pixels=2.4, width_max_pixels=6, joint_rounded=True, cap_rounded=True,
         ),
         Layer(
             "PathLayer", [{"path": line}], id="route", get_path="path", get_color=colour,
-            get_width=2.5, width_units=pdk.types.String("pixels"), joint_rounded=True,
+            get_width=0.8, width_min_pixels=1.3, width_max_pixels=3, joint_rounded=True,
         ),
         Layer(
             "PolygonLayer", _arrows(the_route), id="arrows", get_polygon="a",

@@ -12,11 +12,13 @@ from shapely import MultiPolygon, box
 from streamlit.testing.v1 import AppTest
 from streamlit.util import calc_hash
 
+from app.state import rooms
+from app.state.map_store import STORE
 from tests.paths import ROOT
 
 ESTATE = ROOT / "sample_data"
 SQUARE = MultiPolygon([box(35.15, 30.36, 35.1506, 30.3606)])
-PAGES = ("today", "map", "scout", "season", "compare", "plot", "report", "simulate")
+PAGES = tuple(part for room in rooms.ROOMS.values() for part in room.parts)
 
 
 def until(is_so, within_s=60.0):
@@ -36,8 +38,10 @@ def opened(season=None):
 
 
 def go(app, page):
-    """Turn to a page, as its link does: the address is bare, and the next run is the page's."""
-    app._page_hash = calc_hash("" if page == "today" else page)
+    """Turn to a part of a room, as its link does: the address is bare, the next run is its own."""
+    room = rooms.room_of(page)
+    app._page_hash = calc_hash("" if room == "today" else room)
+    app.session_state[rooms.key(room)] = page
     app.query_params.clear()
     return app.run()
 
@@ -56,7 +60,11 @@ def press(app, label):
 
 
 def map_of(app):
-    return json.loads(app.get("deck_gl_json_chart")[0].proto.json)
+    """Return what the map's component is sent, with each layer's JSON in its place."""
+    (sent,) = (one.proto for one in app.get("bidi_component") if one.proto.component_name == "fieldmon_map")
+    data = json.loads(sent.json)
+    data["layers"] = [{**one, **json.loads(STORE.get(one["url"])[1])} for one in data["layers"]]
+    return data
 
 
 def row_box(app, name):

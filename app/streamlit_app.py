@@ -47,7 +47,12 @@ def page_of(name: str) -> st.Page:
 
     def run() -> None:
         with st.container(key="panel"), st.container(key=f"room_{name}"):
-            in_panel(name)
+            if name == "plots":
+                links()
+                preload.start().load(map_sent=False)
+                view("plots").show()
+            else:
+                in_panel(name)
 
     return st.Page(
         run, title=texts.ROOMS[name], icon=f":material/{rooms.ROOMS[name].icon}:",
@@ -121,6 +126,8 @@ turned = st.navigation(
     position="top",
 )
 widget_memory.turn(turned.url_path)
+if (room := rooms.turned_to()) is not None:
+    st.switch_page(ROOM_PAGES[room])
 turned.run()
 with map_place:
     field_map.draw()

@@ -135,7 +135,7 @@ def _today() -> date:
 def _which(file: File, names: list[str]) -> int:
     number = widget_memory.show(
         st.selectbox, texts.WHICH_PLOT, range(len(names)), format_func=names.__getitem__,
-        key=f"feature {file.key}", default=0, label_visibility="collapsed",
+        key=plot_source.feature_key(file.key), default=0, label_visibility="collapsed",
     )  # fmt: skip
     return number or 0
 

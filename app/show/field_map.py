@@ -12,8 +12,8 @@ from . import map_view
 from .maps import deck
 
 if TYPE_CHECKING:
-    from .map_view import MapAnswers, MapContent
     from ..state.choices import Choices
+    from .map_view import MapAnswers, MapContent
 
 _WANTED = "map wanted"
 

@@ -17,7 +17,10 @@ _SIZE = 1000.0
 
 def outline(field: Field) -> str:
     """Return the outline as a drawing that fills the free part of the window."""
-    rings = [shapely.get_coordinates(ring) for ring in shapely.get_rings(shapely.get_parts(field.boundary))]
+    rings = [
+        shapely.get_coordinates(ring)
+        for ring in shapely.get_rings(shapely.get_parts(field.boundary))
+    ]
     corners = np.concatenate(rings)
     low, high = corners.min(axis=0), corners.max(axis=0)
     flat = np.array([np.cos(np.deg2rad((low[1] + high[1]) / 2)), 1.0])

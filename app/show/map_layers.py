@@ -51,8 +51,8 @@ def day_map(
     if play is not None:
         play["key"] = _route_key(choices, route)
     return MapContent(
-        **field_map.of_plot(choices, len(route)), layers=layers, switches=switches(layers, off, ("numbers", "rows")),
-        shades=shades, legend=legend(choices), play=play,
+        **field_map.of_plot(choices, len(route)), layers=layers,
+        switches=switches(layers, off, ("numbers", "rows")), shades=shades, legend=legend(choices), play=play,
         labels=[*labels.stops(route), *labels.rows(choices.plot.grid)],
     )  # fmt: skip
 

@@ -38,7 +38,9 @@ _LOADER = """export default (component) => {
   const place = component.parentElement;
   place.wanted = component;
   place.ended = false;
-  import(new URL(%r, location.href).href).then(({ mount }) => { if (!place.ended) place.end = mount(place.wanted); });
+  import(new URL(%r, location.href).href).then(({ mount }) => {
+    if (!place.ended) place.end = mount(place.wanted);
+  });
   return () => { place.ended = true; place.end?.(); };
 }"""
 _component = st.components.v2.component("fieldmon_map", html="", js=_LOADER % ADDRESS)

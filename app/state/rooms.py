@@ -19,11 +19,26 @@ class Room:
 
 #: by their addresses, in the order in which they stand at the top
 ROOMS = {
+    "plots": Room("grid_view", ("plots",)),
     "today": Room("route", ("today", "scout", "record")),
     "season": Room("calendar_month", ("season", "field", "report")),
     "ahead": Room("balance", ("compare", "simulate")),
     "plot": Room("polyline", ("plot",)),
 }
+
+
+_TURN = "turn to"
+
+
+def turn_to(name: str) -> None:
+    """Let a room be turned to in the next run (for callbacks, in which no page can be turned)."""
+    st.session_state[_TURN] = name
+
+
+def turned_to() -> str | None:
+    """Return the room that is to be turned to, once."""
+    name: str | None = st.session_state.pop(_TURN, None)
+    return name
 
 
 def room_of(part: str) -> str:

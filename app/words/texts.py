@@ -10,9 +10,11 @@ def isolated(name: str) -> str:
 
 TITLE = "fieldmon"
 # rooms, and the parts of each
-ROOMS = {"today": "Today", "season": "Season", "ahead": "Plan ahead", "plot": "Plot & data"}
+ROOMS = {"plots": "Plots", "today": "Today", "season": "Season", "ahead": "Plan ahead",
+         "plot": "Plot & data"}  # fmt: skip
 PARTS_OF = "What to see here"
 PARTS = {
+    "plots": "Plots", "plot": "Plot & data",
     "today": "Plan", "scout": "Scout", "record": "Record",
     "season": "How it goes", "field": "Plants & hot spots", "report": "Report",
     "compare": "Compare", "simulate": "Simulate",
@@ -133,6 +135,19 @@ SEASON_NAMED = (
     "no dot in front, but it is {name!r}."
 )
 SEASON_LONG = "A season's name must have {most} letters at most, but it has {n}."
+
+# -- all plots
+PLOTS_TITLE = "{n} plots"
+PLOTS_ALT = "Map of {n} plots: {names}."
+PLOTS_COLUMNS = {"name": "plot", "days_since": "days since seen", "expected": "expected infested"}
+PLOTS_NONE = "not begun"
+PLOTS_STATES = {"fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
+                "late": "a week ago or never", "new": "no season yet"}  # fmt: skip
+PLOTS_TIP = "{name}: {expected:.0f} infested expected, {seen}"
+PLOTS_TIP_NEW = "{name}: no season yet"
+PLOTS_SEEN = {0: "seen today", None: "never seen", "n": "seen {n} days ago"}
+PLOTS_PICK = "Click a plot on the map, or a row here."
+WAYS_IN = {"sample": "Try the sample estate", "file": "Bring a plot of mine"}
 
 # -- today
 HEADLINE = (

@@ -43,12 +43,14 @@ def page(name: str, title: str, icon: str, path: str = "") -> st.Page:
         above = st.container()
         places = (first_screen.places(),) if name == "today" else ()
         preload.start().load(map_sent=bool(places))
-        from .actions.choosing import choose  # noqa: PLC0415 - as just loaded
+        from .actions.choosing import choose, mark_day  # noqa: PLC0415 - as just loaded
         from .state import notices  # noqa: PLC0415
 
         chosen = choose(first_screen.waiting(*places))
         with above:
             notices.show()
+            if chosen.choices is not None:
+                mark_day(chosen.choices)
         if chosen.choices is None:
             view("plot").bring(chosen.problem)
             return

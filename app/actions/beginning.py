@@ -8,7 +8,7 @@ import streamlit as st
 
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 
-from ..state import chosen_day, notices, plot_source, seasons_folder
+from ..state import chosen_day, notices, plot_source, seasons_folder, work_day
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -34,4 +34,6 @@ def _begin(choices: Choices) -> str:
     path = seasons_folder.new_path(name)
     Season.create(path, choices.plot, choices.records, settings, messages, choices.risk)
     plot_source.open_season(name)
+    if choices.on != choices.clock.today():
+        work_day.choose(name, choices.on)  # what is shown stays what it was
     return texts.BEGUN.format(name=texts.isolated(name), path=path)

@@ -13,7 +13,7 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.options import Upload
 from fieldmon.plot.grid import plant_at, row_label
 
-from ..state import browser, chosen_day, notices
+from ..state import chosen_day, notices
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
     from fieldmon.io.readers.inspections import read_inspections  # noqa: PLC0415
 
     options = InspectionOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
-    options = options.choose("day", choices.day)
+    options = options.choose("day", choices.day).on(choices.plot.field)
     read = read_inspections(Upload(name, data), choices.plot.grid, options)
     messages = "".join(f"\n- {message.sentence}" for message in read.messages)
     return _recorded(choices, read.value, name) + messages
@@ -163,7 +163,7 @@ def show_batches(choices: Choices) -> None:
         if not batch.rows:
             continue
         left, right = st.columns([4, 1], vertical_alignment="center")
-        at = browser.local(datetime.fromisoformat(batch.at))
+        at = choices.clock.at(datetime.fromisoformat(batch.at))
         said = texts.BATCHES_SAID[batch.kind].format(
             day=choices.units.day(at.date()), time=f"{at:%H:%M}", n=batch.rows,
             source=texts.isolated(batch.source) if batch.source else "",

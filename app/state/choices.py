@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from datetime import date
 from typing import TYPE_CHECKING
 
+from fieldmon.plot.local_clock import LocalClock, local_clock
+
 from ..words import texts
 from . import browser, cached
 
@@ -43,6 +45,8 @@ class Choices:
         Names the plot before anything was drawn on it.
     risk
         ``(n,)`` risk of the plants from a raster, or None; a season has taken it in.
+    today
+        The date on the plot now; None: that of the day.
     """
 
     key: str
@@ -56,6 +60,7 @@ class Choices:
     season: Season | None = None
     plot_key: str = ""
     risk: cached.Array | None = None
+    today: date | None = None
 
     @property
     def name(self) -> str:
@@ -66,6 +71,16 @@ class Choices:
     def on(self) -> date:
         """Return the day."""
         return date.fromisoformat(self.day)
+
+    @property
+    def is_today(self) -> bool:
+        """Return whether the day is today on the plot."""
+        return self.today is None or self.on == self.today
+
+    @property
+    def clock(self) -> LocalClock:
+        """Return the clock of the plot's time zone."""
+        return local_clock(self.plot.field)
 
     @property
     def revision(self) -> str:

@@ -12,7 +12,10 @@ TITLE = "fieldmon"
 TODAY, MAP, SEASON, SCOUTING, COMPARE = "Today", "Map", "Season", "Scout", "Compare"
 PLOT, REPORT, SIMULATE, STUDY = "Plot & records", "Report", "Simulate", "Study"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
-SAMPLE_NOTE = "A made-up estate near Paran, to try things out. Nothing of it exists."
+SAMPLE_NOTE = (
+    "A made-up estate near Paran, to try things out. Nothing of it exists, and time stands still "
+    "there on the last day of its records."
+)
 PLOT_FROM = "Plot or season"
 PLOT_FROM_HELP = (
     "The sample estate and your own files are only looked at. A season is kept on this machine, "
@@ -42,6 +45,13 @@ HOURS, INSPECTION_S = "Working hours", "Seconds at a plant"
 SAMPLER = "Who chooses the plants"
 SAMPLERS = {name: f"{kind.title}: {kind.does}" for name, kind in of_equal_times().items()}
 DATE = "Day"
+DATE_HELP = "Today by the clock of {zone}, unless you choose another day."
+ZONE_OF_MACHINE = "this computer, since no time zone is known where the plot lies"
+OTHER_DAY = (
+    "This page is about **{day}**, which is not today ({today}). What you record here is recorded "
+    "for {day}."
+)
+BACK_TO_TODAY = "Back to today"
 PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
 FINDS_HELP = (
     "Infested plants on the route, by the chance map, times the chance that an inspection finds "

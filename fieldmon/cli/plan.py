@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -28,7 +27,7 @@ from fieldmon.cli.outputs import ChanceMap, day_in_words, write_chance_map, writ
 from fieldmon.cli.plan_season import plan_season
 from fieldmon.cli.preparing import estate, prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
-from fieldmon.cli.times import clock, day
+from fieldmon.cli.times import WorkStart, clock, day
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -62,9 +61,9 @@ class PlanOptions:
     chance_map: ChanceMap = None
     every_plot: EveryPlot = False
 
-    def begins(self) -> datetime:
-        """Return the local date and time at which the work starts."""
-        return datetime.combine(day(self.on), clock(self.start))
+    def starts(self) -> WorkStart:
+        """Return when the work starts, as it was told."""
+        return WorkStart(day(self.on), clock(self.start))
 
 
 @with_options
@@ -104,11 +103,12 @@ def _plan_one(options: PlanOptions) -> None:
     from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
     from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
 
-    begins, robot = options.begins(), options.worker.robot()
-    on = np.datetime64(begins.date(), "D")
+    robot, starts = options.worker.robot(), options.starts()
     settings = PlanSettings(robot, sampler_of(options.sampler, options.every))
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
+    begins = starts.on_plot(known.plot.field)
+    on = np.datetime64(begins.date(), "D")
     tell_unusable(known.records, on)
     today = first_day(known.plot, known.records, on, settings, known.risk)
     if not len(today.route):
@@ -129,8 +129,10 @@ def _plan_every_plot(options: PlanOptions) -> None:
     from fieldmon.cli.plan_all import Day, plan_all  # noqa: PLC0415
     from fieldmon.planning.batch import Orders  # noqa: PLC0415
 
-    begins, worker = options.begins(), options.worker
+    worker, starts = options.worker, options.starts()
     request, folder = _request_of_all(options), _folder(options.output)
+    plots = estate(request)
+    begins = starts.on_plot(plots.fields[0])
     orders = Orders(
         day=np.datetime64(begins.date(), "D"),
         sampler=options.sampler.value,
@@ -139,7 +141,6 @@ def _plan_every_plot(options: PlanOptions) -> None:
         robot=worker.given(),
         planting=request.planting.given(),
     )
-    plots = estate(request)
     tell_unusable(plots.records.anywhere, orders.day)
     plan_all(plots, orders, Day(plots.records, folder, begins))
 

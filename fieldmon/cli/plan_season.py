@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
-from fieldmon.cli.times import clock, day
+from fieldmon.cli.times import clock, day, day_on
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
 
     _refuse_what_was_chosen(context)
     season = Season(file)
-    on, now = day(options.on), options.now
+    on, now = day_on(season.plot.field, day(options.on)), options.now
     today = season.plan(on, None if now is None else clock(now, "--now"))
     route = today.route
     if not len(route):

@@ -62,7 +62,7 @@ def record(
     options = InspectionOptions(take_doubtful=take_doubtful)
     if on is not None:
         options = options.choose("day", str(day(on)))
-    options = chosen(options, finding_option)
+    options = chosen(options, finding_option).on(kept.plot.field)
     last = None
     for file, inspections in zip(files, _read(kept, files, options), strict=True):
         done = kept.record(inspections, file.name, who)

@@ -35,7 +35,7 @@ def status(
     from fieldmon.monitoring import Season  # noqa: PLC0415
 
     kept = Season(season)
-    now = kept.status(kept.last_date() if on is None else day(on))
+    now = kept.status(day(on) or kept.last_date())
     typer.echo("\n".join(lines(kept, now)))
     if rows:
         _show_rows(kept, now)

@@ -35,6 +35,7 @@ from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.grid import RowLabel, row_label
+from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
@@ -111,13 +112,14 @@ class Season:
         """Begin a season in a new file, whole or not at all; raise `FileProblem` if it exists.
 
         Settings may be given one by one instead, as ``begins=date(2026, 11, 18)`` or
-        ``robot=Robot(hours=4)``; a season begins today unless told otherwise.
+        ``robot=Robot(hours=4)``; a season begins today (in the plot's time zone) unless told
+        otherwise.
 
         `risk` ``(n,)`` is one more chance of being infested at the start, from a raster for
         instance, see `fieldmon.infestation.prior.prior_chance`.
         """
         if settings is None:
-            today = date.today()  # noqa: DTZ011 - the local day
+            today = local_clock(plot.field).today()
             settings = MonitoringSettings(**({"begins": today} | chosen))
         if observations is None:
             observations = Observations.none()

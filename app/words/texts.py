@@ -262,8 +262,26 @@ TAKE_DOUBTFUL = "Take doubtful positions too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
 RESULT, COUNT, RESULTS_OF = "Result", "Count", {0: "clean", 1: "found", 2: "could not inspect"}
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
-RECORD_REST = "So many stops from the first are recorded: clean, unless marked as found."
+RECORD_REST = (
+    "Say how many stops were done, from the first: they are recorded as clean, unless marked as "
+    "found. A mark counts wherever it stands."
+)
 RECORD_STOPS = "Stops done"
+RECORD_UNSAID = (
+    "Something must be said before it is recorded, but no stop is done and none is marked. Say how "
+    "many stops were done, or mark those where pests were found."
+)
+ONE_UNSAID = (
+    "Row, plant and result must be said before they are recorded, but one of them is empty. Fill "
+    "in all three."
+)
+CONTRADICTING = (
+    "{n} results from {source} contradict what is recorded of the same plants and day. Nothing is "
+    "recorded yet, nor are the {others} others. Which holds?"
+)
+AND_MORE = "... and {n} more."
+LEAVE_OUT, CONFIRM = "Leave these out, record {n} others", "Record these {n} too, both hold"
+RECORD_NONE = "Record nothing"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
 BATCHES_SAID = {
     "findings": "{day} {time} · {source} · {n} plant(s)",
@@ -271,6 +289,10 @@ BATCHES_SAID = {
 }
 TYPED_IN, ROUTE_TABLE = "typed in", "route table"
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
+TREAT_UNSAID = (
+    "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
+    "it kills, as on the label or by experience."
+)
 TREAT_BUTTON, TREATED = "Note the treatment", "Treatment noted."
 TREATED_BEFORE = "This treatment was noted already; nothing changed."
 ROW_AGES, DAYS_SINCE, ROW_AXIS = "Days since each row was inspected", "days", "row"

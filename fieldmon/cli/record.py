@@ -21,6 +21,13 @@ if TYPE_CHECKING:
 TakeDoubtful = Annotated[
     bool, typer.Option("--take-doubtful", help="Take doubtful positions at the nearest plant.")
 ]
+Contradicting = Annotated[
+    bool,
+    typer.Option(
+        "--contradicting",
+        help="Record results too that contradict what is recorded of the same plants and day.",
+    ),
+]
 FindingChoices = Annotated[
     list[str] | None,
     typer.Option(
@@ -47,8 +54,12 @@ def record(
     who: Annotated[str, typer.Option(help="Who inspected.")] = "",
     take_doubtful: TakeDoubtful = False,  # noqa: FBT002 - a flag
     finding_option: FindingChoices = None,
+    contradicting: Contradicting = False,  # noqa: FBT002 - a flag
 ) -> None:
     """Record what was found; the same findings twice change nothing.
+
+    What contradicts results recorded of the same plants and day (clean against found) is listed,
+    and nothing is recorded, unless --contradicting is given.
 
     Plants that are not in the files stay unknown. Positions are snapped to the nearest plant;
     doubtful ones are listed and left out, unless --take-doubtful is given.
@@ -63,15 +74,27 @@ def record(
     if on is not None:
         options = options.choose("day", str(day(on)))
     options = chosen(options, finding_option).on(kept.plot.field)
-    last = None
-    for file, inspections in zip(files, _read(kept, files, options), strict=True):
-        done = kept.record(inspections, file.name, who)
+    last, read = None, _read(kept, files, options)
+    if not contradicting:
+        _refuse_contradictions(kept, read)
+    for file, inspections in zip(files, read, strict=True):
+        done = kept.record(inspections, file.name, who, confirmed=True)
         if len(inspections):
             last = max(last or inspections.date.max(), inspections.date.max())
         batch = "" if done.batch is None else f" (batch {done.batch})"
         typer.echo(f"{file.name}: {done.new} new, {done.known} known already{batch}")
     if last is not None:
         typer.echo("\n".join(lines(kept, kept.status(last.item()))))
+
+
+def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:
+    """Refuse files that contradict the season, or one another, before any is recorded."""
+    from fieldmon.monitoring.recorded_before import contradictions  # noqa: PLC0415
+
+    held = season.history.inspections
+    for inspections in read:
+        contradictions(inspections, held).refuse(season.label)
+        held = held.and_those(inspections)
 
 
 def _read(season: Season, files: list[Path], options: InspectionOptions) -> list[Inspections]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass, replace
-from datetime import date
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +29,7 @@ from fieldmon.monitoring import (
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import History, Shift, Treatment
+from fieldmon.monitoring.recorded_before import Contradictions, contradictions, said_before
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
@@ -40,7 +40,7 @@ from fieldmon.plot.local_clock import local_clock
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable
-    from datetime import time
+    from datetime import date, time
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -234,20 +234,46 @@ class Season:
         with self.store.reading() as db:
             return routes.plants(db, day)
 
-    def record(self, inspections: Inspections, source: str = "", who: str = "") -> Recorded:
+    def contradictions(self, inspections: Inspections) -> Contradictions:
+        """Return those that say otherwise than what is recorded of the same plant and day."""
+        return contradictions(inspections, self.history.inspections)
+
+    def record(
+        self,
+        inspections: Inspections,
+        source: str = "",
+        who: str = "",
+        *,
+        confirmed: bool = False,
+    ) -> Recorded:
         """Add inspections; those that the season holds already change nothing.
+
+        Parameters
+        ----------
+        inspections
+            What was found where and when.
+        source, who
+            File or screen it comes from; the person, where the inspections name none.
+        confirmed
+            Whether results count that contradict what is recorded of the same plant and day.
 
         Raises
         ------
+        ContradictionError
+            If there are such results and nobody confirmed them.
         ObservationError
             If a plant is not on this plot, or a result has no date or an impossible one.
         SettingError
             If a date is not of this season.
         """
         with self._lock, self.store.writing() as db:
+            held = self._read(db).history.inspections
+            if not confirmed:
+                contradictions(inspections, held).refuse(self.label)
+            news = inspections.take(~said_before(inspections, held))
             batch = batches.begin(db, "findings", source, who)
             made = inspection_table.rows(
-                inspections, self.plot.grid, self.label, _settings(db), (batch, who)
+                news, self.plot.grid, self.label, _settings(db), (batch, who)
             )
             new = inspection_table.store(db, made)
             batches.end(db, batch, new)

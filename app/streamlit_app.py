@@ -43,6 +43,7 @@ def page(name: str, title: str, icon: str, path: str = "") -> st.Page:
         above = st.container()
         places = (first_screen.places(),) if name == "today" else ()
         preload.start().load(map_sent=bool(places))
+        from .actions.bringing_files import show_left_out  # noqa: PLC0415
         from .actions.choosing import choose, mark_day  # noqa: PLC0415 - as just loaded
         from .state import notices  # noqa: PLC0415
 
@@ -51,6 +52,7 @@ def page(name: str, title: str, icon: str, path: str = "") -> st.Page:
             notices.show()
             if chosen.choices is not None:
                 mark_day(chosen.choices)
+                show_left_out(chosen.choices)
         if chosen.choices is None:
             view("plot").bring(chosen.problem)
             return

@@ -121,7 +121,7 @@ def _from_files(source: str, wait: Wait) -> Choices | None:
     robot, sampler = _work()
     return Choices(
         made.key, made.plot, made.records, made.messages, robot, sampler, str(day),
-        chosen_units.units(), None, outline.key, made.risk, today,
+        chosen_units.units(), None, outline.key, made.risk, today, made.left_out,
     )  # fmt: skip
 
 

@@ -52,8 +52,10 @@ def _show_one(choices: Choices) -> None:
         # empty: what nobody said must not be recorded by one click
         left.number_input(texts.HISTORY_ROW, 1, None, None, key="one_row")
         right.number_input(texts.HISTORY_PLANT, 1, None, None, key="one_plant")
-        st.segmented_control(texts.RESULT, list(texts.RESULTS_OF), default=None,
-                             format_func=texts.RESULTS_OF.__getitem__, key="one_result")  # fmt: skip
+        st.segmented_control(
+            texts.RESULT, list(texts.RESULTS_OF), default=None, key="one_result",
+            format_func=texts.RESULTS_OF.__getitem__,
+        )  # fmt: skip
         st.number_input(texts.COUNT, 0, None, None, key="one_count")
         st.form_submit_button(texts.RECORD_BUTTON, on_click=_record_one, args=(choices,))
 

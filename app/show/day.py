@@ -114,4 +114,6 @@ def reasons(choices: Choices, plan: DayPlan) -> list[str]:
     lately = (done.result == FOUND) & (done.date <= now) & (done.date > now - 7)
     finds = dict(zip(done.plant[lately].tolist(), done.date[lately].tolist(), strict=True))
     on = [texts.WHY_TODAY if day == choices.on else f"{day:%A}" for day in finds.values()]
-    return explain(plan.scene, plan.work, np.array([*finds], np.int32), on)
+    recorded = season.history.recorded
+    seen = None if recorded is None else recorded >= 0
+    return explain(plan.scene, plan.work, np.array([*finds], np.int32), on, seen)

@@ -14,7 +14,8 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.hotspots import HotSpots, hot_spots, record_states
+from fieldmon.infestation import hotspots
+from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.infestation.spread import Spread
 from fieldmon.io import prepare, read
@@ -147,15 +148,15 @@ def chance_map(
 
 
 @st.cache_resource(max_entries=_FEW)
-def recorded_states(key: str, _plot: Plot, _records: Observations) -> NDArray[np.int8]:  # noqa: ARG001
+def newest_records(key: str, _plot: Plot, _records: Observations) -> NewestRecords:  # noqa: ARG001
     """Return what records say of plants; `key` stands for the plot, its records and the day."""
-    return record_states(_plot.grid, _records)
+    return hotspots.newest_records(_plot.grid, _records)
 
 
 @st.cache_resource(max_entries=_FEW)
 def recorded_hot_spots(key: str, _plot: Plot, _records: Observations) -> HotSpots:
     """Return where records cluster; `key` as above."""
-    return hot_spots(_plot.grid, recorded_states(key, _plot, _records))
+    return hot_spots(_plot.grid, newest_records(key, _plot, _records).state)
 
 
 # -- seasons that are kept
@@ -218,7 +219,7 @@ def progress(path: str, revision: str, day: str, _season: Season) -> Progress:  
 def season_hot_spots(path: str, revision: str, day: str, _season: Season) -> HotSpots:  # noqa: ARG001
     """Return where finds cluster on a day of a season."""
     number = _season.settings.day(np.datetime64(day).item())
-    return hot_spots(_season.plot.grid, _season.history.states(number))
+    return hot_spots(_season.plot.grid, _season.history.known(number))
 
 
 @st.cache_resource(max_entries=_MAPS)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
 
     from ..words.units import Units
-    from .brought_files import FileMessage
+    from .brought_files import FileMessage, LeftOut
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +47,8 @@ class Choices:
         ``(n,)`` risk of the plants from a raster, or None; a season has taken it in.
     today
         The date on the plot now; None: that of the day.
+    left_out
+        Files that could not be used: what is shown does without them, and says so.
     """
 
     key: str
@@ -61,6 +63,7 @@ class Choices:
     plot_key: str = ""
     risk: cached.Array | None = None
     today: date | None = None
+    left_out: tuple[LeftOut, ...] = ()
 
     @property
     def name(self) -> str:

@@ -1,4 +1,4 @@
-"""Results that contradict what is recorded, kept until somebody confirms them or leaves them out."""
+"""Results that contradict what is recorded: they wait until somebody confirms them or not."""
 
 from __future__ import annotations
 

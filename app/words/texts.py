@@ -66,6 +66,7 @@ MESSAGES_NONE = "Nothing to report: the files were read as they are."
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
 CHOOSE_QUICK = "Most likely:"
+LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
 UNDO_ANSWER = "Take back: {option} = {value}"
 SEVERITIES = {
     "seen": "Seen",

@@ -70,7 +70,7 @@ def _day_row(history: History, morning: Belief, day: int) -> tuple[object, ...]:
 
 def _write_spots(db: sqlite3.Connection, plot: Plot, history: History, day: int) -> HotSpots:
     grid = plot.grid
-    spots = hot_spots(grid, history.states(day))
+    spots = hot_spots(grid, history.known(day))
     db.execute("DELETE FROM hot_spots")
     rows = []
     for h in range(len(spots)):
@@ -104,7 +104,7 @@ def _write_states(
     rows = zip(
         range(1, len(history.grid) + 1),
         np.round(history.evening(morning, day).chance, 6).tolist(),
-        [STATES[state] for state in history.states(day).tolist()],
+        [STATES[state] for state in history.known(day).tolist()],
         [name.get(last) for last in history.last_inspected(day).tolist()],
         [None if h < 0 else h + 1 for h in spots.of_plant.tolist()],
         strict=True,

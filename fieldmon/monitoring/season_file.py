@@ -12,7 +12,8 @@ import shapely
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.hotspots import record_states
+from fieldmon.infestation.observations import Observations, usable
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.io.writers.geojson import RouteNotes
@@ -125,7 +126,7 @@ class Season:
             observations = Observations.none()
         begins = np.datetime64(settings.begins, "D")
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
-        history = _nothing_yet(plot, settings, prior)
+        history = _nothing_yet(plot, settings, prior, observations)
         first = _Contents("", settings, history, [history.first_morning])
         with Store.new(path) as db:
             tables.write_plot(db, plot)
@@ -405,7 +406,7 @@ class Season:
             settings = _settings(db)
             prior = self._first_morning(settings)
             history = replace(
-                _nothing_yet(self.plot, settings, prior),
+                _nothing_yet(self.plot, settings, prior, self.observations),
                 inspections=inspection_table.load(db, settings.begins),
                 treatments=treatments.load(db, self._inside),
             )
@@ -435,10 +436,18 @@ class Season:
         self._last = None  # the transaction may yet fail
 
 
-def _nothing_yet(plot: Plot, settings: MonitoringSettings, prior: Floats) -> History:
+def _nothing_yet(
+    plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
+) -> History:
     belief = PairApproximation.of(plot.grid, prior)
+    known = usable(records, np.datetime64(settings.begins, "D")).observations
     return History(
-        plot.grid, settings.begins, belief, belief=settings.belief, detection=settings.robot.detects
+        plot.grid,
+        settings.begins,
+        belief,
+        belief=settings.belief,
+        detection=settings.robot.detects,
+        recorded=record_states(plot.grid, known) if len(known) else None,
     )
 
 

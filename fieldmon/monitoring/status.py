@@ -65,7 +65,7 @@ class Status:
             plants=len(history.grid),
             **vars(progress),
             estimate=history.estimate(morning, day),
-            hot_spots=hot_spots(history.grid, history.states(day)),
+            hot_spots=hot_spots(history.grid, history.known(day)),
         )
 
     @property

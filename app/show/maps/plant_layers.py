@@ -167,7 +167,7 @@ def _picture(grid: PlantGrid, shade: Shade) -> Layer:
     return Layer(
         "BitmapLayer",
         None,
-        id="plants",
+        id="plants-picture",  # its own: the page takes a layer of the same id for the same layer
         image=pdk.types.String(uri),
         bounds=raster.corners,
         texture_parameters={"magFilter": "nearest", "minFilter": "nearest"},

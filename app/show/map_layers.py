@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 def plants(choices: Choices, shade_by: str, rows: tuple[int, int] | None = None) -> list:
     """Return the plants' layers, made once for what is known of them, whoever is to go there."""
-    key = f"{choices.key} {choices.revision} {choices.day}"
+    key = f"{choices.key} {choices.revision} {choices.day} {choices.dark}"
     make = partial(_plants, choices, shade_by, rows)
     return cached.layers(f"plants {shade_by} {rows} {key}", make)
 
@@ -31,10 +31,11 @@ def _plants(choices: Choices, shade_by: str, rows: tuple[int, int] | None) -> li
     extra = []
     if shade_by == "chance":
         chance = chosen_day.chance(choices)
-        shade, notes = colours.by_chance(chance), partial(_chances_said, chance)
+        shade, notes = colours.by_chance(chance, dark=choices.dark), partial(_chances_said, chance)
     else:
         state, ages = chosen_day.states(choices), chosen_day.ages(choices)
-        shade = colours.by_state(state) if shade_by == "state" else colours.by_age(ages)
+        by_age = partial(colours.by_age, ages, dark=choices.dark)
+        shade = colours.by_state(state) if shade_by == "state" else by_age()
         extra = plant_layers.finds(grid, state)
         notes = partial(states_said, state)
     layers = [plant_layers.plants(grid, shade, notes)]

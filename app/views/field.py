@@ -35,7 +35,7 @@ def show(choices: Choices) -> None:
     with left:
         choices = playback.day(choices)
         playback.show(choices, _layers(choices, shade, shown, rows), on="route" in shown)
-        _legend(shade)
+        _legend(shade, dark=choices.dark)
         field_map.signs(shown)
     with right:
         plant_history.show(choices)
@@ -64,11 +64,11 @@ def _layers(choices: Choices, shade: str, shown: list[str], rows: tuple[int, int
     return map_layers.with_marks(choices, layers, shown) + plant_history.layers(choices)
 
 
-def _legend(shade: str) -> None:
+def _legend(shade: str, *, dark: bool) -> None:
     if shade == "chance":
-        html = legends.chance_legend()
+        html = legends.chance_legend(dark=dark)
     elif shade == "state":
         html = legends.state_legend(texts.LEGEND_STATES)
     else:
-        html = legends.age_legend(texts.LEGEND_NEVER, texts.LEGEND_DAYS)
+        html = legends.age_legend(texts.LEGEND_NEVER, texts.LEGEND_DAYS, dark=dark)
     st.markdown(f"**{texts.SHADES[shade].capitalize()}**{html}", unsafe_allow_html=True)

@@ -34,7 +34,8 @@ def show(choices: Choices, places: Places) -> None:
     with places.picture:
         field_map.draw(choices, _layers(choices, plan, shown), "map", chart=places.chart)
     handing_out.show(choices, plan)
-    st.markdown(f"**{texts.LEGEND_CHANCE}**{legends.chance_legend()}", unsafe_allow_html=True)
+    legend = legends.chance_legend(dark=choices.dark)
+    st.markdown(f"**{texts.LEGEND_CHANCE}**{legend}", unsafe_allow_html=True)
     field_map.signs(shown)
     if choices.season is None:
         beginning.show(choices)

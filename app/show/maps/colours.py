@@ -17,6 +17,11 @@ CHANCE_COLOURS: tuple[Colour, ...] = (
     *((255, 250, 220), (254, 227, 145), (254, 178, 76), (240, 120, 40), (210, 55, 30)),
     *((150, 10, 40), (70, 0, 30)),
 )
+# on a dark page it is the other way round: the more likely, the brighter
+CHANCE_IN_DARK: tuple[Colour, ...] = (
+    *((64, 54, 64), (98, 58, 78), (146, 62, 78), (196, 78, 64), (236, 122, 48)),
+    *((252, 182, 70), (255, 244, 170)),
+)
 FOUND: Colour = (213, 30, 30)
 CLEAN: Colour = (90, 160, 230)
 NEVER: Colour = (150, 150, 145)
@@ -33,6 +38,9 @@ OUTLINE_IN_DARK: Colour = (190, 200, 190)
 AGE_FROM = (0, 1, 3, 7, 14)
 AGE_COLOURS: tuple[Colour, ...] = (
     (217, 240, 163), (120, 198, 121), (49, 163, 84), (0, 104, 55), (0, 50, 30),
+)  # fmt: skip
+AGE_IN_DARK: tuple[Colour, ...] = (
+    (34, 74, 48), (40, 108, 64), (56, 154, 88), (128, 204, 128), (224, 244, 172),
 )  # fmt: skip
 _EMPTY = 30  # opacity of a plant never inspected: an outline with next to nothing in it
 
@@ -54,10 +62,10 @@ class Shade:
         return cls(table, rank.astype(np.uint8))
 
 
-def by_chance(chance: NDArray[np.float64]) -> Shade:
+def by_chance(chance: NDArray[np.float64], *, dark: bool = False) -> Shade:
     """Return plants shaded by their chance of infestation, in the legend's classes."""
     rank = np.searchsorted(CHANCE_FROM, chance, side="right") - 1
-    return Shade.of([*CHANCE_COLOURS], rank)
+    return Shade.of([*(CHANCE_IN_DARK if dark else CHANCE_COLOURS)], rank)
 
 
 def by_state(state: NDArray[np.int8]) -> Shade:
@@ -65,10 +73,10 @@ def by_state(state: NDArray[np.int8]) -> Shade:
     return Shade.of([(*NEVER, _EMPTY), CLEAN, FOUND], state + np.int8(1))
 
 
-def by_age(days: NDArray[np.integer]) -> Shade:
+def by_age(days: NDArray[np.integer], *, dark: bool = False) -> Shade:
     """Return plants shaded by the days since they were inspected; -1 (never): an empty ring."""
     rank = np.searchsorted(AGE_FROM, days, side="right")
-    return Shade.of([(*NEVER, _EMPTY), *AGE_COLOURS], rank)
+    return Shade.of([(*NEVER, _EMPTY), *(AGE_IN_DARK if dark else AGE_COLOURS)], rank)
 
 
 def plain(n: int) -> Shade:

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .colours import AGE_COLOURS, AGE_FROM, CHANCE_COLOURS, CHANCE_FROM, CLEAN, FOUND, NEVER
+from .colours import (
+    AGE_COLOURS,
+    AGE_FROM,
+    AGE_IN_DARK,
+    CHANCE_COLOURS,
+    CHANCE_FROM,
+    CHANCE_IN_DARK,
+    CLEAN,
+    FOUND,
+    NEVER,
+)
 
 if TYPE_CHECKING:
     from .colours import Colour
@@ -43,7 +53,7 @@ def state_legend(names: dict[str, str]) -> str:
     return legend(items, signs=("find", "dot", "ring"))
 
 
-def age_legend(never: str, days: str) -> str:
+def age_legend(never: str, days: str, *, dark: bool = False) -> str:
     """Return the legend of the days since the last inspection."""
     tops = [*AGE_FROM[1:], None]
     names = [
@@ -51,15 +61,17 @@ def age_legend(never: str, days: str) -> str:
                     else f"{low}+")
         for low, top in zip(AGE_FROM, tops, strict=True)
     ]  # fmt: skip
-    items = [*zip(AGE_COLOURS, names, strict=True), (NEVER, never)]
+    shades = AGE_IN_DARK if dark else AGE_COLOURS
+    items = [*zip(shades, names, strict=True), (NEVER, never)]
     return legend(items, signs=("square",) * len(names) + ("ring",))
 
 
-def chance_legend() -> str:
+def chance_legend(*, dark: bool = False) -> str:
     """Return the legend of the chance classes."""
     tops = [*CHANCE_FROM[1:], None]
     names = [
         f"{low * 100:g}-{high * 100:g} %" if high else f"over {low * 100:g} %"
         for low, high in zip(CHANCE_FROM, tops, strict=True)
     ]
-    return legend(list(zip(CHANCE_COLOURS, names, strict=True)))
+    shades = CHANCE_IN_DARK if dark else CHANCE_COLOURS
+    return legend(list(zip(shades, names, strict=True)))

@@ -41,11 +41,33 @@ def test_a_plant_never_inspected_is_an_empty_ring_by_age_too():
     )
 
 
-def test_classes_grow_darker_so_that_they_are_told_apart_without_hue():
-    weights = np.array([0.2126, 0.7152, 0.0722])
-    for classes in (colours.CHANCE_COLOURS, colours.AGE_COLOURS):
-        light = (np.array(classes) / 255) ** 2.2 @ weights
-        assert (np.diff(light) < 0).all()
+def light(classes):
+    """Return the relative luminance of colours."""
+    return (np.array(classes) / 255) ** 2.2 @ np.array([0.2126, 0.7152, 0.0722])
+
+
+@pytest.mark.parametrize(
+    ("page", "classes"),
+    [
+        ((255, 255, 255), colours.CHANCE_COLOURS),
+        ((255, 255, 255), colours.AGE_COLOURS),
+        ((18, 24, 26), colours.CHANCE_IN_DARK),
+        ((18, 24, 26), colours.AGE_IN_DARK),
+    ],
+)
+def test_classes_stand_out_from_the_page_more_and_more_and_without_hue(page, classes):
+    high = np.maximum(light(classes), light([page])) + 0.05
+    contrast = high / (np.minimum(light(classes), light([page])) + 0.05)
+    assert (np.diff(contrast) > 0).all()
+    assert contrast[-1] > 10, "the most likely are the most visible"
+    assert contrast[0] > 1.04
+
+
+def test_a_dark_page_has_the_same_classes():
+    for by, values in ((colours.by_chance, [0.0, 0.03, 0.9]), (colours.by_age, [0, 5, 40])):
+        day, night = by(np.array(values)), by(np.array(values), dark=True)
+        assert day.rank.tolist() == night.rank.tolist()
+        assert shaded(day)[-1] != shaded(night)[-1]
 
 
 def test_plain_plants_have_one_colour():

@@ -14,6 +14,9 @@ def signs(html):
 def test_every_class_of_chance_has_its_edges_and_its_colour():
     made = signs(legends.chance_legend())
     assert [colour for colour, _ in made] == [str(colour) for colour in colours.CHANCE_COLOURS]
+    dark = signs(legends.chance_legend(dark=True))
+    assert [colour for colour, _ in dark] == [str(colour) for colour in colours.CHANCE_IN_DARK]
+    assert [text for _, text in dark] == [text for _, text in made]
     assert [text for _, text in made] == [
         "0-1 %", "1-2 %", "2-5 %", "5-10 %", "10-25 %", "25-50 %", "over 50 %"
     ]  # fmt: skip

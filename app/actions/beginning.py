@@ -28,7 +28,9 @@ def show(choices: Choices) -> None:
 @notices.reporting
 def _begin(choices: Choices) -> str:
     name = st.session_state["season_name"].strip()
-    settings = MonitoringSettings(choices.on, chosen_day.STARTS, choices.robot, choices.sampler)
+    settings = MonitoringSettings(
+        choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior
+    )
     said = [one.message for one in choices.messages]
     messages = [KeptMessage("import", str(m.severity), m.feature, m.sentence) for m in said]
     path = seasons_folder.new_path(name)

@@ -16,6 +16,7 @@ from fieldmon.plot.local_clock import local_clock
 from fieldmon.samplers import USUAL
 
 from ..state import (
+    assumptions,
     cached,
     chosen_units,
     plot_files,
@@ -92,7 +93,7 @@ def _from_season(name: str) -> Choices:
     said = tuple(FileMessage(key, _message(kept)) for kept in cached.import_messages(key, season))
     choices = Choices(
         key, season.plot, season.observations, said, settings.robot, settings.sampler, str(day),
-        units, season, key, today=calendar.today,
+        units, season, key, today=calendar.today, prior=settings.prior,
     )  # fmt: skip
     changing.show(name, season)
     return choices
@@ -122,6 +123,7 @@ def _from_files(source: str, wait: Wait) -> Choices | None:
     return Choices(
         made.key, made.plot, made.records, made.messages, robot, sampler, str(day),
         chosen_units.units(), None, outline.key, made.risk, today, made.left_out,
+        assumptions.prior(),
     )  # fmt: skip
 
 

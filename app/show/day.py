@@ -13,8 +13,9 @@ from fieldmon.infestation.inspections import FOUND
 from fieldmon.planning.explain import explain
 from fieldmon.plot.grid import row_label
 
-from ..state import chosen_day
+from ..state import assumptions, chosen_day
 from ..words import texts
+from .assumed import mark
 
 if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
@@ -39,12 +40,18 @@ def stops(choices: Choices, plan: DayPlan) -> pd.DataFrame:
 def route_figures(choices: Choices, plan: DayPlan) -> None:
     """Show the figures to decide by."""
     route, n = plan.route, len(choices.plot.grid)
-    finds = route.expected_found
+    taken = assumptions.of(choices)
+    rows, speed = ("row_spacing_m", "plant_spacing_m"), "speed_m_s"
+    for_finds = (*rows, "background_chance", "rate_per_day", "detects")
     with st.container(horizontal=True):
-        st.metric(texts.PLANTS_TO_INSPECT, f"{len(route):,} / {n:,}", width="content")
-        st.metric(texts.TIME, f"{route.end_s / 3600:.1f} h", width="content")
-        st.metric(texts.DRIVE, choices.units.metres(route.drive_m), width="content")
-        st.metric(texts.FINDS, f"{finds:.1f}", help=texts.FINDS_HELP, width="content")
+        st.metric(mark(texts.PLANTS_TO_INSPECT, taken, rows), f"{len(route):,} / {n:,}",
+                  width="content")  # fmt: skip
+        st.metric(mark(texts.TIME, taken, (*rows, speed)), f"{route.end_s / 3600:.1f} h",
+                  width="content")  # fmt: skip
+        st.metric(mark(texts.DRIVE, taken, rows), choices.units.metres(route.drive_m),
+                  width="content")  # fmt: skip
+        st.metric(mark(texts.FINDS, taken, for_finds), f"{route.expected_found:.1f}",
+                  help=texts.FINDS_HELP, width="content")  # fmt: skip
 
 
 def said_of_day(choices: Choices, plan: DayPlan) -> None:

@@ -124,27 +124,28 @@ def plot_around(
 def day_plan(
     key: str,
     day: str,
-    robot: Robot,
-    sampler_name: str,
+    settings: PlanSettings,
+    sampler_name: str,  # noqa: ARG001 - whom the settings hold
     _plot: Plot,
     _known: tuple[Observations, Array | None],
 ) -> DayPlan:
     """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
-    chance = chance_map(key, day, _plot, _known)
-    return plan_from(_plot, chance, PlanSettings(robot, sampler(sampler_name)))
+    chance = chance_map(key, day, settings.prior, _plot, _known)
+    return plan_from(_plot, chance, settings)
 
 
 @st.cache_resource(max_entries=_FEW)
 def chance_map(
     key: str,  # noqa: ARG001
     day: str,
+    prior: PriorSettings,
     _plot: Plot,
     _known: tuple[Observations, Array | None],
 ) -> Array:
     """Return the chance map of a day, whoever is to work on it; `key` as above."""
     records, at_risk = _known
     on = np.datetime64(day, "D")
-    return prior_chance(_plot.grid, _plot.field, records, on, PriorSettings(), at_risk)
+    return prior_chance(_plot.grid, _plot.field, records, on, prior, at_risk)
 
 
 @st.cache_resource(max_entries=_FEW)

@@ -6,7 +6,10 @@ from dataclasses import dataclass
 from datetime import date
 from typing import TYPE_CHECKING
 
+from fieldmon.infestation.prior import PriorSettings
+from fieldmon.planning.plan import PlanSettings
 from fieldmon.plot.local_clock import LocalClock, local_clock
+from fieldmon.samplers import sampler
 
 from ..words import texts
 from . import browser, cached
@@ -47,6 +50,8 @@ class Choices:
         ``(n,)`` risk of the plants from a raster, or None; a season has taken it in.
     today
         The date on the plot now; None: that of the day.
+    prior
+        How records become chances; a season has its own.
     left_out
         Files that could not be used: what is shown does without them, and says so.
     """
@@ -64,6 +69,7 @@ class Choices:
     risk: cached.Array | None = None
     today: date | None = None
     left_out: tuple[LeftOut, ...] = ()
+    prior: PriorSettings = PriorSettings()
 
     @property
     def name(self) -> str:
@@ -100,7 +106,8 @@ class Choices:
         if self.season is not None:
             return cached.season_plan(self.key, self.revision, self.day, self.season)
         known = self.records, self.risk
-        return cached.day_plan(self.key, self.day, self.robot, self.sampler, self.plot, known)
+        settings = PlanSettings(self.robot, sampler(self.sampler), self.prior)
+        return cached.day_plan(self.key, self.day, settings, self.sampler, self.plot, known)
 
 
 @dataclass(frozen=True, eq=False)

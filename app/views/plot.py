@@ -11,6 +11,7 @@ from fieldmon.errors import PlotError
 
 from ..actions import bringing_files, drawing, rasters
 from ..show import field_map, plot_figures
+from ..show.assumed import sentence
 from ..show.maps import marks
 from ..show.records import records_until
 from ..state import chosen_day, plot_files, plot_source
@@ -58,6 +59,7 @@ def show(choices: Choices) -> None:
                 st.markdown(f"- {message}")
     with left:
         plot_figures.show(choices.plot, choices.units)
+        st.caption(sentence(choices.plot.assumed, choices.units))
         _map(choices)
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..actions import beginning, handing_out
+from ..actions import assuming, beginning, handing_out
 from ..show import day, field_map, map_layers
 from ..show.maps import legends
 from ..state import widget_memory
@@ -25,6 +25,7 @@ def show(choices: Choices, places: Places) -> None:
     places.heading.subheader(f"{choices.name} · {choices.units.day(choices.day)}")
     with places.figures:  # one place above the map, however much is said there
         day.route_figures(choices, plan)
+        assuming.show(choices)
         day.said_of_day(choices, plan)
     shown = widget_memory.show(
         st.pills, texts.LAYERS, list(texts.LAYER_NAMES), key="layers",

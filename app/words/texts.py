@@ -57,6 +57,22 @@ FINDS_HELP = (
     "Infested plants on the route, by the chance map, times the chance that an inspection finds "
     "them."
 )
+ASSUMED = "\\* assumed: {what}."
+ASSUMED_WHAT = {
+    "row_spacing_m": "rows {value} apart",
+    "plant_spacing_m": "plants {value} apart",
+    "background_chance": "{value} % of plants infested where nothing is known",
+    "speed_m_s": "{value} km/h",
+    "detects": "an inspection finds {value} % of what is there",
+    "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
+}
+ASSUMED_CHANGE, ASSUMED_USE = "Change", "Use these"
+ASSUMED_NOTHING = "Nothing is assumed: all of it was said, or stands in your files."
+ASSUMED_ROBOT = "Who inspects, how long and how thoroughly is chosen on the left."
+ASSUMED_LAID = "Rows and plants were laid when the season began and stay as they are."
+ASSUMED_CHANGED = "The season reckons with these from its first morning on."
+BACKGROUND = "Plants infested where nothing is known (%)"
+BACKGROUND_HELP = "Far from records, edges and paths. Leave it empty for our guess."
 DOWNLOAD = "Download the route (GeoJSON)"
 NO_STOPS = (
     "The working day is too short to reach a plant and come back. Give more hours on the left."

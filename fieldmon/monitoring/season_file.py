@@ -29,12 +29,14 @@ from fieldmon.monitoring import (
 )
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
-from fieldmon.monitoring.history import History, Shift, Treatment
+from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
 from fieldmon.monitoring.recorded_before import Contradictions, contradictions, said_before
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
+from fieldmon.planning.assumptions import assumed_by
 from fieldmon.planning.plan import plan_in
+from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.grid import RowLabel, row_label
 from fieldmon.plot.local_clock import local_clock
 
@@ -159,6 +161,15 @@ class Season:
     def history(self) -> History:
         """Return all that happened so far."""
         return self._now().history
+
+    def assumed(self) -> tuple[Assumed, ...]:
+        """Return what the season's figures rest on though nobody said it."""
+        settings = self.settings
+        made = assumed_by(self.plot.assumed, settings.prior, settings.robot)
+        rate = settings.belief.spread.rate_per_day
+        if rate != BeliefSettings().spread.rate_per_day:
+            return made
+        return (*made, Assumed("rate_per_day", rate))
 
     @cached_property
     def label(self) -> RowLabel:

@@ -69,7 +69,7 @@ def layer(app, name):
 
 
 def metric(app, label):
-    return next(m.value for m in app.metric if m.label == label)
+    return next(m.value for m in app.metric if m.label.removesuffix(" *") == label)
 
 
 def heading(app):

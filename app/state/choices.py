@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import date
 from typing import TYPE_CHECKING
 
@@ -69,7 +69,7 @@ class Choices:
     risk: cached.Array | None = None
     today: date | None = None
     left_out: tuple[LeftOut, ...] = ()
-    prior: PriorSettings = PriorSettings()
+    prior: PriorSettings = field(default_factory=PriorSettings)
 
     @property
     def name(self) -> str:

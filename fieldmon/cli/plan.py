@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import tell_unusable
+from fieldmon.cli.messages import tell_assumed, tell_unusable
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
     Every,
@@ -101,6 +101,7 @@ def _plan_one(options: PlanOptions) -> None:
     import numpy as np  # noqa: PLC0415
 
     from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
+    from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
     from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
 
     robot, starts = options.worker.robot(), options.starts()
@@ -117,6 +118,7 @@ def _plan_one(options: PlanOptions) -> None:
             f"{robot.hours:g} h are not. Give more --hours."
         )
     typer.echo(day_in_words(today.route))
+    tell_assumed(assumed_by((), settings.prior, robot))
     notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
     write_routes(replace(today.route, notes=notes), options.output)
     write_chance_map(options.chance_map, known.plot, today.chance)

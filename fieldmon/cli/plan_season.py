@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from fieldmon.cli.messages import tell_assumed
 from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
 from fieldmon.cli.times import clock, day, day_on
 from fieldmon.errors import SettingError
@@ -37,6 +38,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     seen = season.history.on(today.scene.day)
     done = f"{len(seen)} done, " if len(seen) else ""
     typer.echo(f"{on}: {done}{day_in_words(route)}")
+    tell_assumed(season.assumed())
     write_routes(route, options.output)
     write_chance_map(options.chance_map, season.plot, today.chance)
 

@@ -21,20 +21,26 @@ if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
 
     from ..state.choices import Choices
+    from ..state.chosen_day import DayRoute
 
 
-def stops(choices: Choices, plan: DayPlan) -> pd.DataFrame:
-    """Return the stops in order, as a table."""
-    label = row_label(choices.plot.grid, plan.route.plant)
-    gone = pd.to_timedelta(plan.route.arrive_s.round(), unit="s")
-    starts = pd.Timestamp(chosen_day.starts(choices, plan))
+def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
+    """Return the stops of a day's route in order, as a table."""
+    route = shown.route
+    label = row_label(choices.plot.grid, route.plant)
+    gone = pd.to_timedelta(route.arrive_s.round(), unit="s")
+    starts = pd.Timestamp(shown.begins)
     columns = {
         texts.COLUMN_ARRIVE: (starts + gone).strftime("%H:%M:%S"),
         texts.COLUMN_ROW: label.line,
         texts.COLUMN_PLANT: label.number,
-        texts.COLUMN_CHANCE: (100 * plan.route.chance).round(1),
+        texts.COLUMN_CHANCE: (100 * route.chance).round(1),
     }
-    return pd.DataFrame(columns, pd.RangeIndex(1, len(plan.route) + 1, name="stop"))
+    if shown.worked:
+        done = choices.season.history.inspections.on(choices.on)
+        was = dict(zip(done.plant.tolist(), done.result.tolist(), strict=True))
+        columns[texts.REPORT_WAS] = [texts.HISTORY_RESULTS[was[p]] for p in route.plant.tolist()]
+    return pd.DataFrame(columns, pd.RangeIndex(1, len(route) + 1, name="stop"))
 
 
 def route_figures(choices: Choices, plan: DayPlan) -> None:

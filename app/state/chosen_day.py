@@ -29,10 +29,11 @@ STARTS = time(6, 0)
 
 @dataclass(frozen=True, eq=False)
 class DayRoute:
-    """A route on the map, and the local time at which it starts."""
+    """A route on the map, the local time at which it starts, and whether it was worked."""
 
     route: Route
     begins: datetime
+    worked: bool = False
 
 
 def starts(choices: Choices, plan: DayPlan) -> datetime:
@@ -48,7 +49,8 @@ def route(choices: Choices) -> DayRoute:
     if season is not None and (not len(plan.route) or choices.on < season.last_date()):
         done = cached.worked(choices.key, choices.revision, choices.day, season)
         if len(done):
-            return DayRoute(done, datetime.combine(choices.on, season.settings.starts))
+            begins = datetime.combine(choices.on, season.settings.starts)
+            return DayRoute(done, begins, worked=True)
     return DayRoute(plan.route, starts(choices, plan))
 
 

@@ -27,6 +27,7 @@ def show(choices: Choices) -> None:
         return
     days, progress = chosen_day.figures_so_far(choices), chosen_day.progress(choices)
     _figures(choices, days[-1], progress)
+    _again(progress)
     assuming.show(choices)
     left, right = st.columns([1, 1])
     with left:
@@ -49,6 +50,14 @@ def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
         st.metric(f"{texts.DETECTED}{star}", f"{detected:.0f} %", width="content")
         st.metric(texts.INSPECTED_EVER, f"{progress.inspected:,} / {plants:,}", width="content")
         st.metric(f"{texts.CLEAN_CHANCE}{star}", f"{now.chance_clean:.1%}", width="content")
+
+
+def _again(progress: Progress) -> None:
+    """Say why the days' finds are more than the plants found, where they are."""
+    if progress.finds > progress.found:
+        again = progress.finds - progress.found
+        said = texts.FOUND_AGAIN.format(finds=progress.finds, plants=progress.found, again=again)
+        st.caption(said)
 
 
 def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> None:

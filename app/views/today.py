@@ -9,7 +9,8 @@ import streamlit as st
 from ..actions import assuming, beginning, handing_out
 from ..show import day, field_map, map_layers
 from ..show.maps import legends
-from ..state import widget_memory
+from ..state import chosen_day, widget_memory
+from ..state.chosen_day import DayRoute
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -48,7 +49,8 @@ def show(choices: Choices, places: Places) -> None:
                 st.markdown("\n".join(f"- {sentence}" for sentence in said))
     if len(plan.route):
         with st.expander(texts.STOPS):
-            st.dataframe(day.stops(choices, plan), height=300)
+            planned = DayRoute(plan.route, chosen_day.starts(choices, plan))
+            st.dataframe(day.stops(choices, planned), height=300)
 
 
 def _layers(choices: Choices, plan: DayPlan, shown: list[str]) -> list:

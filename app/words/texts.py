@@ -245,6 +245,10 @@ BACKDROP = "Picture of the ground (GeoTIFF)"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
 HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
 HISTORY_NOW = "Chance of infestation now: **{now:.1%}** (first morning: {first:.1%})."
+HISTORY_TREATED = (
+    "It was found infested, and in this season plants found are taken as treated at once: from "
+    "then on it counts as clean, and its chance grows again as insects come from its neighbours."
+)
 HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
 HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}
@@ -270,6 +274,10 @@ EXPECTED_LEFT, EXPECTED_HELP = "Still infested", "Expected, and the interval tha
 CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Found of all expected"
 INSPECTED_EVER = "Inspected so far"
 FOUND_EVER = "Found"
+FOUND_AGAIN = (
+    "{finds} finds on {plants} plants: {again} of them on plants that had been found on an earlier "
+    "day. Days count finds, the figure above counts plants."
+)
 RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
 RECORD_FILE_IN = (
     "The route file with its found column filled in, or any table or GPS file with plants, rows "
@@ -314,6 +322,7 @@ TREAT_BUTTON, TREATED = "Note the treatment", "Treatment noted."
 TREATED_BEFORE = "This treatment was noted already; nothing changed."
 ROW_AGES, DAYS_SINCE, ROW_AXIS = "Days since each row was inspected", "days", "row"
 OUT_AXIS, INSPECTED_AXIS, DATE_AXIS = "still infested (expected)", "inspected", "day"
+ROW_NEVER, ROW_TODAY = "never", "today"
 NEVER_ROWS = "{n} of {all} rows were never inspected."
 
 # -- scouting
@@ -375,7 +384,9 @@ REPORT_DOWNLOAD, REPORT_PREVIEW = "Download the report (HTML)", "Preview"
 REPORT_TITLE = "Plot {name}, {day}"
 REPORT_SETTINGS, REPORT_ROUTE, REPORT_SEASON = "Settings", "Route", "Season so far"
 REPORT_FOUND, REPORT_IN_ROW = "Found that day", "Row {row}"
-REPORT_TICK = "found?"
+REPORT_TICK, REPORT_WAS = "found?", "result"
+REPORT_WORKED = "Route as it was worked"
+PLANTS_INSPECTED = "Plants inspected"
 SPEED, DETECTS = "Speed", "Finds what is there with a chance of"
 
 PRIOR = "Study, prior"

@@ -104,7 +104,7 @@ def tell_assumed(assumed: Iterable[Assumed]) -> None:
     """Print what the figures of a day rest on though nobody said it, in one line."""
     said = "; ".join(str(one).removeprefix("guessed: ") for one in assumed)
     if said:
-        typer.echo(f"guessed: {said}", err=True)
+        typer.echo(f"assumed: {said}", err=True)
 
 
 def tell_unusable(records: Observations, day: np.datetime64) -> None:

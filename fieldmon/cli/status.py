@@ -59,6 +59,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     yield (
         f"  inspected so far       {now.inspected:6d} of {now.plants} plants "
         f"({100 * now.inspected / now.plants:.0f} %), {now.found} found infested"
+        + (f" ({now.finds} finds: some again)" if now.finds > now.found else "")
     )
     yield (
         f"  expected still there   {ahead.expected:6.1f} ({ahead.low} to {ahead.high} with a "

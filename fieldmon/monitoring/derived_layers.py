@@ -60,9 +60,10 @@ def refresh(
 def _day_row(history: History, morning: Belief, day: int) -> tuple[object, ...]:
     today = history.on(day).inspected
     estimate = history.estimate(morning, day)
-    found = int(np.count_nonzero(today.result == FOUND))
+    plants = today.plant, today.plant[today.result == FOUND]
+    inspected, found = (len(np.unique(which)) for which in plants)
     return (
-        *(day, str(history.date_of(day)), len(today), found),
+        *(day, str(history.date_of(day)), inspected, found),
         *(estimate.expected, estimate.low, estimate.high, estimate.chance_clean),
         map_digest(morning.chance),
     )

@@ -19,6 +19,7 @@ from ..state import (
     assumptions,
     cached,
     chosen_units,
+    kept_files,
     plot_files,
     plot_source,
     row_settings,
@@ -108,6 +109,7 @@ def _message(kept: KeptMessage) -> ImportMessage:
 
 
 def _from_files(source: str, wait: Wait) -> Choices | None:
+    kept_files.sync()
     if source == texts.SAMPLE:
         st.caption(texts.SAMPLE_NOTE)
         files = plot_files.of_sample()

@@ -30,8 +30,9 @@ WHICH_PLOT = "Which plot"
 EMPTY = (
     "### Bring a plot\n"
     "Drop a plot file into the first box: the boundary of a real plot, in any coordinate system. "
-    "Records of pests are welcome but not needed. Your files stay in this session; nobody else "
-    "sees them, and nothing is sent anywhere. Or choose the sample estate on the left first."
+    "Records of pests are welcome but not needed. Your files stay on this machine, for a day after "
+    "you saw them last; nobody sees them who does not have this page's address, and nothing is "
+    "sent anywhere. Or choose the sample estate on the left first."
 )
 ROWS = "Rows"
 BEARING = "Row bearing (degrees from north)"

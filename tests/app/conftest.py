@@ -5,6 +5,7 @@ import shutil
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 import urllib.request
 from datetime import UTC, datetime, timedelta
@@ -28,6 +29,13 @@ def clock(monkeypatch):
     begins, looks = datetime(2026, 11, 16, 4, tzinfo=UTC), count()
     now = lambda: begins + timedelta(seconds=5 * next(looks))  # noqa: E731
     monkeypatch.setattr(local_clock, "utc_now", now)
+
+
+@pytest.fixture(autouse=True)
+def files_folder(tmp_path_factory, monkeypatch):
+    """Let each test keep files of its own."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path_factory.mktemp("files")))
+    return tempfile.gettempdir()
 
 
 @pytest.fixture

@@ -58,6 +58,8 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
                   width="content")  # fmt: skip
         st.metric(mark(texts.FINDS, taken, for_finds), f"{route.expected_found:.1f}",
                   help=texts.FINDS_HELP, width="content")  # fmt: skip
+    if len(route) and route.bound_sentence:
+        st.caption(route.bound_sentence, help=texts.BOUND_HELP)
 
 
 def said_of_day(choices: Choices, plan: DayPlan) -> None:

@@ -74,6 +74,10 @@ ASSUMED_LAID = "Rows and plants were laid when the season began and stay as they
 ASSUMED_CHANGED = "The season reckons with these from its first morning on."
 BACKGROUND = "Plants infested where nothing is known (%)"
 BACKGROUND_HELP = "Far from records, edges and paths. Leave it empty for our guess."
+BOUND_HELP = (
+    "Whichever plants it visits, no route fixed in the morning can expect more finds. Who plans "
+    "again after each find may find more."
+)
 DOWNLOAD = "Download the route (GeoJSON)"
 NO_STOPS = (
     "The working day is too short to reach a plant and come back. Give more hours on the left."

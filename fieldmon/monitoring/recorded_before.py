@@ -88,8 +88,8 @@ def contradictions(brought: Inspections, held: Inspections) -> Contradictions:
         if result != SKIPPED and (was := results.get(same)) and result not in was
     ]
     at = np.array([k for k, _ in found], np.intp)
-    was = np.array([result for _, result in found], np.int8)
-    return Contradictions(at, brought.plant[at], brought.date[at], was, brought.result[at])
+    recorded = np.array([result for _, result in found], np.int8)
+    return Contradictions(at, brought.plant[at], brought.date[at], recorded, brought.result[at])
 
 
 def said_before(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:
@@ -98,12 +98,13 @@ def said_before(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:
     A route file filled in after its stops were tapped in the field says what is known.
     """
     results = _held(held, brought)
-    bare = np.isnan(brought.second) & np.isnan(brought.count)
+    bare: NDArray[np.bool_] = np.isnan(brought.second) & np.isnan(brought.count)
     same = [
         result in results.get(key, ())
         for key, result in zip(_keys(brought), brought.result.tolist(), strict=True)
     ]
-    return bare & np.array(same, bool)
+    bare &= np.array(same, bool)
+    return bare
 
 
 def _held(held: Inspections, brought: Inspections) -> dict[Key, set[int]]:

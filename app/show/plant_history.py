@@ -10,6 +10,7 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
+from fieldmon.infestation.inspections import FOUND
 from fieldmon.plot.grid import plant_at, row_label
 
 from ..state import chosen_day, widget_memory
@@ -72,8 +73,18 @@ def show(choices: Choices) -> None:
     if choices.season is not None:
         first = chosen_day.morning(choices, str(choices.season.settings.begins))
     st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
+    if _taken_as_treated(choices, plant):
+        st.caption(texts.HISTORY_TREATED)
     for line in _inspections(choices, plant):
         st.markdown(line)
+
+
+def _taken_as_treated(choices: Choices, plant: int) -> bool:
+    """Return whether a plant was found, and so is taken as free of pests from then on."""
+    season = choices.season
+    if season is None or not season.settings.belief.treated:
+        return False
+    return bool(season.history.states(season.settings.day(choices.on))[plant] == FOUND)
 
 
 def _inspections(choices: Choices, plant: int) -> list[str]:

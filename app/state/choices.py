@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import date
 from typing import TYPE_CHECKING
+
+from fieldmon.infestation.prior import PriorSettings
+from fieldmon.planning.plan import PlanSettings
+from fieldmon.plot.local_clock import LocalClock, local_clock
+from fieldmon.samplers import sampler
 
 from ..words import texts
 from . import browser, cached
@@ -18,7 +23,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
 
     from ..words.units import Units
-    from .brought_files import FileMessage
+    from .brought_files import FileMessage, LeftOut
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +48,12 @@ class Choices:
         Names the plot before anything was drawn on it.
     risk
         ``(n,)`` risk of the plants from a raster, or None; a season has taken it in.
+    today
+        The date on the plot now; None: that of the day.
+    prior
+        How records become chances; a season has its own.
+    left_out
+        Files that could not be used: what is shown does without them, and says so.
     """
 
     key: str
@@ -56,6 +67,9 @@ class Choices:
     season: Season | None = None
     plot_key: str = ""
     risk: cached.Array | None = None
+    today: date | None = None
+    left_out: tuple[LeftOut, ...] = ()
+    prior: PriorSettings = field(default_factory=PriorSettings)
 
     @property
     def name(self) -> str:
@@ -66,6 +80,16 @@ class Choices:
     def on(self) -> date:
         """Return the day."""
         return date.fromisoformat(self.day)
+
+    @property
+    def is_today(self) -> bool:
+        """Return whether the day is today on the plot."""
+        return self.today is None or self.on == self.today
+
+    @property
+    def clock(self) -> LocalClock:
+        """Return the clock of the plot's time zone."""
+        return local_clock(self.plot.field)
 
     @property
     def revision(self) -> str:
@@ -82,7 +106,8 @@ class Choices:
         if self.season is not None:
             return cached.season_plan(self.key, self.revision, self.day, self.season)
         known = self.records, self.risk
-        return cached.day_plan(self.key, self.day, self.robot, self.sampler, self.plot, known)
+        settings = PlanSettings(self.robot, sampler(self.sampler), self.prior)
+        return cached.day_plan(self.key, self.day, settings, self.sampler, self.plot, known)
 
 
 @dataclass(frozen=True, eq=False)

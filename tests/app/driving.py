@@ -30,11 +30,11 @@ def until(is_so, within_s=60.0):
         time.sleep(0.005)
 
 
-def opened(season=None):
+def opened(season=None, **address):
     """Return a new session of the app, with a season open if one is named."""
     app = AppTest.from_file(str(ROOT / "app" / "streamlit_app.py"), default_timeout=120)
-    if season is not None:
-        app.query_params["season"] = season
+    for word, value in ({} if season is None else {"season": season}).items() | address.items():
+        app.query_params[word] = value
     return app.run()
 
 
@@ -92,7 +92,7 @@ def plants(app, name="plants-chance"):
 
 
 def metric(app, label):
-    return next(m.value for m in app.metric if m.label == label)
+    return next(m.value for m in app.metric if m.label.removesuffix(" *") == label)
 
 
 def plot_name(app):

@@ -36,7 +36,8 @@ def test_plants_by_state_say_it_and_finds_have_rings(choices):
 
 def test_plants_by_age_have_the_colours_of_ages(choices):
     assert {tuple(row["c"][:3]) for row in points(map_layers.plants(choices, "age"))} == {
-        colours.NEVER
+        colours.NEVER,
+        colours.AGE_COLOURS[2],  # records of six days ago
     }
 
 

@@ -24,7 +24,8 @@ def test_a_plot_of_many_plants_travels_as_one_picture(app, tmp_path):
     upload(app, plot=("plot.zip", zipped(tmp_path, square(size=0.006))))
     go(app, "today")
     assert not app.exception
-    assert layer(app, "plants")["@@type"] == "BitmapLayer"
+    assert layer(app, "plants-picture")["@@type"] == "BitmapLayer"
+    assert layer(app, "plants") is None, "another plot's points must not be taken for this picture"
     assert len(json.dumps(map_of(app))) < 1_000_000
     go(app, "map")
     first, last = app.slider(key="rows_close").value

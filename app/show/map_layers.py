@@ -118,8 +118,8 @@ def _plants(choices: Choices) -> list:
     by_chance = colours.by_chance(chance, dark=choices.dark)
     ages = []
     if choices.season is not None:
-        ages = [plant_layers.plants(grid, colours.by_age(chosen_day.ages(choices), dark=choices.dark),
-                                    name="plants-age")]  # fmt: skip
+        by_age = colours.by_age(chosen_day.ages(choices), dark=choices.dark)
+        ages = [plant_layers.plants(grid, by_age, name="plants-age")]
     return [
         plant_layers.plants(grid, by_chance, PlantNotes(chance), "plants-chance"),
         *ages,

@@ -102,7 +102,9 @@ def plot_name(app):
 
 def headline(app):
     """Return the sentence at the top of Today: what there is to do."""
-    (said,) = (text.value for text in app.markdown if text.value.startswith(("Inspect ", "Nothing")))
+    (said,) = (
+        text.value for text in app.markdown if text.value.startswith(("Inspect ", "Nothing"))
+    )
     return said
 
 

@@ -11,9 +11,9 @@ from app.state import kept_files
 from app.words import texts
 from tests.app.driving import (
     go,
-    plot_name,
     metric,
     opened,
+    plot_name,
     press,
     row_box,
     square,

@@ -88,9 +88,7 @@ BOUND_HELP = (
     "again after each find may find more."
 )
 DOWNLOAD = "Download the route (GeoJSON)"
-NO_STOPS = (
-    "The working day is too short to reach a plant and come back. Give more hours below, under Who inspects."
-)
+NO_STOPS = "The working day is too short to reach a plant and come back. Give more hours below, under Who inspects."
 MESSAGES = "What the import found"
 MESSAGES_NONE = "Nothing to report: the files were read as they are."
 CHOOSE = "The file leaves this open"
@@ -169,6 +167,17 @@ SEASON_NAMED = (
     "no dot in front, but it is {name!r}."
 )
 SEASON_LONG = "A season's name must have {most} letters at most, but it has {n}."
+
+# -- plants picked on the map
+PICKED = "**{plants} selected.**"
+PICKED_ALSO, PICKED_NEVER, PICKED_NONE = "Inspect these too", "Not these", "Clear"
+WISHED, UNWISHED = "{plants} to be inspected besides.", "{plants} left out."
+WISHES_UNMET = (
+    "{plants} of those are not on the route: the hours, or the strategy, do not allow it."
+)
+    "{plants} of those are not on the route: the hours, or the strategy, do not allow it."
+)
+WISHES_DROP = "As planned before"
 
 # -- all plots
 PLOTS_TITLE = "{n} plots"

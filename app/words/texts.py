@@ -88,7 +88,10 @@ BOUND_HELP = (
     "again after each find may find more."
 )
 DOWNLOAD = "Download the route (GeoJSON)"
-NO_STOPS = "The working day is too short to reach a plant and come back. Give more hours below, under Who inspects."
+NO_STOPS = (
+    "The working day is too short to reach a plant and come back. Give more hours below, under "
+    "Who inspects."
+)
 MESSAGES = "What the import found"
 MESSAGES_NONE = "Nothing to report: the files were read as they are."
 CHOOSE = "The file leaves this open"
@@ -173,8 +176,6 @@ PICKED = "**{plants} selected.**"
 PICKED_ALSO, PICKED_NEVER, PICKED_NONE = "Inspect these too", "Not these", "Clear"
 WISHED, UNWISHED = "{plants} to be inspected besides.", "{plants} left out."
 WISHES_UNMET = (
-    "{plants} of those are not on the route: the hours, or the strategy, do not allow it."
-)
     "{plants} of those are not on the route: the hours, or the strategy, do not allow it."
 )
 WISHES_DROP = "As planned before"

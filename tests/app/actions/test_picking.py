@@ -1,6 +1,7 @@
 """Plants selected on the map are inspected too, or not, and it is said what cannot be."""
 
 import numpy as np
+import pytest
 import streamlit as st
 
 from app.actions import picking
@@ -58,7 +59,8 @@ def test_wishes_are_of_one_day_and_one_plot(session):
     assert wishes.picked("there") == ()
 
 
-def test_a_plant_that_is_not_there_is_not_selected(session):  # noqa: ARG001 - the state of a page
+@pytest.mark.usefixtures("session")
+def test_a_plant_that_is_not_there_is_not_selected():
     choices = chosen(a_plot(0.001))
     picking.take(choices, [0, len(choices.plot.grid)])
     assert wishes.picked(choices.place) == (0,)

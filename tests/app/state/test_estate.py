@@ -8,7 +8,7 @@ import pytest
 from app.state import estate, plot_source, seasons_folder
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
-from tests.app.driving import opened
+from tests.app.driving import broken, opened
 from tests.monitoring.seasons import BEGINS, a_season
 
 
@@ -42,11 +42,12 @@ def test_a_season_says_how_long_ago_it_was_seen_and_what_is_expected(a_kept_seas
 
 @pytest.mark.usefixtures("session", "a_kept_season")
 def test_a_season_that_cannot_be_opened_is_said_and_hides_no_other():
-    (seasons_folder.path_of("Pond").with_name("Broken.gpkg")).write_bytes(b"no season")
+    broken(seasons_folder.path_of("Broken"))
     found, problems = estate.plots(BEGINS)
     assert [plot.name for plot in found] == ["Pond"]
     (said,) = problems
     assert said.startswith("Broken: ")
+    assert "newer" in said
 
 
 def test_a_plot_that_is_opened_is_the_one_that_is_planned():

@@ -1,7 +1,7 @@
 """All plots: on the map and in a table, to be opened; and the ways to begin."""
 
 from app.words import texts
-from tests.app.driving import go, map_of, texts_of
+from tests.app.driving import broken, go, map_of, texts_of
 
 
 def test_the_sample_s_plots_are_on_the_map_and_in_the_table(app):
@@ -23,7 +23,7 @@ def test_a_season_is_among_the_plots_with_its_state(season_app):
 
 
 def test_a_season_that_cannot_be_opened_is_said(app, seasons_folder):
-    (seasons_folder / "Broken.gpkg").write_bytes(b"no season")
+    broken(seasons_folder / "Broken.gpkg")
     go(app, "plots")
     assert not app.exception
     assert "Broken" in texts_of(app)

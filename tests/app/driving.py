@@ -157,7 +157,7 @@ def broken(path):
     """Leave a season that a later fieldmon wrote, as far as its file says."""
     a_season(path)
     with closing(sqlite3.connect(path)) as file:
-        file.execute("UPDATE fieldmon SET value = '99' WHERE name = 'version'")
+        file.execute("UPDATE fieldmon SET value = '99' WHERE key = 'version'")
         file.commit()
 
 

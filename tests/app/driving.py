@@ -103,6 +103,12 @@ def plot_name(app):
     return map_of(app)["alt"].removeprefix("Map of plot ").split(": ")[0]
 
 
+def heading(app):
+    """Return which plot and which day the page is about."""
+    day = next(box.value for box in app.date_input if box.key.startswith("day "))
+    return f"{plot_name(app)} · {day}"
+
+
 def headline(app):
     """Return the sentence at the top of Today: what there is to do."""
     (said,) = (

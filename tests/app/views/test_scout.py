@@ -10,13 +10,16 @@ from tests.app.driving import go, layer, map_of, plants, tap, texts_of
 
 def test_found_plants_and_clean_ones_show_on_the_map(season_app, season):
     go(season_app, "scout")
+    before = plants(season_app, "plants-state")
     tap(season_app, "scout_found")
     tap(season_app, "scout_clean")
     found, clean = season().history.inspections.plant.tolist()
     shown = plants(season_app, "plants-state")
-    assert shown.of_colour(colours.FOUND).tolist() == [found]
-    assert shown.of_colour(colours.CLEAN).tolist() == [clean]
-    assert len(layer(season_app, "finds0")["data"]) == 1
+    for plant, colour in ((found, colours.FOUND), (clean, colours.CLEAN)):
+        was, is_now = (set(made.of_colour(colour).tolist()) for made in (before, shown))
+        assert plant in is_now
+        assert was - {found, clean} == is_now - {plant}
+    assert len(layer(season_app, "finds0")["data"]) == len(shown.of_colour(colours.FOUND))
 
 
 def test_the_map_shows_states_first_and_rings_the_next_plant(season_app, season):

@@ -13,6 +13,7 @@ import pytest
 import shapely
 from PIL import Image
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
+from shapely import box
 
 from app.show.maps import colours, deck
 from fieldmon.infestation.inspections import Inspections
@@ -181,7 +182,7 @@ def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address,
     project.record(Inspections.of(plants, result, np.datetime64("2026-11-16")), "test")
     later = found[:30] + 80
     project.record(Inspections.of(later, np.ones(30, int), np.datetime64("2026-11-17")), "test")
-    page.goto(f"{address}/map?season=States")
+    page.goto(f"{address}/map?season=States&day=2026-11-17")
     page.wait_for_selector(f"{MAP} canvas", timeout=120_000)
     page.get_by_text("found, clean, never inspected", exact=True).click()
     page.get_by_role("button", name="route", exact=True).click()
@@ -370,6 +371,61 @@ def test_three_samplers_are_compared_while_the_page_stays_usable(page, address):
     assert 3 <= int(done.split(" ")[0]) < 180
 
 
+def contrast(button):
+    """Return the contrast of a button's words with its ground (WCAG's formula)."""
+    shades = button.evaluate(
+        """b => { const words = b.querySelector("p") || b; let ground = b, shade;
+        do { shade = getComputedStyle(ground).backgroundColor; ground = ground.parentElement; }
+        while (ground && /, 0\\)$/.test(shade));
+        return [getComputedStyle(words).color, shade]; }"""
+    )
+    light = []
+    for shade in shades:
+        parts = np.array([float(n) for n in re.findall(r"[\d.]+", shade)[:3]]) / 255
+        linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+        light.append(float(linear @ [0.2126, 0.7152, 0.0722]) + 0.05)
+    return max(light) / min(light)
+
+
+def test_no_page_has_an_error_on_its_console(page, address):
+    said = []
+    page.on("console", lambda one: said.append(one.text) if one.type == "error" else None)
+    for name in ("", "map", "scout", "season", "compare", "plot", "report", "simulate", "study",
+                 "prior"):  # fmt: skip
+        page.goto(f"{address}/{name}")
+        page.wait_for_selector(IDLE, timeout=240_000)
+    assert said == []
+
+
+def test_plants_are_there_after_a_plot_that_is_drawn_as_a_picture(page, address, tmp_path):
+    large = box(35.15, 30.36, 35.158, 30.366)
+    small = box(35.17, 30.36, 35.1708, 30.3607)
+    both = gpd.GeoDataFrame({"name": ["large", "small"]}, geometry=[large, small], crs=4326)
+    file = {"name": "two.zip", "mimeType": "", "buffer": zipped(tmp_path, both)}
+    page.goto(f"{address}/plot?season=My+own+files")
+    boxes = page.locator("[data-testid=stFileUploaderDropzoneInput]")
+    boxes.nth(0).wait_for(state="attached", timeout=60_000)
+    boxes.nth(0).set_input_files([file])
+    page.get_by_role("heading", name="large").wait_for(timeout=60_000)
+    page.get_by_role("link", name="Map", exact=True).click()
+    plants_show(page)
+    page.get_by_role("combobox", name="Which plot").click()
+    page.get_by_role("option", name="small").click()
+    page.get_by_role("heading", name="small").wait_for(timeout=60_000)
+    plants_show(page)
+
+
+def plants_show(page):
+    """Wait until a good part of the map has the colours of chances."""
+    shades = np.array(colours.CHANCE_COLOURS)
+
+    def coloured(image):
+        near = [(np.abs(image - shade).max(axis=2) < 12).mean() for shade in shades[1:4]]
+        return sum(near) > 0.02
+
+    becomes(page, coloured, "the plants")
+
+
 @pytest.mark.parametrize("page", [PHONE], indirect=True)
 def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, served_seasons):
     plot, _ = sample()
@@ -383,9 +439,12 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
         assert size["height"] >= 48
         assert size["x"] + size["width"] <= 390
         before = place.inner_text()
+        button.hover()
+        assert contrast(button) > 4.5, f"{name} cannot be read while it is pointed at"
         button.click()
         page.wait_for_function("t => document.querySelector('h2')?.innerText !== t", arg=before,
                                timeout=60_000)  # fmt: skip
+        assert contrast(button) > 4.5, f"{name} cannot be read after it was tapped"
     assert project.history.inspections.result.tolist() == [0, 1, 2]
     here = place.inner_text()
     page.reload()

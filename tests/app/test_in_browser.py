@@ -9,6 +9,7 @@ import geopandas as gpd
 import numpy as np
 import pytest
 import shapely
+from shapely import box
 
 from app.show.maps import colours
 from app.state import rooms
@@ -457,6 +458,65 @@ def test_three_samplers_are_compared_while_the_page_stays_usable(page, address):
     assert 3 <= int(done.split(" ")[0]) < 180
 
 
+def contrast(button):
+    """Return the contrast of a button's words with its ground (WCAG's formula)."""
+    shades = button.evaluate(
+        """b => { const words = b.querySelector("p") || b; let ground = b, shade;
+        do { shade = getComputedStyle(ground).backgroundColor; ground = ground.parentElement; }
+        while (ground && /, 0\\)$/.test(shade));
+        return [getComputedStyle(words).color, shade]; }"""
+    )
+    light = []
+    for shade in shades:
+        parts = np.array([float(n) for n in re.findall(r"[\d.]+", shade)[:3]]) / 255
+        linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+        light.append(float(linear @ [0.2126, 0.7152, 0.0722]) + 0.05)
+    return max(light) / min(light)
+
+
+def test_no_page_has_an_error_on_its_console(page, address):
+    said = []
+    page.on("console", lambda one: said.append(one.text) if one.type == "error" else None)
+    for name in ("", *rooms.ROOMS, "study", "prior"):
+        page.goto(f"{address}/{name}")
+        page.wait_for_selector(IDLE, timeout=240_000)
+    assert said == []
+
+
+def test_plants_are_there_after_a_plot_that_is_drawn_as_a_picture(page, address, tmp_path):
+    large = box(35.15, 30.36, 35.158, 30.366)
+    small = box(35.17, 30.36, 35.1708, 30.3607)
+    both = gpd.GeoDataFrame({"name": ["large", "small"]}, geometry=[large, small], crs=4326)
+    file = {"name": "two.zip", "mimeType": "", "buffer": zipped(tmp_path, both)}
+    page.goto(f"{address}/plot?season=My+own+files")
+    boxes = page.locator("[data-testid=stFileUploaderDropzoneInput]")
+    boxes.nth(0).wait_for(state="attached", timeout=60_000)
+    boxes.nth(0).set_input_files([file])
+    of_plot(page, "large")
+    open_room(page, texts.ROOMS["today"])
+    plants_show(page)
+    page.get_by_role("combobox", name="Which plot").click()
+    page.get_by_role("option", name="small").click()
+    of_plot(page, "small")
+    plants_show(page)
+
+
+def of_plot(page, name):
+    """Wait until the map is of a plot."""
+    page.get_by_role("img", name=f"Map of plot {name}").wait_for(timeout=60_000)
+
+
+def plants_show(page):
+    """Wait until a good part of the map has the colours of chances."""
+    shades = np.array(colours.of_chance())
+
+    def coloured(image):
+        near = [(np.abs(image - shade).max(axis=2) < 12).mean() for shade in shades[1:4]]
+        return sum(near) > 0.02
+
+    becomes(page, coloured, "the plants")
+
+
 @pytest.mark.parametrize("page", [PHONE], indirect=True)
 def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, served_seasons):
     plot, _ = sample()
@@ -473,9 +533,12 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
         assert size["height"] >= 48
         assert size["x"] + size["width"] <= 390
         before = place.inner_text()
+        button.hover()
+        assert contrast(button) > 4.5, f"{name} cannot be read while it is pointed at"
         button.click()
         page.wait_for_function("t => document.querySelector('h2')?.innerText !== t", arg=before,
                                timeout=60_000)  # fmt: skip
+        assert contrast(button) > 4.5, f"{name} cannot be read after it was tapped"
     assert project.history.inspections.result.tolist() == [0, 1, 2]
     here = place.inner_text()
     page.reload()

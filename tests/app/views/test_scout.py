@@ -15,10 +15,14 @@ def test_found_plants_and_clean_ones_show_on_the_map(season_app, season):
     tap(season_app, "scout_clean")
     found, clean = season().history.inspections.plant.tolist()
     shown = plants(season_app, "plants-state")
-    for plant, colour in ((found, colours.FOUND), (clean, colours.CLEAN)):
-        was, is_now = (set(made.of_colour(colour).tolist()) for made in (before, shown))
-        assert plant in is_now
-        assert was - {found, clean} == is_now - {plant}
+    known = season().history.known(0)
+    assert known[found] == 1
+    for colour, state in ((colours.FOUND, 1), (colours.CLEAN, 0)):
+        assert shown.of_colour(colour).tolist() == np.flatnonzero(known == state).tolist()
+    assert set(before.of_colour(colours.NEVER)) - {found, clean} == set(
+        shown.of_colour(colours.NEVER)
+    )
+    assert clean not in shown.of_colour(colours.NEVER)
     assert len(layer(season_app, "finds0")["data"]) == len(shown.of_colour(colours.FOUND))
 
 

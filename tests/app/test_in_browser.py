@@ -511,7 +511,7 @@ def plants_show(page):
     shades = np.array(colours.of_chance())
 
     def coloured(image):
-        near = [(np.abs(image - shade).max(axis=2) < 12).mean() for shade in shades[1:4]]
+        near = [(np.abs(image - one).max(axis=2) < 12).mean() for one in shades[1:4]]
         return sum(near) > 0.02
 
     becomes(page, coloured, "the plants")

@@ -467,8 +467,8 @@ def contrast(button):
         return [getComputedStyle(words).color, shade]; }"""
     )
     light = []
-    for shade in shades:
-        parts = np.array([float(n) for n in re.findall(r"[\d.]+", shade)[:3]]) / 255
+    for one in shades:
+        parts = np.array([float(n) for n in re.findall(r"[\d.]+", one)[:3]]) / 255
         linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
         light.append(float(linear @ [0.2126, 0.7152, 0.0722]) + 0.05)
     return max(light) / min(light)

@@ -58,7 +58,7 @@ def test_plants_by_age_have_the_colours_of_the_days_since(season):
         on = BEGINS.replace(day=BEGINS.day + day)
         made = plants_in(of_name(map_layers.plants(in_season(season, on)), "plants-age"))
         shown[day] = set(made.of_colour(colours.AGE_COLOURS[0 if day == 0 else 2]).tolist())
-        never = np.flatnonzero(chosen_day.states(in_season(season, on)) == -1)
+        never = np.flatnonzero(chosen_day.ages(in_season(season, on)) == -1)
         assert made.of_colour(colours.NEVER).tolist() == never.tolist()
     # seen on the first day, and three days ago on the fourth
     assert set(season.history.inspections.plant.tolist()) <= shown[0] & shown[3]

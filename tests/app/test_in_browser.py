@@ -322,11 +322,13 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     boxes.nth(0).set_input_files([plot])
     page.get_by_text("The file leaves this open").wait_for(timeout=60_000)
     ask = page.get_by_role("combobox", name="The file leaves this open: crs")
+    ask.click()
     ask.fill("EPSG:25831")
-    ask.press("Enter")
+    page.get_by_role("option", name="EPSG:25831").click()
     page.get_by_role("button", name="Use this").click()
-    named = page.get_by_role("img", name="Map of plot")
-    named.and_(page.get_by_role("img", name="מטע הדרים")).wait_for(timeout=60_000)
+    page.get_by_role("img", name="Map of plot מטע הדרים").wait_for(timeout=60_000)
+    west, _, east, _ = own.to_crs(4326).total_bounds
+    assert view(page)["longitude"] == pytest.approx((west + east) / 2, abs=2 * (east - west))
     box = {"name": "mites.csv", "mimeType": "", "buffer": mites.encode()}
     boxes.nth(1).set_input_files([box])
     page.get_by_text("1 of 1 records shown").wait_for(timeout=60_000)

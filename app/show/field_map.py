@@ -12,6 +12,8 @@ from . import map_view
 from .maps import deck
 
 if TYPE_CHECKING:
+    from fieldmon.plot.field import Field
+
     from ..state.choices import Choices
     from .map_view import MapAnswers, MapContent
 
@@ -51,5 +53,9 @@ def of_plot(choices: Choices, stops: int = 0) -> dict[str, object]:
     alt = texts.MAP_ALT.format(
         name=choices.plot.field.name, plants=len(grid), finds=finds, stops=stops
     )
-    place = choices.plot_key or choices.key
-    return {"place": place, "bounds": deck.of_grid(grid), "alt": alt}
+    return {"place": _place(choices.plot.field), "bounds": deck.of_grid(grid), "alt": alt}
+
+
+def _place(field: Field) -> str:
+    """Return what a plot and the season that begins on it have in common: so the view stays."""
+    return " ".join([field.name, *(f"{edge:.5f}" for edge in deck.of_field(field))])

@@ -68,7 +68,7 @@ def in_panel(name: str) -> None:
     with head:
         links()
     with said:
-        waiting = first_screen.Waiting(st.empty())
+        waiting = first_screen.FirstScreen(st.empty())
     preload.start().load(map_sent=waiting.begin())
     from .actions.choosing import choose  # noqa: PLC0415 - as just loaded
     from .state import notices  # noqa: PLC0415
@@ -81,7 +81,7 @@ def in_panel(name: str) -> None:
             view("plot").bring(chosen.problem)
             return
         try:
-            view("rooms").show(name, chosen.choices)
+            view("rooms").show(name, chosen.choices, view)
         except FieldmonError as error:
             st.error(str(error))
 

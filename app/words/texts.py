@@ -21,12 +21,7 @@ PARTS = {
 }  # fmt: skip
 RESEARCH, REPORT, STUDY = "Research", "Report", "The thesis, without records"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
-SAMPLE_NOTE = "A made-up estate near Paran, to try things out. Nothing of it exists."
 PLOT_FROM = "Plot or season"
-PLOT_FROM_HELP = (
-    "The sample estate and your own files are only looked at. A season is kept on this machine, "
-    "step by step: begin one on the Today page."
-)
 PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
 RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
 PLANT_FILE = "Measured plant positions (optional)"
@@ -52,10 +47,6 @@ SAMPLER = "Who chooses the plants"
 SAMPLERS = {name: f"{kind.title}: {kind.does}" for name, kind in of_equal_times().items()}
 DATE = "Day"
 PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
-FINDS_HELP = (
-    "Infested plants on the route, by the chance map, times the chance that an inspection finds "
-    "them."
-)
 DOWNLOAD = "Download the route (GeoJSON)"
 NO_STOPS = (
     "The working day is too short to reach a plant and come back. Give more hours on the left."
@@ -142,7 +133,6 @@ SEASON_LONG = "A season's name must have {most} letters at most, but it has {n}.
 PLOTS_TITLE = "{n} plots"
 PLOTS_ALT = "Map of {n} plots: {names}."
 PLOTS_COLUMNS = {"name": "plot", "days_since": "days since seen", "expected": "expected infested"}
-PLOTS_NONE = "not begun"
 PLOTS_STATES = {"fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
                 "late": "a week ago or never", "new": "no season yet"}  # fmt: skip
 PLOTS_TIP = "{name}: {expected:.0f} infested expected, {seen}"
@@ -188,7 +178,7 @@ TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start a
 TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
 TIP_HOT = "hot spot: {found} found of {inspected} inspected"
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
-TIP_INFESTED, TIP_HERE, TIP_CORNER = "infested", "here", "corner"
+TIP_INFESTED, TIP_CORNER = "infested", "corner"
 
 # -- plot and records
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
@@ -239,7 +229,6 @@ SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspe
           "age": "days since inspected"}  # fmt: skip
 MAP_LAYERS = {"route": "route", "numbers": "stop numbers", "hot": "hot spots",
               "records": "records", "rows": "row numbers", "backdrop": "picture"}  # fmt: skip
-MAP_DAY = "Day"
 BACKDROP_TITLE, HOT_TITLE = "Picture of the ground", "Hot spots"
 BACKDROP = "Picture of the ground (GeoTIFF)"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."

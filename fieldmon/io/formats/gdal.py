@@ -10,7 +10,8 @@ import shapely
 from pyogrio.errors import DataLayerError, DataSourceError
 
 from fieldmon.errors import FileProblem
-from fieldmon.io.formats.layer import Layer
+from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.formats.wkb import shapes
 from fieldmon.io.import_report import ImportMessage, doubtful, repaired, seen
 from fieldmon.io.parse.text import Decoder
 from fieldmon.io.sandbox import limits
@@ -60,11 +61,12 @@ def read_layer(path: Path, name: str, layer: str | None, encoding: str | None = 
         str(field): _objects(column) for field, column in zip(meta["fields"], values, strict=True)
     }
     limits.check("columns", len(columns), limits.COLUMNS, name)
-    geometry = None if wkb is None else shapely.from_wkb(wkb, on_invalid="ignore")
-    if geometry is not None:
-        n_vertices = int(shapely.get_num_coordinates(geometry).sum())
-        limits.check("vertices", n_vertices, limits.VERTICES, name)
-    return Layer(layer or name, columns, geometry, meta["crs"])
+    if wkb is None:
+        return Layer(layer or name, columns, None, meta["crs"])
+    geometry, messages = shapes(wkb)
+    n_vertices = int(shapely.get_num_coordinates(geometry).sum())
+    limits.check("vertices", n_vertices, limits.VERTICES, name)
+    return Layer(layer or name, columns, geometry, meta["crs"], tuple(messages))
 
 
 def read_shapefile(path: Path, name: str, encoding: str | None) -> Layer:
@@ -86,7 +88,8 @@ def read_shapefile(path: Path, name: str, encoding: str | None) -> Layer:
     columns = {
         decoder(_bytes(column)): _decoded(values, decoder) for column, values in raw.columns.items()
     }
-    return Layer(name, columns, raw.geometry, raw.crs, (*messages, *decoder.messages))
+    said = (*messages, *raw.messages, *decoder.messages)
+    return Layer(name, columns, raw.geometry, raw.crs, said)
 
 
 def _stated_encoding(path: Path) -> str | None:
@@ -111,8 +114,15 @@ def _bytes(text: str) -> bytes:
 
 def _objects(column: NDArray[Any]) -> NDArray[np.object_]:
     values = np.empty(len(column), dtype=object)
-    values[:] = column.tolist()
+    values[:] = [_in_words(value) for value in column.tolist()]
     return values
+
+
+def _in_words(value: object) -> object:
+    """Return a cell; a list of names, as GML has them, as people would write it."""
+    if isinstance(value, list | np.ndarray):
+        return ", ".join(dict.fromkeys(text(one) for one in value))
+    return value
 
 
 def _unreadable(name: str, bad: Exception) -> FileProblem:

@@ -13,6 +13,7 @@ from shapely.errors import ShapelyError
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer
+from fieldmon.io.formats.wkb import closed
 from fieldmon.io.import_report import ImportMessage, dropped, seen
 from fieldmon.io.parse.text import decode
 from fieldmon.io.sandbox import limits
@@ -165,7 +166,7 @@ def _geometries(
 ) -> tuple[NDArray[np.object_], list[ImportMessage]]:
     geometry = np.full(len(features), None, dtype=object)
     broken = []
-    n_vertices = 0
+    n_vertices = n_open = 0
     for i, feature in enumerate(features):
         stated = feature.get("geometry")
         if stated is None:
@@ -175,13 +176,24 @@ def _geometries(
         except _NOT_GEOMETRY:
             broken.append(i)
             continue
+        n_open += _is_open(stated)
         n_vertices += int(shapely.get_num_coordinates(geometry[i]))
         limits.check("vertices", n_vertices, limits.VERTICES, name)
     messages = [
         dropped("The geometry cannot be understood and is left out.", f"feature {i + 1}")
         for i in broken
     ]
-    return geometry, messages
+    return geometry, [*messages, *([closed(n_open)] if n_open else [])]
+
+
+def _is_open(stated: dict[str, Any]) -> bool:
+    """Return whether a ring of an area does not end where it begins."""
+    kind, areas = stated["type"], stated.get("coordinates")
+    if kind == "Polygon":
+        areas = [areas]
+    elif kind != "MultiPolygon":
+        return False
+    return any(len(ring) > 2 and ring[0][:2] != ring[-1][:2] for area in areas for ring in area)
 
 
 def _geometry(stated: dict[str, Any]) -> shapely.Geometry:

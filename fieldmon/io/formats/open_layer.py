@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
@@ -130,7 +131,9 @@ def _full_layers(staged: StagedMember, names: tuple[str, ...]) -> dict[str, Laye
 def _layer(staged: StagedMember, layer: str) -> Layer:
     if staged.member.kind is FileKind.WORKBOOK:
         return read_sheet(staged.path, staged.name, layer)
-    return read_layer(staged.path, staged.name, layer)
+    read = read_layer(staged.path, staged.name, layer)
+    # a file whose only layer has no name is given that of the copy
+    return replace(read, name=staged.member.stem) if read.name == staged.path.stem else read
 
 
 def _which_layer(staged: StagedMember, names: tuple[str, ...], more: str) -> ChoiceNeeded:

@@ -49,18 +49,20 @@ READABLE = (
     "GPX, FlatGeobuf, GeoParquet, a zipped file geodatabase, CSV or an Excel workbook (.xlsx)"
 )
 
+_SHAPEFILE = b"\x00\x00\x27\x0a"
 _MAGIC = (
     (b"SQLite format 3\x00", FileKind.GEOPACKAGE),
     (b"PK\x03\x04", FileKind.ARCHIVE),
     (b"PK\x05\x06", FileKind.ARCHIVE),
     (b"fgb", FileKind.FLATGEOBUF),
     (b"PAR1", FileKind.PARQUET),
-    (b"\x00\x00\x27\x0a", FileKind.SHAPEFILE),
+    (_SHAPEFILE, FileKind.SHAPEFILE),
     (b"II*\x00", FileKind.RASTER),
     (b"MM\x00*", FileKind.RASTER),
     (b"II+\x00", FileKind.RASTER),
     (b"MM\x00+", FileKind.RASTER),
 )
+_INDEX = "only an index of a shapefile. Choose the .shp with it, or all of them zipped"
 _REFUSED_MAGIC = (
     (b"\x1f\x8b", "is packed with gzip. Unpack it and choose the file inside"),
     (b"7z\xbc\xaf", "is a 7z archive. Unpack it, or pack it as .zip"),
@@ -69,6 +71,7 @@ _REFUSED_MAGIC = (
     (b"%PDF", "is a PDF, which holds no positions. Ask for the map as GeoPackage or shapefile"),
     (b"\x89PNG", "is a picture without a position on the earth. Choose a GeoTIFF"),
     (b"\xff\xd8\xff", "is a picture without a position on the earth. Choose a GeoTIFF"),
+    (b"\x00\x00\x27\x0a\xff\xff\xfe\x70", f"is {_INDEX}"),  # .sbn, .sbx of ArcGIS
     (b"AC10", "is a CAD drawing (DWG). Export it as GeoPackage, shapefile or GeoJSON"),
 )
 _BOMS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
@@ -89,7 +92,9 @@ _REFUSED_ROOTS = {
 }
 _REFUSED_ENDINGS = {
     ".dbf": "holds only the table of a shapefile. Choose the .shp with it, or all of them zipped",
-    ".shx": "is only the index of a shapefile. Choose the .shp with it, or all of them zipped",
+    **dict.fromkeys(
+        (".shx", ".sbn", ".sbx", ".qix", ".fbn", ".fbx", ".ain", ".aih"), f"is {_INDEX}"
+    ),
     ".prj": "holds only a coordinate system. Choose the .shp with it, or all of them zipped",
     ".vrt": "only points at other files (VRT). Choose the files themselves",
     ".dxf": "is a CAD drawing (DXF). Export it as GeoPackage, shapefile or GeoJSON",
@@ -105,13 +110,15 @@ def kind_of(head: bytes, name: str) -> FileKind:
         raise FileProblem(
             f"{name} must hold something, but it is empty. Save or download it again."
         )
-    for magic, kind in _MAGIC:
-        if head.startswith(magic):
-            return kind
     for magic, why in _REFUSED_MAGIC:
         if head.startswith(magic):
             raise FileProblem(f"{name} {why}.")
     ending = PurePosixPath(name.lower()).suffix
+    if ending == ".shx" and head.startswith(_SHAPEFILE):  # it begins as the .shp does
+        raise FileProblem(f"{name} {_REFUSED_ENDINGS[ending]}.")
+    for magic, kind in _MAGIC:
+        if head.startswith(magic):
+            return kind
     if ending in _REFUSED_ENDINGS:
         raise FileProblem(f"{name} {_REFUSED_ENDINGS[ending]}.")
     return _text_kind(head, name)

@@ -13,7 +13,7 @@ from shapely import MultiPolygon
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, dropped, guessed, seen
-from fieldmon.io.parse.columns import find
+from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.parse.geometry import boundary, closed_lines, filled, geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
@@ -56,7 +56,7 @@ def _shapes(layer: Layer) -> NDArray[np.object_]:
 
 def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[ImportMessage]]:
     """Return a different name for every feature, and where the names come from."""
-    named = column or find("name", layer.columns)
+    named = column or _name_column(layer)
     messages: list[ImportMessage] = []
     if named is None:
         base = [layer.name] * len(layer)
@@ -69,6 +69,12 @@ def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[Import
         if len(layer) > 1 or column is None:
             messages.append(seen(f"Plots are named by column {named!r}."))
     return _told_apart(base), messages
+
+
+def _name_column(layer: Layer) -> str | None:
+    """Return the column that names plots: the first that says anything, by what it is called."""
+    said = [name for name in layer.columns if any(text(v) for v in layer.columns[name])]
+    return find("name", said) or next((name for name in said if "name" in plain(name)), None)
 
 
 def _told_apart(names: list[str]) -> list[str]:

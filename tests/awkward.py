@@ -1054,7 +1054,11 @@ def a_count_below_zero():
     return counted(-4, 3)
 
 
-@case("records", check=states(1, 1), says="guessed: No column says how many or whether")
+@case(
+    "records",
+    asks=("columns", "present="),
+    refuses="must have a column that says what was found (count, found, result), but none",
+)
 def records_without_any_count():
     return table(f"lon,lat,date\n35.15013,30.36013,{DAY}\n35.15023,30.36013,{DAY}\n")
 
@@ -1295,7 +1299,17 @@ def thousands_beside_nothing_that_tells():
     return table(f"row;plant;date;count\n1;1;{DAY};1,234\n")
 
 
-@case("records", says="guessed: No column says how many or whether [columns=count=eggs]", at=HERE)
+@case(
+    "records",
+    options=RecordOptions().naming(present=""),
+    check=states(1, 1),
+    says="seen: Every record was taken as a find, as told",
+)
+def records_without_any_count_that_are_all_finds():
+    return records_without_any_count()
+
+
+@case("records", asks=("columns", "count=eggs", "present="), refuses="says what was found")
 def a_column_that_could_be_the_count_is_offered():
     return table(f"lon,lat,date,eggs,by\n35.15013,30.36013,{DAY},4,Noa\n")
 
@@ -1355,7 +1369,7 @@ def a_cell_of_a_million_letters():
     return placed(f"30.36013,35.15013,{'x' * 1_000_001}", "lat,lon,remarks")
 
 
-@case("records", refuses="must be an Excel workbook, but it cannot be read")
+@case("records", refuses="must be a workbook of Excel or LibreOffice, but it cannot be read")
 def a_workbook_whose_sheet_breaks_off(folder):
     path = workbook(folder, [["lon", "lat", "date", "count"], RECORD])
     with zipfile.ZipFile(path) as book:

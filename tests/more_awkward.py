@@ -1,18 +1,38 @@
 """More awkward files: what went wrong when sixty real ones were tried that nobody had seen."""
 
-import shapely
+import io
+import re
+import zipfile
 
-from fieldmon.io.options import Upload
+import geopandas as gpd
+import pyproj
+import shapely
+from shapely import MultiPolygon, box
+
+from fieldmon.io.options import PlotOptions, RecordOptions, Upload
 from tests.awkward import (
     CORNERS,
+    DAY,
+    HERE,
     SECOND,
     SQUARE,
     case,
+    counts,
+    days,
     frame,
+    moved,
     ring_of,
     shapefile,
+    states,
+    table,
+    workbook,
     zipped,
 )
+from tests.old_workbook import xls
+
+
+def both(*checks):
+    return lambda value: [check(value) for check in checks]
 
 
 def named(*names):
@@ -139,3 +159,425 @@ def an_index_of_arcgis_alone():
 @case("plots", refuses="only an index of a shapefile")
 def an_index_alone(folder):
     return Upload("plots.shx", shapefile(folder / "s").with_suffix(".shx").read_bytes())
+
+
+# --- workbooks ---------------------------------------------------------------------------------
+
+CELLS = [["lon", "lat", "date", "count"], *[[*place, DAY, 7] for place in HERE]]
+
+
+@case("records", at=HERE, check=counts(7))
+def a_workbook_that_says_it_has_one_cell(folder):
+    path = workbook(folder, CELLS)
+    with zipfile.ZipFile(path) as book:
+        parts = {name: book.read(name) for name in book.namelist()}
+    sheet = "xl/worksheets/sheet1.xml"
+    parts[sheet] = re.sub(rb'<dimension ref="[^"]*"', b'<dimension ref="A1"', parts[sheet])
+    return zipped(parts, "mites.xlsx")
+
+
+@case("records", at=HERE, check=counts(7))
+def an_old_workbook():
+    return Upload("mites.xls", xls(CELLS))
+
+
+@case("records", refuses="must be a workbook of Excel or LibreOffice, but it cannot be read")
+def a_letter_of_old_word():
+    return Upload(
+        "letter.doc", xls(CELLS).replace("Workbook".encode("utf-16-le"), b"W\0o\0r\0d\0" * 2)
+    )
+
+
+_ODS = """<?xml version="1.0" encoding="UTF-8"?><office:document-content
+ xmlns:office="urn:oasis:names:tc:opendocument:xmlns:office:1.0"
+ xmlns:table="urn:oasis:names:tc:opendocument:xmlns:table:1.0"
+ xmlns:text="urn:oasis:names:tc:opendocument:xmlns:text:1.0"><office:body><office:spreadsheet>
+<table:table table:name="Sheet1">{rows}</table:table></office:spreadsheet></office:body>
+</office:document-content>"""
+
+
+def ods(rows, more=""):
+    """Return a spreadsheet of LibreOffice; dates are dates, as it keeps them."""
+
+    def cell(value):
+        kind = "float" if isinstance(value, int | float) else "string"
+        if value == DAY:
+            return f'<table:table-cell office:value-type="date" office:date-value="{value}"/>'
+        number = f' office:value="{value}"' if kind == "float" else ""
+        text = f"<text:p>{value}</text:p>"
+        return f'<table:table-cell office:value-type="{kind}"{number}>{text}</table:table-cell>'
+
+    body = "".join(f"<table:table-row>{''.join(map(cell, row))}</table:table-row>" for row in rows)
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as book:
+        book.writestr("mimetype", "application/vnd.oasis.opendocument.spreadsheet")
+        book.writestr("content.xml", _ODS.format(rows=body + more))
+        book.writestr("META-INF/manifest.xml", "<manifest/>")
+    return packed.getvalue()
+
+
+@case("records", at=HERE, check=both(counts(7), days(DAY)))
+def a_spreadsheet_of_libreoffice():
+    return Upload("mites.ods", ods(CELLS))
+
+
+@case("records", at=HERE, check=counts(7))
+def a_spreadsheet_of_libreoffice_in_a_zip():
+    return zipped({"books/mites.ods": ods(CELLS)})
+
+
+# --- tables with a column for each day, and without a line of names ----------------------------
+
+TWO = (HERE[0], (35.15023, 30.36023))
+
+
+@case(
+    "records",
+    says=(
+        "seen: 3 columns are called by dates, 2026-03-01 to 2026-03-15: each cell is one record",
+        "seen: 1 cell(s) are not filled in",
+        "seen: these were passed over: Total",
+    ),
+    check=both(counts(0, 3, 7, 0, 12), days(DAY, "2026-03-08", "2026-03-15", DAY, "2026-03-15")),
+    at=(TWO[0], TWO[0], TWO[0], TWO[1], TWO[1]),
+)
+def a_column_for_each_day():
+    head = "lon,lat,2026-03-01,2026-03-08,2026-03-15,Total\n"
+    rows = f"{TWO[0][0]},{TWO[0][1]},0,3,7,10\n{TWO[1][0]},{TWO[1][1]},0,,12,12\n"
+    return table(head + rows)
+
+
+@case("records", check=both(states(1, 0), days("2026-03-13", "2026-03-20")))
+def a_column_for_each_day_with_words():
+    return table(f"lon,lat,13.3.2026,20.3.2026\n{TWO[0][0]},{TWO[0][1]},infestado,sano\n")
+
+
+@case(
+    "records",
+    says="guessed: above the columns could be day first or month first [date_order=mdy]",
+    check=days("2026-04-03", "2026-04-10"),
+)
+def a_column_for_each_day_that_could_be_a_month():
+    return table(f"lon,lat,03/04/2026,10/04/2026\n{TWO[0][0]},{TWO[0][1]},1,2\n")
+
+
+@case("records", check=both(counts(3, 4), days("2026-03-01", "2026-03-08")))
+def a_column_for_each_day_of_a_workbook(folder):
+    import datetime as dt
+
+    head = ["lon", "lat", dt.datetime(2026, 3, 1), dt.datetime(2026, 3, 8)]
+    return workbook(folder, [head, [*TWO[0], 3, 4]])
+
+
+@case(
+    "records",
+    says="doubtful: 2 columns are called by dates, but the dates were taken from this one",
+    check=days(DAY),
+)
+def columns_called_by_dates_beside_a_date():
+    head = "lon,lat,date,count,2026-03-01,2026-03-08\n"
+    return table(f"{head}{TWO[0][0]},{TWO[0][1]},{DAY},4,1,2\n")
+
+
+NAMELESS = "35.15013;30.36013;2026-03-01;7\n35.15023;30.36023;2026-03-01;0\n"
+
+
+@case(
+    "records",
+    asks=("header", "no", "yes"),
+    refuses="its first line looks like data (35.15013, 30.36013, 2026-03-01, 7)",
+)
+def a_table_without_column_names():
+    return table(NAMELESS)
+
+
+@case(
+    "records",
+    options=RecordOptions(header="no").naming(
+        lon="column 1", lat="column 2", date="column 3", count="column 4"
+    ),
+    says="seen: its columns are called column 1 to 4",
+    check=both(counts(7, 0), days(DAY, DAY)),
+    at=TWO,
+)
+def a_table_without_column_names_and_told_so():
+    return table(NAMELESS)
+
+
+@case("records", asks=("header", "no"), refuses="looks like data")
+def a_sheet_without_column_names(folder):
+    return workbook(folder, CELLS[1:] * 2)
+
+
+# --- shapes as text ----------------------------------------------------------------------------
+
+QGIS = "seen: Shapes are in column 'WKT'"
+GUESSED = "guessed: name no coordinate system and were read as longitude and latitude"
+
+
+def wkt_of(*areas, before="", head="WKT,name"):
+    rows = [f'"{before}{area.wkt}",plot {i}' for i, area in enumerate(areas, 1)]
+    return "\n".join([head, *rows, ""]).encode()
+
+
+@case("plots", says=(QGIS, GUESSED), at=CORNERS, check=named("plot 1", "plot 2"))
+def plots_as_text_as_qgis_exports_them():
+    return Upload("plots.csv", wkt_of(MultiPolygon([SQUARE]), SECOND))
+
+
+@case("plots", says=QGIS, at=CORNERS)
+def plots_as_text_with_the_system_beside_them(folder):
+    (folder / "plots.csv").write_bytes(wkt_of(moved(SQUARE, 2039)))
+    (folder / "plots.prj").write_text(pyproj.CRS("EPSG:2039").to_wkt("WKT1_ESRI"))
+    (folder / "plots.csvt").write_text('"WKT","String"')
+    return folder / "plots.csv"
+
+
+@case("plots", says=QGIS, at=CORNERS)
+def plots_as_text_that_name_their_system():
+    return Upload("plots.csv", wkt_of(moved(SQUARE, 2039), before="SRID=2039;"))
+
+
+@case("plots", asks=("crs", "EPSG:2039"), refuses="does not say in which coordinate system")
+def plots_as_text_in_metres():
+    return Upload("plots.csv", wkt_of(moved(SQUARE, 2039)))
+
+
+@case(
+    "plots",
+    says=(
+        "repaired: 1 feature(s) did not end",
+        "dropped: 1 shape(s) cannot",
+        "dropped: without a geometry",
+    ),
+    at=CORNERS,
+)
+def plots_as_text_some_of_them_broken():
+    ring = ", ".join(f"{x} {y}" for x, y in ring_of(SQUARE)[:-1])
+    rows = f'WKT,name\n"POLYGON (({ring}))",a\n"POLYGON ((1 2, 3))",b\n'
+    return Upload("plots.csv", f"{rows}".encode())
+
+
+@case("lines", says=QGIS)
+def lines_as_text():
+    return Upload("rows.csv", b'WKT;row\n"LINESTRING (35.15 30.36, 35.152 30.361)";1\n')
+
+
+# --- other programs' files ---------------------------------------------------------------------
+
+
+def written(folder, driver, name, *areas, crs=4326, **options):
+    """Write areas by another driver; return the folder."""
+    room = folder / "m"
+    room.mkdir()
+    frame(*areas).to_crs(crs).to_file(room / name, driver=driver, engine="pyogrio", **options)
+    return room
+
+
+@case("plots", at=CORNERS, check=named("plot 1", "plot 2"))
+def a_mapinfo_table(folder):
+    return written(folder, "MapInfo File", "plots.tab", SQUARE, SECOND) / "plots.tab"
+
+
+@case("plots", at=CORNERS, check=named("plot 1"))
+def a_zipped_mapinfo_table(folder):
+    return zipped(written(folder, "MapInfo File", "plots.tab", SQUARE))
+
+
+@case("plots", at=CORNERS, check=named("plot 1"))
+def a_mapinfo_exchange_file(folder):
+    return zipped(written(folder, "MapInfo File", "plots.mif", SQUARE))
+
+
+@case("plots", refuses="only leads to other files")
+def a_mapinfo_table_of_other_tables():
+    said = '!table\n!version 300\n\nDefinition Table\n  Type NATIVE Charset "Neutral"\n  Fields 1\n'
+    return Upload("all.tab", f'{said}begin_metadata\n"\\IsSeamless" = "TRUE"\n'.encode())
+
+
+@case("plots", refuses="holds only the table of a MapInfo file")
+def the_half_of_a_mapinfo_exchange_file():
+    return Upload("plots.mid", b'"plot 1"\n')
+
+
+@case("plots", at=CORNERS, check=named("plot 1", "plot 2"))
+def a_spatialite_database(folder):
+    room = written(
+        folder, "SQLite", "plots.sqlite", SQUARE, SECOND, SPATIALITE="YES", INIT_WITH_EPSG="NO"
+    )
+    return room / "plots.sqlite"
+
+
+@case(
+    "plots",
+    options=PlotOptions(crs="EPSG:2039"),
+    says="guessed: 1 closed line(s) were taken as the outlines",
+    at=CORNERS,
+)
+def a_drawing(folder):
+    room = folder / "m"
+    room.mkdir()
+    outline = gpd.GeoDataFrame(geometry=[moved(SQUARE, 2039).exterior], crs=2039)
+    outline.to_file(room / "plots.dxf", driver="DXF", engine="pyogrio")
+    return room / "plots.dxf"
+
+
+@case("plots", asks=("crs", "EPSG:2039"), refuses="does not say in which coordinate system")
+def a_drawing_without_a_system(folder):
+    return a_drawing(folder)
+
+
+# --- partfields of terminals -------------------------------------------------------------------
+
+POND = box(35.1505, 30.3605, 35.151, 30.361)
+_TASKS = """<?xml version="1.0" encoding="UTF-8"?>
+<ISO11783_TaskData VersionMajor="4" VersionMinor="0" DataTransferOrigin="1">
+<FRM A="FRM1" B="Paran"/>{body}</ISO11783_TaskData>"""
+
+
+def pnt(lon, lat):
+    return f'<PNT A="2" C="{lat:.9f}" D="{lon:.9f}"/>'
+
+
+def lsg(kind, points):
+    return f'<LSG A="{kind}">{"".join(pnt(*point) for point in points)}</LSG>'
+
+
+def pln(kind, area, *holes):
+    rings = [lsg(1, ring_of(area)[:-1]), *(lsg(2, ring_of(hole)) for hole in holes)]
+    return f'<PLN A="{kind}" B="x">{"".join(rings)}</PLN>'
+
+
+def pfd(number, name, *shapes):
+    return f'<PFD A="PFD{number}" B="" C="{name}" D="42000">{"".join(shapes)}</PFD>'
+
+
+GUIDE = ((35.15, 30.361), (35.152, 30.361))
+FIELDS = (
+    pfd(1, "North", pln(1, SQUARE, POND), pln(2, POND), lsg(5, GUIDE)),
+    pfd(2, "צפון", pln(1, SECOND)),
+)
+
+
+def has_a_pond(fields):
+    assert [field.name for field in fields] == ["North", "צפון"]
+    assert len(fields[0].boundary.geoms[0].interiors) == 1
+
+
+@case(
+    "plots",
+    says=("dropped: 1 line(s) were left out", "seen: were passed over: 1 treatment zone(s)"),
+    at=CORNERS,
+    check=has_a_pond,
+)
+def partfields_of_a_terminal():
+    return zipped({"TASKDATA/TASKDATA.XML": _TASKS.format(body="".join(FIELDS)).encode()})
+
+
+@case("plots", says="dropped: 1 line(s) were left out", at=CORNERS, check=has_a_pond)
+def partfields_in_files_of_their_own(folder):
+    room = folder / "TASKDATA"
+    room.mkdir()
+    led = '<XFR A="PFD00001" B="1"/>'
+    (room / "TASKDATA.XML").write_text(_TASKS.format(body=led), encoding="utf-8")
+    (room / "PFD00001.XML").write_text(f"<XFC>{''.join(FIELDS)}</XFC>", encoding="utf-8")
+    (room / "TLG00001.BIN").write_bytes(b"\x00" * 64)
+    return room / "TASKDATA.XML"
+
+
+@case("lines", says="dropped: 2 feature(s) that are no lines")
+def guidance_lines_of_a_terminal():
+    return partfields_of_a_terminal()
+
+
+@case("plots", refuses="must hold at least one partfield with an outline")
+def an_isoxml_without_partfields():
+    return Upload("TASKDATA.XML", _TASKS.format(body='<TSK A="TSK1" G="1"/>').encode())
+
+
+@case("plots", refuses="must hold at least one partfield")
+def an_isoxml_that_leads_to_a_file_that_is_not_there():
+    return Upload("TASKDATA.XML", _TASKS.format(body='<XFR A="PFD00001" B="1"/>').encode())
+
+
+@case("plots", says="dropped: North Its shape cannot be understood", check=named("South"))
+def a_partfield_whose_corner_is_no_number():
+    broken = FIELDS[0].replace('C="30.3', 'C="x30.3', 1)
+    body = broken.replace(lsg(5, GUIDE), "").replace(pln(2, POND), "") + pfd(
+        2, "South", pln(1, SECOND)
+    )
+    return Upload("TASKDATA.XML", _TASKS.format(body=body).encode())
+
+
+@case("plots", refuses="must not define a document type")
+def an_isoxml_that_leads_to_a_document_type(folder):
+    room = partfields_in_files_of_their_own(folder).parent
+    bomb = '<!DOCTYPE x [<!ENTITY a "b">]><XFC>&a;</XFC>'
+    (room / "PFD00001.XML").write_text(bomb, encoding="utf-8")
+    return room / "TASKDATA.XML"
+
+
+@case("plots", refuses="is a 7z archive")
+def a_7z_archive():
+    return Upload("plots.7z", b"7z\xbc\xaf\x27\x1c" + b"\x00" * 40)
+
+
+@case("plots", refuses="is a RAR archive")
+def a_rar_archive():
+    return Upload("plots.rar", b"Rar!\x1a\x07\x00" + b"\x00" * 40)
+
+
+# --- what was found, in the words of many languages --------------------------------------------
+
+
+def found(*words, head="found"):
+    rows = "".join(f"35.1{i:05d},30.36013,{DAY},{word}\n" for i, word in enumerate(words))
+    return table(f"lon,lat,date,{head}\n{rows}")
+
+
+@case("records", check=states(1, 0, 1, 0, 1, 0, 1, 0, 1, 0))
+def results_in_large_languages():
+    spanish, french = ("positivo", "negativo"), ("positif", "négatif")
+    return found(*spanish, *french, "infestado", "sano", "sì", "NEG", "есть", "нет")
+
+
+@case("records", check=states(1, 0, 0))
+def a_minus_beside_a_plus():
+    return found("+", "-", "-")
+
+
+@case(
+    "records",
+    check=states(1, -1, 0),
+    says="doubtful: 1 record(s) hold a minus alone: taken as not filled in [clean=-]",
+)
+def a_minus_beside_words():
+    return found("positivo", "-", "negativo")
+
+
+@case("records", options=RecordOptions(clean="-, ravi"), check=states(1, 0, 0))
+def a_minus_and_a_word_that_are_told():
+    return found("positivo", "-", "Ravi")
+
+
+@case(
+    "records", says="doubtful: neither yes nor no: 'krobbig' [found=krobbig]", check=states(-1, 0)
+)
+def a_word_that_nobody_knows():
+    return found("krobbig", "sano")
+
+
+@case("records", options=RecordOptions(found="krobbig"), check=states(1, 0))
+def a_word_that_nobody_knows_and_told():
+    return found("krobbig", "sano")
+
+
+@case("records", asks=("columns", "count=eggs", "present="), refuses="says what was found")
+def a_number_of_the_record_is_no_count():
+    rows = "".join(f"35.1{i:05d},30.36013,{DAY},{i + 1},{i % 3}\n" for i in range(5))
+    return table(f"lon,lat,date,trap_id,eggs\n{rows}")
+
+
+@case("records", asks=("columns", "present=Ergebnisse"), refuses="says what was found")
+def a_column_of_words_that_is_called_otherwise():
+    return found("befallen", "befallsfrei", head="Ergebnisse")

@@ -92,6 +92,8 @@ class ReadOptions:
         ``"."`` or ``","`` in a text table.
     delimiter
         What separates the cells of a text table.
+    header
+        Whether the first line of a table names its columns: ``"yes"`` or ``"no"``.
     """
 
     member: str | None = None
@@ -105,6 +107,7 @@ class ReadOptions:
     columns: tuple[tuple[str, str], ...] = ()
     decimal: str | None = None
     delimiter: str | None = None
+    header: str | None = None
 
     def __post_init__(self) -> None:
         for role, _ in self.columns:
@@ -120,6 +123,10 @@ class ReadOptions:
             raise SettingError(f"The decimal mark must be . or , but it is {self.decimal!r}.")
         if self.delimiter is not None and len(self.delimiter) != 1:
             raise SettingError(f"A delimiter must be one character, but it is {self.delimiter!r}.")
+        if self.header not in {None, "yes", "no"}:
+            raise SettingError(
+                f"Whether a line names the columns must be yes or no, but it is {self.header!r}."
+            )
         if self.near is not None:
             lon, lat = self.near
             if not (-180.0 <= lon <= 180.0 and -90.0 <= lat <= 90.0):
@@ -177,10 +184,14 @@ class RecordOptions(ReadOptions):
         ``"dmy"``, ``"mdy"`` or ``"ymd"``: what 03/04/2026 means.
     plot
         The plot whose rows and plants the records name, where no column says which.
+    found, clean
+        Words of one's own for a plant with pests and for one without, set apart by commas.
     """
 
     date_order: DateOrder | None = None
     plot: str | None = None
+    found: str | None = None
+    clean: str | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -76,6 +76,12 @@ def test_it_is_asked_about_or_refused_with_a_sentence(case, tmp_path):
         assert not isinstance(refused.value, ChoiceNeeded), said
 
 
+def test_a_number_of_the_record_is_never_offered_as_its_count():
+    with pytest.raises(ChoiceNeeded) as asked:
+        read.read_records(awkward.more_awkward.a_number_of_the_record_is_no_count())
+    assert asked.value.choices == ("count=eggs", "present=")
+
+
 def test_the_battery_is_as_large_as_it_claims():
     names = [case.name for case in awkward.CASES]
     assert len(set(names)) == len(names) >= 60

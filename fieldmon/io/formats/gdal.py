@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _UNREADABLE = (DataSourceError, DataLayerError, RuntimeError, ValueError, OSError)
+_OWN_TABLE = re.compile(rb'\btype\s+"?(native|dbf)\b')
 _BYTE_FOR_BYTE = "ISO-8859-1"
 
 
@@ -90,6 +92,18 @@ def read_shapefile(path: Path, name: str, encoding: str | None) -> Layer:
     }
     said = (*messages, *raw.messages, *decoder.messages)
     return Layer(name, columns, raw.geometry, raw.crs, said)
+
+
+def read_mapinfo(path: Path, name: str) -> Layer:
+    """Return the one table of a staged MapInfo file; refuse one that only leads to others."""
+    if path.suffix == ".tab":
+        said = path.read_bytes()[: limits.CELL_CHARACTERS].lower()
+        if b"isseamless" in said or b"create view" in said or not _OWN_TABLE.search(said):
+            raise FileProblem(
+                f"{name} must be a MapInfo table of its own, but it only leads to other files. "
+                "Choose those."
+            )
+    return read_layer(path, name, None)
 
 
 def _stated_encoding(path: Path) -> str | None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import text
+from fieldmon.io.parse.result_words import meaning
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -23,16 +24,6 @@ if TYPE_CHECKING:
 MISSING = frozenset(
     {"", "na", "n/a", "n.a.", "nan", "null", "none given", "-", "--", "?", ".", "nd", "n.d."}
     | {"unknown", "missing", "#n/a", "<na>", "-9999", "-999", "nat", "unbekannt", "לא ידוע"}
-)
-_YES = frozenset(
-    {"yes", "y", "true", "t", "present", "positive", "pos", "p", "+", "1", "x", "found", "detected"}
-    | {"infested", "infected", "diseased", "ja", "si", "sí", "oui", "sim", "כן", "נמצא", "נגוע"}
-    | {"presente", "présent", "vorhanden", "some", "few", "many", "low", "medium", "high", "v", "✓"}
-)
-_NO = frozenset(
-    {"no", "false", "f", "absent", "negative", "neg", "n", "0", "none", "nil", "zero", "clean"}
-    | {"not found", "not detected", "healthy", "nein", "non", "não", "nao", "לא", "לא נמצא", "נקי"}
-    | {"ausente", "keine", "ninguno", "aucun", "nothing", "אין"}
 )
 
 
@@ -115,10 +106,9 @@ def counted(cell: str, decimal: str = ".") -> CellCount:
         if value < 0:
             return CellCount(np.nan, UNKNOWN, is_rough=True)
         return CellCount(value, PRESENT if value > 0 else ABSENT, is_rough=False)
-    if word in _NO:
-        return CellCount(0.0, ABSENT, is_rough=False)
-    if word in _YES:
-        return CellCount(np.nan, PRESENT, is_rough=False)
+    said = meaning(word)
+    if said is not None:
+        return CellCount(np.nan if said == PRESENT else 0.0, said, is_rough=False)
     return _roughly(word, decimal)
 
 
@@ -144,11 +134,8 @@ def presence(cell: str) -> int:
     word = cell.strip().casefold()
     if word in MISSING:
         return UNKNOWN
-    if word in _NO:
-        return ABSENT
-    if word in _YES:
-        return PRESENT
-    return counted(cell).present
+    said = meaning(word)
+    return counted(cell).present if said is None else said
 
 
 # --- positions ---------------------------------------------------------------------------------

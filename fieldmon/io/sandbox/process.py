@@ -33,9 +33,9 @@ _SKIPPED = (
     *("OGR_VRT", "WFS", "OAPIF", "OGCAPI", "CSW", "Elasticsearch", "Carto", "AmigoCloud", "NGW"),
     *("PLSCENES", "EEDA", "HTTP", "GDALG", "GPSBabel", "ADBC", "MBTiles", "PMTiles", "MVT", "OSM"),
     *("GTFS", "PDF", "PDS4", "VICAR", "PCIDSK", "S57", "DGN", "LVBAG", "GMLAS", "TopoJSON", "WAsP"),
-    *("ESRIJSON", "GeoJSONSeq", "OGR_GMT", "SQLite", "DXF", "GeoRSS", "VFK", "PGDUMP", "OGR_PDS"),
+    *("ESRIJSON", "GeoJSONSeq", "OGR_GMT", "GeoRSS", "VFK", "PGDUMP", "OGR_PDS"),
     *("EDIGEO", "Idrisi", "ODS", "XLSX", "SXF", "Selafin", "JML", "VDV", "MapML", "JSONFG", "CSV"),
-    *("MiraMonVector", "AVCBin", "AVCE00", "AIVector", "MapInfo File", "MEM", "KML", "GeoJSON"),
+    *("MiraMonVector", "AVCBin", "AVCE00", "AIVector", "MEM", "KML", "GeoJSON"),
 )
 _ENVIRONMENT = {
     "OGR_SKIP": ",".join(_SKIPPED),

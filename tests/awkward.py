@@ -644,7 +644,7 @@ def lines_among_other_things():
     return areas_lines_and_points_in_one_file()
 
 
-@case("plants", says="doubtful: 1 plant(s) stand at the very place of another")
+@case("plants", asks=("doubles", "one"), refuses="1 of 3 are within 5 cm of an earlier one")
 def plants_on_top_of_each_other():
     return geojson(Point(35.15001, 30.36001), Point(35.15002, 30.36), Point(35.15002, 30.36))
 
@@ -868,11 +868,13 @@ def well_known_text_in_a_cell():
 
 @case(
     "records",
-    at=HERE,
-    says="dropped: without a usable position were left out, for instance '35.15023 / 07.16.5046'",
+    at=(HERE[0], (35.15013, 30.36023)),
+    says="dropped: 1 record(s) without a usable position were left out, for instance "
+    "'35.15023 / 07.16.5046' in record 3. 1 of them have two points [degrees=dms]",
 )
 def impossible_minutes_are_not_guessed():
-    return placed(f"30.36013,35.15013,{DAY},7\n07.16.5046,35.15023")
+    good = f"30.36013,35.15013,{DAY},7\n30.36023,35.15013,{DAY},8"
+    return placed(f"{good}\n07.16.5046,35.15023")
 
 
 @case("records", refuses="not one record has any")

@@ -5,26 +5,31 @@ import re
 import zipfile
 
 import geopandas as gpd
+import numpy as np
 import pyproj
 import shapely
-from shapely import MultiPolygon, box
+from shapely import LineString, MultiPolygon, Point, box
 
-from fieldmon.io.options import PlotOptions, RecordOptions, Upload
+from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Upload
 from tests.awkward import (
     CORNERS,
     DAY,
     HERE,
+    HOME,
     SECOND,
     SQUARE,
     case,
     counts,
     days,
     frame,
+    geojson,
     moved,
+    plants_on_top_of_each_other,
     ring_of,
     shapefile,
     states,
     table,
+    without,
     workbook,
     zipped,
 )
@@ -581,3 +586,121 @@ def a_number_of_the_record_is_no_count():
 @case("records", asks=("columns", "present=Ergebnisse"), refuses="says what was found")
 def a_column_of_words_that_is_called_otherwise():
     return found("befallen", "befallsfrei", head="Ergebnisse")
+
+
+# --- plants measured twice ---------------------------------------------------------------------
+
+
+def has_two(plants):
+    assert len(plants) == 2
+
+
+@case(
+    "plants",
+    options=ReadOptions(doubles="one"),
+    says="dropped: 1 of 3 plants stood within 5 cm of another one",
+    check=has_two,
+)
+def plants_on_top_of_each_other_of_which_one_is_kept():
+    return plants_on_top_of_each_other()
+
+
+@case("plants", asks=("doubles", "one"), refuses="1 of 2 are within 5 cm of an earlier one")
+def plants_four_centimetres_apart():
+    return geojson(Point(35.15001, 30.36001), Point(35.15001, 30.36001036))
+
+
+# --- degrees with two points -------------------------------------------------------------------
+
+DOTTED = "30.21.36,35.09.33\n30.21.37,35.09.34\n30.36013,35.15013"
+ASKED = "2 record(s) give degrees with two points, for instance"
+HERE_DOTTED = ((35 + 9 / 60 + 33 / 3600, 30 + 21 / 60 + 36 / 3600),)
+HERE_MINUTES = ((35 + 9.33 / 60, 30 + 21.36 / 60),)
+
+
+def with_two_points():
+    rows = DOTTED.replace("\n", f",{DAY},7\n")
+    return table(f"lat,lon,date,count\n{rows},{DAY},7\n")
+
+
+@case("records", asks=("degrees", "dms", "dm"), refuses=ASKED)
+def degrees_with_two_points():
+    return with_two_points()
+
+
+@case("records", options=RecordOptions(degrees="dms"), check=lambda r: is_at(r, HERE_DOTTED[0]))
+def degrees_with_two_points_and_seconds():
+    return with_two_points()
+
+
+@case("records", options=RecordOptions(degrees="dm"), check=lambda r: is_at(r, HERE_MINUTES[0]))
+def degrees_with_two_points_and_minutes():
+    return with_two_points()
+
+
+@case("records", asks=("degrees", "dms", "dm"), refuses="1 record(s) give degrees with two points")
+def degrees_with_two_points_in_one_cell():
+    return table(f'gps,date,count\n"30.21.36, 35.09.33",{DAY},7\n')
+
+
+def is_at(records, place):
+    np.testing.assert_allclose(records.lonlat[0], place, atol=1e-9)
+    assert len(records) == 3
+
+
+# --- on another part of the earth --------------------------------------------------------------
+
+BRITISH = box(400_000, 300_000, 400_200, 300_200)
+
+
+@case(
+    "plots",
+    options=PlotOptions(crs="EPSG:2039"),
+    says="doubtful: km outside of where Israel 1993 / Israeli TM Grid is used, so the accuracy",
+)
+def a_british_plot_in_the_israeli_grid(folder):
+    return without(shapefile(folder / "s", frame(BRITISH, crs=27700)), ".prj")
+
+
+@case("plots", at=((36.5, 31.0),))
+def a_plot_a_little_outside_of_its_utm_zone(folder):
+    return shapefile(folder / "s", frame(box(36.5, 31, 36.502, 31.002)).to_crs(32637))
+
+
+@case("plots", says="seen: PROJ states 1 m for this", at=((14.9, 55.1),))
+def a_plot_of_bornholm_in_the_zone_of_all_denmark(folder):
+    return shapefile(folder / "s", frame(box(14.9, 55.1, 14.902, 55.102)).to_crs(25832))
+
+
+FAR = (-120.0, 38.0)
+
+
+@case("lines", options=ReadOptions(near=FAR), asks=("crs", "OGC:CRS84"), refuses="keeps it there")
+def paths_of_another_continent():
+    return geojson(LineString([(35.15, 30.36), (35.152, 30.361)]))
+
+
+@case("lines", options=ReadOptions(near=FAR), asks=("crs", "EPSG:32009", "EPSG:2039"), refuses="keeps it there")
+def paths_in_metres_of_another_continent(folder):
+    path = LineString([moved(Point(35.15, 30.36), 2039), moved(Point(35.152, 30.361), 2039)])
+    return shapefile(folder / "s", frame(path, crs=2039), "paths")
+
+
+@case("lines", options=ReadOptions(near=FAR, crs="EPSG:4326"), says="doubtful: km from the place")
+def paths_of_another_continent_that_are_meant():
+    return paths_of_another_continent()
+
+
+@case("lines", options=ReadOptions(near=FAR), asks=("swap_axes", "yes"), refuses="Exchange")
+def paths_whose_axes_are_exchanged():
+    return geojson(LineString([FAR[::-1], (38.001, -120.001)]))
+
+
+@case(
+    "records",
+    near=HOME,
+    asks=("crs", "OGC:CRS84"),
+    refuses="km from the place nearby",
+)
+def records_of_another_continent():
+    return table(f"lon,lat,date,count\n{FAR[0]},{FAR[1]},{DAY},7\n")

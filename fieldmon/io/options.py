@@ -94,6 +94,11 @@ class ReadOptions:
         What separates the cells of a text table.
     header
         Whether the first line of a table names its columns: ``"yes"`` or ``"no"``.
+    degrees
+        What 35.26.33 means: ``"dms"``, degrees, minutes and seconds; ``"dm"``, degrees and minutes
+        with decimals. None: nothing.
+    doubles
+        ``"one"``: of plants closer than 5 cm to each other, one is kept.
     """
 
     member: str | None = None
@@ -108,6 +113,8 @@ class ReadOptions:
     decimal: str | None = None
     delimiter: str | None = None
     header: str | None = None
+    degrees: str | None = None
+    doubles: str | None = None
 
     def __post_init__(self) -> None:
         for role, _ in self.columns:
@@ -119,14 +126,9 @@ class ReadOptions:
             raise SettingError(
                 f"The choice of features must read column=value, but it is {self.where!r}."
             )
-        if self.decimal not in {None, ".", ","}:
-            raise SettingError(f"The decimal mark must be . or , but it is {self.decimal!r}.")
+        self._check_words()
         if self.delimiter is not None and len(self.delimiter) != 1:
             raise SettingError(f"A delimiter must be one character, but it is {self.delimiter!r}.")
-        if self.header not in {None, "yes", "no"}:
-            raise SettingError(
-                f"Whether a line names the columns must be yes or no, but it is {self.header!r}."
-            )
         if self.near is not None:
             lon, lat = self.near
             if not (-180.0 <= lon <= 180.0 and -90.0 <= lat <= 90.0):
@@ -134,6 +136,17 @@ class ReadOptions:
                     "A place nearby must be a longitude in -180..180 and a latitude in -90..90, "
                     f"but it is ({lon}, {lat})."
                 )
+
+    def _check_words(self) -> None:
+        """Refuse words that options do not have."""
+        for what, told, words in (
+            ("The decimal mark", self.decimal, (".", ",")),
+            ("Whether a line names the columns", self.header, ("yes", "no")),
+            ("What 35.26.33 means", self.degrees, ("dms", "dm")),
+            ("What is done with doubles", self.doubles, ("one",)),
+        ):
+            if told is not None and told not in words:
+                raise SettingError(f"{what} must be {' or '.join(words)}, but it is {told!r}.")
 
     def column(self, role: str) -> str | None:
         """Return the column named by hand for a role, or None."""

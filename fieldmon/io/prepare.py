@@ -12,8 +12,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
+import shapely
+
 from fieldmon.errors import ChoiceNeeded, PlotError, SettingError
 from fieldmon.infestation.observations import Observations
+from fieldmon.io.import_report import ImportMessage, doubtful
 from fieldmon.io.options import source_name
 from fieldmon.io.read import (
     read_crews,
@@ -36,7 +39,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.io.import_report import Imported, ImportMessage
+    from fieldmon.io.import_report import Imported
     from fieldmon.io.options import Source
     from fieldmon.io.readers.places import Plants
     from fieldmon.io.sources import (
@@ -52,6 +55,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _MOST_NAMED = 12
+#: some kilometres: records further from all plots than that belong to none
+_NEARBY_DEG = 0.05
 _SPACINGS = ("row_spacing_m", "plant_spacing_m")
 
 
@@ -321,7 +326,24 @@ def records_of(
         if question.option != "plants":
             raise
         return _by_plant(fields, source, lay, question.choices)
-    return read.having(EstateRecords(read.value))
+    return read.having(EstateRecords(read.value), _far_from_all(fields, source, read.value))
+
+
+def _far_from_all(
+    fields: tuple[Field, ...], source: RecordSource, records: Observations
+) -> list[ImportMessage]:
+    """Return a doubt where no record lies near any plot; ask where all are on another continent."""
+    west, south, east, north = shapely.total_bounds([field.boundary for field in fields])
+    lon, lat = records.lonlat.T
+    margin = _NEARBY_DEG
+    near = (lon > west - margin) & (lon < east + margin)
+    near &= (lat > south - margin) & (lat < north + margin)
+    if near.any():
+        return []
+    middle = ((west + east) / 2, (south + north) / 2)
+    if source.options.near is None:
+        read_records(source.file, replace(source.options, near=middle))
+    return [doubtful("Not one record lies near any of the plots; they say nothing about them.")]
 
 
 def without_missing(plot: Plot, source: CanopySource) -> Imported[Plot]:
@@ -392,7 +414,8 @@ def _with_paths(
     file = sources.paths
     if file is None:
         return fields
-    lines = hearing.read("paths", file, partial(read_lines, file, sources.paths_options))
+    read = partial(read_lines, file, sources.paths_options, fields[0])
+    lines = hearing.read("paths", file, read)
     return tuple(replace(field, paths=lines) for field in fields)
 
 

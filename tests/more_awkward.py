@@ -680,7 +680,12 @@ def paths_of_another_continent():
     return geojson(LineString([(35.15, 30.36), (35.152, 30.361)]))
 
 
-@case("lines", options=ReadOptions(near=FAR), asks=("crs", "EPSG:32009", "EPSG:2039"), refuses="keeps it there")
+@case(
+    "lines",
+    options=ReadOptions(near=FAR),
+    asks=("crs", "EPSG:32009", "EPSG:2039"),
+    refuses="keeps it there",
+)
 def paths_in_metres_of_another_continent(folder):
     path = LineString([moved(Point(35.15, 30.36), 2039), moved(Point(35.152, 30.361), 2039)])
     return shapefile(folder / "s", frame(path, crs=2039), "paths")

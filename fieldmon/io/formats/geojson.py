@@ -164,26 +164,53 @@ def _cell(value: object) -> object:
 def _geometries(
     features: list[dict[str, Any]], name: str
 ) -> tuple[NDArray[np.object_], list[ImportMessage]]:
+    stated = [feature.get("geometry") for feature in features]
     geometry = np.full(len(features), None, dtype=object)
     broken = []
-    n_vertices = n_open = 0
-    for i, feature in enumerate(features):
-        stated = feature.get("geometry")
-        if stated is None:
+    n_vertices = 0
+    together = _whole_polygons(stated)
+    for i, one in enumerate(stated):
+        if one is None:
             continue
         try:
-            geometry[i] = _geometry(stated)
+            geometry[i] = _geometry(one) if together is None else together[i]
         except _NOT_GEOMETRY:
             broken.append(i)
             continue
-        n_open += _is_open(stated)
-        n_vertices += int(shapely.get_num_coordinates(geometry[i]))
-        limits.check("vertices", n_vertices, limits.VERTICES, name)
+        if together is None:
+            n_vertices += int(shapely.get_num_coordinates(geometry[i]))
+            limits.check("vertices", n_vertices, limits.VERTICES, name)
+    n_vertices = int(shapely.get_num_coordinates(geometry).sum())
+    limits.check("vertices", n_vertices, limits.VERTICES, name)
+    n_open = sum(_is_open(stated[i]) for i in np.flatnonzero(~shapely.is_missing(geometry)))
     messages = [
-        dropped("The geometry cannot be understood and is left out.", f"feature {i + 1}")
+        dropped(
+            "The geometry cannot be understood and is left out.",
+            f"feature {i + 1}",
+            many="{n} geometries cannot be understood and are left out",
+        )
         for i in broken
     ]
     return geometry, [*messages, *([closed(n_open)] if n_open else [])]
+
+
+def _whole_polygons(stated: list[Any]) -> NDArray[np.object_] | None:
+    """Return the geometries of a file of nothing but good polygons, all at once; else None."""
+    try:
+        if not stated or any(one["type"] != "Polygon" for one in stated):
+            return None
+        rings = [ring for one in stated for ring in one["coordinates"]]
+        if any(not one["coordinates"] for one in stated) or any(len(r) < 3 for r in rings):
+            return None
+        xy = np.array([point for ring in rings for point in ring], dtype=np.float64)
+        if xy.ndim != 2 or xy.shape[1] < 2:
+            return None
+        ring_of = np.repeat(np.arange(len(rings)), [len(ring) for ring in rings])
+        polygon_of = np.repeat(np.arange(len(stated)), [len(one["coordinates"]) for one in stated])
+        closed_rings = shapely.linearrings(xy[:, :3], indices=ring_of)
+        return np.asarray(shapely.polygons(closed_rings, indices=polygon_of))
+    except _NOT_GEOMETRY:
+        return None
 
 
 def _is_open(stated: dict[str, Any]) -> bool:

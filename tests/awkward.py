@@ -820,7 +820,7 @@ def a_workbook_with_two_full_sheets(folder):
     return folder / "m.xlsx"
 
 
-@case("records", asks=("columns", "a", "b"), refuses="column of longitudes")
+@case("records", asks=("columns", "lon=a", "lat=b"), refuses="column of longitudes")
 def columns_that_nobody_knows():
     return table("a,b,c\n35.15013,30.36013,7\n")
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from ..state.brought_files import FileMessage
 
 _ICONS = {"seen": "👁", "repaired": "🔧", "guessed": "💡", "dropped": "🗑", "doubtful": "⚠️"}
+# questions that another file answers, in a box of its own
+_OTHER_FILES = frozenset({"kind", "plots", "plants"})
 
 
 # -- boxes
@@ -86,9 +88,11 @@ def say(error: FieldmonError) -> None:
 
 
 def _ask(error: ChoiceNeeded, asking: str) -> None:
+    if error.option in _OTHER_FILES:
+        return
     label = f"{texts.CHOOSE}: {error.option}"
     widget = f"ask {asking} {error.option}"
-    if error.choices and error.option != "columns":
+    if error.choices:
         st.markdown(texts.CHOOSE_QUICK)
         with st.container(horizontal=True):
             for choice in error.choices[:4]:
@@ -97,8 +101,7 @@ def _ask(error: ChoiceNeeded, asking: str) -> None:
                           args=(asking, error.option, str(choice)))  # fmt: skip
         st.selectbox(label, error.choices, key=widget, accept_new_options=True)
     else:
-        hint = ", ".join(error.choices)
-        st.text_input(label, placeholder="date=Datum", help=hint or None, key=widget)
+        st.text_input(label, key=widget)
     st.button(texts.CHOOSE_BUTTON, key=f"use {asking} {error.option}", type="primary",
               on_click=_answer_from, args=(asking, error.option, widget))  # fmt: skip
 

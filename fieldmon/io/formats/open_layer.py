@@ -49,7 +49,8 @@ def open_layer(source: Source, options: ReadOptions, workroom: Workroom) -> Laye
     found = _data_sets(members(source, workroom))
     member = choose_member(found, options.member, source_name(source))
     staged = StagedMember(member, workroom.stage(member), member.name)
-    return _read(staged, options).where(options.where).checked()
+    layer = _read(staged, options).with_roles(options.columns)
+    return layer.where(options.where).checked()
 
 
 def _data_sets(found: tuple[Member, ...]) -> tuple[Member, ...]:

@@ -185,7 +185,7 @@ def _coordinates(
         return np.stack([numbers(c, options.decimal) for c in columns], axis=1), None, []
     if how == "together":
         read = positions_in_cells([text(v) for v in columns[0]], options.degrees)
-        return read.values, _WGS84, _order_of(read.is_certain, names[0])
+        return read.values, _WGS84, _order_of(read.is_certain or options.swap_axes, names[0])
     read_as = partial(all_degrees, decimal=options.decimal, how=options.degrees)
     xy = np.stack([read_as(c) for c in columns], axis=1)
     if _letters_are_crossed(layer, names):
@@ -311,15 +311,32 @@ def _by_name(layer: Layer, options: ReadOptions, places: NamedPlaces) -> Located
         named = by_plant(None, layer.column(plot), places.plants)
     elif plot:
         named = by_plot(layer.column(plot), places)
+    elif half := [f"{name!r} ({role})" for role, name in options.columns if role in {"lon", "lat"}]:
+        raise ChoiceNeeded(
+            f"Longitudes and latitudes must both be named, but only {half[0]} is. Name the other.",
+            "columns",
+            could_be_positions(layer, options),
+        )
     else:
         raise ChoiceNeeded(
             f"{layer.name} must have a column of longitudes and one of latitudes (or eastings and "
             "northings, or rows and plants), but none were recognised among: "
             f"{', '.join(layer.columns)}. Name them.",
             "columns",
-            tuple(layer.columns),
+            could_be_positions(layer, options),
         )
     return _kept(layer, named)
+
+
+def could_be_positions(layer: Layer, options: ReadOptions) -> tuple[str, ...]:
+    """Return how columns of unknown name could be named: longitudes and latitudes, or plants."""
+    taken = {name for _, name in options.columns}
+    free = [name for name in layer.columns if name not in taken]
+    roles = [role for role in ("lon", "lat") if options.column(role) is None]
+    hold = [name for name in free if np.isfinite(all_degrees(layer.columns[name][:50])).any()]
+    if len(hold) >= len(roles):
+        return tuple(f"{role}={name}" for role in roles for name in hold)
+    return tuple(f"{role}={name}" for role in ("plant", "plot") for name in free)
 
 
 def _by_plant(

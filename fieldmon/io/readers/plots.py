@@ -94,7 +94,11 @@ def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[Import
                 guessed("No column was recognised as the plots' names; they are numbered.")
             )
     else:
-        base = [text(v) or layer.name for v in layer.column(named)]
+        try:
+            cells = layer.column(named)
+        except ChoiceNeeded as asked:
+            raise ChoiceNeeded(str(asked), "name_column", asked.choices) from None
+        base = [text(v) or layer.name for v in cells]
         if len(layer) > 1 or column is None:
             messages.append(seen(f"Plots are named by column {named!r}."))
     return _told_apart(base), messages

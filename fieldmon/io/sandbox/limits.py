@@ -22,8 +22,8 @@ RECORDS = 1_000_000
 COLUMNS = 1_000
 #: text in one cell or attribute
 CELL_CHARACTERS = 1_000_000
-#: what the reading process may take: working time of its own, however busy the machine is; real time
-#: is a far backstop only, so many times that
+#: what the reading process may take: working time of its own, however busy the machine is, and
+#: memory; real time is a far backstop only, so many times that
 READ_SECONDS = 10.0
 PATIENCE = 30.0
 MEMORY_BYTES = 1_000 * MB

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler
 
+#: no plot has more plants than that
+MOST_EVERY = 10_000_000
 PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
 
 PlotFile = Annotated[Path, typer.Argument(help=PLOT_HELP, show_default=False)]
@@ -93,7 +95,8 @@ OneSampler = Annotated[SamplerName, typer.Option(help="Who chooses.")]
 Every = Annotated[
     int | None,
     typer.Option(
-        help="Every N-th plant or stop (bouncy 2, snake 1, neighbor 1) or 1/N (random 3)."
+        max=MOST_EVERY,
+        help="Every N-th plant or stop (bouncy 2, snake 1, neighbor 1) or 1/N (random 3).",
     ),
 ]
 Outputs = Annotated[

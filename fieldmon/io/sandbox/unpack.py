@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import io
 import lzma
+import os
 import re
 import sqlite3
 import stat
 import zipfile
 import zlib
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import IO, TYPE_CHECKING
@@ -45,6 +46,8 @@ _PARTS[".tiff"] = _PARTS[".tif"]
 #: the other files of an ISOXML, and those of a file geodatabase
 _TASK_FILE = re.compile(r"[A-Za-z]{3}[0-9]{5}\.(xml|bin)", re.IGNORECASE)
 _GEODATABASE_FILE = re.compile(r"[A-Za-z0-9_]{1,40}(\.[A-Za-z0-9_]{1,20}){0,3}")
+#: files, folders, pipes and devices that are looked at in a folder
+_MOST_SEEN = 20_000
 _DECOYS = frozenset({"thumbs.db", "desktop.ini", "__macosx"})
 _OFFICE_PART = "[content_types].xml"
 _DAMAGE = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, ValueError)
@@ -64,7 +67,9 @@ class FileEntry:
         return PurePosixPath(self.name)
 
     def head(self) -> bytes:
-        """Return the first bytes."""
+        """Return the first bytes; none of a file that says it has none, and may never end."""
+        if not self.n_bytes:
+            return b""
         with _opened(self) as file:
             return file.read(HEAD_BYTES)
 
@@ -206,6 +211,11 @@ def _entries(source: Source) -> list[FileEntry]:
         raise FileProblem(f"{path} must be a file or a folder, but there is none. Check the name.")
     if path.is_dir():
         return _of_folder(path)
+    if not path.is_file():
+        raise FileProblem(
+            f"{path} must be a file or a folder, but it is a pipe, a device or the like. "
+            "Save what comes out of it in a file, and choose that."
+        )
     return [_of_path(p, p.name) for p in (path, *_belongings(path))]
 
 
@@ -237,7 +247,10 @@ def _of_upload(upload: Upload) -> FileEntry:
 
 
 def _of_path(path: Path, name: str) -> FileEntry:
-    n_bytes = path.stat().st_size
+    try:
+        n_bytes = path.stat().st_size
+    except OSError as bad:
+        raise FileProblem(f"{name} cannot be read: {bad.strerror or bad}.") from bad
     _check_size(name, n_bytes)
     return FileEntry(name, n_bytes, lambda: path.open("rb"))
 
@@ -252,16 +265,25 @@ def _check_size(name: str, n_bytes: int) -> None:
 
 def _of_folder(folder: Path) -> list[FileEntry]:
     base = folder.parent if folder.suffix.lower() == ".gdb" else folder
-    entries = []
-    for path in sorted(folder.rglob("*")):
-        if path.is_file() and not path.is_symlink():
-            entries.append(_of_path(path, path.relative_to(base).as_posix()))
-        if len(entries) > limits.ARCHIVE_ENTRIES:
+    entries: list[FileEntry] = []
+    for n_seen, path in enumerate(_walked(folder)):
+        with suppress(OSError):  # gone since it was listed, or not to be looked at
+            if path.is_file() and not path.is_symlink():
+                entries.append(_of_path(path, path.relative_to(base).as_posix()))
+        if len(entries) > limits.ARCHIVE_ENTRIES or n_seen > _MOST_SEEN:
             raise FileProblem(
                 f"A folder may hold {limits.ARCHIVE_ENTRIES} files at most, but {folder} holds "
                 "more. Choose one file in it."
             )
     return entries
+
+
+def _walked(folder: Path) -> Iterator[Path]:
+    """Yield what lies in a folder and those in it, name by name, without listing all before."""
+    for root, folders, files in os.walk(folder):
+        folders.sort()
+        yield from (Path(root, name) for name in sorted(files))
+        yield Path(root)
 
 
 def _is_decoy(entry: FileEntry) -> bool:

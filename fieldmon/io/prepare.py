@@ -27,7 +27,7 @@ from fieldmon.io.read import (
     read_records_by_plot,
 )
 from fieldmon.io.readers.crews import Crew
-from fieldmon.io.readers.nearby import near_plot, on_plants
+from fieldmon.io.readers.nearby import on_plants, records_on_plot
 from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.layout import Planting
@@ -153,7 +153,7 @@ class EstateRecords:
 
     def on(self, plot: Field) -> Observations:
         """Return the records on a plot or near it; there may be none."""
-        return near_plot(self.candidates(plot.name), plot).inside
+        return records_on_plot(self.candidates(plot.name), plot)
 
 
 @dataclass(frozen=True, eq=False)

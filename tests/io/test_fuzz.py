@@ -12,10 +12,11 @@ from fieldmon.io.sandbox import process
 from tests import fuzz
 
 
+@pytest.mark.timeout(900)
 def test_damaged_files_leave_only_sentences():
-    tally = fuzz.fuzz(100, seconds=250.0)
+    tally = fuzz.fuzz(400)
     assert tally.failures == []
-    assert tally.outcomes.total() == 100
+    assert tally.outcomes.total() == 400
     assert tally.outcomes["refused"] > 0
     assert tally.outcomes["came in"] > 0
 
@@ -24,7 +25,8 @@ def test_every_structure_is_changed_and_the_same_number_gives_the_same_file(tmp_
     corpus = fuzz.seeds(tmp_path)
     endings = {part.name.rpartition(".")[2] for seed in corpus for part in seed.parts}
     assert {"shp", "dbf", "zip", "geojson", "csv", "kml", "tif", "gpkg", "xlsx"} <= endings
-    for number, seed in enumerate(corpus[:40]):
+    assert {"xls", "ods", "tab", "map", "dxf", "sqlite", "XML", "gml", "prj"} <= endings
+    for number, seed in enumerate(corpus[::6]):
         once, again = (fuzz.mutated(seed, np.random.default_rng(number)) for _ in range(2))
         assert once == again
 

@@ -182,7 +182,8 @@ def _geometries(
             limits.check("vertices", n_vertices, limits.VERTICES, name)
     n_vertices = int(shapely.get_num_coordinates(geometry).sum())
     limits.check("vertices", n_vertices, limits.VERTICES, name)
-    n_open = sum(_is_open(stated[i]) for i in np.flatnonzero(~shapely.is_missing(geometry)))
+    there = ~shapely.is_missing(geometry)
+    n_open = sum(_is_open(one) for one, kept in zip(stated, there, strict=True) if one and kept)
     messages = [
         dropped(
             "The geometry cannot be understood and is left out.",
@@ -207,7 +208,7 @@ def _whole_polygons(stated: list[Any]) -> NDArray[np.object_] | None:
             return None
         ring_of = np.repeat(np.arange(len(rings)), [len(ring) for ring in rings])
         polygon_of = np.repeat(np.arange(len(stated)), [len(one["coordinates"]) for one in stated])
-        closed_rings = shapely.linearrings(xy[:, :3], indices=ring_of)
+        closed_rings = np.asarray(shapely.linearrings(xy[:, :3], indices=ring_of))
         return np.asarray(shapely.polygons(closed_rings, indices=polygon_of))
     except _NOT_GEOMETRY:
         return None
@@ -215,11 +216,10 @@ def _whole_polygons(stated: list[Any]) -> NDArray[np.object_] | None:
 
 def _is_open(stated: dict[str, Any]) -> bool:
     """Return whether a ring of an area does not end where it begins."""
-    kind, areas = stated["type"], stated.get("coordinates")
-    if kind == "Polygon":
-        areas = [areas]
-    elif kind != "MultiPolygon":
+    kind = stated["type"]
+    if kind not in {"Polygon", "MultiPolygon"}:
         return False
+    areas = [stated["coordinates"]] if kind == "Polygon" else stated["coordinates"]
     return any(len(ring) > 2 and ring[0][:2] != ring[-1][:2] for area in areas for ring in area)
 
 

@@ -19,7 +19,8 @@ def shapes(wkb: NDArray[np.object_]) -> tuple[NDArray[np.object_], list[ImportMe
     A ring that does not end where it begins is closed by a straight line.
     """
     geometry = shapely.from_wkb(wkb, on_invalid="ignore")
-    lost = np.flatnonzero(shapely.is_missing(geometry) & np.not_equal(wkb, None))
+    there = np.array([one is not None for one in wkb], dtype=bool)
+    lost = np.flatnonzero(shapely.is_missing(geometry) & there)
     if not len(lost):
         return geometry, []
     geometry[lost] = shapely.from_wkb(wkb[lost], on_invalid="fix")

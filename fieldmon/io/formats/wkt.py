@@ -42,7 +42,8 @@ def with_shapes(layer: Layer, stated: str | None) -> Layer:
     cells = [_WKT.fullmatch(text(v)) for v in layer.columns[name]]
     bare = np.array([m.group(2) if m else None for m in cells], dtype=object)
     geometry = shapely.from_wkt(bare, on_invalid="ignore")
-    lost = shapely.is_missing(geometry) & np.not_equal(bare, None)
+    there = np.array([m is not None for m in cells], dtype=bool)
+    lost = shapely.is_missing(geometry) & there
     geometry[lost] = shapely.from_wkt(bare[lost], on_invalid="fix")
     limits.check(
         "vertices", int(shapely.get_num_coordinates(geometry).sum()), limits.VERTICES, layer.name

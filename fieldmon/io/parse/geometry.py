@@ -38,8 +38,7 @@ _REASONS = {
 def areas_m2(geometry: NDArray[np.object_]) -> Floats:
     """Return the areas of lon/lat polygons and multipolygons ``(n,)`` on the ellipsoid."""
     parts, feature = shapely.get_parts(geometry, return_index=True)
-    areas: Floats = np.bincount(feature, _measured_parts(parts).area_m2, len(geometry))
-    return areas
+    return np.bincount(feature, _measured_parts(parts).area_m2, len(geometry)).astype(np.float64)
 
 
 def area_m2(geometry: shapely.Geometry) -> float:

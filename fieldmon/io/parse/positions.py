@@ -227,7 +227,7 @@ class _Unread(NamedTuple):
         records = np.flatnonzero(~there)
         columns = [[text(v) for v in layer.column(name)[records]] for name in names]
         n_empty = n_dotted = 0
-        examples = []
+        examples: list[str] = []
         for i, cells in zip(records.tolist(), zip(*columns, strict=True), strict=True):
             if all(is_missing(cell) for cell in cells):
                 n_empty += 1

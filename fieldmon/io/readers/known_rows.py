@@ -42,7 +42,8 @@ _COLUMNS = {
 def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], list[ImportMessage]]:
     """Return what a layer's columns state of the rows of its features, by the features' names."""
     called = {plain(column): column for column in layer.columns}
-    values, used = [], []
+    values: list[list[float | None]] = []
+    used = []
     for setting, columns in _COLUMNS.items():
         column = next((called[plain(c)] for c in columns if plain(c) in called), None)
         if column is None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
+import io
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, Protocol
 
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
@@ -49,16 +50,18 @@ class _NewBook:
 
 
 class _OldBook:
-    """A workbook of old Excel (.xls) or LibreOffice (.ods)."""
+    """A workbook of old Excel (.xls, .xlsb) or LibreOffice (.ods), or an unusual new one."""
 
     def __init__(self, path: Path) -> None:
         import python_calamine  # noqa: PLC0415 - only where there is one
 
-        self.book: Any = python_calamine.CalamineWorkbook.from_path(path)
+        # from its bytes: by its name it would be taken for what it is called
+        data = io.BytesIO(path.read_bytes())
+        self.book: Any = python_calamine.CalamineWorkbook.from_filelike(data)
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(self.book.sheet_names)
+        return tuple(s.name for s in self.book.sheets_metadata if s.typ.name == "WorkSheet")
 
     def rows(self, sheet: str) -> Iterator[tuple[Any, ...]]:
         one = self.book.get_sheet_by_name(sheet)
@@ -96,11 +99,19 @@ def sheet_rows(path: Path, name: str, sheet: str) -> list[list[Any]]:
         return rows[:n_filled]
 
 
+def _book(path: Path) -> _Book:
+    """Open a workbook by the reader that can: not all new ones are as openpyxl expects."""
+    if path.suffix == ".xlsx":
+        with suppress(Exception):
+            return _NewBook(path)
+    return _OldBook(path)
+
+
 @contextmanager
 def _opened(path: Path, name: str) -> Iterator[_Book]:
     """Open a workbook; whatever its reader raises becomes a `FileProblem`."""
     try:
-        yield _NewBook(path) if path.suffix == ".xlsx" else _OldBook(path)
+        yield _book(path)
     except (FieldmonError, MemoryError):
         raise
     except BaseException as bad:

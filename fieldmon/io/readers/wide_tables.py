@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.infestation.observations import UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
 from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.values import counted, dates, is_missing
+from fieldmon.io.parse.result_words import meaning
+from fieldmon.io.parse.values import counted, dates, is_missing, number
 from fieldmon.io.sandbox import limits
 
 if TYPE_CHECKING:
@@ -70,8 +72,9 @@ def _unfolded(layer: Layer, days: dict[str, str], messages: list[ImportMessage])
 
 
 def _are_counts(values: NDArray[np.object_]) -> bool:
-    cells = {text(v) for v in values}
-    return all(is_missing(cell) or np.isfinite(counted(cell).number) for cell in cells)
+    cells = {cell for v in values if not is_missing(cell := text(v))}
+    words = {cell for cell in cells if meaning(cell) is not None and np.isnan(number(cell))}
+    return not words and all(counted(cell).present != UNKNOWN for cell in cells)
 
 
 def _about(read: DatedColumn, dated: list[str]) -> list[ImportMessage]:

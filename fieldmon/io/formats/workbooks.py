@@ -57,11 +57,12 @@ class _OldBook:
 
         # from its bytes: by its name it would be taken for what it is called
         data = io.BytesIO(path.read_bytes())
+        self.with_cells = python_calamine.SheetTypeEnum.WorkSheet
         self.book: Any = python_calamine.CalamineWorkbook.from_filelike(data)
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(s.name for s in self.book.sheets_metadata if s.typ.name == "WorkSheet")
+        return tuple(s.name for s in self.book.sheets_metadata if s.typ == self.with_cells)
 
     def rows(self, sheet: str) -> Iterator[tuple[Any, ...]]:
         one = self.book.get_sheet_by_name(sheet)

@@ -146,7 +146,9 @@ class ReadOptions:
             ("What is done with doubles", self.doubles, ("one",)),
         ):
             if told is not None and told not in words:
-                raise SettingError(f"{what} must be {' or '.join(words)}, but it is {told!r}.")
+                may_be = " or ".join(words)
+                comma = "" if may_be.endswith(",") else ","
+                raise SettingError(f"{what} must be {may_be}{comma} but it is {told!r}.")
 
     def column(self, role: str) -> str | None:
         """Return the column named by hand for a role, or None."""

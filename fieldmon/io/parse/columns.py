@@ -101,6 +101,7 @@ _IDS = frozenset(
     {"id", "fid", "gid", "oid", "objectid", "ogcfid", "nr", "no", "num", "number", "nummer"}
     | {"numero", "index", "idx", "key", "code", "uuid", "guid", "serial", "lfdnr", "feature", "pk"}
 )
+_FEW = 4
 
 
 def is_id(name: str, cells: Iterable[str]) -> bool:
@@ -109,4 +110,4 @@ def is_id(name: str, cells: Iterable[str]) -> bool:
     if own in _IDS or own.endswith("id") or own.startswith("id"):
         return True
     whole = [int(cell) for cell in cells if re.fullmatch(r"\d{1,15}", cell)]
-    return len(whole) > 2 and whole == list(range(whole[0], whole[0] + len(whole)))
+    return len(whole) > _FEW and whole == list(range(whole[0], whole[0] + len(whole)))

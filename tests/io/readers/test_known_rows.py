@@ -1,0 +1,37 @@
+"""What a plot file says of its rows goes to the plot it is said of."""
+
+import pytest
+
+from fieldmon.io.readers.known_rows import KnownRows, known_rows
+from tests.io.tables_of_cells import table
+
+NAMES = ["a", "b"]
+
+
+def test_each_plot_gets_what_its_own_line_says():
+    layer = table(row_bearing_deg=[10, None], row_spacing=["3,5", "4"], plant_spacing_m=[None, 1.5])
+    known, (said,) = known_rows(layer, NAMES)
+    assert known == {"a": KnownRows(10.0, 3.5, None), "b": KnownRows(None, 4.0, 1.5)}
+    for column in layer.columns:
+        assert repr(column) in said.sentence
+
+
+@pytest.mark.parametrize("value", [0, -3, "none", None])
+def test_a_spacing_that_is_none_is_not_taken(value):
+    known, _ = known_rows(table(row_spacing_m=[value, 4]), NAMES)
+    assert known["a"].row_spacing_m is None
+
+
+def test_rows_may_run_north_and_west_of_it():
+    known, _ = known_rows(table(azimuth=[0, -20]), NAMES)
+    assert [known[name].row_bearing_deg for name in NAMES] == [0.0, -20.0]
+
+
+@pytest.mark.parametrize("column", ["Row spacing (m)", "ROW_SPAC_M", "rowSpace", "row dist"])
+def test_columns_are_known_however_they_are_written(column):
+    known, _ = known_rows(table(**{column: [3, 4]}), NAMES)
+    assert known["a"].row_spacing_m == 3.0
+
+
+def test_a_file_that_says_nothing_of_rows_says_nothing():
+    assert known_rows(table(crop=["vine", "vine"]), NAMES) == ({}, [])

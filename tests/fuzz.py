@@ -423,7 +423,8 @@ def fuzz(n_inputs: int, first: int = 0, seconds: float = np.inf) -> Tally:
             seed = door_of(corpus[number % len(corpus)], rng)
             _one(number, seed, mutated(seed, rng), tally)
             if (number - first) % 500 == 499:
-                sys.stderr.write(f"{number - first + 1} of {n_inputs}\n")
+                so_far = f"{number - first + 1} of {n_inputs}, {len(tally.failures)} failure(s)\n"
+                sys.stderr.write(so_far)
         process.stop()
         left = [p for room in ("tmp", "home", "here") for p in (world / room).rglob("*")]
         tally.failures += [f"a file was left: {path.name}" for path in left]

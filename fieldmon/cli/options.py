@@ -55,7 +55,7 @@ RecordChoices = Annotated[
     typer.Option(
         "--record-option",
         help="What the records leave open, as NAME=VALUE: crs=EPSG:2039, date_order=dmy, "
-        "columns=date=Datum, columns=count=Milben.",
+        "columns=date=Datum, columns=count=Milben, found=WORD,WORD, clean=WORD, degrees=dms.",
     ),
 ]
 Plants = Annotated[
@@ -66,7 +66,9 @@ Paths = Annotated[
 ]
 PlantsChoices = Annotated[
     list[str] | None,
-    typer.Option("--plants-option", help="What the file of plants leaves open, as NAME=VALUE."),
+    typer.Option(
+        "--plants-option", help="What the file of plants leaves open, as NAME=VALUE: doubles=one."
+    ),
 ]
 PathsChoices = Annotated[
     list[str] | None,

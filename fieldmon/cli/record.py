@@ -31,7 +31,7 @@ FindingChoices = Annotated[
     typer.Option(
         "--finding-option",
         help="What the files leave open, as NAME=VALUE: zone=Asia/Jerusalem, accuracy_m=3, "
-        "columns=count=Milben.",
+        "columns=count=Milben, found=WORD,WORD, clean=WORD.",
     ),
 ]
 

@@ -35,7 +35,7 @@ from tests import awkward
 
 #: what the clock of the reading process allows on a busy machine, and what ending it may take
 SECONDS = limits.PATIENCE * limits.READ_SECONDS + 3.0
-_LARGEST_SEED = 200_000
+_LARGEST_SEED = 400_000
 _NASTY_NUMBERS = (0, -1, 1, 0x7F, 0x80, 0xFF, 0x7FFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF)
 _NASTY_VALUES = (
     *(None, True, -1, 0, 1e308, -1e308, 1e-320, 10**400, "", "NaN", "\x00", "א" * 300, [], {}),

@@ -151,7 +151,7 @@ def _is_geopackage(path: Path) -> bool:
         with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as db:
             known = "SELECT 1 FROM sqlite_master WHERE lower(name) = 'gpkg_contents'"
             return db.execute(known).fetchone() is not None
-    except sqlite3.Error:
+    except (sqlite3.Error, UnicodeDecodeError):  # the latter from names that are no text
         return True  # whoever opens it says what is wrong
 
 

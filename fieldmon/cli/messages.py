@@ -11,12 +11,13 @@ import typer
 from fieldmon.errors import ChoiceNeeded
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     import numpy as np
 
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.prepare import Laid, SourceMessage
+    from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.plot import Plot
 
 #: the options that take what a file leaves open, by what the file is to the plot
@@ -27,6 +28,13 @@ FLAGS = {
     "records": "--record-option",
     "canopy": "--canopy-option",
     "risk": "--risk-option",
+    "findings": "--finding-option",
+}
+#: questions that another file answers, not a value
+_OTHER_FILES = {
+    "kind": "Give points with --plants FILE and lines with --paths FILE (fieldmon plan).",
+    "plots": "Give the file of the plots as the first argument.",
+    "plants": "Give the plants with --plants FILE.",
 }
 #: what commands that have `FLAGS` also take by an option of its own
 _BY_NAME = frozenset({"crs", "layer", "feature"})
@@ -71,6 +79,8 @@ class Terminal:
             ) from None
 
     def _with_answer(self, question: ChoiceNeeded) -> str:
+        if question.option in _OTHER_FILES:
+            return f"{question} {_OTHER_FILES[question.option]}" if self.flags else str(question)
         answer = question.choices[0] if question.choices else "..."
         if question.option == "feature" and not question.role:
             sentence = str(question).removesuffix(".")
@@ -97,6 +107,13 @@ def describe(plot: Plot) -> None:
         f"{grid.frame.bearing_deg % 180:.1f} degrees, rows {grid.row_spacing_m:.2f} m and plants "
         f"{grid.plant_spacing_m:.2f} m apart."
     )
+
+
+def tell_assumed(assumed: Iterable[Assumed]) -> None:
+    """Print what the figures of a day rest on though nobody said it, in one line."""
+    said = "; ".join(str(one).removeprefix("guessed: ") for one in assumed)
+    if said:
+        typer.echo(f"assumed: {said}", err=True)
 
 
 def tell_unusable(records: Observations, day: np.datetime64) -> None:

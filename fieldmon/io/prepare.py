@@ -12,8 +12,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
+import shapely
+
 from fieldmon.errors import ChoiceNeeded, PlotError, SettingError
 from fieldmon.infestation.observations import Observations
+from fieldmon.io.import_report import ImportMessage, doubtful
 from fieldmon.io.options import source_name
 from fieldmon.io.read import (
     read_crews,
@@ -24,9 +27,10 @@ from fieldmon.io.read import (
     read_records_by_plot,
 )
 from fieldmon.io.readers.crews import Crew
-from fieldmon.io.readers.nearby import near_plot, on_plants
+from fieldmon.io.readers.nearby import on_plants, records_on_plot
 from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
 from fieldmon.io.sources import PlantingChoices
+from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.layout import Planting
 from fieldmon.plot.plot import Plot, planting_of
 
@@ -36,7 +40,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.io.import_report import Imported, ImportMessage
+    from fieldmon.io.import_report import Imported
     from fieldmon.io.options import Source
     from fieldmon.io.readers.places import Plants
     from fieldmon.io.sources import (
@@ -52,6 +56,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _MOST_NAMED = 12
+#: some kilometres: records further from all plots than that belong to none
+_NEARBY_DEG = 0.05
 _SPACINGS = ("row_spacing_m", "plant_spacing_m")
 
 
@@ -74,32 +80,16 @@ class SourceMessage:
     message: ImportMessage
 
 
-@dataclass(frozen=True)
-class Assumed:
-    """Something about a plot that nobody said and no file states.
-
-    Parameters
-    ----------
-    setting
-        Its name in `PlantingChoices`, which says otherwise: ``"row_spacing_m"``.
-    value
-        What was taken, metres.
-    """
-
-    setting: str
-    value: float
-
-    def __str__(self) -> str:
-        words = self.setting.removesuffix("_m").replace("_", " ")
-        return f"guessed: {words} {self.value:g} m"
-
-
 @dataclass(frozen=True, eq=False)
 class Laid:
     """A plot with its plants, and what had to be assumed for them."""
 
     plot: Plot
-    assumed: tuple[Assumed, ...] = ()
+
+    @property
+    def assumed(self) -> tuple[Assumed, ...]:
+        """Return what nobody said of its rows."""
+        return self.plot.assumed
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +138,7 @@ class EstateRecords:
 
     def on(self, plot: Field) -> Observations:
         """Return the records on a plot or near it; there may be none."""
-        return near_plot(self.candidates(plot.name), plot).inside
+        return records_on_plot(self.candidates(plot.name), plot)
 
 
 @dataclass(frozen=True, eq=False)
@@ -264,7 +254,8 @@ def lay(field: Field, choices: PlantingChoices | None = None) -> Laid:
     planting = planting_of(field, **given)
     missing = [name for name in _SPACINGS if name not in given and getattr(field, name) is None]
     assumed = tuple(Assumed(name, getattr(planting, name)) for name in missing)
-    return Laid(Plot.of(field, planting), assumed if field.plants is None else ())
+    plot = Plot.of(field, planting)
+    return Laid(plot if field.plants is not None else replace(plot, assumed=assumed))
 
 
 def lay_around(
@@ -321,7 +312,24 @@ def records_of(
         if question.option != "plants":
             raise
         return _by_plant(fields, source, lay, question.choices)
-    return read.having(EstateRecords(read.value))
+    return read.having(EstateRecords(read.value), _far_from_all(fields, source, read.value))
+
+
+def _far_from_all(
+    fields: tuple[Field, ...], source: RecordSource, records: Observations
+) -> list[ImportMessage]:
+    """Return a doubt where no record lies near any plot; ask where all are on another continent."""
+    west, south, east, north = shapely.total_bounds([field.boundary for field in fields])
+    lon, lat = records.lonlat.T
+    margin = _NEARBY_DEG
+    near = (lon > west - margin) & (lon < east + margin)
+    near &= (lat > south - margin) & (lat < north + margin)
+    if near.any():
+        return []
+    middle = ((west + east) / 2, (south + north) / 2)
+    if source.options.near is None:
+        read_records(source.file, replace(source.options, near=middle))
+    return [doubtful("Not one record lies near any of the plots; they say nothing about them.")]
 
 
 def without_missing(plot: Plot, source: CanopySource) -> Imported[Plot]:
@@ -392,7 +400,8 @@ def _with_paths(
     file = sources.paths
     if file is None:
         return fields
-    lines = hearing.read("paths", file, partial(read_lines, file, sources.paths_options))
+    read = partial(read_lines, file, sources.paths_options, fields[0])
+    lines = hearing.read("paths", file, read)
     return tuple(replace(field, paths=lines) for field in fields)
 
 

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from datetime import datetime, timedelta
+from datetime import timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
-from fieldmon.cli.messages import tell_unusable
+from fieldmon.cli.messages import tell_assumed, tell_unusable
 from fieldmon.cli.outputs import write_chance_map
 from fieldmon.cli.preparing import prepared
-from fieldmon.cli.times import clock
+from fieldmon.cli.times import WorkStart, clock
 from fieldmon.cli.waiting import counting
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from datetime import datetime, time
+
     from fieldmon.cli.plan import PlanOptions
     from fieldmon.planning.team import TeamMember, TeamPlan
 
@@ -30,46 +32,47 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
 
     from fieldmon.infestation.prior import PriorSettings, prior_chance  # noqa: PLC0415
     from fieldmon.planning import team  # noqa: PLC0415
+    from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
 
     for name in ("sampler", "every", "every_plot"):
         source = context.get_parameter_source(name)
         if source is not None and source.name == "COMMANDLINE":
             flag = "all" if name == "every_plot" else name
             raise SettingError(f"--robots plans best routes on one plot: leave out --{flag}.")
-    members, begins = _members(options, robots)
-    on = np.datetime64(begins.date(), "D")
-    files = _files(options.output, members)
+    members, first = _members(options, robots)
+    starts, files = WorkStart(options.starts().on, first), _files(options.output, members)
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
+    plot, prior = known.plot, PriorSettings()
+    begins = starts.on_plot(plot.field)
+    on = np.datetime64(begins.date(), "D")
     tell_unusable(known.records, on)
-    plot = known.plot
-    chance = prior_chance(plot.grid, plot.field, known.records, on, PriorSettings(), known.risk)
+    chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
     with counting("Routes") as count:
         planned = team.plan_team(plot, chance, members, progress=count)
     _tell(planned, begins)
+    assumed = (one for member in members for one in assumed_by((), prior, member.robot))
+    tell_assumed({str(one): one for one in assumed}.values())
     _write(planned, begins, plot.field.name, files)
     write_chance_map(options.chance_map, plot, chance)
 
 
-def _members(options: PlanOptions, robots: str) -> tuple[tuple[TeamMember, ...], datetime]:
-    """Return the team, and when the first of it starts."""
+def _members(options: PlanOptions, robots: str) -> tuple[tuple[TeamMember, ...], time]:
+    """Return the team, and the local time at which the first of it starts."""
     from fieldmon.io.readers.team import read_team  # noqa: PLC0415
     from fieldmon.planning.team import TeamMember, team_of  # noqa: PLC0415
 
-    begins, worker = options.begins(), options.worker
+    usual, worker = options.starts().at, options.worker
     if robots.isdigit():
-        return team_of(int(robots), worker.robot()), begins
+        return team_of(int(robots), worker.robot()), usual
     stated = read_team(Path(robots))
-    starts = [
-        begins if one.start is None else datetime.combine(begins.date(), clock(one.start, "start"))
-        for one in stated
-    ]
+    starts = [usual if one.start is None else clock(one.start, "start") for one in stated]
     first = min(starts)
     members = [
         TeamMember(
             one.name,
             replace(replace(worker, scout=worker.scout or one.scout).robot(), **one.settings),  # type: ignore[arg-type]
             one.gate,
-            (start - first).total_seconds(),
+            60.0 * (60 * (start.hour - first.hour) + start.minute - first.minute),
         )
         for one, start in zip(stated, starts, strict=True)
     ]

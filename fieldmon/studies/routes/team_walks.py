@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 # each walk is looked for again so often; so often one of two that meet looks elsewhere
 _ROUNDS, _TRIES = 5, 12
-# prices of plants: so many, for so long, a step that gained nothing so often is halved, directions are
-# remembered so far
+# prices of plants: so many, for so long; a step that gained nothing so often is made shorter, and
+# directions are remembered so far
 _PRICES, _WITHIN_S, _PATIENCE, _MEMORY = 150, 20.0, 8, 0.7
 
 

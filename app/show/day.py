@@ -58,7 +58,9 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
         st.metric(texts.PLANTS_TO_INSPECT, f"{len(route):,} / {n:,}", width="content")
         st.metric(texts.TIME, f"{route.end_s / 3600:.1f} h", width="content")
         st.metric(texts.DRIVE, choices.units.metres(route.drive_m), width="content")
-        st.metric(texts.FINDS, f"{finds:.1f}", width="content")
+        st.metric(texts.FINDS, f"{finds:.1f}", help=texts.FINDS_HELP, width="content")
+    if len(route) and route.bound_sentence:
+        st.caption(route.bound_sentence, help=texts.BOUND_HELP)
 
 
 def said_of_day(choices: Choices, plan: DayPlan) -> None:

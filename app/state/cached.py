@@ -20,6 +20,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.io import prepare, read
 from fieldmon.io.rasters.read import read_backdrop
 from fieldmon.monitoring import Season, worked_route
+from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
@@ -130,7 +131,7 @@ def day_plan(
 ) -> DayPlan:
     """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
     chance = chance_map(key, day, _plot, _known)
-    return plan_from(_plot, chance, PlanSettings(robot, sampler(sampler_name)))
+    return with_bound(plan_from(_plot, chance, PlanSettings(robot, sampler(sampler_name))))
 
 
 @st.cache_resource(max_entries=_FEW)
@@ -181,7 +182,7 @@ def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:  # n
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
 def season_plan(path: str, revision: str, day: str, _season: Season) -> DayPlan:  # noqa: ARG001
     """Return what is left of a season's day."""
-    return _season.plan(np.datetime64(day).item(), keep=False)
+    return with_bound(_season.plan(np.datetime64(day).item(), keep=False))
 
 
 @st.cache_resource(max_entries=_FEW)

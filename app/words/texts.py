@@ -56,6 +56,10 @@ FINDS_HELP = (
     "Infested plants on the route, by the chance map, times the chance that an inspection finds "
     "them."
 )
+BOUND_HELP = (
+    "Whichever plants it visits, no route fixed in the morning can expect more finds. Who plans "
+    "again after each find may find more."
+)
 DOWNLOAD = "Download the route (GeoJSON)"
 NO_STOPS = (
     "The working day is too short to reach a plant and come back. Give more hours on the left."

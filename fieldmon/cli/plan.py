@@ -12,6 +12,7 @@ import typer
 from fieldmon.cli.messages import tell_unusable
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
+    Bounded,
     Every,
     Feature,
     MaybePlotFile,
@@ -61,6 +62,7 @@ class PlanOptions:
     files: PlotFiles = field(default_factory=PlotFiles)
     chance_map: ChanceMap = None
     every_plot: EveryPlot = False
+    bound: Bounded = True
 
     def begins(self) -> datetime:
         """Return the local date and time at which the work starts."""
@@ -82,6 +84,9 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
     Example: fieldmon plan season.gpkg -o route.geojson
     Example: fieldmon plan estate.zip --all --observations mites.csv -o routes
 
+    Of a whole day it is said what no other route of these hours can expect to find, whichever
+    plants it visits: how much a better plan could gain at most.
+
     With --all, columns robot (robot or scout), hours, speed_km_h and look_s of the plot file say
     who works on each plot; options given here go before them.
     """
@@ -102,6 +107,7 @@ def _plan_one(options: PlanOptions) -> None:
     import numpy as np  # noqa: PLC0415
 
     from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
+    from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
     from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
 
     begins, robot = options.begins(), options.worker.robot()
@@ -116,6 +122,8 @@ def _plan_one(options: PlanOptions) -> None:
             f"The working day must be long enough to reach a plant and come back, but "
             f"{robot.hours:g} h are not. Give more --hours."
         )
+    if options.bound:
+        today = with_bound(today)
     typer.echo(day_in_words(today.route))
     notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
     write_routes(replace(today.route, notes=notes), options.output)
@@ -138,6 +146,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
         on_foot=worker.scout,
         robot=worker.given(),
         planting=request.planting.given(),
+        bound=options.bound,
     )
     plots = estate(request)
     tell_unusable(plots.records.anywhere, orders.day)

@@ -12,6 +12,7 @@ def test_the_first_screen_shows_the_sample_estate_with_a_route(app):
     assert "hot" in {one["id"] for one in map_of(app)["layers"]}
     assert metric(app, "Plants to inspect").endswith(f"/ {n:,}")
     assert app.get("download_button")
+    assert any("finds expected; no route of these hours" in said.value for said in app.caption)
 
 
 def test_layers_are_switched_off_and_on_while_the_view_stays(app):

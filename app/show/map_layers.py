@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ..state import cached, chosen_day
 from ..words import texts
 from . import field_map
-from .map_view import MapContent, Switch
+from .map_view import Frames, MapContent, Switch
 from .maps import colours, deck, labels, legends, marks, plant_layers, route_layers
 from .maps.plant_layers import PlantNotes
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from fieldmon.planning.route import Route
 
     from ..state.choices import Choices
@@ -28,6 +29,8 @@ PARTS = {
     "rows": (),
     "backdrop": ("backdrop",),
 }
+# more days than these are a film in steps of several
+_FRAMES = 60
 _FINDS = ("finds0", "finds1", "found")
 
 
@@ -52,9 +55,27 @@ def day_map(
         play["key"] = _route_key(choices, route)
     return MapContent(
         **field_map.of_plot(choices, len(route)), layers=layers,
-        switches=switches(layers, off, ("numbers", "rows")), shades=shades, legend=legend(choices), play=play,
+        switches=switches(layers, off, ("numbers", "rows")), shades=shades,
+        legend=legend(choices), play=play,
         labels=[*labels.stops(route), *labels.rows(choices.plot.grid)],
     )  # fmt: skip
+
+
+def season_frames(choices: Choices) -> Frames | None:
+    """Return the season's days, evenly chosen where there are very many; None: there is but one."""
+    if choices.season is None:
+        return None
+    days = chosen_day.season_days(choices)
+    if len(days) < 2:
+        return None
+    kept = np.unique(np.linspace(0, len(days) - 1, min(len(days), _FRAMES)).round().astype(int))
+    days = [days[k] for k in kept.tolist()]
+    at = [replace(choices, day=day) for day in days]
+    key = f"{choices.key} {choices.revision} {choices.day} {choices.dark}"
+    names = tuple(choices.units.day(day) for day in days)
+    now = int(np.searchsorted(days, choices.day))
+    shown = tuple(marks.with_hot(plants(one), _hot_layers(one)) for one in at)
+    return Frames(key, names, shown, min(now, len(days) - 1))
 
 
 def shaded(choices: Choices, first: str = "chance") -> tuple[Switch, ...]:

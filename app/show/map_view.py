@@ -67,6 +67,19 @@ class Drawable:
 
 
 @dataclass(frozen=True, eq=False)
+class Frames:
+    """Days to slide over: a key for all of it, their names, each one's layers, the one shown first.
+
+    A day's layers take the place of the map's layers of the same names.
+    """
+
+    key: str
+    names: tuple[str, ...]
+    layers: tuple[list[Layer], ...]
+    now: int
+
+
+@dataclass(frozen=True, eq=False)
 class MapContent:
     """What a map shows.
 
@@ -86,6 +99,8 @@ class MapContent:
         Signs with their meanings; words on the map, the most important first.
     play
         What plays a day, or None.
+    frames
+        The days of a season, to be slid over and played, or None.
     draw
         What clicks draw, or None.
     """
@@ -99,6 +114,7 @@ class MapContent:
     legend: list[LegendPart] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
     play: dict[str, Any] | None = None
+    frames: Frames | None = None
     draw: Drawable | None = None
 
 
@@ -142,6 +158,7 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
         "legend": content.legend,
         "labels": content.labels,
         "play": content.play,
+        "frames": None if content.frames is None else _sent(content.frames),
         "draw": draw and {"id": draw.name, "kind": draw.kind, "hint": draw.hint,
                           "snap": [list(p) for p in draw.snap]},
         "taps": answers.tapped is not None,
@@ -150,6 +167,11 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
         "lengths": chosen_units.units().lengths(),
         "words": texts.MAP_WORDS,
     }  # fmt: skip
+
+
+def _sent(frames: Frames) -> dict[str, Any]:
+    days = [[deck.published(layer) for layer in layers] for layers in frames.layers]
+    return {"key": frames.key, "names": [*frames.names], "layers": days, "now": frames.now}
 
 
 def _heard(answers: MapAnswers) -> None:

@@ -57,9 +57,9 @@ class Facts:
 def html(facts: Facts, plan: DayPlan, stops: pd.DataFrame, days: list[DayFigures]) -> str:
     """Return the whole page."""
     signs = [
-        (colours.FOUND, texts.LEGEND_STATES["found"]),
-        (colours.ROUTE, texts.MAP_LAYERS["route"]),
-        (colours.GATE, texts.DRAW_KINDS["gate"]),
+        ("find", colours.FOUND, texts.LEGEND_STATES["found"]),
+        ("line", colours.ROUTE, texts.LEGEND_ROUTE),
+        ("ring", colours.GATE, texts.LEGEND_GATE),
     ]
     table = stops.assign(**{texts.REPORT_TICK: "☐"}).reset_index()
     return page(
@@ -68,7 +68,7 @@ def html(facts: Facts, plan: DayPlan, stops: pd.DataFrame, days: list[DayFigures
         words=_WORDS,
         figures=_figures(facts, plan),
         drawing=drawing(facts),
-        legends=[legends.chance_legend(), legends.legend(signs, signs=("find", "line", "ring"))],
+        legends=[legends.markup([legends.by_chance()]), legends.markup([legends.part("", signs)])],
         found=facts.results,
         days=[_day(facts, one) for one in days],
         settings=_settings(facts),
@@ -126,7 +126,7 @@ def _dots(places: NDArray[np.float64], shade: colours.Shade, size: float) -> Mar
     parts = []
     for rank in np.unique(shade.rank):
         own = places[shade.rank == rank]
-        colour = tuple(colours.CHANCE_COLOURS[rank])
+        colour = tuple(colours.of_chance()[rank])
         # lines as long as they are wide: dots of no length are missing in a PDF
         dots = "".join(f"M{x - size:.1f} {y}h{2 * size:.1f}" for x, y in own.tolist())
         path = Markup('<path d="{}" stroke="rgb{}" stroke-width="{:.1f}"/>')

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from ..actions import rasters
-from ..show import day_slider, hot_spots, map_layers, plant_history
+from ..show import hot_spots, map_layers, plant_history
 from ..state import chosen_day
 from ..words import texts
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 def show(choices: Choices) -> None:
     """Show hot spots in words and a plant's history, of any day of the season."""
-    choices = day_slider.show(choices)
     with st.expander(texts.BACKDROP_TITLE):
         rasters.show_backdrop()
     below = rasters.backdrop_layers(choices)

@@ -11,7 +11,6 @@ import streamlit as st
 from ..show import estate_map, field_map
 from ..show.map_view import MapAnswers
 from ..state import browser, estate, plot_source, rooms
-
 from ..words import texts
 
 if TYPE_CHECKING:

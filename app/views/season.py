@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
 
 def show(choices: Choices) -> None:
     """Show where the season stands."""
-    plant_history.want(choices, map_layers.day_map(choices))
+    content = map_layers.day_map(choices)
+    plant_history.want(choices, replace(content, frames=map_layers.season_frames(choices)))
     if choices.season is None:
         st.markdown(texts.NEEDS_SEASON)
         beginning.show(choices)

@@ -93,6 +93,8 @@ MAP_WORDS = {
     "fold": "Fold the panel away", "unfold": "Show the panel", "sheet": "Pull the day's work up",
     "draw_hint": "Click on the map.", "draw_back": "Back", "draw_drop": "Drop",
     "draw_done": "Finish",
+    "play_season": "Play the season", "day": "Day", "film": "Save the season as a film",
+    "film_name": "season.webm",
     "lasso_hint": "Draw round the plants.", "corners": "{n} point(s)",
     "scale": "The scale bar is {bar} long; the arrow points north.",
 }  # fmt: skip

@@ -1,8 +1,10 @@
 """Driving the app without a browser."""
 
 import json
+import sqlite3
 import time
 import zipfile
+from contextlib import closing
 from io import BytesIO
 
 import geopandas as gpd
@@ -14,6 +16,8 @@ from streamlit.util import calc_hash
 
 from app.state import rooms
 from app.state.map_store import STORE
+from tests.app.shown_plants import shown_plants
+from tests.monitoring.seasons import a_season
 from tests.paths import ROOT
 
 ESTATE = ROOT / "sample_data"
@@ -61,10 +65,16 @@ def press(app, label):
 
 def map_of(app):
     """Return what the map's component is sent, with each layer's JSON in its place."""
-    (sent,) = (one.proto for one in app.get("bidi_component") if one.proto.component_name == "fieldmon_map")
+    named = (one.proto for one in app.get("bidi_component"))
+    (sent,) = (one for one in named if one.component_name == "fieldmon_map")
     data = json.loads(sent.json)
-    data["layers"] = [{**one, **json.loads(STORE.get(one["url"])[1])} for one in data["layers"]]
+    data["layers"] = [{**one, **json.loads(fetched(one["url"]))} for one in data["layers"]]
     return data
+
+
+def fetched(address):
+    """Return the bytes that the server has under an address."""
+    return STORE.get(address)[1]
 
 
 def row_box(app, name):
@@ -73,16 +83,30 @@ def row_box(app, name):
 
 
 def layer(app, name):
+    """Return a layer as the browser gets it, or None."""
     return next((one for one in map_of(app)["layers"] if one["id"] == name), None)
+
+
+def plants(app, name="plants-chance"):
+    """Return the plants on the map, in one of their shades."""
+    sent = layer(app, name)
+    arrays = {kind: fetched(sent[kind]) for kind in ("places", "ranks", "values") if kind in sent}
+    return shown_plants(arrays, sent["table"])
 
 
 def metric(app, label):
     return next(m.value for m in app.metric if m.label == label)
 
 
-def heading(app):
-    """Return the page's heading without the marks that keep names of any script together."""
-    return app.subheader[0].value.replace("\u2068", "").replace("\u2069", "")
+def plot_name(app):
+    """Return what the map calls the plot."""
+    return map_of(app)["alt"].removeprefix("Map of plot ").split(": ")[0]
+
+
+def headline(app):
+    """Return the sentence at the top of Today: what there is to do."""
+    (said,) = (text.value for text in app.markdown if text.value.startswith(("Inspect ", "Nothing")))
+    return said
 
 
 def texts_of(app):
@@ -127,6 +151,14 @@ def geotiff(values, edges=(35.1, 30.3, 35.2, 30.4)):
         with memory.open(**shape, driver="GTiff", crs="EPSG:4326", transform=place) as raster:
             raster.write(values[None])
         return memory.read()
+
+
+def broken(path):
+    """Leave a season that a later fieldmon wrote, as far as its file says."""
+    a_season(path)
+    with closing(sqlite3.connect(path)) as file:
+        file.execute("UPDATE fieldmon SET value = '99' WHERE key = 'version'")
+        file.commit()
 
 
 def square(size=0.001, name="square"):

@@ -8,6 +8,7 @@ import { Deck, FlyToInterpolator, MapView } from "@deck.gl/core";
 
 import { button, element, legendOf, Scale } from "./chrome.js";
 import { Drawing } from "./draw.js";
+import { Frames } from "./frames.js";
 import { Labels } from "./labels.js";
 import { layersOf } from "./layers.js";
 import { nearestPlant, plantsWithin, rowUnder } from "./pick.js";
@@ -38,11 +39,12 @@ class MapPage {
     this.scale = new Scale(this.foot);
     this.labels = new Labels(this.labelPlace);
     this.playback = new Playback(this.foot, () => this.drawLayers());
+    this.frames = new Frames(this.foot, () => this.drawLayers(), () => this.canvasPlace.querySelector("canvas"));
     this.drawing = new Drawing(() => this.drawLayers(), (mode, points) => this.drawn(mode, points));
     this.jsons = [];
     this.hidden = new Set();
     this.opacity = 1;
-    this.stopShape = keepShape(() => this.data?.words);
+    this.shape = keepShape(() => this.data?.words);
     this.listen();
   }
 
@@ -53,6 +55,7 @@ class MapPage {
     this.tell = setTriggerValue;
     const turn = (this.turn = (this.turn ?? 0) + 1);
     this.restore();
+    this.shape.again(); // another room's panel may be wider, and now there are words
     this.root.classList.toggle("dark", data.dark);
     this.canvasPlace.setAttribute("aria-label", data.alt);
     this.furnish();
@@ -68,7 +71,8 @@ class MapPage {
     }
     if (turn !== this.turn) return;
     this.jsons = jsons;
-    this.playback.show(data.play ?? null, data.words);
+    this.playback.show(data.frames ? null : data.play ?? null, data.words);
+    this.frames.show(data.frames ?? null, data.words);
     this.look();
     this.drawLayers();
     this.root.dataset.shown = data.layers.map((one) => one.url).join(" ");
@@ -111,7 +115,7 @@ class MapPage {
       _pickable: false,
       getCursor: ({ isDragging }) => (isDragging ? "grabbing" : this.drawing.mode ? "crosshair" : "grab"),
       onViewStateChange: ({ viewState }) => this.limited(viewState),
-      onAfterRender: () => this.follow(),
+      onAfterRender: () => { this.follow(); this.frames.drawn(); },
     });
     this.watch = new ResizeObserver(() => this.resized());
     this.watch.observe(this.canvasPlace);
@@ -132,8 +136,8 @@ class MapPage {
   drawLayers() {
     if (!this.deck) return;
     const accent = this.data.dark ? [255, 220, 90] : [0, 110, 70];
-    const jsons = [...this.jsons, ...this.playback.layers(this.data.dark), ...this.drawing.layers(accent)];
-    const hidden = new Set([...this.hidden].flatMap((name) => this.switchOf(name)?.layers ?? []));
+    const jsons = [...this.frames.of(this.jsons), ...this.playback.layers(this.data.dark), ...this.drawing.layers(accent)];
+    const hidden = new Set(this.off().flatMap((name) => this.switchOf(name)?.layers ?? []));
     for (const name of this.data.shades?.flatMap((one) => (one.key === this.shade() ? [] : one.layers)) ?? []) hidden.add(name);
     this.deck.setProps({ layers: layersOf(jsons, hidden, this.opacity) });
     this.drawBar();
@@ -144,7 +148,7 @@ class MapPage {
     const viewport = this.viewport();
     if (!viewport) return;
     this.scale.draw(viewport, { lengths: this.data.lengths, alt: this.data.words.scale });
-    this.labels.draw(this.data.labels ?? [], viewport, this.hidden);
+    this.labels.draw(this.data.labels ?? [], viewport, new Set(this.off()));
     const { longitude, latitude, zoom, width, height } = viewport;
     this.root.dataset.view = JSON.stringify({ longitude, latitude, zoom, width, height });
   }
@@ -157,6 +161,10 @@ class MapPage {
 
   switchOf(name) {
     return this.data.switches?.find((one) => one.key === name);
+  }
+
+  off() {
+    return [...this.hidden, ...this.frames.hides];
   }
 
   shade() {
@@ -399,7 +407,7 @@ class MapPage {
   under(here) {
     const reachM = TIP_PX * metresPerPixel(this.viewport());
     const shown = new Set(this.deck.props.layers.filter((layer) => layer.props.visible).map((layer) => layer.id));
-    for (const json of [...this.jsons].reverse()) {
+    for (const json of this.frames.of(this.jsons).toReversed()) {
       if (!shown.has(json.id)) continue;
       if (json.places) {
         const k = nearestPlant(json.places, here, Math.max(json.radius, Math.min(reachM, 0.6 * json.apart)));
@@ -425,8 +433,9 @@ class MapPage {
 
   end() {
     this.playback.stop();
+    this.frames.stop();
     this.watch?.disconnect();
-    this.stopShape();
+    this.shape.end();
     this.deck?.finalize();
     this.root.remove();
   }

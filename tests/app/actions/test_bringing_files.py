@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.app.driving import heading, press, square, upload, zipped
+from tests.app.driving import plot_name, press, square, upload, zipped
 
 
 def test_a_missing_crs_is_asked_for_and_answered_by_button(app, tmp_path):
@@ -16,7 +16,7 @@ def test_a_missing_crs_is_asked_for_and_answered_by_button(app, tmp_path):
     press(app, "Use this")
     assert not app.exception
     assert not app.warning
-    assert heading(app).startswith("square")
+    assert plot_name(app) == "square"
     press(app, "Take back: crs = EPSG:2039")
     assert "coordinate system" in app.warning[0].value
 

@@ -6,12 +6,12 @@ import pytest
 
 from app.state import brought_files
 from fieldmon.io.options import PlotOptions, Upload
-from tests.app.driving import heading, opened, square, texts_of, upload, zipped
+from tests.app.driving import opened, plot_name, square, texts_of, upload, zipped
 
 
 def test_one_session_does_not_see_the_files_of_another(app, tmp_path):
     upload(app, plot=("plot.zip", zipped(tmp_path, square(name="secret"))))
-    assert heading(app).startswith("secret")
+    assert plot_name(app) == "secret"
     other = opened()
     other.selectbox(key="season").set_value("My own files").run()
     assert "Bring a plot" in texts_of(other)

@@ -28,7 +28,7 @@ from fieldmon.reports.content import (
 )
 from fieldmon.reports.maps import PlotMap
 from fieldmon.reports.sentences import headline, runs
-from fieldmon.reports.settings_rows import WorkSettings, settings_table
+from fieldmon.reports.settings_rows import WorkSettings, settings_blocks
 
 if TYPE_CHECKING:
     from datetime import date
@@ -94,14 +94,9 @@ class DayFacts:
         return cls(
             season.plot.field.name, begins if worked else begins + gone,
             worked_route(season, on) if worked else route, season.evening(on), state,
-            hot_spots(season.plot.grid, state), WorkSettings.of_season(settings, guessed(season)),
+            hot_spots(season.plot.grid, state), WorkSettings.of_season(settings, season.messages()),
             len(done), np.unique(done.plant[done.result == FOUND]), worked,
         )  # fmt: skip
-
-
-def guessed(season: Season) -> tuple[str, ...]:
-    """Return what the import of a season's plot had to guess."""
-    return tuple(one.sentence for one in season.messages() if one.severity == "guessed")
 
 
 def day_report(facts: DayFacts, units: Units) -> Report:
@@ -115,7 +110,7 @@ def day_report(facts: DayFacts, units: Units) -> Report:
         blocks.append(_stops(facts))
     if len(facts.found):
         blocks.append(_found(facts))
-    blocks += [settings_table(facts.settings), NoteLines(words.NOTES)]
+    blocks += [*settings_blocks(facts.settings), NoteLines(words.NOTES)]
     if len(facts.route):
         blocks.append(_every_stop(facts))
     on = facts.begins.date()

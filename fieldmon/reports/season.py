@@ -25,10 +25,10 @@ from fieldmon.reports.content import (
     Sheet,
     Table,
 )
-from fieldmon.reports.day import guessed, legend_block, map_alt
+from fieldmon.reports.day import legend_block, map_alt
 from fieldmon.reports.maps import PlotMap
 from fieldmon.reports.sentences import hot_spot_meanings, runs
-from fieldmon.reports.settings_rows import WorkSettings, settings_table
+from fieldmon.reports.settings_rows import WorkSettings, settings_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -251,7 +251,7 @@ def _goes_by(facts: _Facts) -> Iterator[Block]:
     yield _batches(facts)
     yield _treatments(facts)
     season = facts.season
-    yield settings_table(WorkSettings.of_season(season.settings, guessed(season)))
+    yield from settings_blocks(WorkSettings.of_season(season.settings, season.messages()))
     yield Listing(words.MEANING, words.MEANINGS)
     yield NoteLines(words.NOTES)
 

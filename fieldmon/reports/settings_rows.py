@@ -5,17 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fieldmon.io.import_report import Severity
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.reports import words
-from fieldmon.reports.content import Table
+from fieldmon.reports.content import Listing, Table
 from fieldmon.samplers import USUAL, kind_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from fieldmon.infestation.prior import PriorSettings
+    from fieldmon.monitoring import KeptMessage
     from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.reports.content import Block
 
     Row = tuple[str, str, str]
 
@@ -45,19 +48,23 @@ class WorkSettings:
     guessed: tuple[str, ...] = ()
 
     @classmethod
-    def of_season(cls, settings: MonitoringSettings, guessed: tuple[str, ...] = ()) -> WorkSettings:
-        """Return what a season goes by."""
+    def of_season(
+        cls, settings: MonitoringSettings, messages: Iterable[KeptMessage]
+    ) -> WorkSettings:
+        """Return what a season goes by, and what had to be guessed when it began."""
+        guessed = tuple(one.sentence for one in messages if one.severity == Severity.GUESSED)
         return cls(settings.robot, settings.sampler, settings.prior, settings.belief, guessed)
 
 
-def settings_table(settings: WorkSettings) -> Table:
-    """Return the settings with where each comes from."""
-    rows = [*_of_work(settings), *_of_belief(settings)]
-    rows += [(words.GUESSED, said, words.FROM_FILE) for said in settings.guessed[:_MOST_GUESSED]]
-    return Table(
-        words.SETTINGS, words.SETTING_COLUMNS, tuple(rows), (0.46, 0.2, 0.34), flow=2,
+def settings_blocks(settings: WorkSettings) -> Iterator[Block]:
+    """Yield the settings with where each comes from, and what was guessed."""
+    rows = (*_of_work(settings), *_of_belief(settings))
+    yield Table(
+        words.SETTINGS, words.SETTING_COLUMNS, rows, (0.46, 0.2, 0.34), flow=2,
         rest=words.FOUND_REST, left=(0, 1, 2),
     )  # fmt: skip
+    if settings.guessed:
+        yield Listing(words.GUESSED, settings.guessed[:_MOST_GUESSED])
 
 
 def _of_work(settings: WorkSettings) -> Iterator[Row]:

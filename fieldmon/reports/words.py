@@ -24,7 +24,6 @@ LEGEND_STATES = ("never inspected", "looked clean")
 LEGEND_GATE, LEGEND_HOT, LEGEND_ROW = "gate", "hot spot", "row number"
 NORTH = "N"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
-ASSUMED = "assumed"
 SETTINGS, SETTING_COLUMNS = "Settings", ("what", "value", "where from")
 
 # -- the day
@@ -104,11 +103,10 @@ ARRIVALS_NONE = "none"
 ARRIVALS_VALUE = "1 in {n:,.0f}"
 BACKGROUND = "Chance where nothing is known"
 TREATED, TREATED_VALUES = "Plants found are", {True: "treated", False: "flagged"}
-GUESSED = "Rows and plants"
+GUESSED = "Guessed when the plot was read"
 FROM_CHOSEN, FROM_USUAL = "chosen", "assumed: usual value"
 FROM_THESIS = "assumed: the thesis"
 FROM_NOBODY = "assumed, not measured"
-FROM_FILE = "assumed when the plot was read"
 MEANING = "How the numbers are meant"
 MEANINGS = (
     "Unknown is not clean: a plant was found infested, or looked clean, or was never inspected.",

@@ -68,5 +68,5 @@ def _made(season: Season, on: str | None, until: str | None) -> Report:
 
     if on is not None:
         return day_report(DayFacts.of_season(season, day(on)), Units())
-    last = season.last_date() if until is None else day(until)
+    last = season.last_date() if until is None else day(until, "--until")
     return season_report(season, last, Units())

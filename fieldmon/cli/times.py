@@ -7,12 +7,12 @@ from datetime import date, datetime, time
 from fieldmon.errors import SettingError
 
 
-def day(text: str | None) -> date:
+def day(text: str | None, flag: str = "--date") -> date:
     """Return the day that is meant; today if none was told."""
     try:
         return date.today() if text is None else date.fromisoformat(text)  # noqa: DTZ011 - local
     except ValueError as error:
-        raise SettingError(f"--date must be a day as YYYY-MM-DD, but it is {text!r}.") from error
+        raise SettingError(f"{flag} must be a day as YYYY-MM-DD, but it is {text!r}.") from error
 
 
 def clock(text: str, flag: str = "--start") -> time:

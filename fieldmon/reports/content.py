@@ -61,6 +61,8 @@ class Table:
         What is said of rows that a page of paper has no room for, with ``{n}``.
     left
         Columns, from 0, whose texts begin at the left; figures end at the right.
+    whole
+        Whether every row must find room, whatever is left to others.
     """
 
     title: str
@@ -70,6 +72,7 @@ class Table:
     flow: int = 1
     rest: str = ""
     left: tuple[int, ...] = ()
+    whole: bool = False
 
 
 @dataclass(frozen=True)

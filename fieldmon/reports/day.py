@@ -40,8 +40,10 @@ if TYPE_CHECKING:
     from fieldmon.monitoring import Season
     from fieldmon.planning.route import Route
 
-# as many letters as a column has room for
-_WHICH = 40
+# of more rows, three tables stand side by side instead of two
+_MOST_WIDE = 24
+# as many letters as a column has room for, in two tables and in three
+_WHICH = {2: 40, 3: 22}
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +157,7 @@ def _map(facts: DayFacts, units: Units) -> list[Block]:
     what = PlotMap(grid, facts.chance, facts.state, facts.spots, facts.route.aisles.gate_m, units,
                    facts.route)  # fmt: skip
     alt = map_alt(facts.name, facts.state, len(facts.route))
-    return [Drawn("", alt, what.draw, (75.0, 190.0)), legend_block(route=True)]
+    return [Drawn("", alt, what.draw, what.heights(95.0, 190.0)), legend_block(route=True)]
 
 
 def map_alt(name: str, state: NDArray[np.int8], stops: int) -> str:
@@ -177,20 +179,27 @@ def _stops(facts: DayFacts) -> Table:
     """Return the rows in the order in which they are come to, with their plants."""
     label = row_label(facts.route.aisles.grid, facts.route.plant)
     lines, first = np.unique(label.line, return_index=True)
-    rows = []
+    rows, flow = [], 2 if len(lines) <= _MOST_WIDE else 3
     for line, k in sorted(zip(lines.tolist(), first.tolist(), strict=True), key=lambda one: one[1]):
         own = label.number[label.line == line].tolist()
-        rows.append((f"{line}", _clock(facts, facts.route.arrive_s[k]), f"{len(own)}", which(own)))
+        rows.append(
+            (
+                f"{line}",
+                _clock(facts, facts.route.arrive_s[k]),
+                f"{len(own)}",
+                which(own, _WHICH[flow]),
+            )
+        )
     return Table(
-        words.STOPS, words.STOPS_COLUMNS, tuple(rows), (0.1, 0.14, 0.12, 0.64), flow=2,
+        words.STOPS, words.STOPS_COLUMNS, tuple(rows), (0.12, 0.17, 0.13, 0.58), flow=flow,
         rest=words.STOPS_REST, left=(3,),
     )  # fmt: skip
 
 
-def which(numbers: list[int]) -> str:
-    """Return which plants of a row these are, in few words."""
+def which(numbers: list[int], letters: int) -> str:
+    """Return which plants of a row these are, in about so many letters at most."""
     said = runs(numbers)
-    if len(said) <= _WHICH:
+    if len(said) <= letters:
         return said
     return words.WHICH_MANY.format(n=len(numbers), low=min(numbers), high=max(numbers))
 

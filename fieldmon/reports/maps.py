@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 MOST_LINES = 20_000
 _MARGIN_MM, _FOOT_MM = 5.0, 8.0
 _DOTS_PER_MM = 10.0
+# between the margins of A4
+_PAGE_MM = 186.0
 # a map turned from the north must gain so much size by it
 _TURNED_GAINS = 1.25
 # plants this far apart on paper stand alone; closer ones of one colour run together
@@ -86,6 +88,12 @@ class PlotMap:
     def palette(self) -> tuple[Colour, ...]:
         """Colour of each class."""
         return colours.STATES if self.by_state else colours.CHANCE
+
+    def heights(self, least: float, most: float) -> tuple[float, float]:
+        """Return the least and the most millimetres that the map is worth across a page."""
+        placed = _fitted(self.grid, self.gate_m, (_PAGE_MM, most))
+        needed = float(np.ptp(placed(_hull(self.grid, self.gate_m))[:, 1])) + _MARGIN_MM + _FOOT_MM
+        return min(least, needed), min(most, needed)
 
     def draw(self, size: Size) -> Drawing:
         """Return the map on so much paper."""
@@ -139,7 +147,7 @@ def _fitted(grid: PlantGrid, gate_m: Floats, size: Size) -> _Placed:
     square = [0.0, np.pi / 2, np.pi, -np.pi / 2]
     # of two opposite ways, the one on which north is above
     along = [one for one in square if (north @ _turn(one))[1] < 1e-9][:2]
-    hull = np.concatenate([shapely.get_coordinates(grid.drivable_m), gate_m[None], grid.xy_m[:1]])
+    hull = _hull(grid, gate_m)
     room = np.array(size) - [2 * _MARGIN_MM, _MARGIN_MM + _FOOT_MM]
     ways = []
     for angle in (upright, *along):
@@ -150,6 +158,12 @@ def _fitted(grid: PlantGrid, gate_m: Floats, size: Size) -> _Placed:
         ways.append(_Placed(_turn(angle), scale, corner))
     best = max(ways, key=lambda way: way.scale)
     return best if best.scale > _TURNED_GAINS * ways[0].scale else ways[0]
+
+
+def _hull(grid: PlantGrid, gate_m: Floats) -> Floats:
+    """Return places that hold all that a map shows between them."""
+    corners: Floats = shapely.get_coordinates(grid.drivable_m)
+    return np.concatenate([corners, gate_m[None], grid.xy_m[:1]])
 
 
 def _ground(grid: PlantGrid, placed: _Placed) -> list[Part]:

@@ -135,7 +135,9 @@ class _Page:
 
     def _least(self, block: Block) -> float:
         if isinstance(block, Table):
-            return _titled(block.title) + _ROW_MM * min(_lines(block) + 1, 5)
+            return _titled(block.title) + _ROW_MM * (
+                _lines(block) + 1 if block.whole else min(_lines(block) + 1, 5)
+            )
         if isinstance(block, Drawn):
             return _titled(block.title) + block.heights[0]
         if isinstance(block, NoteLines):

@@ -25,7 +25,7 @@ from fieldmon.reports.content import (
     Sheet,
     Table,
 )
-from fieldmon.reports.day import legend_block, map_alt
+from fieldmon.reports.day import legend_block, map_alt, which
 from fieldmon.reports.maps import PlotMap
 from fieldmon.reports.sentences import hot_spot_meanings, runs
 from fieldmon.reports.settings_rows import WorkSettings, settings_blocks
@@ -84,7 +84,7 @@ class _Facts:
             plot.grid, self.season.evening(self.on), state, self.status.hot_spots,
             plot.aisles.gate_m, self.units, by_state=by_state,
         )  # fmt: skip
-        yield Drawn("", map_alt(self.name, state, 0), what.draw, (75.0, 200.0))
+        yield Drawn("", map_alt(self.name, state, 0), what.draw, what.heights(75.0, 200.0))
         yield legend_block(by_state=by_state)
 
 
@@ -128,8 +128,8 @@ def _figures(facts: _Facts) -> KeyFigures:
     twice = words.FOUND_TWICE.format(n=finds) if finds != status.found else ""
     return KeyFigures(
         (
-            KeyFigure(words.STILL, f"{ahead.expected:.1f}",
-                      words.INTERVAL.format(low=ahead.low, high=ahead.high)),
+            KeyFigure(words.STILL, f"{ahead.expected:,.1f}",
+                      words.INTERVAL.format(low=f"{ahead.low:,}", high=f"{ahead.high:,}")),
             KeyFigure(words.FOUND_SO_FAR, f"{status.found:,}", twice),
             KeyFigure(words.FOUND_OF_ALL, f"{status.detection_pct:.0f} %",
                       words.INTERVAL.format(low=f"{low:.0f}", high=f"{high:.0f} %")),
@@ -204,7 +204,8 @@ def _days(facts: _Facts) -> Table:
     rows = [
         (
             facts.units.day(one.on), f"{one.inspected:,}", f"{one.found:,}",
-            f"{one.expected:.1f} ({one.low}–{one.high})", f"{_of_all(found, one.expected):.0f} %",
+            f"{one.expected:,.1f} ({one.low:,}–{one.high:,})",
+            f"{_of_all(found, one.expected):.0f} %",
         )
         for one, found in zip(facts.days, facts.found_by.tolist(), strict=True)
     ]  # fmt: skip
@@ -230,18 +231,11 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
     rows = []
     for line in np.unique(label.line).tolist():
         own = label.number[label.line == line].tolist()
-        rows.append((f"{line}", f"{len(own)}", _listed(own)))
+        rows.append((f"{line}", f"{len(own)}", which(own, _FINDS_LONG)))
     yield Table(
         words.FINDS_BY_ROW, words.FINDS_COLUMNS, tuple(rows), (0.12, 0.12, 0.76), flow=2,
         rest=words.FOUND_REST, left=(2,),
     )  # fmt: skip
-
-
-def _listed(numbers: list[int]) -> str:
-    said = runs(numbers)
-    if len(said) <= _FINDS_LONG:
-        return said
-    return words.WHICH_MANY.format(n=len(numbers), low=min(numbers), high=max(numbers))
 
 
 # -- what it goes by

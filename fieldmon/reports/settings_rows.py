@@ -61,7 +61,7 @@ def settings_blocks(settings: WorkSettings) -> Iterator[Block]:
     rows = (*_of_work(settings), *_of_belief(settings))
     yield Table(
         words.SETTINGS, words.SETTING_COLUMNS, rows, (0.46, 0.2, 0.34), flow=2,
-        rest=words.FOUND_REST, left=(0, 1, 2),
+        rest=words.FOUND_REST, left=(0, 1, 2), whole=True,
     )  # fmt: skip
     if settings.guessed:
         yield Listing(words.GUESSED, settings.guessed[:_MOST_GUESSED])

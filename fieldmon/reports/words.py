@@ -51,7 +51,7 @@ SEASON_SHEETS = (
     "Records, treatments, settings",
 )
 STANDS = (
-    "About {expected:.0f} plants are still infested ({low} to {high} with a chance of 90 %); "
+    "About {expected:,.0f} plants are still infested ({low:,} to {high:,} with a chance of 90 %); "
     "{found} found so far."
 )
 STANDS_CLEAN = "The plot is clean with a chance of {chance:.0%}."
@@ -105,7 +105,7 @@ TREATED, TREATED_VALUES = "Plants found are", {True: "treated", False: "flagged"
 GUESSED = "Guessed when the plot was read"
 FROM_CHOSEN, FROM_USUAL = "chosen", "assumed: usual value"
 FROM_THESIS = "assumed: the thesis"
-FROM_NOBODY = "assumed, not measured"
+FROM_NOBODY = "assumed, not known"
 MEANING = "How the numbers are meant"
 MEANINGS = (
     "Unknown is not clean: a plant was found infested, or looked clean, or was never inspected.",

@@ -198,3 +198,17 @@ def test_a_day_without_a_stop_has_a_map_without_a_way():
     nowhere = SimpleNamespace(line_m=np.empty((0, 2)), aisles=SimpleNamespace(gate_m=np.zeros(2)))
     drawing = a_map(grid, route=nowhere).draw(SIZE)
     assert [one for one in parts(drawing, Strokes) if one.colour == colours.ROUTE] == []
+
+
+def test_a_map_is_worth_no_more_paper_than_the_plot_fills():
+    wide, tall = (a_map(rectangle(*shape)).heights(75.0, 190.0) for shape in ((3, 200), (200, 3)))
+    assert wide[0] == wide[1] or wide[1] < 190.0
+    assert tall[1] == pytest.approx(190.0)
+    for grid in (rectangle(3, 200), rectangle(12, 12)):
+        made = a_map(grid)
+        high = made.heights(0.0, 190.0)[1]
+        (ground,) = [one for one in parts(made.draw((186.0, high)), Areas)
+                     if one.fill == colours.GROUND]  # fmt: skip
+        span = np.ptp(np.concatenate(ground.rings), axis=0)
+        room = np.array([186.0 - 10.0, high - 13.0])
+        assert (span / room).max() > 0.9

@@ -156,3 +156,10 @@ def test_a_report_of_a_plot_can_be_made_twice_at_once(of_day):
     other = replace(of_day, plot="Other")
     assert "Other" in texts(pdf_bytes(other))[0]
     assert "Other" not in texts(pdf_bytes(of_day))[0]
+
+
+def test_what_must_be_whole_takes_its_room_from_longer_tables():
+    whole = replace(rows(24), title="Settings", whole=True,
+                    rows=tuple((f"s{k}", f"v{k}") for k in range(24)))  # fmt: skip
+    (page,) = texts(pdf_bytes(made(rows(500), whole)))
+    assert all(f"v{k}" in page for k in range(24))

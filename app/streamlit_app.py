@@ -68,20 +68,24 @@ def in_panel(name: str) -> None:
     with head:
         links()
     with said:
-        waiting = first_screen.Waiting(st.empty())
+        waiting = first_screen.FirstScreen(st.empty())
     preload.start().load(map_sent=waiting.begin())
-    from .actions.choosing import choose  # noqa: PLC0415 - as just loaded
+    from .actions.bringing_files import show_left_out  # noqa: PLC0415 - as just loaded
+    from .actions.choosing import choose, mark_day  # noqa: PLC0415
     from .state import notices  # noqa: PLC0415
 
     chosen = choose(head, foot, waiting.wait)
     with said:
         notices.show()
+        if chosen.choices is not None:
+            mark_day(chosen.choices)
+            show_left_out(chosen.choices)
     with body:
         if chosen.choices is None:
             view("plot").bring(chosen.problem)
             return
         try:
-            view("rooms").show(name, chosen.choices)
+            view("rooms").show(name, chosen.choices, view)
         except FieldmonError as error:
             st.error(str(error))
 

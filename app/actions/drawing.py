@@ -40,20 +40,25 @@ def rows(plot_key: str) -> None:
         st.caption(texts.FOUND_ROWS)
         widget_memory.show(st.number_input, texts.BEARING, 0.0, 360.0, step=0.5,
                         help=texts.BEARING_HELP, key=f"row_bearing {plot_key}")  # fmt: skip
-        now, usual = units(), Planting()
-        rows_m, plants_m = usual.row_spacing_m, usual.plant_spacing_m
-        help_ = texts.SPACING_HELP.format(rows=now.metres(rows_m), plants=now.metres(plants_m))
-        for name, label, default_m in (
-            ("row_spacing", texts.ROW_SPACING, None),
-            ("plant_spacing", texts.PLANT_SPACING, None),
-            ("headland", texts.HEADLAND, usual.headland_m),
-        ):
-            widget_memory.show(
-                st.number_input, label.format(unit=now.length), *now.limits(0.1, 50.0),
-                step=0.1, help=help_ if default_m is None else None, key=f"{name} {plot_key}",
-                default=None if default_m is None else now.shown(default_m),
-            )  # fmt: skip
+        spacings(plot_key)
+        now, usual_m = units(), Planting().headland_m
+        widget_memory.show(
+            st.number_input, texts.HEADLAND.format(unit=now.length), *now.limits(0.1, 50.0),
+            step=0.1, key=f"headland {plot_key}", default=now.shown(usual_m),
+        )  # fmt: skip
         widget_memory.show(st.toggle, texts.BOTH_FACES, key=f"both_faces {plot_key}", default=False)
+
+
+def spacings(plot_key: str) -> None:
+    """Show how far rows and plants are apart, to be set by hand."""
+    now, usual = units(), Planting()
+    rows_m, plants_m = usual.row_spacing_m, usual.plant_spacing_m
+    help_ = texts.SPACING_HELP.format(rows=now.metres(rows_m), plants=now.metres(plants_m))
+    for name, label in (("row_spacing", texts.ROW_SPACING), ("plant_spacing", texts.PLANT_SPACING)):
+        widget_memory.show(
+            st.number_input, label.format(unit=now.length), *now.limits(0.1, 50.0), step=0.1,
+            help=help_, key=f"{name} {plot_key}",
+        )  # fmt: skip
 
 
 def tools(choices: Choices) -> None:

@@ -102,7 +102,7 @@ def switches(
 def legend(choices: Choices) -> list[legends.LegendPart]:
     """Return the legend of a day's map."""
     dark = choices.dark
-    return [legends.by_chance(dark=dark), legends.by_state(), legends.by_age(),
+    return [legends.by_chance(dark=dark), legends.by_state(), legends.by_age(dark=dark),
             *legends.signs(dark=dark)]  # fmt: skip
 
 
@@ -118,8 +118,8 @@ def _plants(choices: Choices) -> list:
     by_chance = colours.by_chance(chance, dark=choices.dark)
     ages = []
     if choices.season is not None:
-        ages = [plant_layers.plants(grid, colours.by_age(chosen_day.ages(choices)),
-                                    name="plants-age")]  # fmt: skip
+        by_age = colours.by_age(chosen_day.ages(choices), dark=choices.dark)
+        ages = [plant_layers.plants(grid, by_age, name="plants-age")]
     return [
         plant_layers.plants(grid, by_chance, PlantNotes(chance), "plants-chance"),
         *ages,

@@ -10,6 +10,7 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
+from fieldmon.infestation.inspections import FOUND
 from fieldmon.plot.grid import plant_at, row_label
 
 from ..state import chosen_day, widget_memory
@@ -20,15 +21,18 @@ from .maps import plant_layers
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
-    from .map_view import MapContent
+    from .map_view import MapContent, Selected
 
 _ROW, _PLANT, _TAPPED = "history row", "history plant", "history tapped"
 
 
-def want(choices: Choices, content: MapContent) -> None:
-    """Want a map on which a tap chooses the plant whose history is shown, with a ring round it."""
+def want(choices: Choices, content: MapContent, selected: Selected | None = None) -> None:
+    """Want a map on which a tap chooses the plant whose history is shown, with a ring round it.
+
+    `selected` hears of the plants that are selected on it.
+    """
     chosen = replace(content, layers=[*content.layers, *layers(choices)])
-    field_map.want(chosen, MapAnswers(tapped=partial(take_plant, choices)))
+    field_map.want(chosen, MapAnswers(partial(take_plant, choices), selected=selected))
 
 
 def take_plant(choices: Choices, layer: str, index: int) -> None:
@@ -72,8 +76,18 @@ def show(choices: Choices) -> None:
     if choices.season is not None:
         first = chosen_day.morning(choices, str(choices.season.settings.begins))
     st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
+    if _taken_as_treated(choices, plant):
+        st.caption(texts.HISTORY_TREATED)
     for line in _inspections(choices, plant):
         st.markdown(line)
+
+
+def _taken_as_treated(choices: Choices, plant: int) -> bool:
+    """Return whether a plant was found, and so is taken as free of pests from then on."""
+    season = choices.season
+    if season is None or not season.settings.belief.treated:
+        return False
+    return bool(season.history.states(season.settings.day(choices.on))[plant] == FOUND)
 
 
 def _inspections(choices: Choices, plant: int) -> list[str]:

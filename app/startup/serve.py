@@ -11,6 +11,7 @@ import asyncio
 import logging
 import mimetypes
 import os
+import re
 import signal
 import socket
 import sys
@@ -38,11 +39,16 @@ if TYPE_CHECKING:
 #: what Streamlit is told through its own variables; all else is in .streamlit/config.toml
 ADDRESS, PORT = "STREAMLIT_SERVER_ADDRESS", "STREAMLIT_SERVER_PORT"
 PAGE = Path(__file__).resolve().parents[1] / "streamlit_app.py"
+# without it the page asks for the server below its own address first: two errors a page
+_WHERE = b"""<head>
+<script>window.__streamlit = {BACKEND_BASE_URL: new URL(".", location.href).href}</script>"""
 _FOR_GOOD, _ASK = b"public, immutable, max-age=31536000", b"no-cache"
 _OWN_FOR_GOOD = b"private, immutable, max-age=86400"
 # one thread must not keep the others waiting while libraries load (Python's default is 5 ms)
 _TURN_S = 0.0005
 _GOODBYE_S = 5
+# plain words that are Streamlit's own addresses
+_STREAMLITS_OWN = frozenset({"/static", "/media", "/component", "/app", "/healthz"})
 # as Python knows them: what a machine says of scripts may keep browsers from running them
 _KINDS = mimetypes.MimeTypes()
 _LOG = logging.getLogger(__name__)
@@ -60,6 +66,8 @@ class Server:
         """Answer a request, or run until the server stops."""
         if scope["type"] == "lifespan":
             await self._run(receive, send)
+        elif scope.get("method") == "GET" and is_page(scope["path"]):
+            await self._hand_out("/", send)
         elif scope["path"] in self._files and scope.get("method") == "GET":
             await self._hand_out(scope["path"], send)
         elif scope["type"] == "http" and scope["path"].startswith(map_store.PATH):
@@ -70,6 +78,8 @@ class Server:
 
     async def _hand_out(self, path: str, send: Send) -> None:
         body = self._files[path].read_bytes()
+        if path == "/":
+            body = body.replace(b"<head>", _WHERE, 1)
         kind = _KINDS.guess_type(self._files[path].name)[0] or "application/octet-stream"
         lasting = path.startswith("/static/") or path == map_file.ADDRESS
         more = []
@@ -131,6 +141,11 @@ def page_files() -> dict[str, Path]:
     if "/index.html" in files:
         files["/"] = files.pop("/index.html")
     return files
+
+
+def is_page(path: str) -> bool:
+    """Return whether an address is one of a page: one plain word."""
+    return re.fullmatch(r"/[a-z]+", path) is not None and path not in _STREAMLITS_OWN
 
 
 def _streamlit() -> Any:  # noqa: ANN401 - half a second to import

@@ -9,14 +9,13 @@ import numpy as np
 
 from fieldmon.errors import FieldmonError
 from fieldmon.io.options import PlotOptions
+from fieldmon.plot.local_clock import local_clock
 
 from ..words import texts
 from . import cached, plot_files, plot_source, sample_estate, seasons_folder
 from .brought_files import settled
 
 if TYPE_CHECKING:
-    from datetime import date
-
     from shapely import MultiPolygon
 
     from fieldmon.monitoring import Season
@@ -50,12 +49,12 @@ class PlotState:
     expected: float | None = None
 
 
-def plots(today: date) -> tuple[list[PlotState], list[str]]:
+def plots() -> tuple[list[PlotState], list[str]]:
     """Return the plots, seasons first, and why seasons that cannot be opened are not among them."""
     found, problems = [], []
     for name in seasons_folder.names():
         try:
-            found.append(_of_season(name, cached.season(seasons_folder.path_of(name)), today))
+            found.append(_of_season(name, cached.season(seasons_folder.path_of(name))))
         except FieldmonError as error:
             problems.append(f"{name}: {error}")
     files = plot_files.of_session()
@@ -78,7 +77,8 @@ def plots(today: date) -> tuple[list[PlotState], list[str]]:
     return found, problems
 
 
-def _of_season(name: str, season: Season, today: date) -> PlotState:
+def _of_season(name: str, season: Season) -> PlotState:
+    today = local_clock(season.plot.field).today()
     # nothing is known of a season before its first day
     on = max(today, season.settings.begins)
     figures = cached.day_figures(str(season.path), season.revision, str(on), season)

@@ -11,6 +11,7 @@ from fieldmon.errors import PlotError
 
 from ..actions import bringing_files, drawing, rasters
 from ..show import field_map, plot_figures
+from ..show.assumed import sentence
 from ..show.records import records_until
 from ..state import chosen_day, plot_files, plot_source
 from ..state.row_settings import row_settings
@@ -42,6 +43,7 @@ def show(choices: Choices) -> None:
     if plot_source.chosen() == texts.UPLOAD:
         bringing_files.show()
     plot_figures.show(choices.plot, choices.units)
+    st.caption(sentence(choices.plot.assumed, choices.units))
     records, said = records_until(choices.records)
     if choices.season is None:
         drawing.rows(choices.plot_key)

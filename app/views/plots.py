@@ -10,7 +10,7 @@ import streamlit as st
 
 from ..show import estate_map, field_map
 from ..show.map_view import MapAnswers
-from ..state import browser, estate, plot_source, rooms
+from ..state import estate, plot_source, rooms
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def show() -> None:
     """Show the plots."""
-    plots, problems = estate.plots(browser.now().date())
+    plots, problems = estate.plots()
     with st.container(key="lead"):
         st.markdown(texts.PLOTS_TITLE.format(n=len(plots)))
     with st.container(horizontal=True):

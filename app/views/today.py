@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..actions import beginning, handing_out
+from ..actions import assuming, beginning, handing_out, picking
 from ..show import day, map_layers, plant_history
+from ..state import chosen_day
+from ..state.chosen_day import DayRoute
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -21,8 +24,11 @@ def show(choices: Choices) -> None:
         st.markdown(day.headline(choices, plan))
     day.said_of_day(choices, plan)
     handing_out.show(choices, plan)
-    plant_history.want(choices, map_layers.day_map(choices))
+    content = map_layers.day_map(choices, above=picking.layers(choices))
+    plant_history.want(choices, content, partial(picking.take, choices))
+    picking.show(choices, plan)
     day.route_figures(choices, plan)
+    assuming.show(choices)
     if choices.season is None:
         beginning.show(choices)
     else:
@@ -34,4 +40,5 @@ def show(choices: Choices) -> None:
     plant_history.show_chosen(choices)
     if len(plan.route):
         with st.expander(texts.STOPS):
-            st.dataframe(day.stops(choices, plan), height=300)
+            planned = DayRoute(plan.route, chosen_day.starts(choices, plan))
+            st.dataframe(day.stops(choices, planned), height=300)

@@ -21,12 +21,11 @@ PARTS = {
 }  # fmt: skip
 RESEARCH, REPORT, STUDY = "Research", "Report", "The thesis, without records"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
-SAMPLE_NOTE = "A made-up estate near Paran, to try things out. Nothing of it exists."
-PLOT_FROM = "Plot or season"
-PLOT_FROM_HELP = (
-    "The sample estate and your own files are only looked at. A season is kept on this machine, "
-    "step by step: begin one on the Today page."
+SAMPLE_NOTE = (
+    "A made-up estate near Paran, to try things out. Nothing of it exists, and time stands still "
+    "there on the last day of its records."
 )
+PLOT_FROM = "Plot or season"
 PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
 RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
 PLANT_FILE = "Measured plant positions (optional)"
@@ -36,8 +35,9 @@ WHICH_PLOT = "Which plot"
 EMPTY = (
     "### Bring a plot\n"
     "Drop a plot file into the first box: the boundary of a real plot, in any coordinate system. "
-    "Records of pests are welcome but not needed. Your files stay in this session; nobody else "
-    "sees them, and nothing is sent anywhere. Or choose the sample estate on the left first."
+    "Records of pests are welcome but not needed. Your files stay on this machine, for a day after "
+    "you saw them last; nobody sees them who does not have this page's address, and nothing is "
+    "sent anywhere. Or choose the sample estate above first."
 )
 ROWS = "Rows"
 BEARING = "Row bearing (degrees from north)"
@@ -51,24 +51,45 @@ HOURS, INSPECTION_S = "Working hours", "Seconds at a plant"
 SAMPLER = "Who chooses the plants"
 SAMPLERS = {name: f"{kind.title}: {kind.does}" for name, kind in of_equal_times().items()}
 DATE = "Day"
-PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
-FINDS_HELP = (
-    "Infested plants on the route, by the chance map, times the chance that an inspection finds "
-    "them."
+DATE_HELP = "Today by the clock of {zone}, unless you choose another day."
+ZONE_OF_MACHINE = "this computer, since no time zone is known where the plot lies"
+OTHER_DAY = (
+    "This page is about **{day}**, which is not today ({today}). What you record here is recorded "
+    "for {day}."
 )
+BACK_TO_TODAY = "Back to today"
+PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
+ASSUMED = "\\* assumed: {what}."
+ASSUMED_WHAT = {
+    "row_spacing_m": "rows {value} apart",
+    "plant_spacing_m": "plants {value} apart",
+    "background_chance": "{value} % of plants infested where nothing is known",
+    "speed_m_s": "{value} km/h",
+    "detects": "an inspection finds {value} % of what is there",
+    "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
+}
+ASSUMED_CHANGE, ASSUMED_USE = "Change", "Use these"
+ASSUMED_NOTHING = "Nothing is assumed: all of it was said, or stands in your files."
+ASSUMED_ROBOT = "Who inspects, how long and how thoroughly is chosen below, under Who inspects."
+ASSUMED_LAID = "Rows and plants were laid when the season began and stay as they are."
+ASSUMED_CHANGED = "The season reckons with these from its first morning on."
+BACKGROUND = "Plants infested where nothing is known (%)"
+BACKGROUND_HELP = "Far from records, edges and paths. Leave it empty for our guess."
 BOUND_HELP = (
     "Whichever plants it visits, no route fixed in the morning can expect more finds. Who plans "
     "again after each find may find more."
 )
 DOWNLOAD = "Download the route (GeoJSON)"
 NO_STOPS = (
-    "The working day is too short to reach a plant and come back. Give more hours on the left."
+    "The working day is too short to reach a plant and come back. Give more hours below, under "
+    "Who inspects."
 )
 MESSAGES = "What the import found"
 MESSAGES_NONE = "Nothing to report: the files were read as they are."
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
 CHOOSE_QUICK = "Most likely:"
+LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
 UNDO_ANSWER = "Take back: {option} = {value}"
 SEVERITIES = {
     "seen": "Seen",
@@ -142,11 +163,19 @@ SEASON_NAMED = (
 )
 SEASON_LONG = "A season's name must have {most} letters at most, but it has {n}."
 
+# -- plants picked on the map
+PICKED = "**{plants} selected.**"
+PICKED_ALSO, PICKED_NEVER, PICKED_NONE = "Inspect these too", "Not these", "Clear"
+WISHED, UNWISHED = "{plants} to be inspected besides.", "{plants} left out."
+WISHES_UNMET = (
+    "{plants} of those are not on the route: the hours, or the strategy, do not allow it."
+)
+WISHES_DROP = "As planned before"
+
 # -- all plots
 PLOTS_TITLE = "{n} plots"
 PLOTS_ALT = "Map of {n} plots: {names}."
 PLOTS_COLUMNS = {"name": "plot", "days_since": "days since seen", "expected": "expected infested"}
-PLOTS_NONE = "not begun"
 PLOTS_STATES = {"fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
                 "late": "a week ago or never", "new": "no season yet"}  # fmt: skip
 PLOTS_TIP = "{name}: {expected:.0f} infested expected, {seen}"
@@ -159,7 +188,7 @@ WAYS_IN = {"sample": "Try the sample estate", "file": "Bring a plot of mine"}
 BEGIN_TITLE = "Keep this season"
 BEGIN_NOTE = (
     "Begin a season, and everything is kept from here on: routes, what was found, and what that "
-    "says about the rest of the plot. Come back to it tomorrow from the list on the left."
+    "says about the rest of the plot. Come back to it tomorrow from the list above."
 )
 SEASON_NAME, BEGIN = "Name of the season", "Begin the season"
 BEGUN = "Season {name} has begun. Its file is {path}."
@@ -176,7 +205,7 @@ CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
 TODAY_OVER = (
     "{inspected} plants inspected today, {found} found: the working day is over. Choose the next "
-    "day on the left for its route, or give more hours."
+    "day above for its route, or give more hours."
 )
 TODAY_DONE = "{inspected} plants inspected today so far, {found} found. The route shows the rest."
 OTHER_FORMATS, FORMAT, DOWNLOAD_AS = "Robot, phone, paper", "Format", "Download for {reader}"
@@ -188,7 +217,7 @@ TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start a
 TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
 TIP_HOT = "hot spot: {found} found of {inspected} inspected"
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
-TIP_INFESTED, TIP_HERE, TIP_CORNER = "infested", "here", "corner"
+TIP_INFESTED, TIP_CORNER = "infested", "corner"
 
 # -- plot and records
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
@@ -239,12 +268,15 @@ SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspe
           "age": "days since inspected"}  # fmt: skip
 MAP_LAYERS = {"route": "route", "numbers": "stop numbers", "hot": "hot spots",
               "records": "records", "rows": "row numbers", "backdrop": "picture"}  # fmt: skip
-MAP_DAY = "Day"
 BACKDROP_TITLE, HOT_TITLE = "Picture of the ground", "Hot spots"
 BACKDROP = "Picture of the ground (GeoTIFF)"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
 HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
 HISTORY_NOW = "Chance of infestation now: **{now:.1%}** (first morning: {first:.1%})."
+HISTORY_TREATED = (
+    "It was found infested, and in this season plants found are taken as treated at once: from "
+    "then on it counts as clean, and its chance grows again as insects come from its neighbours."
+)
 HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
 HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}
@@ -260,6 +292,10 @@ EXPECTED_LEFT, EXPECTED_HELP = "Still infested", "Expected, and the interval tha
 CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Found of all expected"
 INSPECTED_EVER = "Inspected so far"
 FOUND_EVER = "Found"
+FOUND_AGAIN = (
+    "{finds} finds on {plants} plants: {again} of them on plants that had been found on an earlier "
+    "day. Days count finds, the figure above counts plants."
+)
 RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
 RECORD_FILE_IN = (
     "The route file with its found column filled in, or any table or GPS file with plants, rows "
@@ -269,8 +305,26 @@ TAKE_DOUBTFUL = "Take doubtful positions too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
 RESULT, COUNT, RESULTS_OF = "Result", "Count", {0: "clean", 1: "found", 2: "could not inspect"}
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
-RECORD_REST = "So many stops from the first are recorded: clean, unless marked as found."
+RECORD_REST = (
+    "Say how many stops were done, from the first: they are recorded as clean, unless marked as "
+    "found. A mark counts wherever it stands."
+)
 RECORD_STOPS = "Stops done"
+RECORD_UNSAID = (
+    "Something must be said before it is recorded, but no stop is done and none is marked. Say how "
+    "many stops were done, or mark those where pests were found."
+)
+ONE_UNSAID = (
+    "Row, plant and result must be said before they are recorded, but one of them is empty. Fill "
+    "in all three."
+)
+CONTRADICTING = (
+    "{n} results from {source} contradict what is recorded of the same plants and day. Nothing is "
+    "recorded yet, nor are the {others} others. Which holds?"
+)
+AND_MORE = "... and {n} more."
+LEAVE_OUT, CONFIRM = "Leave these out, record {n} others", "Record these {n} too, both hold"
+RECORD_NONE = "Record nothing"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
 BATCHES_SAID = {
     "findings": "{day} {time} · {source} · {n} plant(s)",
@@ -278,10 +332,15 @@ BATCHES_SAID = {
 }
 TYPED_IN, ROUTE_TABLE = "typed in", "route table"
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
+TREAT_UNSAID = (
+    "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
+    "it kills, as on the label or by experience."
+)
 TREAT_BUTTON, TREATED = "Note the treatment", "Treatment noted."
 TREATED_BEFORE = "This treatment was noted already; nothing changed."
 ROW_AGES, DAYS_SINCE, ROW_AXIS = "Days since each row was inspected", "days", "row"
 OUT_AXIS, INSPECTED_AXIS, DATE_AXIS = "still infested (expected)", "inspected", "day"
+ROW_NEVER, ROW_TODAY = "never", "today"
 NEVER_ROWS = "{n} of {all} rows were never inspected."
 
 # -- scouting

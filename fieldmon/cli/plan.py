@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import tell_unusable
+from fieldmon.cli.messages import tell_assumed, tell_unusable
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
     Bounded,
@@ -29,7 +28,7 @@ from fieldmon.cli.outputs import ChanceMap, day_in_words, write_chance_map, writ
 from fieldmon.cli.plan_season import plan_season
 from fieldmon.cli.preparing import estate, prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
-from fieldmon.cli.times import clock, day
+from fieldmon.cli.times import WorkStart, clock, day
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -64,9 +63,9 @@ class PlanOptions:
     every_plot: EveryPlot = False
     bound: Bounded = True
 
-    def begins(self) -> datetime:
-        """Return the local date and time at which the work starts."""
-        return datetime.combine(day(self.on), clock(self.start))
+    def starts(self) -> WorkStart:
+        """Return when the work starts, as it was told."""
+        return WorkStart(day(self.on), clock(self.start))
 
 
 @with_options
@@ -107,14 +106,16 @@ def _plan_one(options: PlanOptions) -> None:
     import numpy as np  # noqa: PLC0415
 
     from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
+    from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
     from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
     from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
 
-    begins, robot = options.begins(), options.worker.robot()
-    on = np.datetime64(begins.date(), "D")
+    robot, starts = options.worker.robot(), options.starts()
     settings = PlanSettings(robot, sampler_of(options.sampler, options.every))
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
+    begins = starts.on_plot(known.plot.field)
+    on = np.datetime64(begins.date(), "D")
     tell_unusable(known.records, on)
     today = first_day(known.plot, known.records, on, settings, known.risk)
     if not len(today.route):
@@ -125,6 +126,7 @@ def _plan_one(options: PlanOptions) -> None:
     if options.bound:
         today = with_bound(today)
     typer.echo(day_in_words(today.route))
+    tell_assumed(assumed_by((), settings.prior, robot))
     notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
     write_routes(replace(today.route, notes=notes), options.output)
     write_chance_map(options.chance_map, known.plot, today.chance)
@@ -137,8 +139,10 @@ def _plan_every_plot(options: PlanOptions) -> None:
     from fieldmon.cli.plan_all import Day, plan_all  # noqa: PLC0415
     from fieldmon.planning.batch import Orders  # noqa: PLC0415
 
-    begins, worker = options.begins(), options.worker
+    worker, starts = options.worker, options.starts()
     request, folder = _request_of_all(options), _folder(options.output)
+    plots = estate(request)
+    begins = starts.on_plot(plots.fields[0])
     orders = Orders(
         day=np.datetime64(begins.date(), "D"),
         sampler=options.sampler.value,
@@ -148,7 +152,6 @@ def _plan_every_plot(options: PlanOptions) -> None:
         planting=request.planting.given(),
         bound=options.bound,
     )
-    plots = estate(request)
     tell_unusable(plots.records.anywhere, orders.day)
     plan_all(plots, orders, Day(plots.records, folder, begins))
 

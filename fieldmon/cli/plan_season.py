@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from fieldmon.cli.messages import tell_assumed
 from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
-from fieldmon.cli.times import clock, day
+from fieldmon.cli.times import clock, day, day_on
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
 
     _refuse_what_was_chosen(context)
     season = Season(file)
-    on, now = day(options.on), options.now
+    on, now = day_on(season.plot.field, day(options.on)), options.now
     today = season.plan(on, None if now is None else clock(now, "--now"))
     if options.bound and len(today.route):
         today = with_bound(today)
@@ -40,6 +41,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     seen = season.history.on(today.scene.day)
     done = f"{len(seen)} done, " if len(seen) else ""
     typer.echo(f"{on}: {done}{day_in_words(route)}")
+    tell_assumed(season.assumed())
     write_routes(route, options.output)
     write_chance_map(options.chance_map, season.plot, today.chance)
 

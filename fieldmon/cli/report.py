@@ -66,7 +66,8 @@ def _made(season: Season, on: str | None, until: str | None) -> Report:
     from fieldmon.reports.day import DayFacts, day_report  # noqa: PLC0415
     from fieldmon.reports.season import season_report  # noqa: PLC0415
 
-    if on is not None:
-        return day_report(DayFacts.of_season(season, day(on)), Units())
-    last = season.last_date() if until is None else day(until, "--until")
-    return season_report(season, last, Units())
+    asked = day(on)
+    if asked is not None:
+        return day_report(DayFacts.of_season(season, asked), Units())
+    told = day(until, "--until")
+    return season_report(season, season.last_date() if told is None else told, Units())

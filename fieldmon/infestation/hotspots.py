@@ -138,10 +138,33 @@ def states(n: int, plants: NDArray[np.integer], found: NDArray[np.bool_]) -> NDA
     return state
 
 
+@dataclass(frozen=True, eq=False)
+class NewestRecords:
+    """What the newest record of each plant says.
+
+    Parameters
+    ----------
+    state
+        ``(n,)`` `PRESENT`, `ABSENT`, or `UNKNOWN` where no record speaks of the plant.
+    day
+        ``(n,)`` datetime64[D] of that record; NaT: no record, or one without a date.
+    """
+
+    state: NDArray[np.int8]
+    day: NDArray[np.datetime64]
+
+
 def record_states(
     grid: PlantGrid, observations: Observations, within_m: float | None = None
 ) -> NDArray[np.int8]:
-    """Return the state ``(n,)`` that records give the plants nearest to them.
+    """Return the state ``(n,)`` that records give the plants nearest to them; see below."""
+    return newest_records(grid, observations, within_m).state
+
+
+def newest_records(
+    grid: PlantGrid, observations: Observations, within_m: float | None = None
+) -> NewestRecords:
+    """Return what the newest records of the plants nearest to them say.
 
     The newest record of a plant counts, an undated one as older than all; of several of one day a
     find. Records farther than `within_m` (default: half a row spacing, and the record's own
@@ -157,7 +180,9 @@ def record_states(
     last = order[near[order]]
     state = np.full(len(grid), UNKNOWN, np.int8)
     state[plant[last]] = said.present[last]
-    return state
+    day = np.full(len(grid), "NaT", "datetime64[D]")
+    day[plant[last]] = said.day[last]
+    return NewestRecords(state, day)
 
 
 def hot_spots(

@@ -122,6 +122,9 @@ class History:
         What is made of it.
     detection
         Chance that an inspection finds what is there.
+    recorded
+        ``(n,)`` what the records say from which the season began: 1 infested, 0 clean, -1 nothing;
+        None: there are none.
     """
 
     grid: PlantGrid
@@ -131,6 +134,7 @@ class History:
     treatments: tuple[Treatment, ...] = ()
     belief: BeliefSettings = field(default_factory=BeliefSettings)
     detection: float = 0.84
+    recorded: NDArray[np.int8] | None = None
 
     def __post_init__(self) -> None:
         if (np.diff(self.days) < 0).any():
@@ -189,6 +193,11 @@ class History:
         inspected = done.result != SKIPPED
         np.maximum.at(state, done.plant[inspected], done.result[inspected])
         return state
+
+    def known(self, day: int) -> NDArray[np.int8]:
+        """Return ``(n,)`` the states up to `day` by inspections and by the records of before."""
+        state = self.states(day)
+        return state if self.recorded is None else np.maximum(state, self.recorded)
 
     def scene(self, shift: Shift, day: int, morning: Belief, now_s: float | None = None) -> Scene:
         """Return the scene of a day as it stands after what was recorded of it.

@@ -18,6 +18,7 @@ from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.grid import row_label
+from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler as sampler_of
 from fieldmon.samplers.base import NEVER, Scene, resting_place
@@ -345,7 +346,7 @@ class MonitorDay:
 
 def _first_chance(plot: Plot, chance: NDArray[np.float64] | None) -> NDArray[np.float64]:
     if chance is None:
-        none, day = Observations.none(), np.datetime64("today")
+        none, day = Observations.none(), np.datetime64(local_clock(plot.field).today())
         return prior_chance(plot.grid, plot.field, none, day, PriorSettings())
     given = np.asarray(chance, np.float64)
     if given.shape != (len(plot.grid),) or not ((given >= 0) & (given <= 1)).all():

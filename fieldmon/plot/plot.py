@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fieldmon.plot.field import Field
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from geopandas import GeoDataFrame
     from numpy.typing import NDArray
 
+    from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.grid import PlantGrid
 
 
@@ -39,10 +40,19 @@ def planting_of(field: Field, **given: float | None) -> Planting:
 
 @dataclass(frozen=True, eq=False)
 class Plot:
-    """A field with its plants and the ways between them."""
+    """A field with its plants and the ways between them.
+
+    Parameters
+    ----------
+    field, aisles
+        The field; its plants, and the ways between them.
+    assumed
+        What was taken for its rows because nobody said it.
+    """
 
     field: Field
     aisles: Aisles
+    assumed: tuple[Assumed, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Plot {self.field.name}: {self.grid.counts}>"
@@ -143,7 +153,7 @@ class Plot:
         """Return the plot without the plants marked ``(n,)``, which are not there."""
         if not missing.any():
             return self
-        return self._with(self.field, without(self.grid, missing))
+        return replace(self._with(self.field, without(self.grid, missing)), assumed=self.assumed)
 
     @classmethod
     def _with(cls, field: Field, grid: PlantGrid) -> Plot:

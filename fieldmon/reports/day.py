@@ -28,7 +28,7 @@ from fieldmon.reports.content import (
 )
 from fieldmon.reports.maps import PlotMap
 from fieldmon.reports.sentences import headline, runs
-from fieldmon.reports.settings_rows import WorkSettings, settings_blocks
+from fieldmon.reports.settings_rows import WorkSettings, assumed_sentence, settings_blocks
 
 if TYPE_CHECKING:
     from datetime import date
@@ -70,6 +70,8 @@ class DayFacts:
         ``(k,)`` plants found infested that day, by number.
     worked
         Whether the day is over.
+    results
+        Result of each plant inspected that day, by its number.
     """
 
     name: str
@@ -82,6 +84,7 @@ class DayFacts:
     inspected: int = 0
     found: NDArray[np.integer] = field(default_factory=lambda: np.empty(0, np.int32))
     worked: bool = False
+    results: dict[int, int] = field(default_factory=dict)
 
     @classmethod
     def of_season(cls, season: Season, on: date) -> DayFacts:
@@ -96,9 +99,16 @@ class DayFacts:
         return cls(
             season.plot.field.name, begins if worked else begins + gone,
             worked_route(season, on) if worked else route, season.evening(on), state,
-            hot_spots(season.plot.grid, state), WorkSettings.of_season(settings, season.messages()),
-            len(done), np.unique(done.plant[done.result == FOUND]), worked,
+            hot_spots(season.plot.grid, state), WorkSettings.of_season(season),
+            len(done), np.unique(done.plant[done.result == FOUND]),
+            worked, results_on(season, on),
         )  # fmt: skip
+
+
+def results_on(season: Season, on: date) -> dict[int, int]:
+    """Return what was last noted of each plant that somebody stood before on a day."""
+    done = season.history.on(season.settings.day(on))
+    return dict(zip(done.plant.tolist(), done.result.tolist(), strict=True))
 
 
 def day_report(facts: DayFacts, units: Units) -> Report:
@@ -106,13 +116,14 @@ def day_report(facts: DayFacts, units: Units) -> Report:
     blocks: list[Block] = [
         *(Paragraph(said, lead=True) for said in _leads(facts, units)),
         _figures(facts, units),
+        *(Paragraph(said) for said in [assumed_sentence(facts.settings, units)] if said),
         *_map(facts, units),
     ]
     if len(facts.route):
         blocks.append(_stops(facts))
     if len(facts.found):
         blocks.append(_found(facts))
-    blocks += [*settings_blocks(facts.settings), NoteLines(words.NOTES)]
+    blocks += [*settings_blocks(facts.settings, units), NoteLines(words.NOTES)]
     if len(facts.route):
         blocks.append(_every_stop(facts))
     on = facts.begins.date()
@@ -217,17 +228,22 @@ def _found(facts: DayFacts) -> Table:
 
 
 def _every_stop(facts: DayFacts) -> TickList:
+    """Return every stop with a box to tick or, once the day is over, with its result."""
     route = facts.route
     label = row_label(route.aisles.grid, route.plant)
+    said = [
+        words.RESULTS[facts.results.get(plant, -1)] if facts.worked else "☐"
+        for plant in route.plant.tolist()
+    ]
     rows = zip(
         range(1, len(route) + 1), route.arrive_s.tolist(), label.line.tolist(),
-        label.number.tolist(), (100 * route.chance).tolist(), strict=True,
+        label.number.tolist(), (100 * route.chance).tolist(), said, strict=True,
     )  # fmt: skip
     return TickList(
-        words.EVERY_STOP, words.EVERY_COLUMNS,
+        words.EVERY_STOP, (*words.EVERY_COLUMNS, words.WAS if facts.worked else words.TICK),
         tuple(
-            (f"{k}", _clock(facts, s, "%H:%M:%S"), f"{line}", f"{number}", f"{chance:.1f}", "☐")
-            for k, s, line, number, chance in rows
+            (f"{k}", _clock(facts, s, "%H:%M:%S"), f"{line}", f"{number}", f"{chance:.1f}", end)
+            for k, s, line, number, chance, end in rows
         ),
     )  # fmt: skip
 

@@ -28,7 +28,7 @@ from fieldmon.reports.content import (
 from fieldmon.reports.day import legend_block, map_alt, which
 from fieldmon.reports.maps import PlotMap
 from fieldmon.reports.sentences import hot_spot_meanings, runs
-from fieldmon.reports.settings_rows import WorkSettings, settings_blocks
+from fieldmon.reports.settings_rows import WorkSettings, assumed_sentence, settings_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -117,6 +117,9 @@ def _stands(facts: _Facts) -> Iterator[Block]:
         said.append(words.STANDS_HOT.format(n=counted(len(status.hot_spots), "hot spot")))
     yield Paragraph(" ".join(said), lead=True)
     yield _figures(facts)
+    said = assumed_sentence(WorkSettings.of_season(facts.season), facts.units)
+    if said:
+        yield Paragraph(said)
     yield from facts.plot_map(by_state=False)
     yield Paragraph(" ".join(_rows_seen(facts)))
 
@@ -245,7 +248,7 @@ def _goes_by(facts: _Facts) -> Iterator[Block]:
     yield _batches(facts)
     yield _treatments(facts)
     season = facts.season
-    yield from settings_blocks(WorkSettings.of_season(season.settings, season.messages()))
+    yield from settings_blocks(WorkSettings.of_season(season), facts.units)
     yield Listing(words.MEANING, words.MEANINGS)
     yield NoteLines(words.NOTES)
 

@@ -33,11 +33,11 @@ def until(is_so, within_s=60.0):
         time.sleep(0.005)
 
 
-def opened(season=None):
+def opened(season=None, **address):
     """Return a new session of the app, with a season open if one is named."""
     app = AppTest.from_file(str(ROOT / "app" / "streamlit_app.py"), default_timeout=120)
-    if season is not None:
-        app.query_params["season"] = season
+    for word, value in ({} if season is None else {"season": season}).items() | address.items():
+        app.query_params[word] = value
     return app.run()
 
 
@@ -95,7 +95,7 @@ def plants(app, name="plants-chance"):
 
 
 def metric(app, label):
-    return next(m.value for m in app.metric if m.label == label)
+    return next(m.value for m in app.metric if m.label.removesuffix(" *") == label)
 
 
 def plot_name(app):
@@ -103,9 +103,17 @@ def plot_name(app):
     return map_of(app)["alt"].removeprefix("Map of plot ").split(": ")[0]
 
 
+def heading(app):
+    """Return which plot and which day the page is about."""
+    day = next(box.value for box in app.date_input if box.key.startswith("day "))
+    return f"{plot_name(app)} · {day}"
+
+
 def headline(app):
     """Return the sentence at the top of Today: what there is to do."""
-    (said,) = (text.value for text in app.markdown if text.value.startswith(("Inspect ", "Nothing")))
+    (said,) = (
+        text.value for text in app.markdown if text.value.startswith(("Inspect ", "Nothing"))
+    )
     return said
 
 

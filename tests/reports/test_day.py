@@ -30,10 +30,14 @@ def figures(report):
     return {each.label: each for each in one(report, KeyFigures).figures}
 
 
+def paragraphs(report):
+    return [block.text for block in report.sheets[0].blocks if isinstance(block, Paragraph)]
+
+
 def test_a_planned_day_says_what_to_do_first(worked, last, ahead, of_day):
     on = last + timedelta(days=1)
     plan = worked.plan(on, keep=False)
-    assert one(of_day, Paragraph).text == headline(plan.route, str(on))
+    assert paragraphs(of_day)[0] == headline(plan.route, str(on))
     shown = figures(of_day)
     assert shown["Plants to inspect"].value == f"{len(plan.route):,}"
     assert shown["Expected finds"].value == f"{plan.route.expected_found:.1f}"
@@ -45,13 +49,8 @@ def test_a_planned_day_says_what_to_do_first(worked, last, ahead, of_day):
 def test_a_day_that_is_over_says_what_was_done(worked, last, done, of_worked_day):
     made = worked.history.on(worked.settings.day(last))
     found = np.unique(made.plant[made.result == FOUND])
-    (lead,) = [
-        block for sheet in of_worked_day.sheets for block in sheet.blocks
-        if isinstance(block, Paragraph)
-    ]  # fmt: skip
-    assert lead.text == (
-        f"Worked on {last}: {len(made)} plants inspected, {len(found)} found infested."
-    )
+    lead, *_ = paragraphs(of_worked_day)
+    assert lead == (f"Worked on {last}: {len(made)} plants inspected, {len(found)} found infested.")
     assert figures(of_worked_day)["Found that day"].value == f"{len(found)}"
     assert done.route.plant.tolist() == made.plant.tolist()
     label = row_label(worked.plot.grid, found)
@@ -63,10 +62,7 @@ def test_half_a_day_says_both_what_was_done_and_what_is_left(tmp_path):
     season = a_season(tmp_path / "half.gpkg")
     season.record(some_results(season, 6, found=[2]))
     facts = DayFacts.of_season(season, BEGINS)
-    leads = [
-        block.text for sheet in day_report(facts, Units()).sheets for block in sheet.blocks
-        if isinstance(block, Paragraph)
-    ]  # fmt: skip
+    leads = paragraphs(day_report(facts, Units()))
     assert leads[0] == f"Worked on {BEGINS}: 6 plants inspected, 1 found infested."
     assert leads[1] == headline(facts.route, str(BEGINS))
     assert facts.begins.strftime("%H:%M") > "06:00"
@@ -95,6 +91,21 @@ def test_every_stop_is_on_the_list_to_tick(ahead, of_day):
     assert [int(row[2]) for row in ticks] == label.line.tolist()
     assert [int(row[3]) for row in ticks] == label.number.tolist()
     assert {row[5] for row in ticks} == {"☐"}
+
+
+def test_after_the_work_every_stop_has_its_result_instead(of_worked_day, done):
+    ticks = one(of_worked_day, TickList)
+    assert ticks.columns[-1] == "result"
+    found = {int(plant) for plant in done.found}
+    said = [row[5] for row in ticks.rows]
+    assert said == ["found" if plant in found else "clean" for plant in done.route.plant.tolist()]
+
+
+def test_what_is_assumed_stands_under_the_figures(of_day):
+    sheet = of_day.sheets[0].blocks
+    under = sheet[[isinstance(block, KeyFigures) for block in sheet].index(True) + 1]
+    assert under.text.startswith("Assumed, though nobody said so: ")
+    assert "spread to a neighbour, a night 2 %" in under.text
 
 
 @pytest.mark.parametrize(

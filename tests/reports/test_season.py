@@ -86,7 +86,7 @@ def test_records_treatments_and_what_is_assumed_stand_on_the_last_page(of_season
     (treated,) = table(of_season, "Treatments").rows
     assert treated == (str(BEGINS + timedelta(days=2)), f"{len(worked.plot.grid):,}", "70%")
     settings = {row[0]: row[1:] for row in table(of_season, "Settings").rows}
-    assert settings["Spread to a neighbour, a night"] == ("2 %", "assumed, not known")
+    assert settings["Spread to a neighbour, a night"] == ("2 %", "assumed")
     assert settings["Working hours"] == ("1.5", "chosen")
     assert len(one(of_season, Listing, "How the numbers are meant").sentences) == 5
 

@@ -39,6 +39,9 @@ AGE_FROM = (0, 1, 3, 7, 14)
 AGE_COLOURS: tuple[Colour, ...] = (
     (217, 240, 163), (120, 198, 121), (49, 163, 84), (0, 104, 55), (0, 50, 30),
 )  # fmt: skip
+AGE_IN_DARK: tuple[Colour, ...] = (
+    (34, 74, 48), (40, 108, 64), (56, 154, 88), (128, 204, 128), (224, 244, 172),
+)  # fmt: skip
 _EMPTY = 30  # opacity of a plant never inspected: an outline with next to nothing in it
 
 
@@ -75,10 +78,10 @@ def by_state(state: NDArray[np.int8]) -> Shade:
     return Shade.of([(*NEVER, _EMPTY), CLEAN, FOUND], state + np.int8(1))
 
 
-def by_age(days: NDArray[np.integer]) -> Shade:
+def by_age(days: NDArray[np.integer], *, dark: bool = False) -> Shade:
     """Return plants shaded by the days since they were inspected; -1 (never): an empty ring."""
     rank = np.searchsorted(AGE_FROM, days, side="right")
-    return Shade.of([(*NEVER, _EMPTY), *AGE_COLOURS], rank)
+    return Shade.of([(*NEVER, _EMPTY), *(AGE_IN_DARK if dark else AGE_COLOURS)], rank)
 
 
 def plain(n: int) -> Shade:

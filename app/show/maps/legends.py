@@ -39,7 +39,7 @@ def by_state() -> LegendPart:
     return part(texts.SHADES["state"], items, "shade:state")
 
 
-def by_age() -> LegendPart:
+def by_age(*, dark: bool = False) -> LegendPart:
     """Return the days since the last inspection."""
     tops = [*colours.AGE_FROM[1:], None]
     names = [
@@ -48,7 +48,8 @@ def by_age() -> LegendPart:
         )
         for low, top in zip(colours.AGE_FROM, tops, strict=True)
     ]
-    ages = zip(colours.AGE_COLOURS, names, strict=True)
+    shades = colours.AGE_IN_DARK if dark else colours.AGE_COLOURS
+    ages = zip(shades, names, strict=True)
     items = [*(("square", colour, name) for colour, name in ages),
              ("ring", colours.NEVER, texts.LEGEND_NEVER)]  # fmt: skip
     return part(texts.SHADES["age"], items, "shade:age")

@@ -7,7 +7,7 @@ import pytest
 
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
-from tests.app.driving import go, metric, press, texts_of
+from tests.app.driving import begun, go, metric, press, texts_of
 
 
 def test_one_plant_is_recorded_and_undone(season_app, season):
@@ -37,6 +37,7 @@ def expected(app):
 
 def treated(app):
     go(app, "record")
+    app.number_input(key="efficacy").set_value(90)
     next(b for b in app.button if b.label == "Note the treatment").click()
     app.run()
     assert not app.error
@@ -102,3 +103,64 @@ def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(
 def record_clean(project, on, n):
     plants = project.plan(on, keep=False).route.plant[:n]
     project.record(Inspections.of(plants, np.zeros(n, np.int8), np.datetime64(on)), "twin")
+
+
+def send(app, form):
+    """Press the button of a form."""
+    next(b for b in app.button if form in b.proto.form_id).click()
+    app.run()
+    assert not app.exception
+
+
+@pytest.mark.parametrize("form", ["route", "one_plant", "treatment"])
+def test_a_click_on_an_untouched_form_records_nothing(season_app, season, form):
+    go(season_app, "record")
+    before = season().revision
+    send(season_app, form)
+    assert "must be said" in season_app.error[0].value
+    assert season().revision == before
+
+
+def test_only_marked_stops_are_recorded_where_no_number_is_said(season_app, season):
+    go(season_app, "record")
+    route = season().plan(date(2026, 11, 16), keep=False).route.plant
+    season_app.session_state[f"marks 2026-11-16 {len(route)}"] = {
+        "edited_rows": {4: {"found": True}}, "added_rows": [], "deleted_rows": []
+    }  # fmt: skip
+    send(season_app, "route")
+    done = season().history.inspections
+    assert done.plant.tolist() == [route[4]]
+    assert done.result.tolist() == [1]
+
+
+def contradicted(app, season, n=4):
+    """Record finds, then say of the same plants and one more that they are clean."""
+    season().plan(date(2026, 11, 16))
+    plants = season().kept_route(date(2026, 11, 16))[:n]
+    season().record(Inspections.of(plants, np.ones(n, int), np.datetime64("2026-11-16")), "file")
+    go(app, "record")
+    app.number_input(key="stops_done").set_value(n + 1)
+    send(app, "route")
+    assert f"{n} results from route table contradict" in app.warning[0].value
+    assert "recorded as found, now clean" in texts_of(app)
+    assert len(season().history.inspections) == n, "nothing is added silently"
+
+
+@pytest.mark.parametrize(("key", "results"), [
+    ("leave_out", [1, 1, 1, 1, 0]), ("confirm", [1, 1, 1, 1, 0, 0, 0, 0, 0]),
+    ("record_none", [1, 1, 1, 1]),
+])  # fmt: skip
+def test_what_contradicts_the_same_day_is_shown_and_confirmed(season_app, season, key, results):
+    contradicted(season_app, season)
+    season_app.button(key=key).click().run()
+    assert not season_app.exception
+    assert not season_app.warning
+    assert season().history.inspections.result.tolist() == results
+
+
+def test_another_season_is_not_asked_about_what_waits_in_this_one(season_app, season):
+    contradicted(season_app, season)
+    season_app.selectbox(key="season").set_value("Sample estate").run()
+    begun(season_app, "Other")
+    go(season_app, "record")
+    assert not season_app.warning

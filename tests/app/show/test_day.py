@@ -8,6 +8,8 @@ import pandas as pd
 import pytest
 
 from app.show import day
+from app.state import chosen_day
+from app.state.chosen_day import DayRoute
 from app.words import texts
 from fieldmon.plot.grid import row_label
 from tests.app.chosen import a_plot, chosen, in_season, records_at
@@ -52,7 +54,7 @@ def test_stops_are_the_route_s_in_order_with_the_times_of_their_arrival():
     plot = a_plot()
     choices = chosen(plot, records_at(plot, [50], [1]))
     plan = choices.plan()
-    table = day.stops(choices, plan)
+    table = day.stops(choices, DayRoute(plan.route, chosen_day.starts(choices, plan)))
     label = row_label(plot.grid, plan.route.plant)
     assert table["row"].tolist() == label.line.tolist()
     assert table["plant"].tolist() == label.number.tolist()
@@ -62,6 +64,14 @@ def test_stops_are_the_route_s_in_order_with_the_times_of_their_arrival():
         (pd.Timestamp(f"2026-11-16 {at}") - begins).total_seconds() for at in table["arrive"]
     ]
     assert seconds == pytest.approx(plan.route.arrive_s, abs=0.51)
+
+
+def test_stops_of_a_day_that_was_worked_say_what_was_found_there(worked):
+    choices = on(worked, 0)
+    table = day.stops(choices, chosen_day.route(choices))
+    done = worked.history.inspections.on(BEGINS)
+    assert len(table) == 40
+    assert (table["result"] == "found").sum() == (done.result == 1).sum()
 
 
 def test_what_changed_is_the_difference_of_two_days(worked):
@@ -85,14 +95,3 @@ def test_rows_that_rose_most_come_first(worked):
         assert f"rose most: {best + 1} (+{rise[best]:.1%})" in said
     else:
         assert "rose most" not in said
-
-
-def test_plants_found_are_named_by_row(worked):
-    done = worked.history.inspections.on(BEGINS)
-    found = np.unique(done.plant[done.result == 1])
-    label = row_label(worked.plot.grid, found)
-    said = day.found_by_row(on(worked, 0))
-    assert sum(len(plants.split(", ")) for plants in said.values()) == len(found) > 0
-    for line, number in zip(label.line, label.number, strict=True):
-        assert str(number) in said[f"Row {line}"].split(", ")
-    assert day.found_by_row(chosen(a_plot())) == {}

@@ -1,5 +1,7 @@
 """What is known of one plant."""
 
+from datetime import timedelta
+
 import numpy as np
 import pytest
 import streamlit as st
@@ -7,6 +9,7 @@ import streamlit as st
 from app.show import plant_history
 from app.show.map_view import MapContent
 from app.state import chosen_day
+from app.words import texts
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.plot.grid import row_label
 from tests.app.chosen import a_plot, chosen, in_season
@@ -80,6 +83,21 @@ def test_every_inspection_of_the_plant_is_told_in_order_with_its_time_if_it_has_
     now, first = (chance[PLANT] for chance in (chosen_day.chance(choices), season.morning(BEGINS)))
     assert f"{now:.1%}" in said[1]
     assert f"{first:.1%}" in said[1]
+
+
+def test_a_chance_of_nothing_after_a_find_is_explained(said, season, monkeypatch):
+    why = []
+    monkeypatch.setattr(st, "caption", why.append)
+    for day, explained in ((0, False), (1, False), (2, True)):
+        choices = in_season(season, BEGINS + timedelta(days=day))
+        tap(choices, PLANT)
+        plant_history.show(choices)
+        assert (texts.HISTORY_TREATED in why) == explained
+    assert "**0.0%**" in said[-4]
+    why.clear()
+    tap(choices, PLANT + 1)
+    plant_history.show(choices)
+    assert texts.HISTORY_TREATED not in why
 
 
 def test_a_plant_never_inspected_says_so(said, season):

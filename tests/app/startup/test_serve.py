@@ -41,6 +41,13 @@ def test_the_page_is_handed_out_before_streamlit_is_there():
     assert int(headers[b"content-length"]) == len(body)
 
 
+def test_every_page_says_where_its_server_is_so_that_it_need_not_try():
+    pages = [asked(Server(), path)[2] for path in ("/", "/map", "/season")]
+    assert len(set(pages)) == 1
+    assert pages[0].count(b"window.__streamlit = {BACKEND_BASE_URL") == 1
+    assert pages[0].index(b"window.__streamlit") < pages[0].index(b'type="module"')
+
+
 def test_the_page_says_which_script_draws_maps_so_that_it_comes_early():
     _, headers, _ = asked(Server(), "/")
     hint = headers[b"link"].decode()
@@ -77,7 +84,8 @@ def test_addresses_that_nobody_published_are_not_found_and_not_kept(name):
         ("/_stcore/health", "GET"),
         ("/", "POST"),
         ("/static/../../config.py", "GET"),
-        ("/season", "GET"),
+        ("/map/_stcore/health", "GET"),
+        ("/media", "GET"),
     ],
 )
 def test_whatever_is_no_file_of_the_page_waits_for_streamlit(path, method):

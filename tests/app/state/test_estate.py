@@ -1,58 +1,84 @@
-"""All plots that can be opened, with their state."""
+"""All plots with their state: of the seasons, else of the files at hand, else the sample's."""
 
 from datetime import timedelta
 
 import numpy as np
 import pytest
+import streamlit as st
 
-from app.state import estate, plot_source, seasons_folder
-from app.words import texts
+from app.show import estate_map
+from app.state import estate, rooms, seasons_folder
+from app.state.estate import PlotState
 from fieldmon.infestation.inspections import Inspections
-from tests.app.driving import broken, opened
-from tests.monitoring.seasons import BEGINS, a_season
+from fieldmon.plot.local_clock import local_clock
+from tests.app.driving import broken, go, map_of
 
 
-@pytest.fixture
-def a_kept_season(seasons_folder):
-    return a_season(seasons_folder / "Pond.gpkg")
+def areas(app):
+    (layer,) = map_of(app)["layers"]
+    return layer["data"]
 
 
-@pytest.mark.usefixtures("session")
-def test_before_anything_is_kept_the_sample_s_plots_are_there():
-    found, problems = estate.plots(BEGINS)
-    assert problems == []
-    assert len(found) > 1
-    assert {plot.source for plot in found} == {texts.SAMPLE}
-    assert [plot.number for plot in found] == list(range(len(found)))
-    assert {plot.expected for plot in found} == {None}, "nobody asked yet"
+def test_without_seasons_the_sample_estate_is_shown(app):
+    go(app, "plots")
+    assert not app.exception
+    assert len(areas(app)) >= 9
+    assert all("no season yet" in area["t"] for area in areas(app))
 
 
-@pytest.mark.usefixtures("session")
-def test_a_season_says_how_long_ago_it_was_seen_and_what_is_expected(a_kept_season):
-    (plot,), _ = estate.plots(BEGINS)
-    assert (plot.name, plot.source, plot.number) == ("Pond", "Pond", None)
-    assert plot.days_since is None
-    assert plot.expected == pytest.approx(a_kept_season.morning(BEGINS).sum(), rel=0.05)
-    looked = Inspections.of(np.arange(5), np.zeros(5, np.int8), np.datetime64(BEGINS))
-    a_kept_season.record(looked, "test")
-    for days in (0, 4):
-        (plot,), _ = estate.plots(BEGINS + timedelta(days=days))
-        assert plot.days_since == days
+def test_a_season_says_when_it_was_seen_and_what_is_expected(season_app, season):
+    today = local_clock(season().plot.field).today()
+    go(season_app, "plots")
+    (area,) = areas(season_app)
+    assert "never seen" in area["t"]
+    seen = np.datetime64(max(today - timedelta(days=4), season().settings.begins))
+    season().record(Inspections.of(np.array([5]), np.array([0]), seen), "test")
+    go(season_app, "plots")
+    (area,) = areas(season_app)
+    days = (today - seen.item()).days
+    assert (f"seen {days} days ago" if days else "seen today") in area["t"]
+    left, _ = estate.plots()
+    assert left[0].expected > 0
 
 
-@pytest.mark.usefixtures("session", "a_kept_season")
-def test_a_season_that_cannot_be_opened_is_said_and_hides_no_other():
+def test_a_season_that_cannot_be_opened_is_said_and_hides_no_other(season_app):
     broken(seasons_folder.path_of("Broken"))
-    found, problems = estate.plots(BEGINS)
-    assert [plot.name for plot in found] == ["Pond"]
-    (said,) = problems
-    assert said.startswith("Broken: ")
-    assert "newer" in said
+    go(season_app, "plots")
+    assert not season_app.exception
+    assert len(areas(season_app)) == 1
+    (said,) = season_app.warning
+    assert said.value.startswith("Broken: ")
+    assert "newer" in said.value
 
 
-def test_a_plot_that_is_opened_is_the_one_that_is_planned():
-    app = opened()
-    app.session_state[plot_source.KEY] = texts.SAMPLE
-    app.session_state["feature sample/paran_estate.zip"] = 1
+def test_a_plot_is_opened_by_a_tap(app):
+    plots, _ = estate.plots()
+    pond = next(plot for plot in plots if plot.name == "Pond")
+    told = {}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(st, "session_state", told)
+        estate.open_plot(pond)
+    for key, value in told.items():
+        app.session_state[key] = value
     app.run()
-    assert app.selectbox(key="feature sample/paran_estate.zip").value == 1
+    assert not app.exception
+    assert map_of(app)["alt"].startswith("Map of plot Pond")
+
+
+def test_states_tell_how_long_ago_a_plot_was_seen():
+    made = {
+        days: estate_map.state_of(PlotState("x", "x", None, None, days, 3.0))
+        for days in (0, 2, 3, 6, 7, None)
+    }
+    assert made == {0: "fresh", 2: "fresh", 3: "due", 6: "due", 7: "late", None: "late"}
+    assert estate_map.state_of(PlotState("x", "x", None)) == "new"
+
+
+def test_every_part_of_a_plot_opens_it():
+    plots, _ = estate.plots()
+    assert rooms.ROOMS["plots"].parts == ("plots",)
+    content = estate_map.content(plots)
+    (layer,) = content.layers
+    for index, row in enumerate(layer.data):
+        assert estate_map.plot_tapped(plots, index) is plots[row["n"]]
+    assert estate_map.plot_tapped(plots, len(layer.data)) is None

@@ -17,6 +17,7 @@ def test_what_was_recorded_shows_at_once_with_its_undo(season_app, season):
     assert not [one for one in season_app.button if one.label == "Undo"]
     season_app.number_input(key="one_row").set_value(3)
     season_app.number_input(key="one_plant").set_value(4)
+    season_app.segmented_control(key="one_result").set_value(1)
     next(b for b in season_app.button if b.label == "Record" and "one" in b.proto.form_id).click()
     season_app.run()
     assert len(season().history.inspections) == 1

@@ -10,13 +10,20 @@ from tests.app.driving import go, layer, map_of, plants, tap, texts_of
 
 def test_found_plants_and_clean_ones_show_on_the_map(season_app, season):
     go(season_app, "scout")
+    before = plants(season_app, "plants-state")
     tap(season_app, "scout_found")
     tap(season_app, "scout_clean")
     found, clean = season().history.inspections.plant.tolist()
     shown = plants(season_app, "plants-state")
-    assert shown.of_colour(colours.FOUND).tolist() == [found]
-    assert shown.of_colour(colours.CLEAN).tolist() == [clean]
-    assert len(layer(season_app, "finds0")["data"]) == 1
+    known = season().history.known(0)
+    assert known[found] == 1
+    for colour, state in ((colours.FOUND, 1), (colours.CLEAN, 0)):
+        assert shown.of_colour(colour).tolist() == np.flatnonzero(known == state).tolist()
+    assert set(before.of_colour(colours.NEVER)) - {found, clean} == set(
+        shown.of_colour(colours.NEVER)
+    )
+    assert clean not in shown.of_colour(colours.NEVER)
+    assert len(layer(season_app, "finds0")["data"]) == len(shown.of_colour(colours.FOUND))
 
 
 def test_the_map_shows_states_first_and_rings_the_next_plant(season_app, season):

@@ -60,6 +60,7 @@ def test_classes_are_told_apart_without_hue_and_the_highest_stands_out_most():
     dark = lightness(colours.of_chance(dark=True))
     assert (np.diff(dark) > 6).all(), "on dark ground each class is lighter"
     assert (np.diff(lightness(colours.AGE_COLOURS)) < -6).all()
+    assert (np.diff(lightness(colours.AGE_IN_DARK)) > 6).all()
 
 
 def test_the_lowest_class_is_seen_on_either_ground():
@@ -68,6 +69,13 @@ def test_the_lowest_class_is_seen_on_either_ground():
         contrast = np.abs(lightness(colours.of_chance(dark=dark)) - lightness([ground]))
         assert contrast.min() > 7
         assert contrast.argmax() == len(colours.CHANCE_FROM) - 1
+
+
+def test_a_dark_page_has_the_same_classes():
+    for by, values in ((colours.by_chance, [0.0, 0.03, 0.9]), (colours.by_age, [0, 5, 40])):
+        day, night = by(np.array(values)), by(np.array(values), dark=True)
+        assert day.rank.tolist() == night.rank.tolist()
+        assert shaded(day)[-1] != shaded(night)[-1]
 
 
 def test_plain_plants_have_one_colour():

@@ -51,7 +51,9 @@ def test_only_the_gate_says_what_it_is_so_that_no_arrow_hides_a_plant(route):
 
 @pytest.mark.parametrize("dark", [False, True])
 def test_the_line_stands_out_from_its_casing(route, dark):
-    casing, line, *_ = (np.array(one.get_color[:3]) for one in route_layers.route(route, dark=dark)[:2])
+    casing, line, *_ = (
+        np.array(one.get_color[:3]) for one in route_layers.route(route, dark=dark)[:2]
+    )
     assert np.abs(casing - line).max() > 90
 
 

@@ -117,9 +117,9 @@ def _stands(facts: _Facts) -> Iterator[Block]:
         said.append(words.STANDS_HOT.format(n=counted(len(status.hot_spots), "hot spot")))
     yield Paragraph(" ".join(said), lead=True)
     yield _figures(facts)
-    said = assumed_sentence(WorkSettings.of_season(facts.season), facts.units)
-    if said:
-        yield Paragraph(said)
+    assumed = assumed_sentence(WorkSettings.of_season(facts.season), facts.units)
+    if assumed:
+        yield Paragraph(assumed)
     yield from facts.plot_map(by_state=False)
     yield Paragraph(" ".join(_rows_seen(facts)))
 

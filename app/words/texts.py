@@ -399,6 +399,7 @@ STRATEGY_NAME = "{sampler} · {hours:g} h · {seconds:g} s"
 # -- the report
 REPORT_ABOUT, REPORT_KINDS = "About", {"day": "the day", "season": "the season"}
 REPORT_PAPER, REPORT_PAPERS = "Paper", {"a4": "A4", "letter": "Letter"}
+REPORT_WAS = "result"
 REPORT_PDF, REPORT_HTML, REPORT_PREVIEW = "Download as PDF", "Download as HTML", "Preview"
 
 PRIOR = "The thesis, with records"

@@ -92,7 +92,7 @@ class NoteLines:
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class Illustration:
     """A map or a chart.
 
     Parameters
@@ -111,7 +111,7 @@ class Drawn:
     heights: tuple[float, float]
 
 
-Block = Paragraph | KeyFigures | Listing | Table | TickList | NoteLines | Drawn
+Block = Paragraph | KeyFigures | Listing | Table | TickList | NoteLines | Illustration
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from fieldmon.plot.grid import row_label
 from fieldmon.reports import maps, words
 from fieldmon.reports.content import (
     Block,
-    Drawn,
+    Illustration,
     KeyFigure,
     KeyFigures,
     NoteLines,
@@ -59,7 +59,7 @@ class DayFacts:
     route
         The route as planned or, if `worked`, as it was worked.
     chance, state
-        ``(n,)`` what is believed, and found (1), clean (0) or never inspected (-1).
+        ``(n,)`` what is believed, and found (1), clean (0) or never inspected (-1), by records too.
     spots
         Where finds cluster.
     settings
@@ -92,10 +92,10 @@ class DayFacts:
         settings, plan = season.settings, season.plan(on, keep=False)
         day = settings.day(on)
         route = plan.route
-        gone = timedelta(seconds=round(settings.robot.day_s - plan.scene.seconds_left))
+        gone = timedelta(seconds=settings.robot.day_s - plan.scene.seconds_left)
         begins = datetime.combine(on, settings.starts)
         worked = day_was_worked(season, on, route)
-        state, done = season.history.states(day), season.history.on(day).inspected
+        state, done = season.history.known(day), season.history.on(day).inspected
         return cls(
             season.plot.field.name, begins if worked else begins + gone,
             worked_route(season, on) if worked else route, season.evening(on), state,
@@ -168,7 +168,7 @@ def _map(facts: DayFacts, units: Units) -> list[Block]:
     what = PlotMap(grid, facts.chance, facts.state, facts.spots, facts.route.aisles.gate_m, units,
                    facts.route)  # fmt: skip
     alt = map_alt(facts.name, facts.state, len(facts.route))
-    return [Drawn("", alt, what.draw, what.heights(95.0, 190.0)), legend_block(route=True)]
+    return [Illustration("", alt, what.draw, what.heights(95.0, 190.0)), legend_block(route=True)]
 
 
 def map_alt(name: str, state: NDArray[np.int8], stops: int) -> str:
@@ -179,9 +179,9 @@ def map_alt(name: str, state: NDArray[np.int8], stops: int) -> str:
     )
 
 
-def legend_block(*, route: bool = False, by_state: bool = False) -> Drawn:
+def legend_block(*, route: bool = False, by_state: bool = False) -> Illustration:
     """Return the legend below a map."""
-    return Drawn(
+    return Illustration(
         "", "", lambda size: maps.legend(size[0], route=route, by_state=by_state), (8.0, 8.0)
     )
 

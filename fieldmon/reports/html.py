@@ -11,7 +11,7 @@ from fieldmon.reports.svg import svg
 if TYPE_CHECKING:
     from markupsafe import Markup
 
-    from fieldmon.reports.content import Block, Drawn, Report
+    from fieldmon.reports.content import Block, Illustration, Report
 
 _WIDE_MM, _HIGH_MM = 186.0, 130.0
 _STOPS_A_TABLE = 60
@@ -34,7 +34,7 @@ def _kind(block: Block) -> str:
     return type(block).__name__
 
 
-def _drawn(block: Drawn) -> Markup:
+def _drawn(block: Illustration) -> Markup:
     return svg(block.draw((_WIDE_MM, min(block.heights[1], _HIGH_MM))), block.alt)
 
 

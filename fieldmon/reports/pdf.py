@@ -15,7 +15,7 @@ from fieldmon.errors import SettingError
 from fieldmon.reports import colours, words
 from fieldmon.reports.content import (
     Block,
-    Drawn,
+    Illustration,
     KeyFigures,
     Listing,
     NoteLines,
@@ -124,7 +124,7 @@ class _Page:
         most = [max(low, self._most(block)) for low, block in zip(least, blocks, strict=True)]
         spare = room - sum(least) - _GAP * (len(blocks) - 1)
         # tables first, then pictures, then lines for notes
-        for kind in (Table, Drawn, NoteLines):
+        for kind in (Table, Illustration, NoteLines):
             own = [k for k, block in enumerate(blocks) if isinstance(block, kind)]
             wish = sum(most[k] - least[k] for k in own)
             share = min(max(spare, 0.0) / wish, 1.0) if wish else 0.0
@@ -138,7 +138,7 @@ class _Page:
             return _titled(block.title) + _ROW_MM * (
                 _lines(block) + 1 if block.whole else min(_lines(block) + 1, 5)
             )
-        if isinstance(block, Drawn):
+        if isinstance(block, Illustration):
             return _titled(block.title) + block.heights[0]
         if isinstance(block, NoteLines):
             return _TITLE_MM + _LEAST_NOTES * _NOTE_MM
@@ -147,7 +147,7 @@ class _Page:
     def _most(self, block: Block) -> float:
         if isinstance(block, Table):
             return _titled(block.title) + _ROW_MM * (_lines(block) + 1)
-        if isinstance(block, Drawn):
+        if isinstance(block, Illustration):
             return _titled(block.title) + block.heights[1]
         if isinstance(block, NoteLines):
             return _TITLE_MM + _MOST_NOTES * _NOTE_MM
@@ -227,7 +227,7 @@ class _Page:
             self._table(block, y, high)
         elif isinstance(block, NoteLines):
             self._notes(block, y, high)
-        elif isinstance(block, Drawn):
+        elif isinstance(block, Illustration):
             y, high = self._title(block.title, y), high - _titled(block.title)
             paint(self.pdf, self.fonts, block.draw((self.wide, high)), (_MARGIN, y))
 

@@ -15,7 +15,7 @@ from fieldmon.reports import words
 from fieldmon.reports.charts import DayChart
 from fieldmon.reports.content import (
     Block,
-    Drawn,
+    Illustration,
     KeyFigure,
     KeyFigures,
     Listing,
@@ -79,12 +79,12 @@ class _Facts:
 
     def plot_map(self, *, by_state: bool) -> Iterator[Block]:
         """Yield the map of plants by chance or by what was found there, and its legend."""
-        plot, state = self.season.plot, self.state
+        plot, state = self.season.plot, self.season.history.known(self.status.day)
         what = PlotMap(
             plot.grid, self.season.evening(self.on), state, self.status.hot_spots,
             plot.aisles.gate_m, self.units, by_state=by_state,
         )  # fmt: skip
-        yield Drawn("", map_alt(self.name, state, 0), what.draw, what.heights(75.0, 200.0))
+        yield Illustration("", map_alt(self.name, state, 0), what.draw, what.heights(75.0, 200.0))
         yield legend_block(by_state=by_state)
 
 
@@ -192,7 +192,7 @@ def _went(facts: _Facts) -> Iterator[Block]:
         words.CHART_INSPECTED: DayChart(on, inspected, facts.units),
     }
     for title, chart in charts.items():
-        yield Drawn(title, words.CHART_ALT.format(title=title), chart.draw, (28.0, 46.0))
+        yield Illustration(title, words.CHART_ALT.format(title=title), chart.draw, (28.0, 46.0))
     yield _days(facts)
 
 

@@ -3,7 +3,7 @@
 from datetime import date
 
 from fieldmon.reports.content import (
-    Drawn,
+    Illustration,
     KeyFigure,
     KeyFigures,
     Listing,
@@ -25,7 +25,7 @@ def test_a_report_s_words_are_all_that_goes_on_paper():
         Table("table", ("column",), (("cell",),), (1.0,), rest="more"),
         TickList("not on paper", ("tick",), (("☐",),)),
         NoteLines("notes"),
-        Drawn("drawn", "alt", lambda size: Drawing(*size, ()), (1.0, 1.0)),
+        Illustration("drawn", "alt", lambda size: Drawing(*size, ()), (1.0, 1.0)),
     )
     report = Report("plot", "title", date(2026, 1, 1), (Sheet("heading", blocks),))
     assert list(report.words()) == [

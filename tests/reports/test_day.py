@@ -9,7 +9,14 @@ import pytest
 from fieldmon.compute.units import Units
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.plot.grid import row_label
-from fieldmon.reports.content import Drawn, KeyFigures, Listing, NoteLines, Paragraph, TickList
+from fieldmon.reports.content import (
+    Illustration,
+    KeyFigures,
+    Listing,
+    NoteLines,
+    Paragraph,
+    TickList,
+)
 from fieldmon.reports.day import DayFacts, day_report, which
 from fieldmon.reports.sentences import headline
 from tests.monitoring.seasons import BEGINS, ROBOT, a_season, some_results
@@ -121,7 +128,7 @@ def test_plants_of_a_row_are_named_or_counted(numbers, said):
 
 
 def test_the_map_has_a_legend_and_says_in_words_what_it_shows(of_day, ahead):
-    maps = [block for block in of_day.sheets[0].blocks if isinstance(block, Drawn)]
+    maps = [block for block in of_day.sheets[0].blocks if isinstance(block, Illustration)]
     assert len(maps) == 2
     least, most = maps[0].heights
     assert 0 < least <= most <= 190.0

@@ -9,7 +9,7 @@ import pytest
 
 from fieldmon.errors import SettingError
 from fieldmon.reports.content import (
-    Drawn,
+    Illustration,
     KeyFigure,
     KeyFigures,
     Listing,
@@ -107,7 +107,7 @@ def test_a_table_that_fits_is_whole():
 
 def test_nothing_lies_below_the_foot_however_much_there_is():
     text = "A sentence that goes on for a while, and on. " * 12
-    picture = Drawn("", "", lambda size: Drawing(*size, ()), (75.0, 190.0))
+    picture = Illustration("", "", lambda size: Drawing(*size, ()), (75.0, 190.0))
     report = made(Paragraph(text, lead=True), picture, rows(300), NoteLines("Notes"))
     lowest = []
     opened(pdf_bytes(report)).pages[0].extract_text(
@@ -123,7 +123,7 @@ def test_a_map_takes_what_others_leave():
         seen.append(size)
         return Drawing(*size, (Strokes((np.array([[0, 0], size]),), (0, 0, 0), 0.2),))
 
-    picture = Drawn("", "", draw, (75.0, 190.0))
+    picture = Illustration("", "", draw, (75.0, 190.0))
     pdf_bytes(made(picture))
     pdf_bytes(made(picture, rows(60)))
     (wide, alone), (_, shared) = seen
@@ -145,7 +145,9 @@ def test_a_list_to_tick_is_left_to_pages_without_an_end():
 
 
 def test_words_of_drawings_and_notes_of_figures_are_written():
-    words = Drawn("Chart", "", lambda size: Drawing(*size, (Lettering(9, 9, "12 m"),)), (20, 20))
+    words = Illustration(
+        "Chart", "", lambda size: Drawing(*size, (Lettering(9, 9, "12 m"),)), (20, 20)
+    )
     (page,) = texts(pdf_bytes(made(words, KeyFigures((KeyFigure("Left", "7.5", "5 to 9"),)))))
     assert "Chart" in page
     assert "12 m" in page

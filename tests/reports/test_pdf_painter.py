@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from fieldmon.reports.content import Drawn, Report, Sheet
+from fieldmon.reports.content import Illustration, Report, Sheet
 from fieldmon.reports.drawing import (
     Areas,
     Bitmap,
@@ -26,7 +26,7 @@ SQUARE = np.array([[10.0, 10.0], [60.0, 10.0], [60.0, 60.0], [10.0, 60.0]])
 
 def operators(*parts):
     """Return what a page is told to draw: operators with their numbers."""
-    picture = Drawn("", "", lambda size: Drawing(*size, parts), (80.0, 80.0))
+    picture = Illustration("", "", lambda size: Drawing(*size, parts), (80.0, 80.0))
     report = Report("x", "y", date(2026, 1, 1), (Sheet("z", (picture,)),))
     page = opened(pdf_bytes(report)).pages[0]
     return page, page.get_contents().get_data().decode("latin-1")
@@ -94,6 +94,8 @@ def test_many_parts_do_not_change_how_words_look_afterwards():
 
 
 def test_letters_without_a_font_are_replaced_in_drawings_too():
-    picture = Drawn("", "", lambda size: Drawing(*size, (Lettering(5, 5, "葡 9"),)), (20.0, 20.0))
+    picture = Illustration(
+        "", "", lambda size: Drawing(*size, (Lettering(5, 5, "葡 9"),)), (20.0, 20.0)
+    )
     report = Report("葡", "y", date(2026, 1, 1), (Sheet("z", (picture,)),))
     assert "? 9" in texts(pdf_bytes(report))[0]

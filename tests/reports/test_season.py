@@ -9,7 +9,7 @@ from fieldmon.compute.units import Units
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.plot.grid import row_label
-from fieldmon.reports.content import Drawn, KeyFigures, Listing, Paragraph
+from fieldmon.reports.content import Illustration, KeyFigures, Listing, Paragraph
 from fieldmon.reports.season import season_report
 from fieldmon.reports.sentences import hot_spot_meanings
 from tests.monitoring.seasons import BEGINS, a_season
@@ -58,7 +58,7 @@ def test_every_day_with_work_has_its_line_the_newest_first(of_season, worked):
 
 
 def test_the_charts_show_finds_share_expected_and_inspected(of_season):
-    charts = on_sheet(of_season, 1, Drawn)
+    charts = on_sheet(of_season, 1, Illustration)
     assert [chart.title for chart in charts] == [
         "Plants found a day", "Found of all infestations so far, % (line), and its 90 % interval",
         "Still infested and not found, as expected (line), and its 90 % interval",
@@ -101,7 +101,7 @@ def test_a_season_just_begun_has_four_pages_too(tmp_path):
         block.text for block in on_sheet(report, 2, Paragraph)
     ]
     assert on_sheet(report, 0, Paragraph)[-1].text.startswith("Never inspected: ")
-    for chart in on_sheet(report, 1, Drawn):
+    for chart in on_sheet(report, 1, Illustration):
         assert chart.draw((186.0, 30.0)).parts
 
 

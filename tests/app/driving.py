@@ -111,9 +111,8 @@ def heading(app):
 
 def headline(app):
     """Return the sentence at the top of Today: what there is to do."""
-    (said,) = (
-        text.value for text in app.markdown if text.value.startswith(("Inspect ", "Nothing"))
-    )
+    leads = ("Inspect ", "Nothing to inspect")
+    (said,) = (text.value for text in app.markdown if text.value.startswith(leads))
     return said
 
 

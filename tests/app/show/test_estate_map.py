@@ -53,9 +53,8 @@ def test_the_legend_says_the_states_that_there_are_in_the_colours_of_the_plots()
     content = estate_map.content(PLOTS)
     said = {words: colour for part in content.legend for _, colour, words in part["items"]}
     assert set(said) == {texts.PLOTS_STATES[name] for name in ("new", "late", "fresh")}
-    for row, state in zip(
-        content.layers[0].data, ("new", "late", "late", "fresh", "late"), strict=True
-    ):
+    states = ("new", "late", "late", "fresh", "late")
+    for row, state in zip(content.layers[0].data, states, strict=True):
         assert tuple(row["c"][:3]) == said[texts.PLOTS_STATES[state]]
     assert len(set(said.values())) == len(said)
 

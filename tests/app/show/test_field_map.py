@@ -5,7 +5,10 @@ import re
 import pytest
 
 from app.show import field_map
-from tests.app.chosen import a_plot, chosen, records_at
+from fieldmon.infestation.observations import Observations
+from fieldmon.monitoring import MonitoringSettings, Season
+from fieldmon.plot.robot import Robot
+from tests.app.chosen import DAY, a_plot, chosen, in_season, records_at
 from tests.app.driving import PAGES, go, layer, map_of, plants
 
 
@@ -36,14 +39,16 @@ def test_a_map_is_wanted_until_the_next_run_begins(monkeypatch):
     assert field_map.wanted() is None
 
 
-def test_the_view_belongs_to_the_plot_and_holds_all_of_it():
+def test_the_view_belongs_to_the_plot_and_holds_all_of_it(tmp_path):
     plot = a_plot()
-    choices = chosen(plot, records_at(plot, [3], [1]))
-    same = field_map.of_plot(choices)
-    later = field_map.of_plot(chosen(plot, day="2026-11-18", robot=choices.robot))
-    assert same["bounds"] == later["bounds"]
-    assert same["place"] != later["place"], "keys differ: another plot"
-    west, south, east, north = same["bounds"]
+    first = field_map.of_plot(chosen(plot, records_at(plot, [3], [1])))
+    later = field_map.of_plot(chosen(plot, day="2026-11-18", robot=Robot(hours=3.0)))
+    begun = Season.create(tmp_path / "s.gpkg", plot, Observations.none(), MonitoringSettings(DAY))
+    in_one = field_map.of_plot(in_season(begun))
+    assert first["place"] == later["place"] == in_one["place"]
+    assert first["bounds"] == later["bounds"]
+    assert field_map.of_plot(chosen(a_plot(0.001)))["place"] != first["place"]
+    west, south, east, north = first["bounds"]
     lonlat = plot.grid.lonlat()
     assert ((lonlat > [west, south]) & (lonlat < [east, north])).all()
 

@@ -42,11 +42,8 @@ def test_plants_by_state_say_it_and_finds_have_rings(choices):
     by_state = of_name(layers, "plants-state")
     shown = plants_in(by_state)
     said = [by_state.tips["ranks"][rank] for rank in shown.rank[[7, 9, 8]]]
-    assert [words.removeprefix(": ") for words in said] == [
-        "found",
-        "looked clean",
-        "never inspected",
-    ]
+    said = [words.removeprefix(": ") for words in said]
+    assert said == ["found", "looked clean", "never inspected"]
     assert shown.of_colour(colours.FOUND).tolist() == [7]
     assert shown.of_colour(colours.CLEAN).tolist() == [9]
     assert [len(layer.data) for layer in layers if layer.id.startswith("finds")] == [1, 1]
@@ -75,9 +72,7 @@ def test_every_layer_of_plants_is_of_one_shade_so_that_one_of_them_shows(season)
     of_shades = [name for shade in content.shades for name in shade.layers]
     assert len(of_shades) == len(set(of_shades))
     drawn = {layer.id for layer in content.layers}
-    assert {name for name in drawn if name.startswith(("plants", "find", "found"))} == set(
-        of_shades
-    )
+    assert {name for name in drawn if name.startswith(("plants", "find", "found"))} == {*of_shades}
 
 
 def test_every_layer_but_the_ground_of_all_can_be_switched(season):

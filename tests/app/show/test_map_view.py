@@ -22,7 +22,7 @@ def content(**more):
 
 
 @pytest.fixture
-def sent(session):  # noqa: ARG001 - a page of its own
+def sent(session):  # noqa: ARG001 - read within it
     """Return what the browser is sent, as JSON takes it."""
 
     def of(content, answers=None):

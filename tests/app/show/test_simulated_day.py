@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.show import simulated_day
+from app.show import field_map, simulated_day
 from app.show.maps import deck
 from app.state import cached
 from tests.app.chosen import a_plot, chosen
@@ -51,4 +51,5 @@ def test_the_map_shows_what_is_known_after_the_day_and_the_route_of_it(played):
     assert shown.rank.tolist() == (simulated_day.states(days, 1) + 1).tolist()
     stops = [one for one in content.labels if one["k"] == "stop"]
     assert len(stops) == len(days[1].work)
-    assert (content.place, content.bounds) == (choices.plot_key, deck.of_grid(choices.plot.grid))
+    assert content.bounds == deck.of_grid(choices.plot.grid)
+    assert content.place == field_map.of_plot(choices)["place"], "the view stays"

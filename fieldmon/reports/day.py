@@ -168,7 +168,7 @@ def _map(facts: DayFacts, units: Units) -> list[Block]:
     what = PlotMap(grid, facts.chance, facts.state, facts.spots, facts.route.aisles.gate_m, units,
                    facts.route)  # fmt: skip
     alt = map_alt(facts.name, facts.state, len(facts.route))
-    return [Illustration("", alt, what.draw, what.heights(95.0, 190.0)), legend_block(route=True)]
+    return [Illustration("", alt, what.draw, what.heights(80.0, 190.0)), legend_block(route=True)]
 
 
 def map_alt(name: str, state: NDArray[np.int8], stops: int) -> str:

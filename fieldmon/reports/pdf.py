@@ -43,6 +43,7 @@ _LINE = 1.32
 _TITLE_MM, _ROW_MM, _NOTE_MM = 5.6, 4.1, 7.5
 _FLOW_GAP = 5.0
 _LEAST_NOTES, _MOST_NOTES = 2, 7
+_LEAST_PICTURE_MM = 35.0
 
 
 def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
@@ -123,6 +124,12 @@ class _Page:
         least = [self._least(block) for block in blocks]
         most = [max(low, self._most(block)) for low, block in zip(least, blocks, strict=True)]
         spare = room - sum(least) - _GAP * (len(blocks) - 1)
+        # where even the least is too much, pictures give way
+        for k, block in enumerate(blocks):
+            if spare < 0 and isinstance(block, Illustration):
+                less = min(-spare, max(least[k] - _LEAST_PICTURE_MM, 0.0))
+                least[k] -= less
+                spare += less
         # tables first, then pictures, then lines for notes
         for kind in (Table, Illustration, NoteLines):
             own = [k for k, block in enumerate(blocks) if isinstance(block, kind)]

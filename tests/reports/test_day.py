@@ -18,9 +18,10 @@ from fieldmon.reports.content import (
     TickList,
 )
 from fieldmon.reports.day import DayFacts, day_report, which
+from fieldmon.reports.pdf import pdf_bytes
 from fieldmon.reports.sentences import headline
 from tests.monitoring.seasons import BEGINS, ROBOT, a_season, some_results
-from tests.reports.reading import one, table
+from tests.reports.reading import MM, one, opened, table, texts
 
 
 @pytest.fixture(scope="module")
@@ -144,3 +145,20 @@ def test_a_day_without_a_route_or_a_season_has_a_page_too(ahead):
     assert one(report, NoteLines)
     hours = dict(row[:2] for row in table(report, "Settings").rows)["Working hours"]
     assert hours == f"{ROBOT.hours:g}"
+
+
+def test_the_fullest_day_stays_on_its_page(done):
+    guessed = ("A sentence of an import that is long enough to need more than one line. " * 3,) * 3
+    found = np.arange(0, len(done.chance), 3)
+    full = replace(
+        done, found=found, worked=False, settings=replace(done.settings, guessed=guessed)
+    )
+    data = pdf_bytes(day_report(full, Units()), "letter")
+    lowest = []
+    opened(data).pages[0].extract_text(
+        visitor_text=lambda said, cm, tm, *_: lowest.append(cm[5] + tm[5]) if said.strip() else None
+    )
+    assert min(lowest) >= 12.0 * MM - 1
+    (page,) = texts(data)
+    assert "Notes" in page
+    assert "Plants found are" in page

@@ -1,0 +1,441 @@
+"""Plants traced into the rows in which they stand: bent, in blocks of several directions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numba as nb
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.spatial import cKDTree
+
+from fieldmon.compute.arrays import offsets
+from fieldmon.plot.row_pieces import Windows, pieces
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Float = NDArray[np.float64]
+    Int = NDArray[np.int64]
+
+_NEIGHBOURS = 20
+# plants farther apart along a row than this many spacings are of different pieces: a headland may
+# lie between them; pieces of one block that are level with each other are one row again
+_GAP = 3.3
+# a line is smoothed over so many plants: 13 follow a bend of 30 m and halve errors of position
+_SMOOTHED = 13
+# rows beside each other run the same way within this, and are this many usual spacings apart
+_ASTRAY_DEG, _BESIDE = 30.0, 1.7
+_REFITS = 2
+
+
+class TracedRows(NamedTuple):
+    """Plants in rows as they run, block by block, row by row, along each.
+
+    Parameters
+    ----------
+    plant
+        ``(n,)`` which plant stands at each place.
+    row_start
+        ``(r + 1,)`` offsets: plants of row k are ``plant[row_start[k]:row_start[k + 1]]``.
+    block
+        ``(r,)`` the block of each row, 0 first; rows ascend within their block to the left of
+        their direction.
+    line_m
+        ``(n, 2)`` the row's line where each plant stands: its place without what it is off.
+    off_m
+        ``(n,)`` how far each plant stands beside its line.
+    row_spacing_m, plant_spacing_m
+        Typical distances; the first is NaN where no two rows are beside each other.
+    """
+
+    plant: Int
+    row_start: Int
+    block: Int
+    line_m: Float
+    off_m: Float
+    row_spacing_m: float
+    plant_spacing_m: float
+
+
+class _Strands(NamedTuple):
+    """Plants along lines: ``plant (n,)`` in order, lines from ``start``, smoothed ``line_m``."""
+
+    plant: Int
+    start: Int
+    line_m: Float
+    ahead: Float  # (n, 2) unit vectors along
+
+    @property
+    def owner(self) -> Int:
+        return np.repeat(np.arange(len(self.start) - 1), np.diff(self.start))
+
+
+def trace(xy_m: Float) -> TracedRows | None:
+    """Return the rows in which plants ``(n, 2)`` stand; None where there are too few to tell.
+
+    No two plants may stand in one place.
+    """
+    n = len(xy_m)
+    if n < 3:
+        return None
+    k = min(_NEIGHBOURS, n - 1)
+    far_m, near = cKDTree(xy_m).query(xy_m, k=k + 1)
+    near_m = float(np.median(far_m[:, 1]))
+    area_m2 = float(np.pi * np.median(far_m[:, k]) ** 2 / k)
+    windows = Windows.of(xy_m, near_m, area_m2)
+    piece, directions = pieces(xy_m, windows)
+    angle = np.empty(n)
+    angle[windows.plant] = np.repeat(directions.angle, np.diff(windows.start))
+    spacing_m = _next_in(piece, far_m, near)
+    strands = _strands(xy_m, piece, (far_m, near), _GAP * spacing_m, angle)
+    rows = _Rows.of(strands, np.sqrt(area_m2))
+    strands = _joined(xy_m, strands, rows)
+    block, order = rows.block, np.empty(0)
+    for _ in range(_REFITS):
+        strands = _nearest_lines(xy_m, strands)
+    del order
+    return _traced(xy_m, strands, block, rows.spacing_m)
+
+
+def _next_in(piece: Int, far_m: Float, near: Int) -> float:
+    """Return the usual distance to the nearest plant of the same piece."""
+    same = piece[near[:, 1:]] == piece[:, None]
+    first = same.argmax(axis=1)
+    has = same.any(axis=1)
+    return float(np.median(far_m[np.flatnonzero(has), 1 + first[has]])) if has.any() else np.inf
+
+
+def _strands(
+    xy_m: Float, piece: Int, nearest: tuple[Float, Int], gap_m: float, angle: Float
+) -> _Strands:
+    """Return the plants of pieces in order along them; gaps part strands."""
+    far_m, near = nearest
+    n = len(xy_m)
+    one = np.repeat(np.arange(n), near.shape[1] - 1)
+    other, length_m = near[:, 1:].ravel(), far_m[:, 1:].ravel()
+    linked = (piece[one] == piece[other]) & (length_m <= gap_m)
+    graph = coo_array(
+        (np.maximum(length_m[linked], 1e-9), (one[linked], other[linked])), shape=(n, n)
+    ).tocsr()
+    strand = connected_components(graph, directed=False)[1]
+    return _ordered(xy_m, strand, _from_one_end(graph, strand), angle)
+
+
+def _from_one_end(graph: coo_array, strand: Int) -> Float:
+    """Return how far each plant is from one end of its strand, along the strand."""
+    anyone = np.unique(strand, return_index=True)[1]
+    far = dijkstra(graph, directed=False, indices=anyone, min_only=True)
+    order = np.lexsort((far, strand))
+    last = order[np.append(np.flatnonzero(np.diff(strand[order])), len(strand) - 1)]
+    return dijkstra(graph, directed=False, indices=last, min_only=True)
+
+
+def _ordered(xy_m: Float, strand: Int, along: Float, angle: Float | None = None) -> _Strands:
+    """Return plants sorted along their strands, with the lines through them."""
+    plant = np.lexsort((along, strand))
+    start = offsets(np.bincount(strand))
+    line_m, ahead = np.empty((len(plant), 2)), np.empty((len(plant), 2))
+    _smooth(xy_m[plant], start, along[plant], line_m, ahead)
+    if angle is not None:
+        few = np.repeat(np.diff(start) < 3, np.diff(start))
+        turn = angle[plant[few]]
+        ahead[few] = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    return _Strands(plant, start, line_m, ahead)
+
+
+@nb.njit(cache=True)
+def _smooth(xy_m: Float, start: Int, along: Float, line_m: Float, ahead: Float) -> None:
+    """Fit a parabola about each plant, and take its point and direction there."""
+    for row in range(start.size - 1):
+        first, end = start[row], start[row + 1]
+        for i in range(first, end):
+            low = max(min(i - _SMOOTHED // 2, end - _SMOOTHED), first)
+            high = min(low + _SMOOTHED, end)
+            reach = max(along[i] - along[low], along[high - 1] - along[i]) * 1.2 + 1e-9
+            s0, s1, s2, s3, s4 = 0.0, 0.0, 0.0, 0.0, 0.0
+            x0, x1, x2, y0, y1, y2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            for k in range(low, high):
+                t = (along[k] - along[i]) / reach
+                weight = (1.0 - abs(t) ** 3) ** 3
+                x, y = xy_m[k, 0] - xy_m[i, 0], xy_m[k, 1] - xy_m[i, 1]
+                s0 += weight
+                s1 += weight * t
+                s2 += weight * t * t
+                s3 += weight * t**3
+                s4 += weight * t**4
+                x0, x1, x2 = x0 + weight * x, x1 + weight * x * t, x2 + weight * x * t * t
+                y0, y1, y2 = y0 + weight * y, y1 + weight * y * t, y2 + weight * y * t * t
+            n = high - low
+            px, dx = _fit(n, (s0, s1, s2, s3, s4), (x0, x1, x2))
+            py, dy = _fit(n, (s0, s1, s2, s3, s4), (y0, y1, y2))
+            line_m[i, 0], line_m[i, 1] = xy_m[i, 0] + px, xy_m[i, 1] + py
+            length = np.hypot(dx, dy)
+            ahead[i, 0] = dx / length if length > 0 else 1.0
+            ahead[i, 1] = dy / length if length > 0 else 0.0
+
+
+@nb.njit(cache=True)
+def _fit(
+    n: int, s: tuple[float, float, float, float, float], v: tuple[float, float, float]
+) -> tuple[float, float]:
+    """Return value and slope at 0 of the weighted parabola, or line where plants are few."""
+    if n < 2:
+        return 0.0, 0.0
+    if n < 6:
+        det = s[0] * s[2] - s[1] * s[1]
+        if det <= 1e-12:
+            return 0.0, 0.0
+        return (s[2] * v[0] - s[1] * v[1]) / det, (s[0] * v[1] - s[1] * v[0]) / det
+    c0, c1, c2 = s[2] * s[4] - s[3] * s[3], s[2] * s[3] - s[1] * s[4], s[1] * s[3] - s[2] * s[2]
+    det = s[0] * c0 + s[1] * c1 + s[2] * c2
+    if abs(det) <= 1e-12:
+        return 0.0, 0.0
+    d1, d2 = s[0] * s[4] - s[2] * s[2], s[1] * s[2] - s[0] * s[3]
+    return (c0 * v[0] + c1 * v[1] + c2 * v[2]) / det, (c1 * v[0] + d1 * v[1] + d2 * v[2]) / det
+
+
+class _Rows(NamedTuple):
+    """Which strands are level with each other, block by block.
+
+    ``row (f,)`` of each strand, rows by block and level; ``turned (f,)`` whether it runs against
+    its row; ``block (r,)`` of each row; the usual spacing, NaN if no rows are beside each other.
+    """
+
+    row: Int
+    turned: NDArray[np.bool_]
+    block: Int
+    spacing_m: float
+
+    @classmethod
+    def of(cls, strands: _Strands, step_m: float) -> _Rows:
+        """Sort strands into rows and blocks by who is beside whom."""
+        f = len(strands.start) - 1
+        beside = _beside(strands, step_m)
+        level, sign, block = _levels(f, beside)
+        _left_of_north(strands, level, sign, block)
+        spacing_m = float(np.median(beside.apart_m)) if len(beside.apart_m) else np.nan
+        _part_doubled(level, block, beside)
+        place = _block_order(strands, block)
+        keys = np.stack([place, level], axis=1)
+        rows, row = np.unique(keys, axis=0, return_inverse=True)
+        return cls(row.reshape(-1), sign < 0, np.unique(rows[:, 0], return_inverse=True)[1], spacing_m)
+
+
+class _Beside(NamedTuple):
+    """Pairs of strands beside each other ``(e,)``: the other is to the left (+1) or right of one."""
+
+    one: Int
+    other: Int
+    side: Int
+    same_way: Int
+    votes: Int
+    apart_m: Float
+
+
+def _beside(strands: _Strands, step_m: float) -> _Beside:
+    """Return which strands run beside which."""
+    m = len(strands.plant)
+    owner = strands.owner
+    usual = np.hypot(*np.diff(strands.line_m, axis=0).T)[np.diff(owner) == 0]
+    every = max(int(step_m / np.median(usual)), 1) if len(usual) else 1
+    place = np.arange(m) - strands.start[owner]
+    thin = np.flatnonzero((place % every == 0) | (np.arange(m) == strands.start[owner + 1] - 1))
+    at, ahead, owner = strands.line_m[thin], strands.ahead[thin], owner[thin]
+    k = min(24, len(thin))
+    near = cKDTree(at).query(at, k=np.arange(1, k + 1))[1]
+    way = at[near] - at[:, None]
+    along = np.einsum("ijk,ik->ij", way, ahead)
+    left = ahead[:, None, 0] * way[:, :, 1] - ahead[:, None, 1] * way[:, :, 0]
+    turn = np.einsum("ijk,ik->ij", ahead[near], ahead)
+    fits = (owner[near] != owner[:, None]) & (np.abs(along) <= 0.7 * np.abs(left))
+    one, other, side, same, apart = [], [], [], [], []
+    for sign in (1, -1):
+        off = np.where(fits & (sign * left > 0), np.abs(left), np.inf)
+        best = off.argmin(axis=1)
+        rows = np.arange(len(thin))
+        ok = np.isfinite(off[rows, best])
+        ok &= np.abs(turn[rows, best]) >= np.cos(np.deg2rad(_ASTRAY_DEG))
+        one.append(owner[ok])
+        other.append(owner[near[rows, best]][ok])
+        side.append(np.full(int(ok.sum()), sign))
+        same.append(np.sign(turn[rows, best][ok]))
+        apart.append(off[rows, best][ok])
+    columns = [np.concatenate(part) for part in (one, other, side, same, apart)]
+    return _counted_pairs(len(strands.start) - 1, *columns)
+
+
+def _counted_pairs(f: int, one: Int, other: Int, side: Int, same: Float, apart: Float) -> _Beside:
+    """Return each pair once, with its votes; pairs too far apart for rows are left out."""
+    usual = np.full(f, np.inf)
+    order = np.argsort(one, kind="stable")
+    for part in np.split(order, np.flatnonzero(np.diff(one[order])) + 1):
+        if len(part):
+            usual[one[part[0]]] = np.median(apart[part])
+    # at the edge of a block the nearest row on the far side is another block's
+    limit = _BESIDE * np.minimum(usual[one], usual[other])
+    kept = apart <= limit * 1.0000001
+    one, other, side, same, apart = (v[kept] for v in (one, other, side, same, apart))
+    key = (one * f + other) * 2 + (side > 0)
+    _, first, group, votes = np.unique(
+        key, return_index=True, return_inverse=True, return_counts=True
+    )
+    way = np.sign(np.bincount(group, same, len(first)) + 0.5).astype(np.int64)
+    mean = np.bincount(group, apart, len(first)) / np.maximum(votes, 1)
+    return _Beside(one[first], other[first], side[first], way, votes, mean)
+
+
+def _levels(f: int, beside: _Beside) -> tuple[Int, Int, Int]:
+    """Return of each strand its level in its block, its direction in it (1, -1), and the block.
+
+    Strands are placed from the best known on: by the pairs with most votes.
+    """
+    from heapq import heappop, heappush  # noqa: PLC0415
+
+    edges: list[list[tuple[int, int, int, int]]] = [[] for _ in range(f)]
+    columns = (beside.one, beside.other, beside.side, beside.same_way, beside.votes)
+    for one, other, side, same, votes in zip(*(c.tolist() for c in columns), strict=True):
+        edges[one].append((votes, other, side, same))
+        edges[other].append((votes, one, -side * same, same))
+    level, sign, block = np.zeros(f, np.int64), np.ones(f, np.int64), np.full(f, -1)
+    n_blocks = 0
+    for seed in range(f):
+        if block[seed] >= 0:
+            continue
+        queue = [(0, seed, 0, 1)]
+        while queue:
+            _, strand, at, way = heappop(queue)
+            if block[strand] >= 0:
+                continue
+            block[strand], level[strand], sign[strand] = n_blocks, at, way
+            for votes, other, side, same in edges[strand]:
+                if block[other] < 0:
+                    heappush(queue, (-votes, other, at + way * side, way * same))
+        n_blocks += 1
+    return level, sign, block
+
+
+def _left_of_north(strands: _Strands, level: Int, sign: Int, block: Int) -> None:
+    """Turn blocks so that rows point to the east of north-south, and levels rise to their left."""
+    owner = strands.owner
+    ahead = strands.ahead * sign[owner, None]
+    of = block[owner]
+    east, north = (np.bincount(of, ahead[:, k], block.max() + 1) for k in range(2))
+    back = (east < -1e-9) | ((np.abs(east) <= 1e-9) & (north < 0))
+    sign[back[block]] *= -1
+    level[back[block]] *= -1
+
+
+def _part_doubled(level: Int, block: Int, beside: _Beside) -> None:
+    """Give strands that are level with one beside them a block of their own."""
+    same = (block[beside.one] == block[beside.other]) & (level[beside.one] == level[beside.other])
+    for k in np.flatnonzero(same & (beside.votes >= 2)):
+        one, other = int(beside.one[k]), int(beside.other[k])
+        if block[one] == block[other]:
+            block[max(one, other)] = block.max() + 1
+
+
+def _block_order(strands: _Strands, block: Int) -> Int:
+    """Return the number of each strand's block: those with more plants first."""
+    size = np.bincount(block[strands.owner], minlength=block.max() + 1)
+    rank = np.empty(len(size), np.int64)
+    rank[np.argsort(-size, kind="stable")] = np.arange(len(size))
+    return rank[block]
+
+
+def _joined(xy_m: Float, strands: _Strands, rows: _Rows) -> _Strands:
+    """Return the strands that are level with each other as one, end to end."""
+    along = np.zeros(len(xy_m))
+    row = np.empty(len(xy_m), np.int64)
+    members: dict[int, list[int]] = {}
+    for strand, of in enumerate(rows.row.tolist()):
+        members.setdefault(of, []).append(strand)
+    for of, parts in members.items():
+        gone = 0.0
+        last: Float | None = None
+        for strand in _in_line(strands, rows, parts):
+            a, b = strands.start[strand], strands.start[strand + 1]
+            order = np.arange(a, b)[:: -1 if rows.turned[strand] else 1]
+            line = strands.line_m[order]
+            if last is not None:
+                gone += max(float(np.hypot(*(line[0] - last))), 0.01)
+            step = np.hypot(*np.diff(line, axis=0).T) if len(order) > 1 else np.empty(0)
+            plants = strands.plant[order]
+            along[plants] = gone + np.append(0.0, np.cumsum(np.maximum(step, 1e-6)))
+            row[plants] = of
+            gone, last = float(along[plants[-1]]), line[-1]
+    return _ordered(xy_m, row, along)
+
+
+def _in_line(strands: _Strands, rows: _Rows, parts: list[int]) -> list[int]:
+    """Return strands of one row in their order along it."""
+    if len(parts) == 1:
+        return parts
+    ahead, middle = [], []
+    for strand in parts:
+        a, b = strands.start[strand], strands.start[strand + 1]
+        sign = -1.0 if rows.turned[strand] else 1.0
+        ahead.append(sign * strands.ahead[a:b].sum(axis=0))
+        middle.append(strands.line_m[a:b].mean(axis=0))
+    along = np.array(middle) @ np.sum(ahead, axis=0)
+    return [parts[k] for k in np.argsort(along)]
+
+
+def _nearest_lines(xy_m: Float, strands: _Strands) -> _Strands:
+    """Return the rows with each plant in that whose line is nearest, and in its order there."""
+    line_m, owner = strands.line_m, strands.owner
+    near = cKDTree(line_m).query(xy_m, k=min(12, len(line_m)))[1].reshape(len(xy_m), -1)
+    length = np.concatenate(
+        [np.append(0.0, np.cumsum(np.hypot(*np.diff(line_m[a:b], axis=0).T)))
+         for a, b in zip(strands.start[:-1].tolist(), strands.start[1:].tolist(), strict=True)]
+    )
+    row, along = np.empty(len(xy_m), np.int64), np.empty(len(xy_m))
+    _nearest_line(xy_m, (line_m, strands.start, owner, length), near, row, along)
+    gone = np.unique(row, return_inverse=True)
+    if len(gone[0]) < len(strands.start) - 1:
+        return strands
+    return _ordered(xy_m, row, along)
+
+
+@nb.njit(cache=True)
+def _nearest_line(
+    xy_m: Float, lines: tuple[Float, Int, Int, Float], near: Int, row: Int, along: Float
+) -> None:
+    """Fill in the row whose line is nearest to each plant, and how far along that the plant is."""
+    line_m, start, owner, length = lines
+    for i in range(len(xy_m)):
+        best = np.inf
+        for k in near[i]:
+            of = owner[k]
+            for a in (k - 1, k):
+                if a < start[of] or a + 1 >= start[of + 1]:
+                    if start[of + 1] - start[of] > 1:
+                        continue
+                b = min(a + 1, start[of + 1] - 1)
+                a = max(a, start[of])
+                wx, wy = line_m[b, 0] - line_m[a, 0], line_m[b, 1] - line_m[a, 1]
+                square = max(wx * wx + wy * wy, 1e-12)
+                x, y = xy_m[i, 0] - line_m[a, 0], xy_m[i, 1] - line_m[a, 1]
+                share = (x * wx + y * wy) / square
+                held = min(max(share, 0.0), 1.0)
+                off = np.hypot(x - held * wx, y - held * wy)
+                if off < best:
+                    best, row[i] = off, of
+                    # beyond an end plants keep their order
+                    at_end = (a == start[of] and share < 0) or (b == start[of + 1] - 1 and share > 1)
+                    along[i] = length[a] + (share if at_end else held) * np.sqrt(square)
+
+
+def _traced(xy_m: Float, strands: _Strands, block: Int, spacing_m: float) -> TracedRows:
+    owner = strands.owner
+    off = xy_m[strands.plant] - strands.line_m
+    off_m = np.abs(strands.ahead[:, 0] * off[:, 1] - strands.ahead[:, 1] * off[:, 0])
+    steps = np.hypot(*np.diff(strands.line_m, axis=0).T)[np.diff(owner) == 0]
+    usual = float(np.median(steps)) if len(steps) else np.nan
+    times = np.round(steps / usual) if len(steps) else steps
+    sure = (times >= 1) & (times <= 4)
+    apart_m = float(np.median(steps[sure] / times[sure])) if sure.any() else np.nan
+    return TracedRows(
+        strands.plant, strands.start, block, strands.line_m, off_m, spacing_m, apart_m
+    )

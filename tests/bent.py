@@ -1,0 +1,119 @@
+"""Real vines on plots as they are: rows bent, blocks turned, positions off, plants missing.
+
+The survey is tiled: row after row and vine after vine keep the irregularities of those measured.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from fieldmon.plot.projection import Frame
+from fieldmon.plot.row_detection import frame_around, rows_from_plants
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FRAME = Frame(-0.5241, 53.2681)
+VINES = "riseholme_vines/riseholme_vineyard_lat_long_vines.csv"
+
+
+@dataclass(frozen=True)
+class Vines:
+    """Where vines stand, east and north in metres, and the true block, row and place of each."""
+
+    xy_m: np.ndarray
+    block: np.ndarray
+    row: np.ndarray
+    along_m: np.ndarray
+
+    @property
+    def lonlat(self) -> np.ndarray:
+        return FRAME.lonlat(self.xy_m)
+
+    def take(self, which: np.ndarray) -> Vines:
+        return Vines(self.xy_m[which], self.block[which], self.row[which], self.along_m[which])
+
+
+def surveyed(shared: Path) -> np.ndarray:
+    """Return ``(10, 12, 2)``: metres along and across the rows of the vines as surveyed."""
+    table = pd.read_csv(shared / VINES)
+    lonlat = table[["Longitude", "Latitude"]].to_numpy()
+    bearing_deg = rows_from_plants(lonlat).bearing_deg
+    xy_m = frame_around(lonlat).turned(bearing_deg).xy_m(lonlat)
+    row = table["Vine Row"].str.removeprefix("row_").astype(int).to_numpy()
+    order = np.lexsort((xy_m[:, 0], row))
+    grid = xy_m[order].reshape(10, 12, 2)
+    up = grid[-1, :, 1].mean() > grid[0, :, 1].mean()
+    return grid if up else grid[::-1]
+
+
+def tiled(vines: np.ndarray, n_rows: int, n_vines: int) -> np.ndarray:
+    """Return ``(n_rows, n_vines, 2)``: the survey repeated in both directions about (0, 0)."""
+    step_x = (vines[:, -1, 0] - vines[:, 0, 0]).mean() * 12 / 11
+    step_y = (vines[-1, :, 1] - vines[0, :, 1]).mean() * 10 / 9
+    k, j = np.meshgrid(np.arange(n_rows), np.arange(n_vines), indexing="ij")
+    many = vines[k % 10, j % 12] + np.stack([j // 12 * step_x, k // 10 * step_y], axis=2)
+    return many - many.reshape(-1, 2).mean(axis=0)
+
+
+def bent(vines: np.ndarray, radius_m: float | None, turn_deg: float = 0.0, block: int = 0) -> Vines:
+    """Return a block whose middle row is bent to a radius; places along the rows stay."""
+    x, y = vines.reshape(-1, 2).T
+    row = np.repeat(np.arange(len(vines)), vines.shape[1])
+    xy_m = np.stack([x, y], axis=1)
+    if radius_m is not None:
+        angle = x / (radius_m + y)
+        xy_m = np.stack(
+            [(radius_m + y) * np.sin(angle), (radius_m + y) * np.cos(angle) - radius_m], axis=1
+        )
+    return Vines(turned(xy_m, turn_deg), np.full(len(row), block), row, x)
+
+
+def turned(xy_m: np.ndarray, turn_deg: float) -> np.ndarray:
+    turn = np.deg2rad(turn_deg)
+    return xy_m @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+
+
+def side_by_side(*blocks: Vines, gap_m: float = 7.0) -> Vines:
+    """Return blocks one after the other, west to east, their nearest vines a gap apart."""
+    placed, first_row, east = [], 0, 0.0
+    for number, block in enumerate(blocks):
+        xy_m = block.xy_m + [east - block.xy_m[:, 0].min(), 0.0]
+        east = xy_m[:, 0].max() + gap_m
+        placed.append(
+            Vines(xy_m, np.full(len(xy_m), number), block.row + first_row, block.along_m)
+        )
+        first_row += block.row.max() + 1
+    return Vines(
+        np.concatenate([b.xy_m for b in placed]),
+        np.concatenate([b.block for b in placed]),
+        np.concatenate([b.row for b in placed]),
+        np.concatenate([b.along_m for b in placed]),
+    )
+
+
+def measured(vines: Vines, noise_m: float, missing: float = 0.1, seed: int = 1) -> Vines:
+    """Return the vines as a receiver measures them, some missing, in any order."""
+    rng = np.random.default_rng(seed)
+    kept = rng.permutation(np.flatnonzero(rng.random(len(vines.row)) >= missing))
+    left = vines.take(kept)
+    off_m = rng.normal(scale=noise_m, size=left.xy_m.shape) if noise_m else 0.0
+    return Vines(left.xy_m + off_m, left.block, left.row, left.along_m)
+
+
+def right_share(found: np.ndarray, true: np.ndarray) -> float:
+    """Return the share of plants in the row that is theirs: each found row is one true row."""
+    pairs, times = np.unique(np.stack([found, true], axis=1), axis=0, return_counts=True)
+    taken_found, taken_true, right = set(), set(), 0
+    for k in np.argsort(-times):
+        f, t = pairs[k].tolist()
+        if f < 0 or f in taken_found or t in taken_true:
+            continue
+        taken_found.add(f)
+        taken_true.add(t)
+        right += int(times[k])
+    return right / len(found)

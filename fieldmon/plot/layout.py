@@ -14,6 +14,7 @@ from fieldmon.compute.arrays import offsets, runs
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot import adjacency
 from fieldmon.plot.grid import PlantGrid
+from fieldmon.plot.measured_rows import bent_rows, measured_grid
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import (
     distinct,
@@ -173,23 +174,32 @@ def grid_from_plants(
     )
     xy_m = frame.xy_m(lonlat)
     line = split_lines(xy_m[:, 1], planting.row_spacing_m)
+    obstacles = _obstacles(field, frame)
+    if (bent := bent_rows(xy_m, line)) is not None:
+        area = None if field is None else _held_area(field, frame, xy_m)
+        return measured_grid(frame, xy_m, bent, (area, obstacles), planting)
     order = np.lexsort((xy_m[:, 0], line))
     xy_m, line = xy_m[order], line[order]
-    obstacles = _obstacles(field, frame)
     pieces = _pieces(xy_m, line, _aisles(xy_m[:, 1], line, planting), obstacles, planting)
     reach = shapely.difference(_reach(pieces, planting), obstacles)
     if field is None:
         return assemble(frame, pieces, _polygons(reach), planting)
-    area = frame.geometry_m(field.drivable())
-    if not shapely.contains_xy(area, xy_m).any():
-        raise PlotError(
-            f"Measured plants must stand on plot {field.name!r}, but none of {len(lonlat)} does. "
-            "Choose the plants' own plot, or check the coordinate systems."
-        )
+    area = _held_area(field, frame, xy_m)
     lanes = _boxes(pieces.lane_x_m, pieces.aisle_y_m)
     if not shapely.covers(shapely.buffer(area, 100 * _SLACK_M), lanes).all():
         area = _polygons(shapely.union(area, reach))
     return assemble(frame, pieces, area, planting)
+
+
+def _held_area(field: Field, frame: Frame, xy_m: Float) -> MultiPolygon:
+    """Return where one may drive on a field, which must hold some of the plants."""
+    area = frame.geometry_m(field.drivable())
+    if not shapely.contains_xy(area, xy_m).any():
+        raise PlotError(
+            f"Measured plants must stand on plot {field.name!r}, but none of {len(xy_m)} does. "
+            "Choose the plants' own plot, or check the coordinate systems."
+        )
+    return area
 
 
 def rectangle(

@@ -167,6 +167,7 @@ def grid_from_plants(
     """
     lonlat = np.asarray(lonlat, dtype=np.float64).reshape(-1, 2)
     _check_apart(lonlat)
+    said = planting is not None and planting.row_bearing_deg is not None
     if planting is None or planting.row_bearing_deg is None:
         planting = found_planting(lonlat, planting)
     frame = (field.frame() if field else frame_around(lonlat)).turned(
@@ -175,7 +176,8 @@ def grid_from_plants(
     xy_m = frame.xy_m(lonlat)
     line = split_lines(xy_m[:, 1], planting.row_spacing_m)
     obstacles = _obstacles(field, frame)
-    if (bent := bent_rows(xy_m, line)) is not None:
+    bent = bent_rows(xy_m, line, planting.row_spacing_m, said=said)
+    if bent is not None:
         area = None if field is None else _held_area(field, frame, xy_m)
         return measured_grid(frame, xy_m, bent, (area, obstacles), planting)
     order = np.lexsort((xy_m[:, 0], line))

@@ -22,15 +22,19 @@ if TYPE_CHECKING:
 
     Float = NDArray[np.float64]
 
-# rows are straight if straight ones hold the same plants, but for this share...
-_SAME_ROWS = 0.98
-# ... and traced ones stray from straight ones by less than this part of their spacing
-_BENT = 0.12
+# lines this straight need no other
+_STRAIGHT_M = 0.005
+# rows bend if straight lines stray by so many times what the rows traced do, and a little more,
+# in row spacings
+_BETTER, _LITTLE = 1.3, 0.04
 # what strays by more from the rows traced is in no rows
 _NO_ROWS = 0.2
+_LEAST_FREE = 6.0
 
 
-def bent_rows(xy_m: Float, line: NDArray[np.integer]) -> TracedRows | None:
+def bent_rows(
+    xy_m: Float, line: NDArray[np.integer], row_spacing_m: float, *, said: bool
+) -> TracedRows | None:
     """Return the rows of plants where they bend or blocks turn; None where straight lines do.
 
     Parameters
@@ -39,24 +43,46 @@ def bent_rows(xy_m: Float, line: NDArray[np.integer]) -> TracedRows | None:
         ``(n, 2)`` plants, x along the straight lines.
     line
         ``(n,)`` the straight line of each.
+    row_spacing_m
+        The distance between these.
+    said
+        Whether somebody said that rows run about along x.
     """
+    n, r = len(line), int(line.max()) + 1
+    y_m = xy_m[:, 1] - (np.bincount(line, xy_m[:, 1]) / np.bincount(line))[line]
+    off_m = float(np.sqrt(np.mean(y_m**2)))
+    if off_m <= _STRAIGHT_M:
+        return None
     traced = trace(xy_m)
     if traced is None or not np.isfinite(traced.row_spacing_m) or blur(traced) > _NO_ROWS:
         return None
-    row = np.empty(len(xy_m), np.int64)
-    row[traced.plant] = np.repeat(np.arange(len(traced.block)), np.diff(traced.row_start))
-    if _shared(row, line) < _SAME_ROWS:
-        return traced if _shared(line, row) < _SAME_ROWS or _strays(traced) else None
-    return traced if _strays(traced) else None
+    own = off_m / np.sqrt(1 - r / n) if r < n else np.inf
+    if _along_x(traced):
+        spacing_m = min(row_spacing_m, traced.row_spacing_m)
+        bent = own / spacing_m > _BETTER * blur(traced) + _LITTLE
+    else:  # of two directions that with the straighter and denser rows, as `rows_from_plants`
+        bent = not said and own / row_spacing_m**2 > blur(traced) / traced.row_spacing_m
+    return traced if bent else None
+
+
+def _along_x(traced: TracedRows) -> bool:
+    """Tell whether most rows traced run about along x."""
+    inner = np.delete(np.arange(len(traced.plant)), traced.row_start[1:] - 1)
+    step = traced.line_m[inner + 1] - traced.line_m[inner]
+    return bool(np.median(np.abs(step[:, 0]) - np.abs(step[:, 1])) > 0)
 
 
 def blur(traced: TracedRows) -> float:
-    """Return how far plants stray from the rows traced, in row spacings; see `_Lines.blur`."""
-    n, r = len(traced.plant), len(traced.block)
-    if r >= n:
+    """Return how far plants stray from the rows traced, in row spacings; infinite if few tell.
+
+    A line that bends follows few plants of itself: about a fourth of them, and two a row, say
+    nothing of how far they stray.
+    """
+    n_plants = np.diff(traced.row_start)
+    free = float(np.maximum(0.75 * n_plants - 2.0, 0.0).sum())
+    if free < _LEAST_FREE:
         return np.inf
-    off_m = float(np.sqrt(np.mean(traced.off_m**2)))
-    return off_m / traced.row_spacing_m / (1 - r / n)
+    return float(np.sqrt(np.sum(traced.off_m**2) / free)) / traced.row_spacing_m
 
 
 def measured_grid(
@@ -74,26 +100,6 @@ def measured_grid(
         plant_spacing_m=traced.plant_spacing_m,
     )
     return bent_grid(frame, lines_of(traced), (xy_m[traced.plant], row), ground, found)
-
-
-def _shared(found: NDArray[np.integer], known: NDArray[np.integer]) -> float:
-    """Return the share of plants that are with most of their found row in one known row."""
-    pairs = found.astype(np.int64) * (int(known.max()) + 1) + known
-    pair, times = np.unique(pairs, return_counts=True)
-    most = np.zeros(int(found.max()) + 1, np.int64)
-    np.maximum.at(most, pair // (int(known.max()) + 1), times)
-    return float(most.sum()) / len(found)
-
-
-def _strays(traced: TracedRows) -> bool:
-    """Tell whether traced rows bend: stray from straight lines more than a little."""
-    row = np.repeat(np.arange(len(traced.block)), np.diff(traced.row_start))
-    n = np.bincount(row)
-    x, y = (v - (np.bincount(row, v) / n)[row] for v in traced.line_m.T)
-    # all rows together have one direction
-    slope = float(np.sum(x * y) / max(np.sum(x * x), 1e-9))
-    off_m = np.abs(y - slope * x) / np.hypot(1.0, slope)
-    return float(np.sqrt(np.mean(off_m**2))) > _BENT * traced.row_spacing_m
 
 
 def lines_of(traced: TracedRows) -> RowLines:

@@ -37,6 +37,15 @@ def planting_of(field: Field, **given: float | None) -> Planting:
     return Planting(**known)
 
 
+def _about_where_said(
+    plants: NDArray[np.float64], planting: Planting | None
+) -> Planting | None:
+    """Return a planting with the exact bearing of rows about where it is said; else as it is."""
+    if planting is None or planting.row_bearing_deg is None:
+        return planting
+    return found_planting(plants, planting)
+
+
 @dataclass(frozen=True, eq=False)
 class Plot:
     """A field with its plants and the ways between them."""
@@ -56,7 +65,7 @@ class Plot:
     def of(cls, field: Field, planting: Planting | None = None) -> Plot:
         """Take a field's measured plants, or lay some, and find the ways between them."""
         if field.plants is not None:
-            found = None if planting is None else found_planting(field.plants, planting)
+            found = _about_where_said(field.plants, planting)
             return cls._with(field, grid_from_plants(field.plants, found, field))
         return cls._with(field, lay(field, planting or planting_of(field)))
 
@@ -69,7 +78,7 @@ class Plot:
         gate: tuple[float, float] | None = None,
     ) -> Plot:
         """Return the plot of measured plants ``(n, 2)`` lon/lat whose boundary nobody drew."""
-        found = None if planting is None else found_planting(plants, planting)
+        found = _about_where_said(plants, planting)
         grid = grid_from_plants(plants, found)
         boundary = grid.frame.geometry_lonlat(grid.drivable_m)
         return cls._with(Field(name, boundary, gate=gate, plants=plants), grid)

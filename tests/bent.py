@@ -10,7 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+import shapely
+from hypothesis import strategies as st
 
+from fieldmon.plot.bent_layout import RowLines, bent_grid
+from fieldmon.plot.layout import Planting
+from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import frame_around, rows_from_plants
 
@@ -82,7 +87,7 @@ def side_by_side(*blocks: Vines, gap_m: float = 7.0) -> Vines:
     """Return blocks one after the other, west to east, their nearest vines a gap apart."""
     placed, first_row, east = [], 0, 0.0
     for number, block in enumerate(blocks):
-        xy_m = block.xy_m + [east - block.xy_m[:, 0].min(), 0.0]
+        xy_m = block.xy_m + np.array([east - block.xy_m[:, 0].min(), 0.0])
         east = xy_m[:, 0].max() + gap_m
         placed.append(
             Vines(xy_m, np.full(len(xy_m), number), block.row + first_row, block.along_m)
@@ -117,3 +122,65 @@ def right_share(found: np.ndarray, true: np.ndarray) -> float:
         taken_true.add(t)
         right += int(times[k])
     return right / len(found)
+
+
+# -- made up, for properties -------------------------------------------------------------------
+
+_share = st.floats(0.0, 1.0)
+
+
+@st.composite
+def bent_grids(draw, *, faces: tuple[int, ...] = (1, 2)):
+    """Draw the plants of a plot of one to three blocks, each bent and turned anyhow."""
+    planting = Planting(
+        row_spacing_m=draw(st.floats(1.5, 5.0)),
+        plant_spacing_m=draw(st.floats(0.8, 4.0)),
+        headland_m=draw(st.floats(1.0, 6.0)),
+        faces=draw(st.sampled_from(faces)),
+    )
+    rng = np.random.default_rng(draw(st.integers(0, 2**32)))
+    lines, xy_m, row, block = [], [], [], []
+    east, jitter = 0.0, 0.1 * min(planting.row_spacing_m, planting.plant_spacing_m)
+    for number in range(draw(st.integers(1, 3))):
+        rows = _block_rows(draw, planting, rng)
+        turn = draw(st.floats(0.0, 180.0))
+        rows = [turned(line, turn) for line in rows]
+        by = np.array([east - min(r[:, 0].min() for r in rows), 0.0])
+        rows = [line + by for line in rows]
+        east = max(r[:, 0].max() for r in rows) + planting.headland_m * (1.0 + draw(_share)) + 3.0
+        for line in rows:
+            kept = rng.random(len(line)) > 0.15
+            kept[rng.integers(len(line))] = True
+            off_m = rng.uniform(-jitter, jitter, (int(kept.sum()), 2))
+            xy_m.append(line[kept] + off_m)
+            row.append(np.full(len(off_m), len(lines)))
+            lines.append(line)
+            block.append(number)
+    rows = RowLines(Polylines.each(lines), np.array(block))
+    ground = (None, _pond(draw, np.concatenate(xy_m)))
+    return bent_grid(FRAME, rows, (np.concatenate(xy_m), np.concatenate(row)), ground, planting)
+
+
+def _block_rows(draw, planting: Planting, rng: np.random.Generator) -> list[np.ndarray]:
+    """Return rows of a block, plant by plant, each where it may begin and end."""
+    n_rows, n_plants = draw(st.integers(1, 8)), draw(st.integers(2, 30))
+    half_m = n_plants * planting.plant_spacing_m / 2
+    deep_m = n_rows * planting.row_spacing_m
+    # at most a third of a circle, and no inner row tighter than 10 m
+    least_m = max(half_m, 10.0) + deep_m
+    radius_m = least_m / max(draw(_share), 0.01)
+    rows = []
+    for k in range(n_rows):
+        first, last = sorted(rng.integers(0, n_plants, 2)) if draw(st.booleans()) else (0, n_plants)
+        x = (np.arange(first, max(last, first + 2)) - n_plants / 2) * planting.plant_spacing_m
+        at = radius_m + (k - n_rows / 2) * planting.row_spacing_m
+        rows.append(np.stack([at * np.sin(x / at), at * np.cos(x / at) - radius_m], axis=1))
+    return rows
+
+
+def _pond(draw, xy_m: np.ndarray) -> shapely.Geometry:
+    """Return something in the way, or nothing."""
+    if draw(st.booleans()):
+        return shapely.MultiPolygon()
+    at = xy_m.min(axis=0) + np.ptp(xy_m, axis=0) * [draw(_share), draw(_share)]
+    return shapely.buffer(shapely.points(at), 1.0 + 4.0 * draw(_share), quad_segs=3)

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import shapely
 
 from fieldmon.compute.arrays import offsets, read_only
 from fieldmon.compute.wording import counted
@@ -22,7 +23,10 @@ if TYPE_CHECKING:
 
 
 class RowLabel(NamedTuple):
-    """Where plants stand, as people count: from 1, ``(k,)`` each."""
+    """Where plants stand, as people count: from 1, ``(k,)`` each.
+
+    Rows are numbered on from block to block: a row and a number in it are one plant.
+    """
 
     line: NDArray[np.int64]
     number: NDArray[np.int64]
@@ -222,6 +226,14 @@ def row_label(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> Row
     return RowLabel(grid.row_line[grid.row[chosen]].astype(np.int64) + 1, chosen - group_start + 1)
 
 
+def block_label(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> NDArray[np.int64]:
+    """Return the block, from 1, of the given plants, or of all, ``(k,)``."""
+    row = grid.row if plants is None else grid.row[plants]
+    if grid.block is None:
+        return np.ones(len(row), np.int64)
+    return grid.block[row].astype(np.int64) + 1
+
+
 def plant_at(grid: PlantGrid, line: int, number: int) -> int:
     """Return the plant with that label (its first face); raise `PlotError` if there is none."""
     first_of_line, _ = _line_faces(grid)
@@ -235,6 +247,19 @@ def plant_at(grid: PlantGrid, line: int, number: int) -> int:
             f"A plant in row {line} must be one of 1 to {last} on this plot, but it is {number}."
         )
     return plant
+
+
+def row_corners(grid: PlantGrid) -> list[NDArray[np.float64]]:
+    """Return each row as a line to draw, ``(k, 2)`` metres: its ends, and where it bends."""
+    ends = zip(grid.row_start[:-1].tolist(), (grid.row_start[1:] - 1).tolist(), strict=True)
+    if grid.aisles_m is None:
+        return [grid.xy_m[[a, b]] for a, b in ends]
+    return [
+        shapely.get_coordinates(shapely.simplify(shapely.linestrings(grid.xy_m[a : b + 1]), 0.05))
+        if b > a
+        else grid.xy_m[[a, a]]
+        for a, b in ends
+    ]
 
 
 def nearest_plants(

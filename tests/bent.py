@@ -13,7 +13,7 @@ import pandas as pd
 import shapely
 from hypothesis import strategies as st
 
-from fieldmon.plot.bent_layout import RowLines, bent_grid
+from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
 from fieldmon.plot.layout import Planting
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.projection import Frame
@@ -157,7 +157,7 @@ def bent_grids(draw, *, faces: tuple[int, ...] = (1, 2)):
             lines.append(line)
             block.append(number)
     rows = RowLines(Polylines.each(lines), np.array(block))
-    ground = (None, _pond(draw, np.concatenate(xy_m)))
+    ground = Ground(None, _pond(draw, np.concatenate(xy_m)))
     return bent_grid(FRAME, rows, (np.concatenate(xy_m), np.concatenate(row)), ground, planting)
 
 

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 # a middle has as few corners as keep it this near to where it would be with all
 _THIN_M = 0.02
+# rows are looked at so finely: on a bend of 60 m this is exact to 3 cm
+_STEP_M = 4.0
 _RIGHT, _LEFT = -1.0, 1.0
 
 
@@ -54,7 +56,7 @@ def aisles_of(rows: Polylines, block: Int, row_spacing_m: float, beyond_m: float
         How much longer than the rows.
     """
     right = np.arange(len(rows)) + block
-    line, place = sampled(rows, row_spacing_m)
+    line, place = sampled(rows, min(1.5 * row_spacing_m, _STEP_M))
     start = offsets(np.bincount(line, minlength=len(rows)))
     thin = Polylines.of(start, rows.points(line, place))
     middles: list[Float] = []

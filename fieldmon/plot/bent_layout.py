@@ -15,6 +15,8 @@ from fieldmon.plot.aisle_lines import aisles_of
 from fieldmon.plot.grid import PlantGrid
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.plot.aisle_lines import RowAisles
@@ -31,6 +33,8 @@ _FAR_M = 1e6
 _RIGHT, _LEFT = 0, 1
 # a lane ends this far at least from the rows of another block, if there is room
 _CLEAR_M = 0.8
+# a lane may end on the boundary
+_SLACK_M = 1e-4
 # strips along rows are looked at so finely beside obstacles, in plant spacings
 _FINE = 0.25
 
@@ -63,6 +67,27 @@ class Blocked(NamedTuple):
         return cls(np.empty(0, np.int64), np.empty(0), np.empty(0))
 
 
+class Ground(NamedTuple):
+    """Where rows and lanes may be, metres of the frame.
+
+    Parameters
+    ----------
+    area
+        Where one may drive; None: wherever rows with their aisles and headlands reach.
+    obstacles
+        What stands in the way of rows and lanes.
+    blocked
+        Where rows cannot go on if that is known already, else None.
+    aisles
+        The aisles of the rows if they are known already, else None.
+    """
+
+    area: MultiPolygon | None
+    obstacles: shapely.Geometry
+    blocked: Blocked | None = None
+    aisles: RowAisles | None = None
+
+
 class BentPieces(NamedTuple):
     """Unbroken pieces of rows, by row, then along it: r pieces of n plants together.
 
@@ -83,7 +108,7 @@ def bent_grid(
     frame: Frame,
     rows: RowLines,
     plants: tuple[Float, Int],
-    ground: tuple[MultiPolygon | None, shapely.Geometry],
+    ground: Ground,
     planting: Planting,
 ) -> PlantGrid:
     """Return plants in rows that run as lines.
@@ -97,27 +122,38 @@ def bent_grid(
     plants
         Positions ``(n, 2)``, row by row along each, and the row of each, ``(n,)``.
     ground
-        Where one may drive, None for wherever rows with their aisles and headlands reach; and
-        what stands in the way of rows and lanes.
+        Where rows and lanes may be.
     planting
         Spacings, headland and faces.
     """
-    area, obstacles = ground
-    aisles = aisles_of(rows.lines, rows.block, planting.row_spacing_m, 2 * planting.headland_m)
-    blocked = blocked_by(obstacles, rows, aisles, planting)
+    aisles = ground.aisles or row_aisles(rows, planting)
+    blocked = ground.blocked
+    if blocked is None:
+        blocked = blocked_by(ground.obstacles, rows, aisles, planting)
     pieces = _pieces(rows, aisles, plants, blocked, planting)
-    reach = _reach(rows, planting)
-    if area is None:
-        area = _polygons(shapely.difference(reach, obstacles))
-    else:
-        ends = aisles.lines.points(
-            np.repeat(pieces.aisle[:, _LEFT], 2), pieces.lane_m[:, _LEFT].ravel()
-        )
-        grown = shapely.buffer(area, 1e-4)
-        shapely.prepare(grown)
-        if not (shapely.covers(grown, shapely.points(ends)).all()):
-            area = _polygons(shapely.union(area, shapely.difference(reach, obstacles)))
+    area = _around(rows, aisles, pieces, ground, planting)
     return _assembled(frame, pieces, aisles.lines, area, planting)
+
+
+def row_aisles(rows: RowLines, planting: Planting) -> RowAisles:
+    """Return the aisles of rows, out into their headlands."""
+    beyond_m = 2 * planting.headland_m
+    return aisles_of(rows.lines, rows.block, planting.row_spacing_m, beyond_m)
+
+
+def _around(
+    rows: RowLines, aisles: RowAisles, pieces: BentPieces, ground: Ground, planting: Planting
+) -> MultiPolygon:
+    """Return where one may drive: the area that is known, if it holds all lanes."""
+    if ground.area is not None:
+        lane = np.repeat(pieces.aisle[:, _LEFT], 2)
+        ends = aisles.lines.points(lane, pieces.lane_m[:, _LEFT].ravel())
+        grown = shapely.buffer(ground.area, _SLACK_M)
+        shapely.prepare(grown)
+        if shapely.covers(grown, shapely.points(ends)).all():
+            return ground.area
+    reach = shapely.difference(_reach(rows, planting), ground.obstacles)
+    return _polygons(reach if ground.area is None else shapely.union(ground.area, reach))
 
 
 def blocked_by(
@@ -126,12 +162,20 @@ def blocked_by(
     """Return where something stands between rows and the aisle they are inspected from."""
     if obstacles.is_empty:
         return Blocked.nowhere()
-    return shut_stretches(
-        rows, aisles, planting, lambda shapes: shapely.intersects(obstacles, shapes)
-    )
+
+    def shut(shapes: NDArray[np.object_]) -> NDArray[np.bool_]:
+        met: NDArray[np.bool_] = shapely.intersects(obstacles, shapes)
+        return met
+
+    return shut_stretches(rows, aisles, planting, shut)
 
 
-def shut_stretches(rows, aisles, planting, shut) -> Blocked:  # type: ignore[no-untyped-def]
+def shut_stretches(
+    rows: RowLines,
+    aisles: RowAisles,
+    planting: Planting,
+    shut: Callable[[NDArray[np.object_]], NDArray[np.bool_]],
+) -> Blocked:
     """Return the stretches of rows whose strip to the aisle is shut, headlands included.
 
     `shut` tells of shapes ``(k,)`` whether they are; it is asked of long strips first, and of

@@ -13,6 +13,7 @@ from shapely import MultiPolygon, Polygon
 from fieldmon.compute.arrays import offsets, runs
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot import adjacency
+from fieldmon.plot.bent_layout import Ground
 from fieldmon.plot.grid import PlantGrid
 from fieldmon.plot.measured_rows import bent_rows, measured_grid
 from fieldmon.plot.projection import Frame
@@ -179,7 +180,7 @@ def grid_from_plants(
     bent = bent_rows(xy_m, line, planting.row_spacing_m, said=said)
     if bent is not None:
         area = None if field is None else _held_area(field, frame, xy_m)
-        return measured_grid(frame, xy_m, bent, (area, obstacles), planting)
+        return measured_grid(frame, xy_m, bent, Ground(area, obstacles), planting)
     order = np.lexsort((xy_m[:, 0], line))
     xy_m, line = xy_m[order], line[order]
     pieces = _pieces(xy_m, line, _aisles(xy_m[:, 1], line, planting), obstacles, planting)

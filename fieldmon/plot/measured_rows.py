@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.plot.bent_layout import RowLines, bent_grid
+from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.row_tracing import TracedRows, trace
 
 if TYPE_CHECKING:
-    import shapely
     from numpy.typing import NDArray
-    from shapely import MultiPolygon
 
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.layout import Planting
@@ -89,7 +87,7 @@ def measured_grid(
     frame: Frame,
     xy_m: Float,
     traced: TracedRows,
-    ground: tuple[MultiPolygon | None, shapely.Geometry],
+    ground: Ground,
     planting: Planting,
 ) -> PlantGrid:
     """Return measured plants ``(n, 2)`` in the rows traced; `ground` as in `bent_grid`."""

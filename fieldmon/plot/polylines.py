@@ -120,13 +120,9 @@ class Polylines(NamedTuple):
 
     def _step(self, line: NDArray[np.integer], place_m: Float) -> Int:
         """Return the corner before each place."""
-        wide = float(self.at_m.max(initial=0.0)) + 1.0
-        owner = np.repeat(np.arange(len(self)), np.diff(self.start))
-        key = self.at_m + owner * (2 * wide)
-        wanted = np.clip(place_m, 0.0, wide) + np.asarray(line) * (2 * wide)
-        at = np.searchsorted(key, wanted, side="right") - 1
-        steps: Int = np.clip(at, self.start[line], self.start[np.asarray(line) + 1] - 2)
-        return steps
+        at = np.empty(len(place_m), np.int64)
+        _corner_before(self, np.asarray(line, np.int64), np.asarray(place_m, np.float64), at)
+        return at
 
 
 def sampled(lines: Polylines, step_m: float) -> tuple[Int, Float]:
@@ -143,13 +139,26 @@ def _unit(way: Float) -> Float:
 
 
 @nb.njit(cache=True)
+def _corner_before(lines: Polylines, line: Int, place_m: Float, at: Int) -> None:
+    for i in range(at.size):
+        low, high = lines.start[line[i]], lines.start[line[i] + 1] - 1
+        while high - low > 1:
+            middle = (low + high) // 2
+            if lines.at_m[middle] <= place_m[i]:
+                low = middle
+            else:
+                high = middle
+        at[i] = low
+
+
+@nb.njit(cache=True)
 def _project(lines: Polylines, xy_m: Float, line: Int, place: Float, left: Float) -> None:
     start, corner, at_m = lines
     at, last_line = 0, -1
     for i in range(xy_m.shape[0]):
         first, end = start[line[i]], start[line[i] + 1] - 1
         fresh = line[i] != last_line
-        low, high = (first, end) if fresh else (max(at - 4, first), min(at + 8, end))
+        low, high = (first, end) if fresh else (max(at - 1, first), min(at + 3, end))
         last_line = line[i]
         at, best = _nearest_step(corner, (low, high), xy_m[i], (low, np.inf))
         while at >= high - 1 and high < end:  # not at the brink of what was looked at

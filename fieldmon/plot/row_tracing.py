@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numba as nb
 import numpy as np
+import shapely
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.arrays import offsets
+from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.row_pieces import Windows, pieces
 
 if TYPE_CHECKING:
@@ -28,6 +30,8 @@ _SMOOTHED = 13
 # rows beside each other run the same way within this, and are this many usual spacings apart
 _ASTRAY_DEG, _BESIDE = 30.0, 1.7
 _REFITS = 2
+# lines are looked about from so many places of each
+_LOOKS = 8
 
 
 class TracedRows(NamedTuple):
@@ -90,7 +94,7 @@ def trace(xy_m: Float) -> TracedRows | None:
     angle[windows.plant] = np.repeat(directions.angle, np.diff(windows.start))
     spacing_m = _next_in(piece, far_m, near)
     strands = _strands(xy_m, piece, (far_m, near), _GAP * spacing_m, angle)
-    rows = _Rows.of(strands, np.sqrt(area_m2))
+    rows = _Rows.of(strands, _beside(strands, float(np.sqrt(area_m2))))
     strands = _joined(xy_m, strands, rows)
     block, order = rows.block, np.empty(0)
     for _ in range(_REFITS):
@@ -196,6 +200,59 @@ def _fit(
     return (c0 * v[0] + c1 * v[1] + c2 * v[2]) / det, (c1 * v[0] + d1 * v[1] + d2 * v[2]) / det
 
 
+class DrawnRows(NamedTuple):
+    """Lines sorted into rows: block by block, in each from right to left of their direction.
+
+    ``lines`` of the rows, pieces of one joined; the ``block (r,)`` of each; and the usual distance
+    between rows, NaN where none are beside each other.
+    """
+
+    lines: Polylines
+    block: Int
+    spacing_m: float
+
+
+def sorted_rows(lines: Polylines, reach_m: float) -> DrawnRows:
+    """Return lines drawn in any order and either way as rows; neighbours are within a reach."""
+    f = len(lines)
+    line, share = np.repeat(np.arange(f), _LOOKS), np.tile((np.arange(_LOOKS) + 0.5) / _LOOKS, f)
+    place = share * lines.length_m[line]
+    at, ahead = lines.points(line, place), lines.ahead(line, place)
+    strands = _Strands(np.arange(len(at)), np.arange(f + 1) * _LOOKS, at, ahead)
+    rows = _Rows.of(strands, _beside_lines(lines, strands, reach_m))
+    joined = []
+    for row in range(len(rows.block)):
+        parts = _in_line(strands, rows, np.flatnonzero(rows.row == row).tolist())
+        turned = [lines.line(k)[:: -1 if rows.turned[k] else 1] for k in parts]
+        joined.append(np.concatenate(turned))
+    return DrawnRows(Polylines.each(joined), rows.block, rows.spacing_m)
+
+
+def _beside_lines(lines: Polylines, strands: _Strands, reach_m: float) -> _Beside:
+    """Return which lines run beside which: what is met at right angles to them."""
+    shapes, owner = lines.shapes(), strands.owner
+    tree = shapely.STRtree(shapes)
+    left = np.stack([-strands.ahead[:, 1], strands.ahead[:, 0]], axis=1)
+    found = []
+    for sign in (1, -1):
+        ends = strands.line_m + sign * reach_m * left
+        rays = shapely.linestrings(np.stack([strands.line_m, ends], axis=1))
+        ray, hit = tree.query(rays, predicate="intersects")
+        ray, hit = ray[owner[ray] != hit], hit[owner[ray] != hit]
+        met = shapely.intersection(rays[ray], shapes[hit])
+        off = shapely.distance(shapely.points(strands.line_m[ray]), met)
+        order = np.lexsort((off, ray))
+        first = order[np.unique(ray[order], return_index=True)[1]]
+        ray, hit, off = ray[first], hit[first], off[first]
+        place = shapely.line_locate_point(shapes[hit], shapely.points(strands.line_m[ray]))
+        turn = np.einsum("ij,ij->i", lines.ahead(hit, place), strands.ahead[ray])
+        ok = np.abs(turn) >= np.cos(np.deg2rad(_ASTRAY_DEG))
+        way = np.full(int(ok.sum()), sign)
+        found.append((owner[ray][ok], hit[ok], way, np.sign(turn[ok]), off[ok]))
+    columns = [np.concatenate(part) for part in zip(*found, strict=True)]
+    return _counted_pairs(len(lines), *columns)
+
+
 class _Rows(NamedTuple):
     """Which strands are level with each other, block by block.
 
@@ -209,10 +266,9 @@ class _Rows(NamedTuple):
     spacing_m: float
 
     @classmethod
-    def of(cls, strands: _Strands, step_m: float) -> _Rows:
+    def of(cls, strands: _Strands, beside: _Beside) -> _Rows:
         """Sort strands into rows and blocks by who is beside whom."""
         f = len(strands.start) - 1
-        beside = _beside(strands, step_m)
         level, sign, block = _levels(f, beside)
         _left_of_north(strands, level, sign, block)
         spacing_m = float(np.median(beside.apart_m)) if len(beside.apart_m) else np.nan

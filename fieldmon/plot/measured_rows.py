@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
 from fieldmon.plot.polylines import Polylines
+from fieldmon.plot.row_detection import frame_around
 from fieldmon.plot.row_tracing import TracedRows, trace
 
 if TYPE_CHECKING:
@@ -30,8 +31,39 @@ _NO_ROWS = 0.2
 _LEAST_FREE = 6.0
 
 
+class SaidRows(NamedTuple):
+    """What is said of the rows of measured plants.
+
+    ``label (n,)`` numbers the row of each, None where they have no names; ``bearing`` tells
+    whether somebody said that rows run about along x. ``misnamed`` is the share of plants that
+    stand in another row than their name says, None where that was not looked at.
+    """
+
+    label: NDArray[np.int64] | None
+    bearing: bool
+    misnamed: float | None = None
+
+    def checked(self, lonlat: Float) -> SaidRows:
+        """Return the same with the share of plants that rows found besides put elsewhere."""
+        if self.label is None:
+            return self
+        traced = trace(frame_around(lonlat).xy_m(lonlat))
+        if traced is None:
+            return self
+        row = np.empty(len(lonlat), np.int64)
+        row[traced.plant] = np.repeat(np.arange(len(traced.block)), np.diff(traced.row_start))
+        return self._replace(misnamed=1.0 - _shared(row, self.label))
+
+
+def row_numbers(names: NDArray[np.str_] | None) -> NDArray[np.int64] | None:
+    """Return a number for each plant's row ``(n,)``, where all of them have a name."""
+    if names is None or (names == "").any():
+        return None
+    return np.unique(names, return_inverse=True)[1].astype(np.int64)
+
+
 def bent_rows(
-    xy_m: Float, line: NDArray[np.integer], row_spacing_m: float, *, said: bool
+    xy_m: Float, line: NDArray[np.integer], row_spacing_m: float, said: SaidRows
 ) -> TracedRows | None:
     """Return the rows of plants where they bend or blocks turn; None where straight lines do.
 
@@ -44,8 +76,10 @@ def bent_rows(
     row_spacing_m
         The distance between these.
     said
-        Whether somebody said that rows run about along x.
+        What decides: the names of the rows, or a bearing.
     """
+    if said.label is not None:
+        return None if _same(line, said.label) else trace(xy_m, said.label)
     n, r = len(line), int(line.max()) + 1
     y_m = xy_m[:, 1] - (np.bincount(line, xy_m[:, 1]) / np.bincount(line))[line]
     off_m = float(np.sqrt(np.mean(y_m**2)))
@@ -59,8 +93,23 @@ def bent_rows(
         spacing_m = min(row_spacing_m, traced.row_spacing_m)
         bent = own / spacing_m > _BETTER * blur(traced) + _LITTLE
     else:  # of two directions that with the straighter and denser rows, as `rows_from_plants`
-        bent = not said and own / row_spacing_m**2 > blur(traced) / traced.row_spacing_m
+        bent = not said.bearing and own / row_spacing_m**2 > blur(traced) / traced.row_spacing_m
     return traced if bent else None
+
+
+def _same(one: NDArray[np.integer], other: NDArray[np.integer]) -> bool:
+    """Tell whether two numberings part plants alike."""
+    both = len(np.unique(one.astype(np.int64) * (int(other.max()) + 1) + other))
+    return both == len(np.unique(one)) == len(np.unique(other))
+
+
+def _shared(found: NDArray[np.int64], named: NDArray[np.int64]) -> float:
+    """Return the share of plants that are in the row that most of their found row are in."""
+    wide = int(named.max()) + 1
+    pair, times = np.unique(found * wide + named, return_counts=True)
+    most = np.zeros(int(found.max()) + 1, np.int64)
+    np.maximum.at(most, pair // wide, times)
+    return float(most.sum()) / len(found)
 
 
 def _along_x(traced: TracedRows) -> bool:

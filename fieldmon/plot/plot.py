@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, found_planting, grid_from_plants, lay
+from fieldmon.plot.layout import Planting, check_apart, grid_from_plants, lay, planting_in
+from fieldmon.plot.measured_rows import SaidRows, row_numbers
 from fieldmon.plot.missing_plants import without
+from fieldmon.plot.row_detection import rows_from_plants
+from fieldmon.plot.row_report import RowReport, row_report
 from fieldmon.plot.travel import Aisles
 
 if TYPE_CHECKING:
@@ -37,21 +41,38 @@ def planting_of(field: Field, **given: float | None) -> Planting:
     return Planting(**known)
 
 
-def _about_where_said(
-    plants: NDArray[np.float64], planting: Planting | None
-) -> Planting | None:
-    """Return a planting with the exact bearing of rows about where it is said; else as it is."""
-    if planting is None or planting.row_bearing_deg is None:
-        return planting
-    return found_planting(plants, planting)
+def _in_rows(
+    plants: NDArray[np.float64],
+    names: NDArray[np.str_] | None,
+    field: Field | None,
+    planting: Planting | None,
+) -> tuple[PlantGrid, RowReport]:
+    """Return measured plants in their rows, and how well they stand in them."""
+    planting = planting or Planting()
+    check_apart(plants)
+    rows = rows_from_plants(plants, planting.row_bearing_deg)
+    said = SaidRows(row_numbers(names), planting.row_bearing_deg is not None).checked(plants)
+    grid = grid_from_plants(plants, planting_in(rows, planting), field, said)
+    return grid, row_report(grid, rows, said)
 
 
 @dataclass(frozen=True, eq=False)
 class Plot:
-    """A field with its plants and the ways between them."""
+    """A field with its plants and the ways between them.
+
+    Parameters
+    ----------
+    field
+        What is known of the plot.
+    aisles
+        Its plants and the ways between them.
+    rows
+        How well its measured plants stand in rows; None where plants were laid, or read back.
+    """
 
     field: Field
     aisles: Aisles
+    rows: RowReport | None = None
 
     def __repr__(self) -> str:
         return f"<Plot {self.field.name}: {self.grid.counts}>"
@@ -65,8 +86,8 @@ class Plot:
     def of(cls, field: Field, planting: Planting | None = None) -> Plot:
         """Take a field's measured plants, or lay some, and find the ways between them."""
         if field.plants is not None:
-            found = _about_where_said(field.plants, planting)
-            return cls._with(field, grid_from_plants(field.plants, found, field))
+            grid, rows = _in_rows(field.plants, field.plant_rows, field, planting)
+            return replace(cls._with(field, grid), rows=rows)
         return cls._with(field, lay(field, planting or planting_of(field)))
 
     @classmethod
@@ -76,12 +97,16 @@ class Plot:
         plants: NDArray[np.float64],
         planting: Planting | None = None,
         gate: tuple[float, float] | None = None,
+        plant_rows: NDArray[np.str_] | None = None,
     ) -> Plot:
-        """Return the plot of measured plants ``(n, 2)`` lon/lat whose boundary nobody drew."""
-        found = _about_where_said(plants, planting)
-        grid = grid_from_plants(plants, found)
+        """Return the plot of measured plants ``(n, 2)`` lon/lat whose boundary nobody drew.
+
+        `plant_rows` ``(n,)`` names the row of each, where that is known.
+        """
+        grid, rows = _in_rows(plants, plant_rows, None, planting)
         boundary = grid.frame.geometry_lonlat(grid.drivable_m)
-        return cls._with(Field(name, boundary, gate=gate, plants=plants), grid)
+        field = Field(name, boundary, gate=gate, plants=plants, plant_rows=plant_rows)
+        return replace(cls._with(field, grid), rows=rows)
 
     @classmethod
     def from_geopandas(

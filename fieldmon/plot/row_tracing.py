@@ -76,10 +76,16 @@ class _Strands(NamedTuple):
         return np.repeat(np.arange(len(self.start) - 1), np.diff(self.start))
 
 
-def trace(xy_m: Float) -> TracedRows | None:
-    """Return the rows in which plants ``(n, 2)`` stand; None where there are too few to tell.
+def trace(xy_m: Float, label: Int | None = None) -> TracedRows | None:
+    """Return the rows in which plants stand; None where there are too few to tell.
 
-    No two plants may stand in one place.
+    Parameters
+    ----------
+    xy_m
+        ``(n, 2)`` plants, no two in one place.
+    label
+        ``(n,)`` the row of each, from 0, where that is known: plants of one label and block are
+        a row. None: rows are found.
     """
     n = len(xy_m)
     if n < 3:
@@ -92,15 +98,35 @@ def trace(xy_m: Float) -> TracedRows | None:
     piece, directions = pieces(xy_m, windows)
     angle = np.empty(n)
     angle[windows.plant] = np.repeat(directions.angle, np.diff(windows.start))
+    if label is not None:
+        piece = label
     spacing_m = _next_in(piece, far_m, near)
     strands = _strands(xy_m, piece, (far_m, near), _GAP * spacing_m, angle)
     rows = _Rows.of(strands, _beside(strands, float(np.sqrt(area_m2))))
+    if label is not None:
+        rows = _by_label(strands, rows, label)
     strands = _joined(xy_m, strands, rows)
-    block, order = rows.block, np.empty(0)
-    for _ in range(_REFITS):
+    for _ in range(_REFITS if label is None else 0):
         strands = _nearest_lines(xy_m, strands)
-    del order
-    return _traced(xy_m, strands, block, rows.spacing_m)
+    return _traced(xy_m, strands, rows.block, rows.spacing_m)
+
+
+def _by_label(strands: _Strands, rows: _Rows, label: Int) -> _Rows:
+    """Return rows by their label: strands of one in one block are a row, where most of it is."""
+    of_strand = label[strands.plant[strands.start[:-1]]]
+    block = rows.block[rows.row]
+    key = block * (int(label.max()) + 1) + of_strand
+    group = np.unique(key, return_inverse=True)[1]
+    size = np.diff(strands.start)
+    level = np.empty(int(group.max()) + 1)
+    for k in range(len(level)):
+        mine = np.flatnonzero(group == k)
+        level[k] = rows.row[mine[np.argmax(size[mine])]]
+    rank = np.argsort(np.argsort(level, kind="stable"))
+    row = rank[group]
+    of_row = np.zeros(len(level), np.int64)
+    of_row[row] = block
+    return rows._replace(row=row, block=of_row)
 
 
 def _next_in(piece: Int, far_m: Float, near: Int) -> float:
@@ -481,6 +507,24 @@ def _nearest_line(
                     # beyond an end plants keep their order
                     at_end = (a == start[of] and share < 0) or (b == start[of + 1] - 1 and share > 1)
                     along[i] = length[a] + (share if at_end else held) * np.sqrt(square)
+
+
+def beside_their_rows(xy_m: Float, row: NDArray[np.integer]) -> tuple[Float, float]:
+    """Return how far each plant is from the line of its row, ``(n,)``, and what tells of it.
+
+    Plants come row by row, along each. A line that bends follows few plants of itself: about a
+    fourth of them, and two a row, say nothing of how far plants stray. The others are counted.
+    """
+    n_plants = np.bincount(row)
+    n_plants = n_plants[n_plants > 0]
+    start = offsets(n_plants)
+    line_m, ahead = np.empty_like(xy_m), np.empty_like(xy_m)
+    step = np.append(0.0, np.hypot(*np.diff(xy_m, axis=0).T))
+    xy_m = np.ascontiguousarray(xy_m)
+    _smooth(xy_m, start, np.cumsum(step), line_m, ahead)
+    off = xy_m - line_m
+    off_m: Float = np.abs(ahead[:, 0] * off[:, 1] - ahead[:, 1] * off[:, 0])
+    return off_m, float(np.maximum(0.75 * n_plants - 2.0, 0.0).sum())
 
 
 def _traced(xy_m: Float, strands: _Strands, block: Int, spacing_m: float) -> TracedRows:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 FLAGS = {
     "plot": "--plot-option",
     "plants": "--plants-option",
+    "rows": "--rows-option",
+    "contours": "--contours-option",
     "paths": "--paths-option",
     "records": "--record-option",
     "canopy": "--canopy-option",

@@ -29,6 +29,7 @@ _BETTER, _LITTLE = 1.3, 0.04
 # what strays by more from the rows traced is in no rows
 _NO_ROWS = 0.2
 _LEAST_FREE = 6.0
+_NONSENSE = 0.5
 
 
 class SaidRows(NamedTuple):
@@ -44,7 +45,10 @@ class SaidRows(NamedTuple):
     misnamed: float | None = None
 
     def checked(self, lonlat: Float) -> SaidRows:
-        """Return the same with the share of plants that rows found besides put elsewhere."""
+        """Return the same with the share of plants that rows found besides put elsewhere.
+
+        Names that fit less than half of the plants are no rows' names, and decide nothing.
+        """
         if self.label is None:
             return self
         traced = trace(frame_around(lonlat).xy_m(lonlat))
@@ -52,7 +56,11 @@ class SaidRows(NamedTuple):
             return self
         row = np.empty(len(lonlat), np.int64)
         row[traced.plant] = np.repeat(np.arange(len(traced.block)), np.diff(traced.row_start))
-        return self._replace(misnamed=1.0 - _shared(row, self.label))
+        # every block may count its rows from 1
+        named = self.label * (int(traced.block[-1]) + 1) + traced.block[row]
+        misnamed = 1.0 - min(_shared(row, named), _shared(named, row))
+        label = None if misnamed > _NONSENSE else self.label
+        return self._replace(label=label, misnamed=misnamed)
 
 
 def row_numbers(names: NDArray[np.str_] | None) -> NDArray[np.int64] | None:

@@ -43,6 +43,8 @@ class RowReport:
         Other directions in which they stand in rows as well.
     misnamed_share
         Share of the plants that stand in another row than its name says; None without names.
+    named
+        Whether names decided.
     """
 
     how: str
@@ -51,6 +53,7 @@ class RowReport:
     in_rows: bool
     others_deg: tuple[float, ...] = ()
     misnamed_share: float | None = None
+    named: bool = False
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -68,9 +71,10 @@ class RowReport:
                 "beside their row: look at the rows before you use them."
             )
         if self.misnamed_share is not None and self.misnamed_share >= _WORTH_A_WORD:
+            decided = "the names decided" if self.named else "rows were found instead"
             said.append(
                 f"{self.misnamed_share:.0%} of the plants seem to stand in another row than the "
-                "file names; the file decided. Look whether its rows are named rightly."
+                f"file names; {decided}. Look whether its rows are named rightly."
             )
         if self.others_deg:
             ways = " and ".join(f"{way:.0f}" for way in self.others_deg)
@@ -101,5 +105,6 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
         float(np.mean(off_m > _OFF * grid.row_spacing_m)),
         said.label is not None or not scattered,
         () if said.bearing or said.label is not None else found.others_deg,
-        None if said.label is None else said.misnamed,
+        said.misnamed,
+        said.label is not None,
     )

@@ -114,7 +114,7 @@ class Laid:
             return (seen(f"Plants stand along the {len(drawn.geoms)} rows that were drawn."),)
         if rows is None:
             return ()
-        found = (seen(f"Rows are {rows.how}."),) if rows.in_rows else ()
+        found = (seen(f"Rows were found: {rows.how}."),) if rows.in_rows else ()
         return (*found, *(doubtful(sentence) for sentence in rows.doubts))
 
 
@@ -289,6 +289,8 @@ def lay(field: Field, choices: PlantingChoices | None = None) -> Laid:
     given = (choices or PlantingChoices()).given()
     planting = planting_of(field, **given)
     missing = [name for name in _SPACINGS if name not in given and getattr(field, name) is None]
+    if len(field.row_lines.geoms) > 1:  # rows are as far apart as they were drawn
+        missing = [name for name in missing if name != "row_spacing_m"]
     assumed = tuple(Assumed(name, getattr(planting, name)) for name in missing)
     return Laid(Plot.of(field, planting), assumed if field.plants is None else ())
 

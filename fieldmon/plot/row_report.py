@@ -97,10 +97,10 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
     scattered = straight or typical_m > _NO_ROWS * grid.row_spacing_m
     n_rows = counted(int(grid.row_line.max()) + 1, "row")
     blocks = f" of {counted(grid.n_blocks, 'block')}" if grid.n_blocks > 1 else ""
-    bend = " that bend" if grid.aisles_m is not None else ""
-    how = f"from {counted(len(faces), 'plant')} in {n_rows}{bend}{blocks}, {typical_m:.2f} m beside"
+    bend = ", as they bend" if grid.aisles_m is not None else ""
+    how = f"{counted(len(faces), 'plant')} in {n_rows}{blocks}{bend}, {typical_m:.2f} m beside"
     return RowReport(
-        f"{how} their line",
+        f"{how} their lines",
         typical_m,
         float(np.mean(off_m > _OFF * grid.row_spacing_m)),
         said.label is not None or not scattered,

@@ -30,6 +30,8 @@ _SMOOTHED = 13
 # rows beside each other run the same way within this, and are this many usual spacings apart
 _ASTRAY_DEG, _BESIDE = 30.0, 1.7
 _REFITS = 2
+# blocks of fewer plants may be scraps of others
+_SCRAP = 12
 # lines are looked about from so many places of each
 _LOOKS = 8
 
@@ -106,6 +108,8 @@ def trace(xy_m: Float, label: Int | None = None) -> TracedRows | None:
     if label is not None:
         rows = _by_label(strands, rows, label)
     strands = _joined(xy_m, strands, rows)
+    if label is None:
+        strands, rows = _absorbed(xy_m, strands, rows, _GAP * spacing_m)
     for _ in range(_REFITS if label is None else 0):
         strands = _nearest_lines(xy_m, strands)
     return _traced(xy_m, strands, rows.block, rows.spacing_m)
@@ -448,6 +452,57 @@ def _joined(xy_m: Float, strands: _Strands, rows: _Rows) -> _Strands:
             row[plants] = of
             gone, last = float(along[plants[-1]]), line[-1]
     return _ordered(xy_m, row, along)
+
+
+def _absorbed(
+    xy_m: Float, strands: _Strands, rows: _Rows, reach_m: float
+) -> tuple[_Strands, _Rows]:
+    """Return the rows with scraps of a few plants as parts of those that they continue.
+
+    At corners of a plot some plants may be seen in line another way.
+    """
+    for _ in range(_REFITS):
+        owner, n_plants = strands.owner, np.diff(strands.start)
+        scrap = np.bincount(rows.block, n_plants)[rows.block] < _SCRAP
+        whole = np.flatnonzero(~scrap & (n_plants >= 3))
+        if not scrap.any() or not len(whole):
+            return strands, rows
+        loose = np.flatnonzero(scrap[owner])
+        kept = np.flatnonzero(np.isin(owner, whole))
+        lines = Polylines.of(offsets(n_plants[whole]), strands.line_m[kept])
+        line, at, fits = _continued(
+            xy_m[strands.plant[loose]], lines, 0.35 * rows.spacing_m, reach_m
+        )
+        row, along = np.empty(len(xy_m), np.int64), np.empty(len(xy_m))
+        row[strands.plant] = owner
+        gone = np.append(0.0, np.cumsum(np.hypot(*np.diff(strands.line_m, axis=0).T)))
+        along[strands.plant] = gone - gone[strands.start[owner]]
+        plants = strands.plant[loose][fits]
+        row[plants], along[plants] = whole[line[fits]], at[fits]
+        left_over, row = np.unique(row, return_inverse=True)
+        block = np.unique(rows.block[left_over], return_inverse=True)[1]
+        strands, rows = _ordered(xy_m, row, along), rows._replace(block=block)
+    return strands, rows
+
+
+def _continued(
+    xy_m: Float, lines: Polylines, beside_m: float, beyond_m: float
+) -> tuple[Int, Float, NDArray[np.bool_]]:
+    """Return the line that each plant continues best, its place on it, and whether it does."""
+    owner = np.repeat(np.arange(len(lines)), np.diff(lines.start))
+    k = min(12, len(owner))
+    near = cKDTree(lines.xy_m).query(xy_m, k=np.arange(1, k + 1))[1]
+    best, line, place = np.full(len(xy_m), np.inf), owner[near[:, 0]], np.zeros(len(xy_m))
+    for column in range(k):
+        asked = owner[near[:, column]]
+        order = np.argsort(asked, kind="stable")
+        at, left = (np.empty(len(xy_m)) for _ in range(2))
+        at[order], left[order] = lines.project(xy_m[order], asked[order])
+        beyond = np.maximum(-at, at - lines.length_m[asked])
+        off = np.where(beyond <= beyond_m, np.abs(left), np.inf)
+        better = off < best
+        best[better], line[better], place[better] = off[better], asked[better], at[better]
+    return line, place, best <= beside_m
 
 
 def _in_line(strands: _Strands, rows: _Rows, parts: list[int]) -> list[int]:

@@ -78,7 +78,7 @@ def _svg(plan: HandoffPlan) -> Markup:
     return Markup(
         '<svg viewBox="0 0 {:.1f} {:.1f}" role="img" aria-label="map">'
         '<path d="{}" fill="#f4f4ee" stroke="#888" stroke-width="0.3" fill-rule="evenodd"/>'
-        '<path d="{}" stroke="#9c9" stroke-width="0.4" stroke-linecap="round"/>'
+        '<path d="{}" fill="none" stroke="#9c9" stroke-width="0.4" stroke-linecap="round"/>'
         '<path d="{}" fill="none" stroke="#c50" stroke-width="0.35" stroke-linejoin="round"/>'
         "{}{}{}{}</svg>"
     ).format(

@@ -89,9 +89,7 @@ def side_by_side(*blocks: Vines, gap_m: float = 7.0) -> Vines:
     for number, block in enumerate(blocks):
         xy_m = block.xy_m + np.array([east - block.xy_m[:, 0].min(), 0.0])
         east = xy_m[:, 0].max() + gap_m
-        placed.append(
-            Vines(xy_m, np.full(len(xy_m), number), block.row + first_row, block.along_m)
-        )
+        placed.append(Vines(xy_m, np.full(len(xy_m), number), block.row + first_row, block.along_m))
         first_row += block.row.max() + 1
     return Vines(
         np.concatenate([b.xy_m for b in placed]),

@@ -108,5 +108,7 @@ def _beside(line: Float, left_m: Float | float) -> Float:
     step /= np.maximum(np.hypot(step[:, 0], step[:, 1]), 1e-12)[:, None]
     ahead = np.concatenate([step[:1], step[:-1] + step[1:], step[-1:]])
     ahead /= np.maximum(np.hypot(ahead[:, 0], ahead[:, 1]), 1e-12)[:, None]
-    moved: Float = line + np.stack([-ahead[:, 1], ahead[:, 0]], axis=1) * np.reshape(left_m, (-1, 1))
+    moved: Float = line + np.stack([-ahead[:, 1], ahead[:, 0]], axis=1) * np.reshape(
+        left_m, (-1, 1)
+    )
     return moved

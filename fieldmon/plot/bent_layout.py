@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
+    from shapely.geometry.base import BaseGeometry
 
     from fieldmon.plot.aisle_lines import RowAisles
     from fieldmon.plot.layout import Planting
@@ -83,7 +84,7 @@ class Ground(NamedTuple):
     """
 
     area: MultiPolygon | None
-    obstacles: shapely.Geometry
+    obstacles: BaseGeometry
     blocked: Blocked | None = None
     aisles: RowAisles | None = None
 
@@ -157,7 +158,7 @@ def _around(
 
 
 def blocked_by(
-    obstacles: shapely.Geometry, rows: RowLines, aisles: RowAisles, planting: Planting
+    obstacles: BaseGeometry, rows: RowLines, aisles: RowAisles, planting: Planting
 ) -> Blocked:
     """Return where something stands between rows and the aisle they are inspected from."""
     if obstacles.is_empty:
@@ -185,8 +186,8 @@ def shut_stretches(
     coarse_m = 16 * planting.plant_spacing_m
     n = np.ceil((rows.lines.length_m + 2 * far_m) / coarse_m).astype(np.int64)
     k, row = runs(np.zeros(len(n), np.int64), n)
-    from_m = k * coarse_m - far_m
-    to_m = np.minimum(from_m + coarse_m, rows.lines.length_m[row] + far_m)
+    from_m: Float = k * coarse_m - far_m
+    to_m: Float = np.minimum(from_m + coarse_m, rows.lines.length_m[row] + far_m)
     hit = np.flatnonzero(shut(_strips(rows, aisles, planting, (row, from_m, to_m), 8)))
     m = int(np.ceil(coarse_m / (_FINE * planting.plant_spacing_m)))
     j, of = runs(np.zeros(len(hit), np.int64), np.full(len(hit), m))
@@ -220,10 +221,7 @@ def _strips(
     right = _foot(aisles, many, on_row, _RIGHT) if planting.faces == 2 else on_row
     shape = (len(row), steps + 1, 2)
     ring = np.concatenate([right.reshape(shape), left.reshape(shape)[:, ::-1]], axis=1)
-    strips: NDArray[np.object_] = shapely.polygons(
-        np.concatenate([ring, ring[:, :1]], axis=1)
-    )
-    return strips
+    return np.asarray(shapely.polygons(np.concatenate([ring, ring[:, :1]], axis=1)), np.object_)
 
 
 def _foot(aisles: RowAisles, row: Int, xy_m: Float, side: int) -> Float:
@@ -246,7 +244,7 @@ def _pieces(
     xy_m, row, on_row = xy_m[order], row[order], on_row[order]
     cut = np.searchsorted(_key(blocked.row, (blocked.from_m + blocked.to_m) / 2), _key(row, on_row))
     new = (np.diff(row, prepend=row[:1]) > 0) | (np.diff(cut, prepend=cut[:1]) > 0)
-    piece = np.cumsum(new)
+    piece = np.cumsum(new.astype(np.int64))
     start = offsets(np.bincount(piece))
     first, last = start[:-1], start[1:] - 1
     of = row[first]
@@ -272,7 +270,8 @@ def _key(row: Int, place_m: Float) -> Float:
 def _rising(at_m: Float, piece: Int) -> Float:
     """Return places that never fall within a piece."""
     shift = (float(np.ptp(at_m)) + 1.0) * piece
-    return np.maximum.accumulate(at_m + shift) - shift
+    rising: Float = np.maximum.accumulate(at_m + shift) - shift
+    return rising
 
 
 def _room(on_row: Float, of: Int, ends: tuple[Int, Int], blocked: Blocked) -> Float:
@@ -338,9 +337,7 @@ def _assembled(
         across = adjacency.lists(len(twin), lower, twin[lower])
     else:
         twin, corridor = np.full(len(xy_m), -1), np.arange(len(piece))
-        across = adjacency.across_aisles(
-            pieces.aisle[row], pieces.place_m, pieces.off_m, *spacings
-        )
+        across = adjacency.across_aisles(pieces.aisle[row], pieces.place_m, pieces.off_m, *spacings)
     return PlantGrid(
         frame,
         xy_m,

@@ -9,12 +9,12 @@ import numpy as np
 import shapely
 
 from fieldmon.compute.arrays import offsets
-from fieldmon.plot.polylines import Polylines
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
+    from fieldmon.plot.polylines import Polylines
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
@@ -59,11 +59,11 @@ class Bends(NamedTuple):
     def numbered(self, number: Int) -> Bends:
         """Return the stretches between nodes numbered anew; those of nodes numbered -1 go."""
         pair = number[self.pair]
-        return self._replace(pair=pair).where((pair >= 0).all(axis=1))
+        known: Mask = np.asarray((pair >= 0).all(axis=1))
+        return self._replace(pair=pair).where(known)
 
-    def steps(self, grid: PlantGrid) -> tuple[Float, Float, Int]:
+    def steps(self) -> tuple[Float, Float, Int]:
         """Return the straight steps of all stretches, from and to, and of which each is."""
-        del grid
         from_m, to_m, of = [np.empty((0, 2))], [np.empty((0, 2))], [np.empty(0, np.int64)]
         for k in range(len(self.aisle)):
             line = self._line(k)
@@ -147,7 +147,8 @@ def _in_lanes(grid: PlantGrid, own: Int, aisle: Int, ends: Float) -> Mask:
     low, reached = low[order], np.maximum.accumulate(high[order])
     middle = aisle * far + ends.mean(axis=1)
     before = np.searchsorted(low, middle) - 1
-    return (before >= 0) & (reached[before.clip(0)] >= middle)
+    within: Mask = (before >= 0) & (reached[before.clip(0)] >= middle)
+    return within
 
 
 def _known(grid: PlantGrid) -> tuple[Polylines, Int, NDArray[np.int8]]:
@@ -203,10 +204,8 @@ def _square_between(step: Float, a: Float, b: Float) -> float:
     four = (dx - cx) * (b[1] - cy) - (dy - cy) * (b[0] - cx)
     if one * two < 0.0 and three * four < 0.0:
         return 0.0
-    return min(
-        min(_square_off(cx, cy, a, b), _square_off(dx, dy, a, b)),
-        min(_square_to_step(a, step), _square_to_step(b, step)),
-    )
+    of_ends = min(_square_off(cx, cy, a, b), _square_off(dx, dy, a, b))
+    return min(of_ends, _square_to_step(a, step), _square_to_step(b, step))
 
 
 @nb.njit(cache=True)
@@ -214,7 +213,8 @@ def _square_off(x: float, y: float, a: Float, b: Float) -> float:
     wx, wy = b[0] - a[0], b[1] - a[1]
     share = ((x - a[0]) * wx + (y - a[1]) * wy) / max(wx * wx + wy * wy, 1e-18)
     share = min(max(share, 0.0), 1.0)
-    return (x - a[0] - share * wx) ** 2 + (y - a[1] - share * wy) ** 2
+    square: float = (x - a[0] - share * wx) ** 2 + (y - a[1] - share * wy) ** 2
+    return square
 
 
 @nb.njit(cache=True)
@@ -222,4 +222,5 @@ def _square_to_step(p: Float, step: Float) -> float:
     wx, wy = step[2] - step[0], step[3] - step[1]
     share = ((p[0] - step[0]) * wx + (p[1] - step[1]) * wy) / max(wx * wx + wy * wy, 1e-18)
     share = min(max(share, 0.0), 1.0)
-    return (p[0] - step[0] - share * wx) ** 2 + (p[1] - step[1] - share * wy) ** 2
+    square: float = (p[0] - step[0] - share * wx) ** 2 + (p[1] - step[1] - share * wy) ** 2
+    return square

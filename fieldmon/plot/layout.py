@@ -140,8 +140,8 @@ def _drawn_rows(field: Field, planting: Planting) -> PlantGrid | None:
     if len(lines) == 1:
         if is_straight(lines[0], planting.row_spacing_m):
             return None
+        _check_size(field.name, area, planting)
         lines = copies(lines[0], area, planting.row_spacing_m)
-    _check_size(field.name, area, planting)
     return lay_along(field.name, frame, lines, Ground(area, _obstacles(field, frame)), planting)
 
 

@@ -7,11 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
+from shapely import LineString, Point
 from shapely.ops import substring
 
 from fieldmon.compute.arrays import offsets, runs
 from fieldmon.errors import PlotError
-from fieldmon.plot.bent_layout import Blocked, Ground, RowLines, bent_grid, row_aisles, shut_stretches
+from fieldmon.plot.bent_layout import (
+    Blocked,
+    Ground,
+    RowLines,
+    bent_grid,
+    row_aisles,
+    shut_stretches,
+)
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.row_tracing import sorted_rows
 
@@ -44,32 +52,26 @@ def is_straight(line_m: Float, row_spacing_m: float) -> bool:
 
 def copies(line_m: Float, area: shapely.Geometry, row_spacing_m: float) -> list[Float]:
     """Return a row and its likes beside it, a row spacing apart, as far as an area reaches."""
-    far_m = float(np.hypot(*np.ptp(shapely.get_coordinates(area), axis=0))) + row_spacing_m
-    long = shapely.linestrings(Polylines.each([line_m]).extended(far_m).line(0))
-    rows = [_within(long, area)]
-    for side in (1.0, -1.0):
-        for k in range(1, int(2 * far_m / row_spacing_m) + 1):
-            moved = shapely.offset_curve(long, side * k * row_spacing_m, quad_segs=16)
-            row = _within(_longest(moved), area)
-            if row is None:
-                break
-            rows.append(row)
-    return [row for row in rows if row is not None]
+    size_m = float(np.hypot(*np.ptp(shapely.get_coordinates(area), axis=0)))
+    far_m = size_m + shapely.distance(area, LineString(line_m)) + row_spacing_m
+    long = LineString(Polylines.each([line_m]).extended(far_m).line(0))
+    rows = []
+    for k in range(-int(far_m / row_spacing_m), int(far_m / row_spacing_m) + 1):
+        moved = long if k == 0 else shapely.offset_curve(long, k * row_spacing_m, quad_segs=16)
+        rows += [
+            row for part in shapely.get_parts(moved) if (row := _within(part, area)) is not None
+        ]
+    return rows
 
 
-def _longest(lines: shapely.Geometry) -> shapely.Geometry:
-    parts = shapely.get_parts(lines)
-    return parts[np.argmax(shapely.length(parts))] if len(parts) else lines
-
-
-def _within(line: shapely.Geometry, area: shapely.Geometry) -> Float | None:
+def _within(line: LineString, area: shapely.Geometry) -> Float | None:
     """Return a line from where it first enters an area to where it last leaves it."""
     parts = shapely.get_parts(shapely.intersection(line, area))
     parts = parts[shapely.length(parts) > 0]
     if not len(parts):
         return None
-    at = shapely.line_locate_point(line, shapely.points(shapely.get_coordinates(parts)))
-    inner: Float = shapely.get_coordinates(substring(line, float(at.min()), float(at.max())))
+    ends = [line.project(Point(at)) for at in shapely.get_coordinates(parts)]
+    inner: Float = shapely.get_coordinates(substring(line, min(ends), max(ends)))
     return inner if len(inner) > 1 else None
 
 

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
-from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.row_detection import frame_around
-from fieldmon.plot.row_tracing import TracedRows, trace
+from fieldmon.plot.row_tracing import TracedRows, row_lines_of, trace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -149,22 +148,10 @@ def measured_grid(
 ) -> PlantGrid:
     """Return measured plants ``(n, 2)`` in the rows traced; `ground` as in `bent_grid`."""
     row = np.repeat(np.arange(len(traced.block)), np.diff(traced.row_start))
+    rows = RowLines(row_lines_of(traced), traced.block)
     found = replace(
         planting,
         row_spacing_m=traced.row_spacing_m,
         plant_spacing_m=traced.plant_spacing_m,
     )
-    return bent_grid(frame, lines_of(traced), (xy_m[traced.plant], row), ground, found)
-
-
-def lines_of(traced: TracedRows) -> RowLines:
-    """Return the lines of traced rows, with two corners at least."""
-    start, line_m = traced.row_start, traced.line_m
-    alone = np.flatnonzero(np.diff(start) == 1)
-    if len(alone):
-        # a row of one plant points as the block's rows do: here, along x
-        spots = line_m[start[alone]] + [0.01, 0.0]
-        line_m = np.insert(line_m, start[alone] + 1, spots, axis=0)
-        start = start + np.searchsorted(alone, np.arange(len(start)))
-    return RowLines(Polylines.of(start, line_m), traced.block)
-
+    return bent_grid(frame, rows, (xy_m[traced.plant], row), ground, found)

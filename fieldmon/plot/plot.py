@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, check_apart, grid_from_plants, lay, planting_in
 from fieldmon.plot.measured_rows import SaidRows, row_numbers

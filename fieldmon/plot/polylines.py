@@ -67,8 +67,7 @@ class Polylines(NamedTuple):
     def shapes(self) -> NDArray[np.object_]:
         """Return each as a shapely line."""
         owner = np.repeat(np.arange(len(self)), np.diff(self.start))
-        lines: NDArray[np.object_] = shapely.linestrings(self.xy_m, indices=owner)
-        return lines
+        return np.asarray(shapely.linestrings(self.xy_m, indices=owner), np.object_)
 
     def simpler(self, off_m: float) -> Self:
         """Return the lines with as few corners as keep them this near to what they were."""
@@ -198,4 +197,5 @@ def _square_to(corner: Float, k: int, x: float, y: float) -> float:
     wx, wy = corner[k + 1, 0] - corner[k, 0], corner[k + 1, 1] - corner[k, 1]
     px, py = x - corner[k, 0], y - corner[k, 1]
     share = min(max((px * wx + py * wy) / max(wx * wx + wy * wy, 1e-12), 0.0), 1.0)
-    return (px - share * wx) ** 2 + (py - share * wy) ** 2
+    square: float = (px - share * wx) ** 2 + (py - share * wy) ** 2
+    return square

@@ -293,7 +293,7 @@ def _find_bent(
     if lane is not None:
         xy_m = np.concatenate([xy_m, lane[0]])
     bends = bends_of(grid, place, at_m, None if lane is None else (gate, *lane[1:]))
-    bends = bends.where(_driveable(bends, grid, obstacles))
+    bends = bends.where(_driveable(bends, obstacles))
     across = place.reshape(-1, 3)
     trusted = np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)
     tried = [across[:, :2], across[:, 1:], _nearest(xy_m), _jumps(grid, place)]
@@ -319,11 +319,11 @@ def _lane_at(grid: PlantGrid, gate_m: Float) -> tuple[Float, int, float] | None:
     return grid.aisles_m.points(aisle, at_m), int(aisle[0]), float(at_m[0])
 
 
-def _driveable(bends: Bends, grid: PlantGrid, obstacles: Obstacles) -> Mask:
+def _driveable(bends: Bends, obstacles: Obstacles) -> Mask:
     """Tell of stretches of aisles whether they can be driven; those of a lane always can."""
     good = bends.in_lane.copy()
     asked = np.flatnonzero(~good)
-    from_m, to_m, of = bends.where(~good).steps(grid)
+    from_m, to_m, of = bends.where(~good).steps()
     bad = ~obstacles.clear(from_m, to_m)
     good[asked] = np.bincount(of[bad], minlength=len(asked)) == 0
     return good

@@ -94,7 +94,7 @@ def _badness(xy_m: Float, angle_deg: float) -> float:
     order, within, between = _in_turn(xy_m, angle_deg)
     pairs = xy_m[order].reshape(-1, 2, 2)
     length = float(np.hypot(*(pairs[:, 1] - pairs[:, 0]).T).mean())
-    return float(within.mean() / max(between.min(), 1e-9)) + 1e-3 * between.mean() / length
+    return float(within.mean() / max(between.min(), 1e-9) + 1e-3 * between.mean() / length)
 
 
 def contour_row(field: Field, height_m: Callable[[Float], Float], step_m: float) -> MultiLineString:
@@ -136,8 +136,9 @@ def contour_row(field: Field, height_m: Callable[[Float], Float], step_m: float)
             f"{field.name!r} the raster shows {'none' if not np.isfinite(level) else 'no slope'}. "
             "Choose another raster, or give the row bearing."
         )
-    return MultiLineString([frame.lonlat(shapely.get_coordinates(
-        shapely.simplify(shapely.linestrings(line), 0.02)))])
+    return MultiLineString(
+        [frame.lonlat(shapely.get_coordinates(shapely.simplify(shapely.linestrings(line), 0.02)))]
+    )
 
 
 def _followed(

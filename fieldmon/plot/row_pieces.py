@@ -1,8 +1,8 @@
 """Plants grouped into pieces of rows by what stands in line about every place of a plot.
 
 About each place a window of some sixty plants is looked through in every direction, and with every
-bend: rows are where plants stand in the fewest, densest lines. Windows overlap; lines of two windows
-that hold the same plants are one row. So rows may bend and blocks turn: nothing is asked to be
+bend: rows are where plants stand in the fewest, densest lines. Windows overlap; lines of two
+windows that hold the same plants are one row. So rows may bend and blocks turn: nothing is asked to be
 straight farther than a window.
 """
 
@@ -195,7 +195,7 @@ def _grow(windows: Windows, score: Float, angle: Float) -> None:
         angle[seed] = np.pi * np.argmax(score[seed]) / score.shape[1]
         done[seed] = True
         queue = [(-clear[seed], seed)]
-        while len(queue):
+        while queue:
             _, w = heapq.heappop(queue)
             column, line = windows.key[w] // windows.high, windows.key[w] % windows.high
             for i in range(column - 1, column + 2):
@@ -339,8 +339,8 @@ def _unite(
     start, member, line = seen
     first, lines = known
     label, stamp = np.empty(n, np.int64), np.full(n, -1)
-    shared = np.empty((_MOST_LINES + 1, _MOST_LINES + 1), np.int64)
-    here, there = np.empty(_MOST_LINES + 1, np.int64), np.empty(_MOST_LINES + 1, np.int64)
+    shared = np.empty((_MOST_LINES + 2, _MOST_LINES + 2), np.int64)
+    here, there = np.empty(_MOST_LINES + 2, np.int64), np.empty(_MOST_LINES + 2, np.int64)
     for w in range(windows.key.size):
         for place in range(start[w], start[w + 1]):
             label[member[place]], stamp[member[place]] = line[place], w
@@ -353,11 +353,12 @@ def _unite(
                 ours, theirs = first[w + 1] - first[w], first[other + 1] - first[other]
                 shared[:ours, :theirs], here[:ours], there[:theirs] = 0, 0, 0
                 for place in range(start[other], start[other + 1]):
+                    # plants that the first window does not see are counted apart
                     p = member[place]
-                    if stamp[p] == w:
-                        shared[label[p], line[place]] += 1
-                        here[label[p]] += 1
-                        there[line[place]] += 1
+                    a = label[p] if stamp[p] == w else ours
+                    shared[a, line[place]] += 1
+                    here[a] += 1
+                    there[line[place]] += a < ours
                 for a in range(ours):
                     for b in range(theirs):
                         both = shared[a, b]
@@ -377,9 +378,9 @@ def _join(first: Int, lines: _Lines, one: int, two: int) -> None:
     while True:
         w = lines.window[k]
         for other in range(first[w], first[w + 1]):
-            if other != k and min(lines.plants[other], lines.plants[k]) >= 3:
-                if _top(lines.top, other) == one:
-                    return
+            seen = min(lines.plants[other], lines.plants[k]) >= 3
+            if other != k and seen and _top(lines.top, other) == one:
+                return
         k = lines.after[k]
         if k == two:
             break

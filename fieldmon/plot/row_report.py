@@ -11,8 +11,6 @@ from fieldmon.compute.wording import counted
 from fieldmon.plot.row_tracing import beside_their_rows
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.measured_rows import SaidRows
     from fieldmon.plot.row_detection import Rows

@@ -30,6 +30,8 @@ _SMOOTHED = 13
 # rows beside each other run the same way within this, and are this many usual spacings apart
 _ASTRAY_DEG, _BESIDE = 30.0, 1.7
 _REFITS = 2
+# the lines of so many of the nearest plants may be a plant's own
+_ASKED = 8
 # blocks of fewer plants may be scraps of others
 _SCRAP = 12
 # lines are looked about from so many places of each
@@ -163,7 +165,8 @@ def _from_one_end(graph: coo_array, strand: Int) -> Float:
     far = dijkstra(graph, directed=False, indices=anyone, min_only=True)
     order = np.lexsort((far, strand))
     last = order[np.append(np.flatnonzero(np.diff(strand[order])), len(strand) - 1)]
-    return dijkstra(graph, directed=False, indices=last, min_only=True)
+    along: Float = dijkstra(graph, directed=False, indices=last, min_only=True)
+    return along
 
 
 def _ordered(xy_m: Float, strand: Int, along: Float, angle: Float | None = None) -> _Strands:
@@ -266,7 +269,7 @@ def _beside_lines(lines: Polylines, strands: _Strands, reach_m: float) -> _Besid
     found = []
     for sign in (1, -1):
         ends = strands.line_m + sign * reach_m * left
-        rays = shapely.linestrings(np.stack([strands.line_m, ends], axis=1))
+        rays = np.atleast_1d(shapely.linestrings(np.stack([strands.line_m, ends], axis=1)))
         ray, hit = tree.query(rays, predicate="intersects")
         ray, hit = ray[owner[ray] != hit], hit[owner[ray] != hit]
         met = shapely.intersection(rays[ray], shapes[hit])
@@ -306,11 +309,13 @@ class _Rows(NamedTuple):
         place = _block_order(strands, block)
         keys = np.stack([place, level], axis=1)
         rows, row = np.unique(keys, axis=0, return_inverse=True)
-        return cls(row.reshape(-1), sign < 0, np.unique(rows[:, 0], return_inverse=True)[1], spacing_m)
+        return cls(
+            row.reshape(-1), sign < 0, np.unique(rows[:, 0], return_inverse=True)[1], spacing_m
+        )
 
 
 class _Beside(NamedTuple):
-    """Pairs of strands beside each other ``(e,)``: the other is to the left (+1) or right of one."""
+    """Pairs of strands beside each other ``(e,)``: the other is left (+1) or right of one."""
 
     one: Int
     other: Int
@@ -486,11 +491,15 @@ def _absorbed(
 
 
 def _continued(
-    xy_m: Float, lines: Polylines, beside_m: float, beyond_m: float
+    xy_m: Float, lines: Polylines, beside_m: float, beyond_m: float | None
 ) -> tuple[Int, Float, NDArray[np.bool_]]:
-    """Return the line that each plant continues best, its place on it, and whether it does."""
+    """Return the line that each plant continues best, its place on it, and whether it does.
+
+    It does if it stands no farther beside the line and beyond its end; without a limit to that the
+    nearest line counts.
+    """
     owner = np.repeat(np.arange(len(lines)), np.diff(lines.start))
-    k = min(12, len(owner))
+    k = min(_ASKED, len(owner))
     near = cKDTree(lines.xy_m).query(xy_m, k=np.arange(1, k + 1))[1]
     best, line, place = np.full(len(xy_m), np.inf), owner[near[:, 0]], np.zeros(len(xy_m))
     for column in range(k):
@@ -499,7 +508,10 @@ def _continued(
         at, left = (np.empty(len(xy_m)) for _ in range(2))
         at[order], left[order] = lines.project(xy_m[order], asked[order])
         beyond = np.maximum(-at, at - lines.length_m[asked])
-        off = np.where(beyond <= beyond_m, np.abs(left), np.inf)
+        if beyond_m is None:
+            off = np.hypot(left, np.maximum(beyond, 0.0))
+        else:
+            off = np.where(beyond <= beyond_m, np.abs(left), np.inf)
         better = off < best
         best[better], line[better], place[better] = off[better], asked[better], at[better]
     return line, place, best <= beside_m
@@ -521,47 +533,24 @@ def _in_line(strands: _Strands, rows: _Rows, parts: list[int]) -> list[int]:
 
 def _nearest_lines(xy_m: Float, strands: _Strands) -> _Strands:
     """Return the rows with each plant in that whose line is nearest, and in its order there."""
-    line_m, owner = strands.line_m, strands.owner
-    near = cKDTree(line_m).query(xy_m, k=min(12, len(line_m)))[1].reshape(len(xy_m), -1)
-    length = np.concatenate(
-        [np.append(0.0, np.cumsum(np.hypot(*np.diff(line_m[a:b], axis=0).T)))
-         for a, b in zip(strands.start[:-1].tolist(), strands.start[1:].tolist(), strict=True)]
-    )
-    row, along = np.empty(len(xy_m), np.int64), np.empty(len(xy_m))
-    _nearest_line(xy_m, (line_m, strands.start, owner, length), near, row, along)
-    gone = np.unique(row, return_inverse=True)
-    if len(gone[0]) < len(strands.start) - 1:
+    row, along, _ = _continued(xy_m, _lines(strands), np.inf, None)
+    if len(np.unique(row)) < len(strands.start) - 1:
         return strands
     return _ordered(xy_m, row, along)
 
 
-@nb.njit(cache=True)
-def _nearest_line(
-    xy_m: Float, lines: tuple[Float, Int, Int, Float], near: Int, row: Int, along: Float
-) -> None:
-    """Fill in the row whose line is nearest to each plant, and how far along that the plant is."""
-    line_m, start, owner, length = lines
-    for i in range(len(xy_m)):
-        best = np.inf
-        for k in near[i]:
-            of = owner[k]
-            for a in (k - 1, k):
-                if a < start[of] or a + 1 >= start[of + 1]:
-                    if start[of + 1] - start[of] > 1:
-                        continue
-                b = min(a + 1, start[of + 1] - 1)
-                a = max(a, start[of])
-                wx, wy = line_m[b, 0] - line_m[a, 0], line_m[b, 1] - line_m[a, 1]
-                square = max(wx * wx + wy * wy, 1e-12)
-                x, y = xy_m[i, 0] - line_m[a, 0], xy_m[i, 1] - line_m[a, 1]
-                share = (x * wx + y * wy) / square
-                held = min(max(share, 0.0), 1.0)
-                off = np.hypot(x - held * wx, y - held * wy)
-                if off < best:
-                    best, row[i] = off, of
-                    # beyond an end plants keep their order
-                    at_end = (a == start[of] and share < 0) or (b == start[of + 1] - 1 and share > 1)
-                    along[i] = length[a] + (share if at_end else held) * np.sqrt(square)
+def row_lines_of(traced: TracedRows) -> Polylines:
+    """Return the lines of traced rows; that of a single plant is short, and along x."""
+    ahead = np.tile([1.0, 0.0], (len(traced.plant), 1))
+    return _lines(_Strands(traced.plant, traced.row_start, traced.line_m, ahead))
+
+
+def _lines(strands: _Strands) -> Polylines:
+    """Return the lines of strands; that of a single plant is short."""
+    alone = np.flatnonzero(np.diff(strands.start) == 1)
+    at = strands.start[alone]
+    xy_m = np.insert(strands.line_m, at + 1, strands.line_m[at] + 0.01 * strands.ahead[at], axis=0)
+    return Polylines.of(strands.start + np.searchsorted(alone, np.arange(len(strands.start))), xy_m)
 
 
 def beside_their_rows(xy_m: Float, row: NDArray[np.integer]) -> tuple[Float, float]:

@@ -172,7 +172,9 @@ class Aisles:
         if i < 0:
             return np.empty((0, 2))
         row = end // 2
-        return self._corners(row, float(self.grid.along_m[i]), float(self.grid.lane_x_m[row, end % 2]))
+        return self._corners(
+            row, float(self.grid.along_m[i]), float(self.grid.lane_x_m[row, end % 2])
+        )
 
     def _corners(self, row: int, from_m: float, to_m: float) -> Float:
         if self.grid.aisles_m is None or self.grid.aisle is None:

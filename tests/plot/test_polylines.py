@@ -48,7 +48,9 @@ def test_a_point_beside_a_line_projects_to_where_the_line_is_nearest(drawn):
         xy_m = known.points(which, place) + off[:, None] * np.stack([-ahead[:, 1], ahead[:, 0]], 1)
         at, left = known.project(xy_m, which)
         shape = shapely.linestrings(line)
-        assert np.abs(left) == pytest.approx(shapely.distance(shape, shapely.points(xy_m)), abs=1e-9)
+        assert np.abs(left) == pytest.approx(
+            shapely.distance(shape, shapely.points(xy_m)), abs=1e-9
+        )
         foot = known.points(which, at)
         assert np.hypot(*(foot - xy_m).T) == pytest.approx(np.abs(left), abs=1e-9)
 

@@ -50,7 +50,7 @@ def test_names_pair_posts_that_lie_anyhow():
 
 def test_posts_that_are_not_two_a_row_are_refused():
     lonlat, row = posts(5, 3)
-    with pytest.raises(PlotError, match="two a row.*there are 9"):
+    with pytest.raises(PlotError, match=r"two a row.*there are 9"):
         rows_from_posts(lonlat[:9])
     names = row.astype(np.str_)
     names[0] = names[row != row[0]][0]
@@ -91,7 +91,7 @@ def test_rows_of_a_terrace_follow_its_contours_and_keep_their_spacing():
         assert np.ptp(height_m[mine]) < 0.1
     # neighbours across are the spacing apart, within 5 %
     one = np.repeat(np.arange(len(grid)), np.diff(grid.across_start))
-    radius = np.hypot(*(FRAME.xy_m(grid.lonlat()) + [0.0, 90.0]).T)
+    radius = np.hypot(*(FRAME.xy_m(grid.lonlat()) + np.array([0.0, 90.0])).T)
     apart_m = np.abs(radius[one] - radius[grid.across_plant])
     assert apart_m == pytest.approx(np.full(len(apart_m), 3.0), rel=0.05)
 

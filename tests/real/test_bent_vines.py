@@ -84,14 +84,14 @@ def test_distances_along_a_row_are_those_along_its_lane(survey, radius_m, noise_
         ends = mine[[np.argmin(vines.along_m[mine]), np.argmax(vines.along_m[mine])]]
         driven_m = float(plot.aisles.distance_m(*plant[ends]))
         # the lane runs beside the row, on one side or the other: at another radius
-        angle = np.ptp(vines.along_m[ends]) / row_radius_m(vines, row, radius_m)
+        angle = np.ptp(vines.along_m[ends]) / row_radius_m(row, radius_m)
         by_m = angle * (plot.grid.row_spacing_m / 2)
         along_m = np.ptp(vines.along_m[ends])
         off = min(abs(driven_m - along_m - by_m), abs(driven_m - along_m + by_m))
         assert off < 0.01 * along_m
 
 
-def row_radius_m(vines, row, radius_m):
+def row_radius_m(row, radius_m):
     """Return the radius of a row: rows are 2.5 m apart, the middle one of 20 is at the radius."""
     return radius_m + (row - 9.5) * 2.5
 

@@ -1,9 +1,9 @@
 """Plants grouped into pieces of rows by what stands in line about every place of a plot.
 
-About each place a window of some sixty plants is looked through in every direction, and with every
-bend: rows are where plants stand in the fewest, densest lines. Windows overlap; lines of two
-windows that hold the same plants are one row. So rows may bend and blocks turn: nothing is asked to be
-straight farther than a window.
+About each place a window of some sixty plants is looked through in every direction, and with
+every bend: rows are where plants stand in the fewest, densest lines. Windows overlap; lines of two
+windows that hold the same plants are one row. So rows may bend and blocks turn: nothing is asked
+to be straight farther than a window.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Plants in rows that bend and blocks that turn: lanes, neighbours and ways as for straight ones."""
+"""Plants in rows that bend and blocks that turn: lanes, neighbours, ways."""
 
 from itertools import pairwise
 

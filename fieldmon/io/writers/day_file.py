@@ -31,8 +31,8 @@ _NO_TEXT = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 class Stop(NamedTuple):
     """One stop, in numbers and words that stand in files.
 
-    ``order``, ``block``, ``row``, ``number`` and ``face`` count from 1; ``plant`` is the plant's number in
-    the grid, from 0. ``vertex`` tells where on the driven line the robot stands.
+    ``order``, ``block``, ``row``, ``number`` and ``face`` count from 1; ``plant`` is the plant's
+    number in the grid, from 0. ``vertex`` tells where on the driven line the robot stands.
     """
 
     order: int

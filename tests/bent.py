@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 import shapely
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
@@ -155,8 +156,13 @@ def bent_grids(draw, *, faces: tuple[int, ...] = (1, 2)):
             lines.append(line)
             block.append(number)
     rows = RowLines(Polylines.each(lines), np.array(block))
-    ground = Ground(None, _pond(draw, np.concatenate(xy_m)))
-    return bent_grid(FRAME, rows, (np.concatenate(xy_m), np.concatenate(row)), ground, planting)
+    plants, row = np.concatenate(xy_m), np.concatenate(row)
+    pond = _pond(draw, plants)
+    # nobody plants beside it, where no robot could come
+    shore_m = planting.row_spacing_m + planting.plant_spacing_m
+    dry = ~shapely.contains_xy(shapely.buffer(pond, shore_m), plants)
+    assume(dry.any())
+    return bent_grid(FRAME, rows, (plants[dry], row[dry]), Ground(None, pond), planting)
 
 
 def _block_rows(draw, planting: Planting, rng: np.random.Generator) -> list[np.ndarray]:

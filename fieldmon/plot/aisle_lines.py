@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
 # a middle has as few corners as keep it this near to where it would be with all
 _THIN_M = 0.02
-# rows are looked at so finely: on a bend of 60 m this is exact to 3 cm
-_STEP_M = 4.0
+# rows are looked at as finely as keeps the middle this near to where it would be, and no coarser
+# than so far
+_NEAR_M, _STEP_M = 0.03, 4.0
 _RIGHT, _LEFT = -1.0, 1.0
 
 
@@ -56,7 +57,7 @@ def aisles_of(rows: Polylines, block: Int, row_spacing_m: float, beyond_m: float
         How much longer than the rows.
     """
     right = np.arange(len(rows)) + block
-    line, place = sampled(rows, min(1.5 * row_spacing_m, _STEP_M))
+    line, place = sampled(rows, _step_m(rows, row_spacing_m))
     start = offsets(np.bincount(line, minlength=len(rows)))
     thin = Polylines.of(start, rows.points(line, place))
     middles: list[Float] = []
@@ -64,10 +65,10 @@ def aisles_of(rows: Polylines, block: Int, row_spacing_m: float, beyond_m: float
         first = row == 0 or block[row] != block[row - 1]
         last = row + 1 == len(rows) or block[row] != block[row + 1]
         if first:
-            gap_m = row_spacing_m if last else _apart(rows, thin, row, row + 1)
+            gap_m = row_spacing_m if last else _apart(rows, thin, row, row + 1, row_spacing_m)
             middles.append(_beside(thin.line(row), _RIGHT * gap_m / 2))
         if last:
-            gap_m = row_spacing_m if first else _apart(rows, thin, row, row - 1)
+            gap_m = row_spacing_m if first else _apart(rows, thin, row, row - 1, row_spacing_m)
             middles.append(_beside(thin.line(row), _LEFT * gap_m / 2))
         else:
             middles.append(_between(rows, thin, row, row_spacing_m))
@@ -75,10 +76,26 @@ def aisles_of(rows: Polylines, block: Int, row_spacing_m: float, beyond_m: float
     return RowAisles(lines, right, right + 1)
 
 
-def _apart(rows: Polylines, thin: Polylines, row: int, other: int) -> float:
-    """Return the usual distance from one row to another."""
-    _, left = rows.project(thin.line(row), np.full(len(thin.line(row)), other))
-    return float(np.median(np.abs(left)))
+def _step_m(rows: Polylines, row_spacing_m: float) -> float:
+    """Return how finely rows must be looked at where they bend most."""
+    line, place = sampled(rows, _STEP_M)
+    way = np.diff(rows.points(line, place), axis=0)[np.diff(line) == 0]
+    angle = np.arctan2(way[:, 1], way[:, 0])
+    length = np.hypot(way[:, 0], way[:, 1])
+    turn = np.abs((np.diff(angle) + np.pi) % (2 * np.pi) - np.pi)
+    # steps of different rows meet nowhere
+    of = line[1:][np.diff(line) == 0]
+    bends = (turn / np.maximum(length[1:], 0.1))[np.diff(of) == 0]
+    tightest_m = 1.0 / max(float(np.quantile(bends, 0.99)), 1e-3) if len(bends) else 1e3
+    return float(min(1.5 * row_spacing_m, _STEP_M, np.sqrt(8 * _NEAR_M * tightest_m)))
+
+
+def _apart(rows: Polylines, thin: Polylines, row: int, other: int, usual_m: float) -> float:
+    """Return the distance from one row to another where both are, at most the usual one."""
+    line = thin.line(row)
+    place, left = rows.project(line, np.full(len(line), other))
+    beside = (place >= 0) & (place <= rows.length_m[other])
+    return min(float(np.median(np.abs(left[beside]))), usual_m) if beside.any() else usual_m
 
 
 def _between(rows: Polylines, thin: Polylines, row: int, row_spacing_m: float) -> Float:

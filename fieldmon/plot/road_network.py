@@ -308,15 +308,17 @@ def _find_bent(
 
 
 def _lane_at(grid: PlantGrid, gate_m: Float) -> tuple[Float, int, float] | None:
-    """Return the place in a lane, ``(1, 2)``, its aisle and place, of a gate among the rows."""
+    """Return where in an aisle a gate among the rows is, ``(1, 2)``, the aisle and the place."""
     far_m, plant = grid.tree.query(gate_m[0])
     row = int(grid.row[plant])
     if grid.aisles_m is None or grid.aisle is None or far_m > 0.75 * grid.row_spacing_m:
         return None
-    aisle = grid.aisle[row : row + 1]
-    at_m, _ = grid.aisles_m.project(gate_m, aisle)
-    at_m = np.clip(at_m, *grid.lane_x_m[row])
-    return grid.aisles_m.points(aisle, at_m), int(aisle[0]), float(at_m[0])
+    both = grid.aisle[row] + np.array([0, -1 if grid.side[row] < 0 else 1])
+    at_m, left_m = grid.aisles_m.project(np.repeat(gate_m, 2, axis=0), both)
+    near = np.argmin(np.abs(left_m))
+    aisle = both[near : near + 1]
+    place_m = np.clip(at_m[near], 0.0, grid.aisles_m.length_m[aisle])
+    return grid.aisles_m.points(aisle, place_m), int(aisle[0]), float(place_m[0])
 
 
 def _driveable(bends: Bends, obstacles: Obstacles) -> Mask:

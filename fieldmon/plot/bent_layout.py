@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
-    from shapely.geometry.base import BaseGeometry
 
     from fieldmon.plot.aisle_lines import RowAisles
     from fieldmon.plot.layout import Planting
@@ -84,7 +83,7 @@ class Ground(NamedTuple):
     """
 
     area: MultiPolygon | None
-    obstacles: BaseGeometry
+    obstacles: shapely.Geometry
     blocked: Blocked | None = None
     aisles: RowAisles | None = None
 
@@ -158,10 +157,10 @@ def _around(
 
 
 def blocked_by(
-    obstacles: BaseGeometry, rows: RowLines, aisles: RowAisles, planting: Planting
+    obstacles: shapely.Geometry, rows: RowLines, aisles: RowAisles, planting: Planting
 ) -> Blocked:
     """Return where something stands between rows and the aisle they are inspected from."""
-    if obstacles.is_empty:
+    if shapely.is_empty(obstacles):
         return Blocked.nowhere()
 
     def shut(shapes: NDArray[np.object_]) -> NDArray[np.bool_]:
@@ -186,7 +185,7 @@ def shut_stretches(
     coarse_m = 16 * planting.plant_spacing_m
     n = np.ceil((rows.lines.length_m + 2 * far_m) / coarse_m).astype(np.int64)
     k, row = runs(np.zeros(len(n), np.int64), n)
-    from_m: Float = k * coarse_m - far_m
+    from_m = np.asarray(k * coarse_m - far_m, np.float64)
     to_m: Float = np.minimum(from_m + coarse_m, rows.lines.length_m[row] + far_m)
     hit = np.flatnonzero(shut(_strips(rows, aisles, planting, (row, from_m, to_m), 8)))
     m = int(np.ceil(coarse_m / (_FINE * planting.plant_spacing_m)))

@@ -88,7 +88,8 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
     first = grid.side == grid.side[0]
     faces = np.flatnonzero(first[grid.row])
     xy_m, row = grid.xy_m[faces], grid.row_line[grid.row[faces]]
-    off_m, free = beside_their_rows(xy_m, row)
+    off_m, alone_m, free = beside_their_rows(xy_m, row)
+    decided = said.bearing or said.label is not None or grid.aisles_m is not None
     typical_m = float(np.sqrt(np.sum(off_m**2) / free)) if free > 0 else 0.0
     # what bends was only taken since plants stand in it; of straight lines that is not known
     straight = grid.aisles_m is None and "hardly" in found.how
@@ -100,9 +101,9 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
     return RowReport(
         f"{how} their lines",
         typical_m,
-        float(np.mean(off_m > _OFF * grid.row_spacing_m)),
+        float(np.mean(alone_m > _OFF * grid.row_spacing_m)),
         said.label is not None or not scattered,
-        () if said.bearing or said.label is not None else found.others_deg,
+        () if decided else found.others_deg,
         said.misnamed,
         said.label is not None,
     )

@@ -174,7 +174,7 @@ def _ordered(xy_m: Float, strand: Int, along: Float, angle: Float | None = None)
     plant = np.lexsort((along, strand))
     start = offsets(np.bincount(strand))
     line_m, ahead = np.empty((len(plant), 2)), np.empty((len(plant), 2))
-    _smooth(xy_m[plant], start, along[plant], line_m, ahead)
+    _smooth(xy_m[plant], start, along[plant], (line_m, ahead, np.empty(len(plant))))
     if angle is not None:
         few = np.repeat(np.diff(start) < 3, np.diff(start))
         turn = angle[plant[few]]
@@ -183,8 +183,9 @@ def _ordered(xy_m: Float, strand: Int, along: Float, angle: Float | None = None)
 
 
 @nb.njit(cache=True)
-def _smooth(xy_m: Float, start: Int, along: Float, line_m: Float, ahead: Float) -> None:
-    """Fit a parabola about each plant, and take its point and direction there."""
+def _smooth(xy_m: Float, start: Int, along: Float, made: tuple[Float, Float, Float]) -> None:
+    """Fit a parabola about each plant: its point and direction there, and the plant's own part."""
+    line_m, ahead, own = made
     for row in range(start.size - 1):
         first, end = start[row], start[row + 1]
         for i in range(first, end):
@@ -205,8 +206,8 @@ def _smooth(xy_m: Float, start: Int, along: Float, line_m: Float, ahead: Float) 
                 x0, x1, x2 = x0 + weight * x, x1 + weight * x * t, x2 + weight * x * t * t
                 y0, y1, y2 = y0 + weight * y, y1 + weight * y * t, y2 + weight * y * t * t
             n = high - low
-            px, dx = _fit(n, (s0, s1, s2, s3, s4), (x0, x1, x2))
-            py, dy = _fit(n, (s0, s1, s2, s3, s4), (y0, y1, y2))
+            px, dx, own[i] = _fit(n, (s0, s1, s2, s3, s4), (x0, x1, x2))
+            py, dy, own[i] = _fit(n, (s0, s1, s2, s3, s4), (y0, y1, y2))
             line_m[i, 0], line_m[i, 1] = xy_m[i, 0] + px, xy_m[i, 1] + py
             length = np.hypot(dx, dy)
             ahead[i, 0] = dx / length if length > 0 else 1.0
@@ -216,21 +217,26 @@ def _smooth(xy_m: Float, start: Int, along: Float, line_m: Float, ahead: Float) 
 @nb.njit(cache=True)
 def _fit(
     n: int, s: tuple[float, float, float, float, float], v: tuple[float, float, float]
-) -> tuple[float, float]:
-    """Return value and slope at 0 of the weighted parabola, or line where plants are few."""
+) -> tuple[float, float, float]:
+    """Return value and slope at 0 of the weighted parabola, or line where plants are few.
+
+    And the part of the value that is the plant's own at 0.
+    """
     if n < 2:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0
     if n < 6:
         det = s[0] * s[2] - s[1] * s[1]
         if det <= 1e-12:
-            return 0.0, 0.0
-        return (s[2] * v[0] - s[1] * v[1]) / det, (s[0] * v[1] - s[1] * v[0]) / det
+            return 0.0, 0.0, 0.0
+        value = (s[2] * v[0] - s[1] * v[1]) / det
+        return value, (s[0] * v[1] - s[1] * v[0]) / det, s[2] / det
     c0, c1, c2 = s[2] * s[4] - s[3] * s[3], s[2] * s[3] - s[1] * s[4], s[1] * s[3] - s[2] * s[2]
     det = s[0] * c0 + s[1] * c1 + s[2] * c2
     if abs(det) <= 1e-12:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0
     d1, d2 = s[0] * s[4] - s[2] * s[2], s[1] * s[2] - s[0] * s[3]
-    return (c0 * v[0] + c1 * v[1] + c2 * v[2]) / det, (c1 * v[0] + d1 * v[1] + d2 * v[2]) / det
+    value = (c0 * v[0] + c1 * v[1] + c2 * v[2]) / det
+    return value, (c1 * v[0] + d1 * v[1] + d2 * v[2]) / det, c0 / det
 
 
 class DrawnRows(NamedTuple):
@@ -269,7 +275,8 @@ def _beside_lines(lines: Polylines, strands: _Strands, reach_m: float) -> _Besid
     found = []
     for sign in (1, -1):
         ends = strands.line_m + sign * reach_m * left
-        rays = np.atleast_1d(shapely.linestrings(np.stack([strands.line_m, ends], axis=1)))
+        ways = np.stack([strands.line_m, ends], axis=1)
+        rays = np.asarray(shapely.linestrings(ways), np.object_)
         ray, hit = tree.query(rays, predicate="intersects")
         ray, hit = ray[owner[ray] != hit], hit[owner[ray] != hit]
         met = shapely.intersection(rays[ray], shapes[hit])
@@ -553,22 +560,32 @@ def _lines(strands: _Strands) -> Polylines:
     return Polylines.of(strands.start + np.searchsorted(alone, np.arange(len(strands.start))), xy_m)
 
 
-def beside_their_rows(xy_m: Float, row: NDArray[np.integer]) -> tuple[Float, float]:
-    """Return how far each plant is from the line of its row, ``(n,)``, and what tells of it.
+class BesideRows(NamedTuple):
+    """How far plants stand beside the lines of their rows.
 
-    Plants come row by row, along each. A line that bends follows few plants of itself: about a
-    fourth of them, and two a row, say nothing of how far plants stray. The others are counted.
+    ``off_m (n,)`` from the line through all of them, ``alone_m (n,)`` from that of the others; and
+    how many are ``free`` to say so: a line that bends follows few plants of itself, about a
+    fourth of them and two a row.
     """
+
+    off_m: Float
+    alone_m: Float
+    free: float
+
+
+def beside_their_rows(xy_m: Float, row: NDArray[np.integer]) -> BesideRows:
+    """Return how far plants stand beside their rows; they come row by row, along each."""
     n_plants = np.bincount(row)
     n_plants = n_plants[n_plants > 0]
     start = offsets(n_plants)
-    line_m, ahead = np.empty_like(xy_m), np.empty_like(xy_m)
+    line_m, ahead, own = np.empty_like(xy_m), np.empty_like(xy_m), np.empty(len(xy_m))
     step = np.append(0.0, np.hypot(*np.diff(xy_m, axis=0).T))
     xy_m = np.ascontiguousarray(xy_m)
-    _smooth(xy_m, start, np.cumsum(step), line_m, ahead)
+    _smooth(xy_m, start, np.cumsum(step), (line_m, ahead, own))
     off = xy_m - line_m
     off_m: Float = np.abs(ahead[:, 0] * off[:, 1] - ahead[:, 1] * off[:, 0])
-    return off_m, float(np.maximum(0.75 * n_plants - 2.0, 0.0).sum())
+    alone_m: Float = off_m / np.maximum(1.0 - own, 0.2)
+    return BesideRows(off_m, alone_m, float(np.maximum(0.75 * n_plants - 2.0, 0.0).sum()))
 
 
 def _traced(xy_m: Float, strands: _Strands, block: Int, spacing_m: float) -> TracedRows:

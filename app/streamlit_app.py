@@ -1,4 +1,4 @@
-"""The app's frame: `fieldmon app` runs it."""
+"""The app's frame: the map on the whole page, a panel beside it; `fieldmon app` runs it."""
 
 import importlib
 import sys
@@ -19,8 +19,9 @@ importlib.import_module(__package__)
 # little more than this is needed for a first screen: the rest is loaded below
 from fieldmon.errors import FieldmonError  # noqa: E402 - after the path is right
 
+from .show import field_map  # noqa: E402
 from .startup import first_screen, preload  # noqa: E402
-from .state import browser, plot_source, widget_memory  # noqa: E402
+from .state import browser, plot_source, rooms, widget_memory  # noqa: E402
 from .words import texts  # noqa: E402
 
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
@@ -34,65 +35,104 @@ def view(name: str):  # noqa: ANN201 - a page's module
     return importlib.import_module(f".views.{name}", __package__)
 
 
-def page(name: str, title: str, icon: str, path: str = "") -> st.Page:
-    """Return a page that shows what was chosen, or how to begin."""
-    path = path or name
+def links() -> None:
+    """Show the way to the other rooms where the window is too narrow for them at the top."""
+    with st.container(key="links", horizontal=True):
+        for name, page in ROOM_PAGES.items():
+            st.page_link(page, label=texts.ROOMS[name], icon=f":material/{rooms.ROOMS[name].icon}:")
+
+
+def page_of(name: str) -> st.Page:
+    """Return the page of a room: what was chosen in the panel, or how to begin."""
 
     def run() -> None:
-        # a box of its own, empty or not: a map below that moves by a place forgets its zoom
-        above = st.container()
-        places = (first_screen.places(),) if name == "today" else ()
-        preload.start().load(map_sent=bool(places))
-        from .actions.choosing import choose  # noqa: PLC0415 - as just loaded
-        from .state import notices  # noqa: PLC0415
+        with st.container(key="panel"), st.container(key=f"room_{name}"):
+            if name == "plots":
+                links()
+                preload.start().load(map_sent=False)
+                view("plots").show()
+            else:
+                in_panel(name)
 
-        chosen = choose(first_screen.waiting(*places))
-        with above:
-            notices.show()
+    return st.Page(
+        run, title=texts.ROOMS[name], icon=f":material/{rooms.ROOMS[name].icon}:",
+        url_path=name, default=name == "today",
+    )  # fmt: skip
+
+
+def in_panel(name: str) -> None:
+    """Show a room in the panel: where and when, its parts, and who works."""
+    head, said, body, foot = (
+        st.container(key=f"panel_{k}") for k in ("head", "said", "body", "foot")
+    )
+    with head:
+        links()
+    with said:
+        waiting = first_screen.FirstScreen(st.empty())
+    preload.start().load(map_sent=waiting.begin())
+    from .actions.bringing_files import show_left_out  # noqa: PLC0415 - as just loaded
+    from .actions.choosing import choose, mark_day  # noqa: PLC0415
+    from .state import notices  # noqa: PLC0415
+
+    chosen = choose(head, foot, waiting.wait)
+    with said:
+        notices.show()
+        if chosen.choices is not None:
+            mark_day(chosen.choices)
+            show_left_out(chosen.choices)
+    with body:
         if chosen.choices is None:
             view("plot").bring(chosen.problem)
             return
         try:
-            view(name).show(chosen.choices, *places)
+            view("rooms").show(name, chosen.choices, view)
         except FieldmonError as error:
             st.error(str(error))
 
-    return st.Page(
-        run, title=title, icon=f":material/{icon}:", url_path=path, default=path == "today"
-    )
 
+def wide(run: str, *, of_plot: bool) -> None:
+    """Show a page of research, which has no place on the map."""
+    with st.container(key="wide"):
+        if not of_plot:
+            view(run).show()
+            return
+        preload.start().load(map_sent=False)
+        from .actions.choosing import choose  # noqa: PLC0415 - as just loaded
 
-def page_prior() -> None:
-    """Show the study with prior information, on the chosen plot too."""
-    from .actions.choosing import choose  # noqa: PLC0415 - as above
-
-    view("prior_study").show(choose(first_screen.waiting()).choices)
+        with st.expander(texts.PLOT_FROM):
+            chosen = choose(st.container(), st.container(), lambda _: None)
+        view(run).show(chosen.choices)
 
 
 def page_study() -> None:
     """Show the published simulator."""
-    view("study").show()
+    wide("study", of_plot=False)
 
 
-scouting = page("scout", texts.SCOUTING, "eco")
-st.session_state["scout_page"] = scouting
-# a click may end the first run of a page before its sidebar is there
+def page_prior() -> None:
+    """Show the study with prior information, on the chosen plot too."""
+    wide("prior_study", of_plot=True)
+
+
+# a click may end the first run of a page before its boxes are there
 plot_source.begin_from_address()
+field_map.clear()
+map_place = st.container(key="map_place")
+ROOM_PAGES = {name: page_of(name) for name in rooms.ROOMS}
 turned = st.navigation(
-    [
-        page("today", texts.TODAY, "route"),
-        page("field", texts.MAP, "map", "map"),
-        scouting,
-        page("season", texts.SEASON, "calendar_month"),
-        page("compare", texts.COMPARE, "balance"),
-        page("plot", texts.PLOT, "polyline"),
-        page("report", texts.REPORT, "print"),
-        page("simulate", texts.SIMULATE, "bug_report"),
-        st.Page(page_study, title=texts.STUDY, icon=":material/science:", url_path="study"),
-        st.Page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
-    ],
+    {
+        "": [*ROOM_PAGES.values()],
+        texts.RESEARCH: [
+            st.Page(page_study, title=texts.STUDY, icon=":material/science:", url_path="study"),
+            st.Page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
+        ],
+    },
     position="top",
 )
 widget_memory.turn(turned.url_path)
+if (room := rooms.turned_to()) is not None:
+    st.switch_page(ROOM_PAGES[room])
 turned.run()
+with map_place:
+    field_map.draw()
 preload.start().shown.set()

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from fieldmon.errors import (
         ChoiceNeeded,
+        ContradictionError,
         FieldmonError,
         FileProblem,
         ImportDoubt,
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.monitor import Monitor, MonitorDay, PlantToInspect
     from fieldmon.monitoring.season_file import Season
     from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.planning import routes
     from fieldmon.planning.plan import DayPlan, plan_day
     from fieldmon.planning.route import Route
     from fieldmon.plot.field import Field
@@ -50,6 +52,7 @@ if TYPE_CHECKING:
 _MODULES = {
     "errors": (
         "ChoiceNeeded",
+        "ContradictionError",
         "FieldmonError",
         "FileProblem",
         "ImportDoubt",
@@ -79,12 +82,15 @@ _MODULES = {
     "simulation.start": ("Start",),
     "io.sources": ("PlantingChoices",),
 }
+#: names that are modules themselves
+_AS_MODULES = {"routes": "planning.routes"}
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
 
 __all__ = [
     "SAMPLERS",
     "BeliefSettings",
     "ChoiceNeeded",
+    "ContradictionError",
     "DayPlan",
     "Field",
     "FieldmonError",
@@ -119,6 +125,7 @@ __all__ = [
     "read_plot",
     "read_plots",
     "read_records",
+    "routes",
     "scout",
     "simulate",
 ]
@@ -129,6 +136,8 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401 - any of the names above
         from importlib.metadata import version  # noqa: PLC0415 - slow, and seldom asked for
 
         return version("fieldmon")
+    if name in _AS_MODULES:
+        return import_module(f"fieldmon.{_AS_MODULES[name]}")
     if name not in _HOME:
         raise AttributeError(f"module 'fieldmon' has no attribute {name!r}")
     value = getattr(import_module(f"fieldmon.{_HOME[name]}"), name)

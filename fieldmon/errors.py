@@ -56,3 +56,7 @@ class PlotError(FieldmonError):
 
 class ObservationError(FieldmonError):
     """The observations do not fit the plot or their own columns."""
+
+
+class ContradictionError(ObservationError):
+    """Results contradict what is recorded of the same day: confirm them, or leave them out."""

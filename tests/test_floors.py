@@ -37,6 +37,7 @@ ALONE = {
     "jinja2": {"io"},
     "markupsafe": {"io", "studies", "app"},
     "typer": {"cli"},
+    "tzfpy": {"plot"},
     "rich": {"cli"},
     "pydeck": {"planning", "app"},
     "streamlit": {"app"},

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
 
     from ..state.brought_files import FileMessage
+    from ..state.choices import Choices
 
 _ICONS = {"seen": "👁", "repaired": "🔧", "guessed": "💡", "dropped": "🗑", "doubtful": "⚠️"}
 
@@ -45,8 +46,7 @@ def show_kept_raster(kind: str) -> None:
     _kept(kind)
     problem = rasters.problem(kind)
     if kind in brought() and problem is not None:
-        brought_files.ask_about(brought()[kind].key)
-        say(problem)
+        say(problem, brought()[kind].asked)
 
 
 def _kept(kind: str) -> None:
@@ -74,9 +74,17 @@ def _take_one(kind: str) -> None:
 # -- what imports say, and ask
 
 
-def say(error: FieldmonError) -> None:
+def show_left_out(choices: Choices) -> None:
+    """Say above a page which files it does without, and why; ask what they leave open."""
+    for one in choices.left_out:
+        with st.container(border=True):
+            st.markdown(texts.LEFT_OUT.format(name=texts.isolated(one.file.name)))
+            say(one.problem, one.file.asked)
+
+
+def say(error: FieldmonError, asked: str | None = None) -> None:
     """Show a problem as its sentence; where the file leaves a choice, ask for it by buttons."""
-    asking = brought_files.asking()
+    asking = brought_files.asking() if asked is None else asked
     if isinstance(error, ChoiceNeeded):
         st.warning(str(error))
         _ask(error, asking)
@@ -127,8 +135,8 @@ def show_messages(said: tuple[FileMessage, ...]) -> None:
         st.markdown(f"{mark} · {place}{message.sentence}")
         remedy = message.remedy
         if remedy is not None:
-            key = f"remedy {number} {one.file_key} {remedy.option} {remedy.value}"
+            key = f"remedy {number} {one.asked} {remedy.option} {remedy.value}"
             st.button(remedy.label, key=key, on_click=brought_files.answer,
-                      args=(one.file_key, remedy.option, remedy.value))  # fmt: skip
-    for key in dict.fromkeys(one.file_key for one in said):
-        _offer_undo(key)
+                      args=(one.asked, remedy.option, remedy.value))  # fmt: skip
+    for asked in dict.fromkeys(one.asked for one in said):
+        _offer_undo(asked)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.plot.robot import Robot, scout
+
 from ..state import notices
 from ..words import texts
 from ..words.strategies import sampler_does, sampler_name, strategy_name
@@ -40,7 +42,13 @@ def show(name: str, season: Season) -> None:
 def _wanted(name: str, settings: MonitoringSettings) -> MonitoringSettings:
     """Show the boxes; return the settings that they say."""
     robot = settings.robot
-    key = f"{name} {robot.hours} {robot.look_s} {settings.sampler}"
+    key = f"{name} {robot.hours} {robot.look_s} {settings.sampler} {robot.speed_m_s}"
+    was = texts.SCOUT if is_on_foot(robot) else texts.ROBOT
+    who = st.segmented_control(texts.WHO, [texts.ROBOT, texts.SCOUT], default=was, required=True,
+                               key=f"who {key}", label_visibility="collapsed")  # fmt: skip
+    if who != was:
+        robot = scout() if who == texts.SCOUT else Robot()
+        key = f"{key} {who}"
     # a command, or "one hour more", may have set what is beyond the usual
     usual_s = robot.look_s
     hours = st.slider(texts.HOURS, min(0.5, robot.hours), max(16.0, robot.hours), robot.hours, 0.5,
@@ -54,6 +62,11 @@ def _wanted(name: str, settings: MonitoringSettings) -> MonitoringSettings:
     st.caption(sampler_does(sampler))
     robot = replace(robot, hours=float(hours), look_s=float(inspection_s))
     return replace(settings, robot=robot, sampler=sampler)
+
+
+def is_on_foot(robot: Robot) -> bool:
+    """Return whether it is a scout on foot, however long the day and the look at a plant."""
+    return replace(scout(), hours=robot.hours, look_s=robot.look_s) == robot
 
 
 def _offer_undo(season: Season) -> None:

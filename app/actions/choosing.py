@@ -1,30 +1,36 @@
-"""The sidebar: which plot or season, which day, who inspects; boxes in, one frozen value out."""
+"""The panel's boxes: which plot or season, which day, who inspects; one frozen value out."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from datetime import datetime
+from datetime import timedelta
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
 from fieldmon.io.import_report import ImportMessage, Severity
+from fieldmon.monitoring.settings import MOST_DAYS
 from fieldmon.plot import robot as robots
+from fieldmon.plot.local_clock import local_clock
 from fieldmon.samplers import USUAL
 
 from ..state import (
+    assumptions,
     cached,
     chosen_units,
+    kept_files,
     plot_files,
     plot_source,
     row_settings,
     sample_estate,
     seasons_folder,
     widget_memory,
+    work_day,
 )
 from ..state.brought_files import FileMessage
 from ..state.choices import Choices, Chosen
+from ..state.work_day import Calendar
 from ..words import texts
 from ..words.strategies import sampler_does
 from ..words.units import AREAS_M2, DATES, LENGTHS
@@ -34,8 +40,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from datetime import date
 
+    from streamlit.delta_generator import DeltaGenerator
+
     from fieldmon.monitoring import KeptMessage
     from fieldmon.plot.field import Field
+    from fieldmon.plot.local_clock import LocalClock
     from fieldmon.plot.robot import Robot
 
     from ..state.brought_files import File
@@ -46,19 +55,23 @@ if TYPE_CHECKING:
 _DAY = "day {source}"
 
 
-def choose(wait: Wait) -> Chosen:
-    """Show the sidebar; return the choices, or the problem that keeps from them."""
-    with st.sidebar:
+def choose(head: DeltaGenerator, foot: DeltaGenerator, wait: Wait) -> Chosen:
+    """Show where and when in the head, who works and how numbers are written in the foot.
+
+    Returns the choices, or the problem that keeps from them.
+    """
+    with head:
         source = _source()
         try:
             if source in (texts.SAMPLE, texts.UPLOAD):
-                return Chosen(_from_files(source, wait))
+                return Chosen(_from_files(source, wait, foot))
             wait(None)
-            return Chosen(_from_season(source))
+            return Chosen(_from_season(source, foot))
         except FieldmonError as error:
             return Chosen(problem=error)
         finally:
-            _units()
+            with foot:
+                _units()
 
 
 def _source() -> str:
@@ -67,8 +80,8 @@ def _source() -> str:
     if widget_memory.value(plot_source.KEY) not in options:
         st.session_state[plot_source.KEY] = texts.SAMPLE
     chosen = widget_memory.show(
-        st.selectbox, texts.PLOT_FROM, options, key=plot_source.KEY, help=texts.PLOT_FROM_HELP,
-        filter_mode=None,
+        st.selectbox, texts.PLOT_FROM, options, key=plot_source.KEY, filter_mode=None,
+        label_visibility="collapsed",
     )  # fmt: skip
     plot_source.keep_in_address(chosen)
     return chosen
@@ -77,19 +90,20 @@ def _source() -> str:
 # -- a season
 
 
-def _from_season(name: str) -> Choices:
+def _from_season(name: str, foot: DeltaGenerator) -> Choices:
     season = cached.season(seasons_folder.path_of(name))
     settings, key, units = season.settings, str(season.path), chosen_units.units()
-    day = widget_memory.show(
-        st.date_input, texts.DATE, min_value=settings.begins, key=_DAY.format(source=name),
-        default=season.last_date(), format=units.date_format,
-    )  # fmt: skip
+    clock = local_clock(season.plot.field)
+    last = settings.begins + timedelta(days=MOST_DAYS)
+    calendar = Calendar(clock.today(), settings.begins, last)
+    day = _day(name, calendar, clock)
     said = tuple(FileMessage(key, _message(kept)) for kept in cached.import_messages(key, season))
     choices = Choices(
         key, season.plot, season.observations, said, settings.robot, settings.sampler, str(day),
-        units, season, key,
+        units, season, key, today=calendar.today, prior=settings.prior,
     )  # fmt: skip
-    changing.show(name, season)
+    with foot:
+        changing.show(name, season)
     return choices
 
 
@@ -101,41 +115,79 @@ def _message(kept: KeptMessage) -> ImportMessage:
 # -- files: the sample estate's, or those brought
 
 
-def _from_files(source: str, wait: Wait) -> Choices | None:
+def _from_files(source: str, wait: Wait, foot: DeltaGenerator) -> Choices | None:
+    kept_files.sync()
     if source == texts.SAMPLE:
         st.caption(texts.SAMPLE_NOTE)
         files = plot_files.of_sample()
     elif (files := plot_files.of_session()) is None:
         return None
-    outline = plot_files.outline(files, _which)
+    which, when = st.columns([3, 2])
+    with which:
+        outline = plot_files.outline(files, _which)
     wait(outline.field)
     made = plot_files.prepared(files, outline)
-    robot, sampler, day = _work(source)
+    clock = local_clock(made.plot.field)
+    today = sample_estate.LAST_DAY if source == texts.SAMPLE else clock.today()
+    with when:
+        day = _day(source, Calendar(today), clock)
+    with foot:
+        robot, sampler = _work()
     return Choices(
-        made.key, made.plot, made.records, made.messages, robot, sampler, day,
-        chosen_units.units(), None, outline.key, made.risk,
+        made.key, made.plot, made.records, made.messages, robot, sampler, str(day),
+        chosen_units.units(), None, outline.key, made.risk, today, made.left_out,
+        assumptions.prior(),
     )  # fmt: skip
 
 
-def _today() -> date:
-    return datetime.now().astimezone().date()
+# -- the day
+
+
+def _day(source: str, calendar: Calendar, clock: LocalClock) -> date:
+    """Show the box for the day: today on the plot, unless another was chosen on purpose."""
+    work_day.begin_from_address(source)
+    key = _DAY.format(source=source)
+    day = st.session_state[key] = work_day.of(source, calendar)
+    zone = clock.zone or texts.ZONE_OF_MACHINE
+    st.date_input(
+        texts.DATE, day, calendar.first, calendar.last, key=key,
+        format=chosen_units.units().date_format, help=texts.DATE_HELP.format(zone=zone),
+        label_visibility="collapsed",
+        on_change=_choose_day, args=(source, key, calendar),
+    )  # fmt: skip
+    work_day.keep_in_address(day, calendar.today)
+    return day
+
+
+def _choose_day(source: str, key: str, calendar: Calendar) -> None:
+    day = st.session_state[key]
+    if day is None or day == calendar.today:
+        work_day.back_to_today(source)
+    else:
+        work_day.choose(source, day)
+
+
+def mark_day(choices: Choices) -> None:
+    """Say above a page that its day is not today, with the way back."""
+    if choices.is_today:
+        return
+    now = choices.units.day(choices.today)
+    left, right = st.columns([5, 1], vertical_alignment="center")
+    left.warning(texts.OTHER_DAY.format(day=choices.units.day(choices.day), today=now))
+    right.button(texts.BACK_TO_TODAY, key="back_to_today", width="stretch",
+                 on_click=work_day.back_to_today, args=(plot_source.chosen(),))  # fmt: skip
 
 
 def _which(file: File, names: list[str]) -> int:
     number = widget_memory.show(
         st.selectbox, texts.WHICH_PLOT, range(len(names)), format_func=names.__getitem__,
-        key=f"feature {file.key}", default=0,
+        key=plot_source.feature_key(file.key), default=0, label_visibility="collapsed",
     )  # fmt: skip
     return number or 0
 
 
-def _work(source: str) -> tuple[Robot, str, str]:
-    first = sample_estate.LAST_DAY if source == texts.SAMPLE else _today()
-    day = widget_memory.show(
-        st.date_input, texts.DATE, key=_DAY.format(source=source), default=first,
-        format=chosen_units.units().date_format,
-    )  # fmt: skip
-    with st.expander(texts.WHO, expanded=True):
+def _work() -> tuple[Robot, str]:
+    with st.expander(texts.WHO):
         who = widget_memory.show(
             st.segmented_control, texts.WHO, [texts.ROBOT, texts.SCOUT], key="who",
             default=texts.ROBOT, required=True, label_visibility="collapsed",
@@ -152,7 +204,7 @@ def _work(source: str) -> tuple[Robot, str, str]:
             default=USUAL, **changing.NAMED,
         )  # fmt: skip
         st.caption(sampler_does(sampler))
-    return replace(base, hours=float(hours), look_s=float(inspection_s)), sampler, str(day)
+    return replace(base, hours=float(hours), look_s=float(inspection_s)), sampler
 
 
 # -- units

@@ -5,12 +5,15 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+import shapely
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
 from fieldmon.plot.layout import Planting
 
-from ..show.maps import colours, marks, plant_layers
+from ..show import field_map, map_layers
+from ..show.map_view import Drawable, MapAnswers, MapContent
+from ..show.maps import colours, deck, labels, legends, marks, plant_layers
 from ..state import cached, notices, widget_memory
 from ..state.chosen_units import units
 from ..state.plot_edits import GATE, NO_GO, PATH, Edit, points_of
@@ -18,12 +21,17 @@ from ..state.plot_files import draw, drawn, laid
 from ..words import texts
 
 if TYPE_CHECKING:
-    from ..show.scale_bar import Clicked
+    from fieldmon.infestation.observations import Observations
+    from fieldmon.plot.field import Field
+
     from ..state.choices import Choices
     from ..state.plot_edits import Points
 
 _NAMES = {GATE: texts.DRAW_KINDS["gate"], PATH: texts.DRAW_KINDS["path"],
           NO_GO: texts.DRAW_KINDS["no_go"]}  # fmt: skip
+_SHAPES = {GATE: "point", PATH: "line", NO_GO: "area"}
+# more corners than this are no help
+_SNAPS = 2_000
 
 
 def rows(plot_key: str) -> None:
@@ -32,20 +40,25 @@ def rows(plot_key: str) -> None:
         st.caption(texts.FOUND_ROWS)
         widget_memory.show(st.number_input, texts.BEARING, 0.0, 360.0, step=0.5,
                         help=texts.BEARING_HELP, key=f"row_bearing {plot_key}")  # fmt: skip
-        now, usual = units(), Planting()
-        rows_m, plants_m = usual.row_spacing_m, usual.plant_spacing_m
-        help_ = texts.SPACING_HELP.format(rows=now.metres(rows_m), plants=now.metres(plants_m))
-        for name, label, default_m in (
-            ("row_spacing", texts.ROW_SPACING, None),
-            ("plant_spacing", texts.PLANT_SPACING, None),
-            ("headland", texts.HEADLAND, usual.headland_m),
-        ):
-            widget_memory.show(
-                st.number_input, label.format(unit=now.length), *now.limits(0.1, 50.0),
-                step=0.1, help=help_ if default_m is None else None, key=f"{name} {plot_key}",
-                default=None if default_m is None else now.shown(default_m),
-            )  # fmt: skip
+        spacings(plot_key)
+        now, usual_m = units(), Planting().headland_m
+        widget_memory.show(
+            st.number_input, texts.HEADLAND.format(unit=now.length), *now.limits(0.1, 50.0),
+            step=0.1, key=f"headland {plot_key}", default=now.shown(usual_m),
+        )  # fmt: skip
         widget_memory.show(st.toggle, texts.BOTH_FACES, key=f"both_faces {plot_key}", default=False)
+
+
+def spacings(plot_key: str) -> None:
+    """Show how far rows and plants are apart, to be set by hand."""
+    now, usual = units(), Planting()
+    rows_m, plants_m = usual.row_spacing_m, usual.plant_spacing_m
+    help_ = texts.SPACING_HELP.format(rows=now.metres(rows_m), plants=now.metres(plants_m))
+    for name, label in (("row_spacing", texts.ROW_SPACING), ("plant_spacing", texts.PLANT_SPACING)):
+        widget_memory.show(
+            st.number_input, label.format(unit=now.length), *now.limits(0.1, 50.0), step=0.1,
+            help=help_, key=f"{name} {plot_key}",
+        )  # fmt: skip
 
 
 def tools(choices: Choices) -> None:
@@ -72,31 +85,53 @@ def tools(choices: Choices) -> None:
                       args=(choices,))  # fmt: skip
 
 
-def layers(choices: Choices) -> list:
-    """Return what is being drawn, the gate, paths, and, while drawing, what can be clicked on."""
-    field = choices.plot.field
-    shown = marks.paths(field)
+def content(choices: Choices, records: Observations) -> tuple[MapContent, MapAnswers]:
+    """Return the map on which the gate, paths and no-go areas are drawn, and who hears of it."""
+    field, kind = choices.plot.field, _kind()
+    layers = [
+        deck.boundary(field, dark=choices.dark), *_plain_plants(choices), *marks.paths(field),
+        *marks.records(records, dark=choices.dark),
+    ]  # fmt: skip
     if field.gate is not None:
-        shown.append(marks.places([list(field.gate)], "gate", colours.GATE, "gate"))
-    if not _kind():
-        return shown
-    return [*shown, *marks.drawing(_points(choices))]
+        layers.append(marks.places([list(field.gate)], "gate", colours.GATE, texts.TIP_GATE))
+    typed = _points(choices)
+    if typed:
+        layers += marks.drawing(typed)
+    draw = None
+    if kind:
+        draw = Drawable(_SHAPES[kind], kind, texts.DRAW_HINTS[kind], _corners(field))
+    made = MapContent(
+        **field_map.of_plot(choices), layers=layers, switches=map_layers.switches(layers),
+        legend=legends.signs(dark=choices.dark)[2:], draw=draw,
+        labels=labels.rows(choices.plot.grid),
+    )  # fmt: skip
+    return made, MapAnswers(drawn=partial(_drawn, choices))
 
 
-def plain_plants(choices: Choices) -> list:
+def _plain_plants(choices: Choices) -> list:
     """Return the plants in one colour, made once."""
     grid = choices.plot.grid
 
     def make() -> list:
-        shade = colours.plain(len(grid))
-        return [plant_layers.plants(grid, shade, plant_layers.unsaid)]
+        return [plant_layers.plants(grid, colours.plain(len(grid)))]
 
     return cached.layers(f"plain {choices.key}", make)
 
 
-def clicks(choices: Choices) -> Clicked | None:
-    """Return what takes clicks on the map as points of what is being drawn; None: nothing is."""
-    return partial(_put, choices) if _kind() else None
+def _corners(field: Field) -> tuple[tuple[float, float], ...]:
+    """Return the corners of the outline, to which what is drawn snaps; of very many, none."""
+    corners = shapely.get_coordinates(field.boundary)
+    if len(corners) > _SNAPS:
+        return ()
+    return tuple((float(lon), float(lat)) for lon, lat in corners)
+
+
+def _drawn(choices: Choices, kind: str, points: Points) -> None:
+    """Keep what was drawn on the map, after what was typed before."""
+    if kind == _kind():
+        _put(choices, points)
+        if kind != GATE:
+            _finish(choices)
 
 
 def _kind() -> str:

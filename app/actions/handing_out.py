@@ -12,7 +12,7 @@ import streamlit as st
 from fieldmon.io.writers import FORMATS, HandoffPlan
 from fieldmon.io.writers.geojson import RouteNotes, route_geojson
 
-from ..state import chosen_day
+from ..state import chosen_day, rooms
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
 
     from ..state.choices import Choices
-
-#: where the frame keeps the page of scouting, which the link to it needs
-SCOUT_PAGE = "scout_page"
 
 
 def show(choices: Choices, plan: DayPlan) -> None:
@@ -68,8 +65,12 @@ def made(chosen: HandoffFormat, plan: HandoffPlan) -> bytes:
 
 def _give_out(choices: Choices) -> None:
     if st.button(texts.GIVE_OUT, help=texts.GIVE_OUT_HELP, key="give_out"):
-        choices.season.plan(choices.on)
+        choices.season.plan(choices.on, wishes=choices.wishes)
         st.toast(texts.GIVEN_OUT.format(day=choices.units.day(choices.day)))
     with st.container(key="start_scouting", width="content"):
-        st.page_link(st.session_state[SCOUT_PAGE], label=texts.START_SCOUTING,
-                     icon=":material/eco:")  # fmt: skip
+        st.button(texts.START_SCOUTING, key="begin_scouting", icon=":material/eco:",
+                  on_click=_open_scouting)  # fmt: skip
+
+
+def _open_scouting() -> None:
+    rooms.open_part("scout")

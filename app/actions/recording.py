@@ -9,11 +9,13 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
+from fieldmon.errors import ContradictionError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.options import Upload
 from fieldmon.plot.grid import plant_at, row_label
 
-from ..state import browser, chosen_day, notices
+from ..state import chosen_day, notices, unconfirmed
+from ..state.unconfirmed import Unconfirmed
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -27,6 +29,7 @@ def show(choices: Choices) -> None:
     """Show the ways of recording, and of noting a treatment."""
     st.markdown(f"**{texts.RECORD} · {choices.units.day(choices.day)}**")
     st.caption(texts.RECORD_NOTE)
+    _ask_about_contradictions(choices)
     route, one, file, treat = st.tabs(
         [texts.RECORD_ROUTE, texts.RECORD_ONE, texts.RECORD_UPLOAD, texts.TREAT]
     )
@@ -46,11 +49,13 @@ def show(choices: Choices) -> None:
 def _show_one(choices: Choices) -> None:
     with st.form("one_plant_form", border=False):
         left, right = st.columns(2)
-        left.number_input(texts.HISTORY_ROW, 1, None, 1, key="one_row")
-        right.number_input(texts.HISTORY_PLANT, 1, None, 1, key="one_plant")
-        st.segmented_control(texts.RESULT, list(texts.RESULTS_OF), default=CLEAN,
-                             format_func=texts.RESULTS_OF.__getitem__, key="one_result",
-                             required=True)  # fmt: skip
+        # empty: what nobody said must not be recorded by one click
+        left.number_input(texts.HISTORY_ROW, 1, None, None, key="one_row")
+        right.number_input(texts.HISTORY_PLANT, 1, None, None, key="one_plant")
+        st.segmented_control(
+            texts.RESULT, list(texts.RESULTS_OF), default=None, key="one_result",
+            format_func=texts.RESULTS_OF.__getitem__,
+        )  # fmt: skip
         st.number_input(texts.COUNT, 0, None, None, key="one_count")
         st.form_submit_button(texts.RECORD_BUTTON, on_click=_record_one, args=(choices,))
 
@@ -58,6 +63,8 @@ def _show_one(choices: Choices) -> None:
 @notices.reporting
 def _record_one(choices: Choices) -> str:
     state = st.session_state
+    if None in (state["one_row"], state["one_plant"], state["one_result"]):
+        raise SettingError(texts.ONE_UNSAID)
     plant = plant_at(choices.plot.grid, int(state["one_row"]), int(state["one_plant"]))
     result, count = state["one_result"], state["one_count"]
     counted = np.array([np.nan if count is None or result != FOUND else float(count)])
@@ -86,7 +93,7 @@ def _show_route(choices: Choices) -> None:
     # Enter after typing a number must not record: the button under it would record as many again
     with st.form("route_form", border=False, enter_to_submit=False):
         st.caption(texts.RECORD_REST)
-        st.number_input(texts.RECORD_STOPS, 0, len(plants), len(plants), key="stops_done")
+        st.number_input(texts.RECORD_STOPS, 0, len(plants), None, key="stops_done")
         with st.container(key="route_marks"):
             marked = st.data_editor(table, height=230, disabled=list(table.columns[:2]),
                                     key=f"marks {choices.day} {len(plants)}")  # fmt: skip
@@ -99,10 +106,14 @@ def _show_route(choices: Choices) -> None:
 
 @notices.reporting
 def _record_stops(choices: Choices, plants: np.ndarray, found: list[int]) -> str:
-    """Record the first stops of the route: those marked as found, the others as clean."""
-    done = plants[: int(st.session_state["stops_done"])]
-    result = np.where(np.isin(np.arange(len(done)) + 1, found), FOUND, CLEAN)
-    results = Inspections.of(done, result, np.datetime64(choices.day))
+    """Record the stops marked as found, and the others of the first so many as clean."""
+    stops = np.arange(len(plants)) + 1
+    is_found = np.isin(stops, found)
+    said = is_found | (stops <= (st.session_state["stops_done"] or 0))
+    if not said.any():
+        raise SettingError(texts.RECORD_UNSAID)
+    result = np.where(is_found, FOUND, CLEAN)[said]
+    results = Inspections.of(plants[said], result, np.datetime64(choices.day))
     return _recorded(choices, results, texts.ROUTE_TABLE)
 
 
@@ -125,15 +136,75 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
     from fieldmon.io.readers.inspections import read_inspections  # noqa: PLC0415
 
     options = InspectionOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
-    options = options.choose("day", choices.day)
+    options = options.choose("day", choices.day).on(choices.plot.field)
     read = read_inspections(Upload(name, data), choices.plot.grid, options)
     messages = "".join(f"\n- {message.sentence}" for message in read.messages)
-    return _recorded(choices, read.value, name) + messages
+    said = _recorded(choices, read.value, name)
+    return said + messages if said else ""
 
 
 def _recorded(choices: Choices, results: Inspections, source: str) -> str:
-    done = choices.season.record(results, source)
+    """Record results; those that contradict what is recorded wait until somebody says so."""
+    try:
+        done = choices.season.record(results, source)
+    except ContradictionError:
+        unconfirmed.keep(Unconfirmed(choices.key, results, source))
+        return ""
+    unconfirmed.drop()
     return texts.RECORDED.format(new=done.new, known=done.known)
+
+
+# -- what contradicts
+
+
+def _ask_about_contradictions(choices: Choices) -> None:
+    """Show what waits because it contradicts what is recorded, and what can be done with it."""
+    waiting = unconfirmed.of(choices.key)
+    if waiting is None:
+        return
+    season = choices.season
+    said = season.contradictions(waiting.results).sentences(season.label)
+    others = len(waiting.results) - len(said)
+    st.warning(texts.CONTRADICTING.format(n=len(said), others=others, source=waiting.source))
+    st.markdown("\n".join(f"- {sentence}" for sentence in said[:_MOST]))
+    if len(said) > _MOST:
+        st.caption(texts.AND_MORE.format(n=len(said) - _MOST))
+    with st.container(horizontal=True):
+        for key, label, action in (
+            ("leave_out", texts.LEAVE_OUT.format(n=others), _leave_out),
+            ("confirm", texts.CONFIRM.format(n=len(said)), _confirm),
+            ("record_none", texts.RECORD_NONE, _drop),
+        ):
+            st.button(label, key=key, on_click=action, args=(choices,))
+
+
+@notices.reporting
+def _confirm(choices: Choices) -> str:
+    """Record what contradicts too: both counts as said."""
+    return _settled(choices, slice(None))
+
+
+@notices.reporting
+def _leave_out(choices: Choices) -> str:
+    """Record what does not contradict."""
+    waiting = unconfirmed.of(choices.key)
+    if waiting is None:
+        return ""
+    against = choices.season.contradictions(waiting.results).which
+    return _settled(choices, np.setdiff1d(np.arange(len(waiting.results)), against))
+
+
+def _settled(choices: Choices, which: np.ndarray | slice) -> str:
+    waiting = unconfirmed.of(choices.key)
+    if waiting is None:
+        return ""
+    done = choices.season.record(waiting.results.take(which), waiting.source, confirmed=True)
+    unconfirmed.drop()
+    return texts.RECORDED.format(new=done.new, known=done.known)
+
+
+def _drop(choices: Choices) -> None:  # noqa: ARG001 - as the others
+    unconfirmed.drop()
 
 
 # -- a treatment
@@ -141,7 +212,7 @@ def _recorded(choices: Choices, results: Inspections, source: str) -> str:
 
 def _show_treatment(choices: Choices) -> None:
     with st.form("treatment_form", border=False):
-        st.number_input(texts.TREAT_EFFICACY, 0, 100, 90, 5, key="efficacy")
+        st.number_input(texts.TREAT_EFFICACY, 0, 100, None, 5, key="efficacy")
         st.text_input(texts.TREAT_PRODUCT, key="product")
         st.form_submit_button(texts.TREAT_BUTTON, on_click=_treat, args=(choices,))
 
@@ -149,8 +220,10 @@ def _show_treatment(choices: Choices) -> None:
 @notices.reporting
 def _treat(choices: Choices) -> str:
     """Note that the whole plot was treated."""
-    share, product = st.session_state["efficacy"] / 100, st.session_state["product"]
-    done = choices.season.treat(choices.on, share, product=product)
+    efficacy, product = st.session_state["efficacy"], st.session_state["product"]
+    if efficacy is None:
+        raise SettingError(texts.TREAT_UNSAID)
+    done = choices.season.treat(choices.on, efficacy / 100, product=product)
     return texts.TREATED if done.new else texts.TREATED_BEFORE
 
 
@@ -163,7 +236,7 @@ def show_batches(choices: Choices) -> None:
         if not batch.rows:
             continue
         left, right = st.columns([4, 1], vertical_alignment="center")
-        at = browser.local(datetime.fromisoformat(batch.at))
+        at = choices.clock.at(datetime.fromisoformat(batch.at))
         said = texts.BATCHES_SAID[batch.kind].format(
             day=choices.units.day(at.date()), time=f"{at:%H:%M}", n=batch.rows,
             source=texts.isolated(batch.source) if batch.source else "",

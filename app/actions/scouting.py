@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from datetime import datetime
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +12,7 @@ from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring.settings import seconds
 from fieldmon.plot.grid import row_label
 
-from ..state import browser, chosen_day, notices
+from ..state import chosen_day, notices
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -25,27 +24,20 @@ SOURCE = "scout mode"
 def give_out(choices: Choices) -> None:
     """Keep the day's route with the season when the scouting begins."""
     if not len(chosen_day.given_out(choices)):
-        choices.season.plan(choices.on)
+        choices.season.plan(choices.on, wishes=choices.wishes)
 
 
-def _second(choices: Choices, plant: int) -> float:
-    """Return the second of the day of a tap: the clock's today, else what the plan says."""
-    clock = browser.now()
-    if clock.date() == choices.on:
-        return clock.hour * 3600.0 + clock.minute * 60.0 + clock.second
-    plan = choices.plan()
-    begins = chosen_day.starts(choices, plan)
-    stop = np.flatnonzero(plan.route.plant == plant)
-    gone = float(plan.route.leave_s[stop[0]]) if stop.size else 0.0
-    start_s = (begins - datetime.combine(choices.on, datetime.min.time())).total_seconds()
-    return min(start_s + gone, 86_399.0)
+def _second(choices: Choices) -> float:
+    """Return the second of the day of a tap; NaN on another day than today: nobody said when."""
+    now = choices.clock.now()
+    return seconds(now.time()) if now.date() == choices.on else np.nan
 
 
 @notices.reporting
 def _tap(choices: Choices, plant: int, result: int) -> str:
     count = st.session_state.get("scout_count")
     counted = float(count) if result == FOUND and count is not None else np.nan
-    second = _second(choices, plant)
+    second = _second(choices)
     results = Inspections.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day),
         second=np.array([second]), count=np.array([counted]),
@@ -97,17 +89,17 @@ def longer(choices: Choices) -> str:
 
 def ask_start(choices: Choices) -> None:
     """Where the work begins later than planned, offer to begin now."""
-    settings, clock = choices.season.settings, browser.now()
+    settings, now = choices.season.settings, choices.clock.now()
     begun = len(choices.season.history.inspections.on(choices.on))
-    late = clock.date() == choices.on and clock.time() > settings.starts
+    late = now.date() == choices.on and now.time() > settings.starts
     if not begun and late:
-        st.info(texts.SCOUT_START.format(start=f"{settings.starts:%H:%M}", now=f"{clock:%H:%M}"))
+        st.info(texts.SCOUT_START.format(start=f"{settings.starts:%H:%M}", now=f"{now:%H:%M}"))
         st.button(texts.SCOUT_NOW, key="begin_now", on_click=_begin_now, args=(choices,))
 
 
 @notices.reporting
 def _begin_now(choices: Choices) -> str:
     settings = choices.season.settings
-    starts = browser.now().replace(second=0, microsecond=0).time()
+    starts = choices.clock.now().replace(second=0).time()
     choices.season.change(replace(settings, starts=starts), settings)
     return texts.NOW_USED.format(name=f"{starts:%H:%M}")

@@ -8,7 +8,7 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.infestation.prior import prior_chance
 from fieldmon.studies.thesis.chapter5.sites import Site
 
 from ..words import texts
@@ -60,5 +60,5 @@ def site_of(choices: Choices) -> Site:
     if not len(choices.records):
         return Site(plot.field.name, plot.aisles, plot.field)
     day = np.datetime64(choices.day, "D")
-    chance = prior_chance(plot.grid, plot.field, choices.records, day, PriorSettings())
+    chance = prior_chance(plot.grid, plot.field, choices.records, day, choices.prior)
     return Site(plot.field.name, plot.aisles, plot.field, chance)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import altair as alt
@@ -10,6 +11,8 @@ import pandas as pd
 from ..words import texts
 
 if TYPE_CHECKING:
+    from datetime import date
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -118,17 +121,17 @@ def bands(
 
 
 def season_days(days: list[DayFigures], axes: tuple[str, str, str]) -> alt.LayerChart:
-    """Return plants inspected and found on each day of a season."""
+    """Return plants inspected and found on each day of a season; a day without work is a gap."""
+    worked = {one.on: one for one in days if one.inspected}
     table = pd.DataFrame(
-        {
-            "day": [str(s.on)[5:] for s in days],
-            "inspected": [s.inspected for s in days],
-            "found": [s.found for s in days],
-        }
-    )
+        [(str(on)[5:], one and one.inspected, one and one.found)
+         for on in _dates(days) for one in [worked.get(on)]],
+        columns=["day", "inspected", "found"],
+    )  # fmt: skip
+    table = table.astype({"inspected": "Int64", "found": "Int64"})
     x = alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True))
-    tip = [alt.Tooltip("day", title=axes[0]), alt.Tooltip("inspected", title=axes[1]),
-           alt.Tooltip("found", title=axes[2])]  # fmt: skip
+    tip = [alt.Tooltip("day", title=axes[0]), alt.Tooltip("inspected:Q", title=axes[1]),
+           alt.Tooltip("found:Q", title=axes[2])]  # fmt: skip
     bars = (
         alt.Chart(table)
         .mark_bar(color=_COLOURS[5])
@@ -136,10 +139,16 @@ def season_days(days: list[DayFigures], axes: tuple[str, str, str]) -> alt.Layer
     )
     found_ = (
         alt.Chart(table)
-        .mark_line(color=_COLOURS[1], point={"color": _COLOURS[1], "size": 60}, strokeWidth=2.5)
+        .mark_line(color=_COLOURS[1], point={"color": _COLOURS[1], "size": 60}, strokeWidth=2.5,
+                   invalid="break-paths-filter-domains")
         .encode(x=x, y=alt.Y("found:Q", title=axes[2]), tooltip=tip)
-    )
+    )  # fmt: skip
     return alt.layer(bars, found_).resolve_scale(y="independent").properties(height=220)
+
+
+def _dates(days: list[DayFigures]) -> list[date]:
+    """Return every date from the first of some days to the last."""
+    return [at.date() for at in pd.date_range(days[0].on, days[-1].on)]
 
 
 def still_out(days: list[DayFigures], axes: tuple[str, str]) -> alt.LayerChart:
@@ -171,17 +180,32 @@ def still_out(days: list[DayFigures], axes: tuple[str, str]) -> alt.LayerChart:
 
 
 def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64],
-             axes: tuple[str, str]) -> alt.Chart:  # fmt: skip
-    """Return the days since each row was inspected, ``(r,)``; rows never inspected are left out."""
-    table = pd.DataFrame({"row": lines, "days": days_since}).dropna()
-    table = table.groupby("row", as_index=False)["days"].min()
-    return (
-        alt.Chart(table)
-        .mark_bar(color=_COLOURS[2])
-        .encode(
-            x=alt.X("row:Q", title=axes[0], axis=alt.Axis(tickMinStep=1, format="d")),
-            y=alt.Y("days:Q", title=axes[1], axis=alt.Axis(tickMinStep=1, format="d")),
-            tooltip=[alt.Tooltip("row", title=axes[0]), alt.Tooltip("days", title=axes[1])],
-        )
-        .properties(height=180)
+             axes: tuple[str, str]) -> alt.LayerChart:  # fmt: skip
+    """Return the days since each row was inspected, ``(r,)``.
+
+    A row inspected today has a tick on the ground, a row never inspected a hollow bar.
+    """
+    table = pd.DataFrame({"row": lines, "days": days_since})
+    table = table.groupby("row", as_index=False)["days"].min()  # NaN only where all are
+    never = table["days"].isna()
+    most = 1.0 if never.all() else max(table["days"].max(), 1.0)
+    table["high"] = table["days"].fillna(most)
+    table["said"] = [
+        texts.ROW_NEVER if math.isnan(d) else texts.ROW_TODAY if d == 0 else f"{d:g}"
+        for d in table["days"]
+    ]
+    encoding = {
+        "x": alt.X("row:Q", title=axes[0], axis=alt.Axis(tickMinStep=1, format="d")),
+        "y": alt.Y("high:Q", title=axes[1], axis=alt.Axis(tickMinStep=1, format="d")),
+        "tooltip": [alt.Tooltip("row", title=axes[0]), alt.Tooltip("said", title=axes[1])],
+    }
+    seen = alt.Chart(table[~never]).mark_bar(color=_COLOURS[2])
+    today = alt.Chart(table[table["days"] == 0]).mark_tick(
+        color=_COLOURS[2], thickness=4, orient="horizontal"
     )
+    unseen = alt.Chart(table[never]).mark_bar(
+        filled=False, stroke=_GREY, strokeWidth=1.5, strokeDash=[3, 2]
+    )
+    # a layer of nothing is a picture without a name to those who cannot see it
+    drawn = [part.encode(**encoding) for part in (seen, today, unseen) if len(part.data)]
+    return alt.layer(*drawn).properties(height=180)

@@ -9,42 +9,71 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
+from fieldmon.compute.wording import counted
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.planning.explain import explain
 from fieldmon.plot.grid import row_label
 
-from ..state import chosen_day
+from ..state import assumptions, chosen_day
 from ..words import texts
+from .assumed import mark
 
 if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
 
     from ..state.choices import Choices
+    from ..state.chosen_day import DayRoute
 
 
-def stops(choices: Choices, plan: DayPlan) -> pd.DataFrame:
-    """Return the stops in order, as a table."""
-    label = row_label(choices.plot.grid, plan.route.plant)
-    gone = pd.to_timedelta(plan.route.arrive_s.round(), unit="s")
-    starts = pd.Timestamp(chosen_day.starts(choices, plan))
+def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
+    """Return the stops of a day's route in order, as a table."""
+    route = shown.route
+    label = row_label(choices.plot.grid, route.plant)
+    gone = pd.to_timedelta(route.arrive_s.round(), unit="s")
+    starts = pd.Timestamp(shown.begins)
     columns = {
         texts.COLUMN_ARRIVE: (starts + gone).strftime("%H:%M:%S"),
         texts.COLUMN_ROW: label.line,
         texts.COLUMN_PLANT: label.number,
-        texts.COLUMN_CHANCE: (100 * plan.route.chance).round(1),
+        texts.COLUMN_CHANCE: (100 * route.chance).round(1),
     }
-    return pd.DataFrame(columns, pd.RangeIndex(1, len(plan.route) + 1, name="stop"))
+    if shown.worked:
+        done = choices.season.history.inspections.on(choices.on)
+        was = dict(zip(done.plant.tolist(), done.result.tolist(), strict=True))
+        columns[texts.REPORT_WAS] = [texts.HISTORY_RESULTS[was[p]] for p in route.plant.tolist()]
+    return pd.DataFrame(columns, pd.RangeIndex(1, len(route) + 1, name="stop"))
+
+
+def headline(choices: Choices, plan: DayPlan) -> str:
+    """Return what there is to do on the day, in one sentence."""
+    route, on = plan.route, choices.units.day(choices.day)
+    if not len(route):
+        return texts.HEADLINE_NONE.format(day=on)
+    line = row_label(choices.plot.grid, route.plant).line
+    low, high = int(line.min()), int(line.max())
+    return texts.HEADLINE.format(
+        plants=counted(len(route), "plant"), rows=f"{low}–{high}" if low < high else low, day=on,
+        hours=route.end_s / 3600, finds=route.expected_found,
+    )  # fmt: skip
 
 
 def route_figures(choices: Choices, plan: DayPlan) -> None:
     """Show the figures to decide by."""
     route, n = plan.route, len(choices.plot.grid)
-    finds = route.expected_found
+    taken = assumptions.of(choices)
+    rows, speed = ("row_spacing_m", "plant_spacing_m"), "speed_m_s"
+    for_finds = (*rows, "background_chance", "rate_per_day", "detects")
     with st.container(horizontal=True):
-        st.metric(texts.PLANTS_TO_INSPECT, f"{len(route):,} / {n:,}", width="content")
-        st.metric(texts.TIME, f"{route.end_s / 3600:.1f} h", width="content")
-        st.metric(texts.DRIVE, choices.units.metres(route.drive_m), width="content")
-        st.metric(texts.FINDS, f"{finds:.1f}", help=texts.FINDS_HELP, width="content")
+        st.metric(mark(texts.PLANTS_TO_INSPECT, taken, rows), f"{len(route):,} / {n:,}",
+                  width="content")  # fmt: skip
+        st.metric(mark(texts.TIME, taken, (*rows, speed)), f"{route.end_s / 3600:.1f} h",
+                  width="content")  # fmt: skip
+        st.metric(mark(texts.DRIVE, taken, rows), choices.units.metres(route.drive_m),
+                  width="content")  # fmt: skip
+        st.metric(mark(texts.FINDS, taken, for_finds), f"{route.expected_found:.1f}",
+                  width="content")  # fmt: skip
+    if len(route) and route.bound_sentence:
+        st.caption(route.bound_sentence, help=texts.BOUND_HELP)
 
 
 def said_of_day(choices: Choices, plan: DayPlan) -> None:
@@ -114,4 +143,6 @@ def reasons(choices: Choices, plan: DayPlan) -> list[str]:
     lately = (done.result == FOUND) & (done.date <= now) & (done.date > now - 7)
     finds = dict(zip(done.plant[lately].tolist(), done.date[lately].tolist(), strict=True))
     on = [texts.WHY_TODAY if day == choices.on else f"{day:%A}" for day in finds.values()]
-    return explain(plan.scene, plan.work, np.array([*finds], np.int32), on)
+    recorded = season.history.recorded
+    seen = None if recorded is None else recorded >= 0
+    return explain(plan.scene, plan.work, np.array([*finds], np.int32), on, seen)

@@ -1,75 +1,54 @@
-"""The map of a plot on a page: outline, layers, scale and north; what is tapped and clicked on."""
+"""The map of a plot: what pages want shown on it, drawn once a run when the page is done."""
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
 from ..state import chosen_day
 from ..words import texts
-from . import scale_bar
-from .map_room import height_px, room_px
-from .maps import deck, legends
+from . import map_view
+from .maps import deck
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from streamlit.delta_generator import DeltaGenerator
-
     from ..state.choices import Choices
+    from .map_view import MapAnswers, MapContent
 
-    #: takes what was tapped, by layer
-    Tapped = Callable[[dict], None]
+_WANTED = "map wanted"
 
 
-def draw(
-    choices: Choices, layers: list, key: str, tap: Tapped | None = None,
-    clicked: scale_bar.Clicked | None = None, chart: DeltaGenerator | None = None,
-) -> None:  # fmt: skip
-    """Show a map with outline, scale and north, in `chart` if there is a place for it already.
+def clear() -> None:
+    """Want no map yet, at the beginning of a run."""
+    st.session_state[_WANTED] = None
 
-    `tap` is called once for each thing that is tapped, `clicked` with every position clicked on.
+
+def want(content: MapContent, answers: MapAnswers | None = None) -> None:
+    """Want this on the map of the page."""
+    st.session_state[_WANTED] = content, answers
+
+
+def wanted() -> MapContent | None:
+    """Return what the page wants on its map, if it has one."""
+    kept = st.session_state.get(_WANTED)
+    return None if kept is None else kept[0]
+
+
+def draw() -> None:
+    """Show what is wanted.
+
+    The frame does it, not the page: so one map stays through all pages, with its zoom.
     """
+    kept = st.session_state.get(_WANTED)
+    if kept is not None:
+        map_view.show(*kept)
+
+
+def of_plot(choices: Choices, stops: int = 0) -> dict[str, object]:
+    """Return what all maps of a plot have in common: the place, what is in view, and the words."""
     grid = choices.plot.grid
-    route = next((layer for layer in layers if layer.id == "route"), None)
     finds = int((chosen_day.states(choices) == 1).sum())
     alt = texts.MAP_ALT.format(
-        name=choices.plot.field.name, plants=len(grid), finds=finds,
-        stops=0 if route is None else len(chosen_day.route(choices).route),
-    )  # fmt: skip
-    outline = deck.boundary(choices.plot.field, dark=choices.dark)
-    picture = deck.deck(grid, [outline, *layers], room_px(key))
-    picture.renamed = st.session_state.get(f"renamed {key}", frozenset())
-    # a callback, since what was tapped stays selected in all the runs that follow
-    (chart or st).pydeck_chart(
-        picture, height=height_px(), key=key, alt=alt,
-        on_select="ignore" if tap is None else partial(_tapped, key, tap),
-    )  # fmt: skip
-    scale_bar.show(key, picture.initial_view_state, choices.units, clicked)
-
-
-def _tapped(key: str, tap: Tapped) -> None:
-    objects = {
-        name.removesuffix(deck.RENAMED): hits
-        for name, hits in st.session_state[key].selection.objects.items()
-    }
-    renamed = st.session_state.get(f"renamed {key}", frozenset())
-    st.session_state[f"renamed {key}"] = renamed ^ objects.keys()
-    tap(objects)
-
-
-def signs(shown: Sequence[str]) -> None:
-    """Show what the signs of the layers shown mean."""
-    captions([text for name, text in texts.LEGENDS.items() if name in shown])
-
-
-def state_legend() -> None:
-    """Show how found, clean and never inspected plants are told apart."""
-    st.markdown(legends.state_legend(texts.LEGEND_STATES), unsafe_allow_html=True)
-
-
-def captions(parts: Sequence[str]) -> None:
-    """Show what the signs of a map mean."""
-    st.caption(" · ".join(parts))
+        name=choices.plot.field.name, plants=len(grid), finds=finds, stops=stops
+    )
+    return {"place": choices.place, "bounds": deck.of_grid(grid), "alt": alt}

@@ -2,35 +2,52 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
+from fieldmon.infestation.inspections import FOUND
 from fieldmon.plot.grid import plant_at, row_label
 
 from ..state import chosen_day, widget_memory
 from ..words import texts
+from . import field_map
+from .map_view import MapAnswers
 from .maps import plant_layers
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
+    from .map_view import MapContent, Selected
 
-_ROW, _PLANT = "history row", "history plant"
+_ROW, _PLANT, _TAPPED = "history row", "history plant", "history tapped"
 
 
-def take_plant(choices: Choices, objects: dict) -> None:
+def want(choices: Choices, content: MapContent, selected: Selected | None = None) -> None:
+    """Want a map on which a tap chooses the plant whose history is shown, with a ring round it.
+
+    `selected` hears of the plants that are selected on it.
+    """
+    chosen = replace(content, layers=[*content.layers, *layers(choices)])
+    field_map.want(chosen, MapAnswers(partial(take_plant, choices), selected=selected))
+
+
+def take_plant(choices: Choices, layer: str, index: int) -> None:
     """Take the plant that was tapped as the one whose history is shown."""
-    hits = [hit["i"] for layer in objects.values() for hit in layer if "i" in hit]
-    if hits:
+    if layer.startswith("plants"):
         grid = choices.plot.grid
-        label = row_label(grid, np.array([min(hits[0], len(grid) - 1)]))
+        label = row_label(grid, np.array([min(index, len(grid) - 1)]))
         st.session_state[_ROW], st.session_state[_PLANT] = int(label.line[0]), int(label.number[0])
+        st.session_state[_TAPPED] = True
 
 
 def layers(choices: Choices) -> list:
     """Return the ring round the plant whose history is shown, if there is such a plant."""
+    if not st.session_state.get(_TAPPED):
+        return []
     try:
         plant = plant_at(
             choices.plot.grid, *(widget_memory.value(key, 1) for key in (_ROW, _PLANT))
@@ -40,9 +57,15 @@ def layers(choices: Choices) -> list:
     return plant_layers.chosen(choices.plot.grid, plant)
 
 
+def show_chosen(choices: Choices) -> None:
+    """Show what is known of the plant that was tapped, if one was."""
+    if st.session_state.get(_TAPPED):
+        show(choices)
+
+
 def show(choices: Choices) -> None:
     """Show what is known of the plant tapped, or of the one whose row and number are given."""
-    st.markdown(f"**{texts.HISTORY}**")
+    st.markdown(f"### {texts.HISTORY}")
     st.caption(texts.HISTORY_TAP)
     row, number = (
         widget_memory.show(st.number_input, label, 1, key=key, default=1)
@@ -53,8 +76,18 @@ def show(choices: Choices) -> None:
     if choices.season is not None:
         first = chosen_day.morning(choices, str(choices.season.settings.begins))
     st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
+    if _taken_as_treated(choices, plant):
+        st.caption(texts.HISTORY_TREATED)
     for line in _inspections(choices, plant):
         st.markdown(line)
+
+
+def _taken_as_treated(choices: Choices, plant: int) -> bool:
+    """Return whether a plant was found, and so is taken as free of pests from then on."""
+    season = choices.season
+    if season is None or not season.settings.belief.treated:
+        return False
+    return bool(season.history.states(season.settings.day(choices.on))[plant] == FOUND)
 
 
 def _inspections(choices: Choices, plant: int) -> list[str]:

@@ -8,6 +8,7 @@ import shapely
 import streamlit as st
 
 from ..words import texts
+from .assumed import mark
 
 if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
@@ -20,9 +21,13 @@ def show(plot: Plot, units: Units) -> None:
     grid = plot.grid
     area_m2 = shapely.area(grid.frame.geometry_m(plot.field.drivable()))
     apart = f"{units.metres(grid.row_spacing_m, 1)} / {units.metres(grid.plant_spacing_m, 1)}"
+    rows = ("row_spacing_m", "plant_spacing_m")
+    plants, spacing = (
+        mark(name, plot.assumed, rows) for name in (texts.PLANTS_ARE, texts.SPACING_IS)
+    )
     with st.container(horizontal=True):
         st.metric(texts.AREA_IS, units.square(float(area_m2)), width="content")
-        st.metric(texts.PLANTS_ARE, f"{len(grid):,}", width="content")
+        st.metric(plants, f"{len(grid):,}", width="content")
         st.metric(texts.ROWS_ARE, int(grid.row_line.max()) + 1, width="content")
         st.metric(texts.BEARING_IS, f"{grid.frame.bearing_deg % 180:.1f}°", width="content")
-        st.metric(texts.SPACING_IS, apart, width="content")
+        st.metric(spacing, apart, width="content")

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.monitoring import DayFigures
-    from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
     from fieldmon.plot.robot import Robot
 
+    from ..state.chosen_day import DayRoute
     from ..words.units import Units
 
 _WIDE = 900.0
@@ -50,25 +50,33 @@ class Facts:
     state: NDArray[np.int8]
     robot: Robot
     sampler: str
-    route: Route
+    shown: DayRoute
     results: dict[str, str]
+    assumed: str = ""
+
+    @property
+    def route(self) -> Route:
+        """Return the route as it was worked, or as it is planned."""
+        return self.shown.route
 
 
-def html(facts: Facts, plan: DayPlan, stops: pd.DataFrame, days: list[DayFigures]) -> str:
+def html(facts: Facts, stops: pd.DataFrame, days: list[DayFigures]) -> str:
     """Return the whole page."""
     signs = [
-        (colours.FOUND, texts.LEGEND_STATES["found"]),
-        (colours.ROUTE, texts.MAP_LAYERS["route"]),
-        (colours.GATE, texts.DRAW_KINDS["gate"]),
+        ("find", colours.FOUND, texts.LEGEND_STATES["found"]),
+        ("line", colours.ROUTE, texts.LEGEND_ROUTE),
+        ("ring", colours.GATE, texts.LEGEND_GATE),
     ]
-    table = stops.assign(**{texts.REPORT_TICK: "☐"}).reset_index()
+    worked = facts.shown.worked
+    table = (stops if worked else stops.assign(**{texts.REPORT_TICK: "☐"})).reset_index()
     return page(
         _TEMPLATE,
         title=texts.REPORT_TITLE.format(name=texts.isolated(facts.name), day=facts.day),
-        words=_WORDS,
-        figures=_figures(facts, plan),
+        words=_WORDS | ({"route": texts.REPORT_WORKED} if worked else {}),
+        figures=_figures(facts),
+        assumed=facts.assumed.removeprefix("\\"),
         drawing=drawing(facts),
-        legends=[legends.chance_legend(), legends.legend(signs, signs=("find", "line", "ring"))],
+        legends=[legends.markup([legends.by_chance()]), legends.markup([legends.part("", signs)])],
         found=facts.results,
         days=[_day(facts, one) for one in days],
         settings=_settings(facts),
@@ -126,7 +134,7 @@ def _dots(places: NDArray[np.float64], shade: colours.Shade, size: float) -> Mar
     parts = []
     for rank in np.unique(shade.rank):
         own = places[shade.rank == rank]
-        colour = tuple(colours.CHANCE_COLOURS[rank])
+        colour = tuple(colours.of_chance()[rank])
         # lines as long as they are wide: dots of no length are missing in a PDF
         dots = "".join(f"M{x - size:.1f} {y}h{2 * size:.1f}" for x, y in own.tolist())
         path = Markup('<path d="{}" stroke="rgb{}" stroke-width="{:.1f}"/>')
@@ -153,13 +161,21 @@ def _line(places: NDArray[np.float64], colour: str, wide: float) -> Markup:
     )
 
 
-def _figures(facts: Facts, plan: DayPlan) -> dict[str, str]:
-    route = plan.route
+def _figures(facts: Facts) -> dict[str, str]:
+    """Return what is to be done, or what was."""
+    route, worked = facts.route, facts.shown.worked
+    found = sum(len(plants.split(", ")) for plants in facts.results.values())
+    plants = texts.PLANTS_INSPECTED if worked else texts.PLANTS_TO_INSPECT
+    finds = (
+        {texts.FOUND_TODAY: f"{found:,}"}
+        if worked
+        else {texts.FINDS: f"{route.expected_found:.1f}"}
+    )
     return {
-        texts.PLANTS_TO_INSPECT: f"{len(route):,} / {len(facts.chance):,}",
+        plants: f"{len(np.unique(route.plant)):,} / {len(facts.chance):,}",
         texts.TIME: f"{route.end_s / 3600:.1f} h",
         texts.DRIVE: facts.units.metres(route.drive_m),
-        texts.FINDS: f"{route.expected_found:.1f}",
+        **finds,
     }
 
 

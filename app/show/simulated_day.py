@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,8 +10,10 @@ from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.planning.route import route_of
 from fieldmon.samplers.base import NEVER, Scene
 
-from . import map_layers
-from .maps import colours, marks, plant_layers, route_layers
+from ..words import texts
+from . import field_map, map_layers
+from .map_view import MapContent, Switch
+from .maps import colours, deck, labels, legends, marks, route_layers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,21 +31,33 @@ def states(season: list[SimulatedDay], number: int) -> NDArray[np.int8]:
     return state
 
 
-def layers(choices: Choices, season: list[SimulatedDay], number: int, *, truth: bool) -> list:
+def content(
+    choices: Choices, season: list[SimulatedDay], number: int, *, truth: bool
+) -> MapContent:  # fmt: skip
     """Return what is known after a day and the route driven; `truth`: what is infested, too."""
-    grid, day = choices.plot.grid, season[number]
+    grid, day, dark = choices.plot.grid, season[number], choices.dark
     state = states(season, number)
     scene = Scene(
         aisles=choices.plot.aisles, robot=choices.robot, chance=day.chance,
         last_inspected=np.full(len(grid), NEVER, np.int32), seconds_left=choices.robot.day_s,
     )  # fmt: skip
-    shown = [
-        plant_layers.plants(grid, colours.by_state(state), partial(map_layers.states_said, state)),
-        *plant_layers.finds(grid, state),
-        *route_layers.route(route_of(scene, day.work), numbers=False, dark=choices.dark),
-    ]
-    shown = marks.with_hot(shown, marks.hot(grid, hot_spots(grid, state), dark=choices.dark))
-    return [*shown, *marks.truth(grid, _left(day), dark=choices.dark)] if truth else shown
+    driven = route_of(scene, day.work)
+    shown = marks.with_hot(
+        map_layers.in_states(choices, state), marks.hot(grid, hot_spots(grid, state), dark=dark)
+    )
+    layers = [
+        deck.boundary(choices.plot.field, dark=dark), *shown,
+        *route_layers.route(driven, dark=dark),
+        *(marks.truth(grid, _left(day), dark=dark) if truth else []),
+    ]  # fmt: skip
+    colour = colours.TRUTH_IN_DARK if dark else colours.TRUTH
+    more = [legends.part("", [("dot", colour, texts.LEGEND_TRUTH)])] if truth else []
+    return MapContent(
+        **field_map.of_plot(choices, len(driven)), layers=layers,
+        switches=map_layers.switches(layers),
+        shades=(Switch("state", texts.SHADES["state"], ("plants-state",)),),
+        legend=[*map_layers.legend(choices), *more], labels=labels.stops(driven),
+    )  # fmt: skip
 
 
 def _left(day: SimulatedDay) -> NDArray[np.bool_]:

@@ -8,6 +8,7 @@ from shapely import MultiPolygon
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.hotspots import hot_spots, record_states
 from fieldmon.infestation.observations import PRESENT, Observations
+from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
@@ -25,7 +26,7 @@ def load_planning() -> None:
     """Plan a day from a record, and look for hot spots, as Today does."""
     plot = Plot.of(Field("", MultiPolygon([(_CORNERS, [])])))
     record = Observations.of(np.array([(35.1502, 30.3602)]), np.array([PRESENT]))
-    first_day(plot, record, np.datetime64("2026-11-16"), PlanSettings())
+    with_bound(first_day(plot, record, np.datetime64("2026-11-16"), PlanSettings()))
     hot_spots(plot.grid, record_states(plot.grid, record))
 
 

@@ -11,6 +11,7 @@ import asyncio
 import logging
 import mimetypes
 import os
+import re
 import signal
 import socket
 import sys
@@ -24,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.io.sandbox import process
 
+from ..state import map_file, map_store
 from . import preload
 
 if TYPE_CHECKING:
@@ -32,16 +34,21 @@ if TYPE_CHECKING:
     Message = dict[str, Any]
     Receive = Callable[[], Awaitable[Message]]
     Send = Callable[[Message], Awaitable[None]]
+    Header = tuple[bytes, bytes]
 
 #: what Streamlit is told through its own variables; all else is in .streamlit/config.toml
 ADDRESS, PORT = "STREAMLIT_SERVER_ADDRESS", "STREAMLIT_SERVER_PORT"
 PAGE = Path(__file__).resolve().parents[1] / "streamlit_app.py"
-# what draws maps is three megabytes of script, which the page asks for late: at the first map
-_MAPS = "/static/js/DeckGlJsonChart.*.js"
-_FOR_GOOD = b"public, immutable, max-age=31536000"
+# without it the page asks for the server below its own address first: two errors a page
+_WHERE = b"""<head>
+<script>window.__streamlit = {BACKEND_BASE_URL: new URL(".", location.href).href}</script>"""
+_FOR_GOOD, _ASK = b"public, immutable, max-age=31536000", b"no-cache"
+_OWN_FOR_GOOD = b"private, immutable, max-age=86400"
 # one thread must not keep the others waiting while libraries load (Python's default is 5 ms)
 _TURN_S = 0.0005
 _GOODBYE_S = 5
+# plain words that are Streamlit's own addresses
+_STREAMLITS_OWN = frozenset({"/static", "/media", "/component", "/app", "/healthz"})
 # as Python knows them: what a machine says of scripts may keep browsers from running them
 _KINDS = mimetypes.MimeTypes()
 _LOG = logging.getLogger(__name__)
@@ -51,8 +58,7 @@ class Server:
     """An ASGI application: the page's files at once, all else from Streamlit once it is loaded."""
 
     def __init__(self) -> None:
-        self._files = page_files()
-        self._hint = next((name for name in self._files if Path(name).match(_MAPS)), None)
+        self._files = page_files() | {map_file.ADDRESS: map_file.FILE}
         self._streamlit: Any = None
         self._loaded = asyncio.Event()
 
@@ -60,24 +66,29 @@ class Server:
         """Answer a request, or run until the server stops."""
         if scope["type"] == "lifespan":
             await self._run(receive, send)
+        elif scope.get("method") == "GET" and is_page(scope["path"]):
+            await self._hand_out("/", send)
         elif scope["path"] in self._files and scope.get("method") == "GET":
             await self._hand_out(scope["path"], send)
+        elif scope["type"] == "http" and scope["path"].startswith(map_store.PATH):
+            await _hand_out_map(scope["path"], send)
         else:
             await self._loaded.wait()
             await self._streamlit(scope, receive, send)
 
     async def _hand_out(self, path: str, send: Send) -> None:
         body = self._files[path].read_bytes()
+        if path == "/":
+            body = body.replace(b"<head>", _WHERE, 1)
         kind = _KINDS.guess_type(self._files[path].name)[0] or "application/octet-stream"
-        headers = [
-            (b"content-type", kind.encode()),
-            (b"content-length", b"%d" % len(body)),
-            (b"cache-control", _FOR_GOOD if path.startswith("/static/") else b"no-cache"),
-        ]
-        if path == "/" and self._hint is not None:
-            headers.append((b"link", f"<.{self._hint}>; rel=modulepreload".encode()))
-        await send({"type": "http.response.start", "status": 200, "headers": headers})
-        await send({"type": "http.response.body", "body": body})
+        lasting = path.startswith("/static/") or path == map_file.ADDRESS
+        more = []
+        if path == "/":
+            # what draws maps is a megabyte of script, which the page asks for late: at its map
+            more = [(b"link", f"<{map_file.ADDRESS}>; rel=modulepreload".encode())]
+        await _answer(
+            send, 200, kind, body, [(b"cache-control", _FOR_GOOD if lasting else _ASK), *more]
+        )
 
     async def _run(self, receive: Receive, send: Send) -> None:
         """Load Streamlit beside the first answers; stop it at the end."""
@@ -101,6 +112,25 @@ class Server:
         preload.start()
 
 
+async def _hand_out_map(path: str, send: Send) -> None:
+    found = map_store.STORE.get(path)
+    if found is None:
+        await _answer(send, 404, "text/plain", b"", [(b"cache-control", b"no-store")])
+        return
+    await _answer(send, 200, *found, [(b"cache-control", _OWN_FOR_GOOD)])
+
+
+async def _answer(send: Send, status: int, kind: str, body: bytes, more: list[Header]) -> None:
+    headers = [
+        (b"content-type", kind.encode()),
+        (b"content-length", b"%d" % len(body)),
+        (b"x-content-type-options", b"nosniff"),
+        *more,
+    ]
+    await send({"type": "http.response.start", "status": status, "headers": headers})
+    await send({"type": "http.response.body", "body": body})
+
+
 def page_files() -> dict[str, Path]:
     """Return the files of Streamlit's page by their addresses; nothing if they are elsewhere."""
     streamlit = find_spec("streamlit")
@@ -111,6 +141,11 @@ def page_files() -> dict[str, Path]:
     if "/index.html" in files:
         files["/"] = files.pop("/index.html")
     return files
+
+
+def is_page(path: str) -> bool:
+    """Return whether an address is one of a page: one plain word."""
+    return re.fullmatch(r"/[a-z]+", path) is not None and path not in _STREAMLITS_OWN
 
 
 def _streamlit() -> Any:  # noqa: ANN401 - half a second to import

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from streamlit.runtime.uploaded_file_manager import UploadedFile
 
+    from fieldmon.errors import FieldmonError
     from fieldmon.io.import_report import Imported, ImportMessage
 
 PLOT, RECORDS, PLANTS = "plot", "record", "plant"
@@ -25,10 +26,16 @@ _BROUGHT, _ASKING = "brought", "asking"
 
 @dataclass(frozen=True, eq=False)
 class File:
-    """A file to read: what stands for it in keys, and where it is or its bytes."""
+    """A file to read: what stands for it in keys, where it is or its bytes, and what it is for."""
 
     key: str
     source: Path | Upload | tuple[Upload, ...]
+    kind: str = ""
+
+    @property
+    def asked(self) -> str:
+        """Return what stands for it in answers: the same file may be plot and records."""
+        return f"{self.kind} {self.key}"
 
     @property
     def name(self) -> str:
@@ -39,15 +46,23 @@ class File:
 
 @dataclass(frozen=True, eq=False)
 class FileMessage:
-    """What an import has to say, and the key of the file it is about."""
+    """What an import has to say, and the file it is about, as it stands in answers."""
 
-    file_key: str
+    asked: str
     message: ImportMessage
 
 
-def messages_of(file_key: str, imported: Imported[Any]) -> tuple[FileMessage, ...]:
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """A file that could not be used for a plot, and why."""
+
+    file: File
+    problem: FieldmonError
+
+
+def messages_of(file: File, imported: Imported[Any]) -> tuple[FileMessage, ...]:
     """Return what an import had to say about a file."""
-    return tuple(FileMessage(file_key, message) for message in imported.messages)
+    return tuple(FileMessage(file.asked, message) for message in imported.messages)
 
 
 # -- the files
@@ -66,7 +81,7 @@ def keep(kind: str, parts: Iterable[UploadedFile]) -> None:
         take_out(kind)
         return
     key = cached.digest(b"".join(u.name.encode() + b"\0" + u.data for u in uploads))
-    brought()[kind] = File(key, uploads[0] if len(uploads) == 1 else uploads)
+    brought()[kind] = File(key, uploads[0] if len(uploads) == 1 else uploads, kind)
 
 
 def take_out(kind: str) -> None:
@@ -79,35 +94,35 @@ def take_out(kind: str) -> None:
 
 def settled(file: File, options: Any) -> Any:  # noqa: ANN401 - any of four kinds of options
     """Return the options with what was answered for this file before; it is the one asked about."""
-    for option, value in answers(file.key):
+    for option, value in answers(file.asked):
         options = options.choose(option, value)
-    ask_about(file.key)
+    ask_about(file.asked)
     return options
 
 
-def ask_about(key: str) -> None:
-    """Let whatever is asked next be about the file with this key."""
-    st.session_state[_ASKING] = key
+def ask_about(asked: str) -> None:
+    """Let whatever is asked next be about this file."""
+    st.session_state[_ASKING] = asked
 
 
 def asking() -> str:
-    """Return the key of the file that is asked about; empty: of none."""
+    """Return the file that is asked about, as it stands in answers; empty: none."""
     key: str = st.session_state.get(_ASKING, "")
     return key
 
 
-def answers(key: str) -> tuple[tuple[str, str], ...]:
+def answers(asked: str) -> tuple[tuple[str, str], ...]:
     """Return what was answered about a file, in order: option and value."""
-    said: tuple[tuple[str, str], ...] = st.session_state.get(f"answers {key}", ())
+    said: tuple[tuple[str, str], ...] = st.session_state.get(f"answers {asked}", ())
     return said
 
 
-def answer(key: str, option: str, value: str) -> None:
+def answer(asked: str, option: str, value: str) -> None:
     """Add an answer about a file; an empty one is none."""
     if value:
-        st.session_state[f"answers {key}"] = (*answers(key), (option, value))
+        st.session_state[f"answers {asked}"] = (*answers(asked), (option, value))
 
 
-def take_back(key: str) -> None:
+def take_back(asked: str) -> None:
     """Take the last answer about a file back."""
-    st.session_state[f"answers {key}"] = answers(key)[:-1]
+    st.session_state[f"answers {asked}"] = answers(asked)[:-1]

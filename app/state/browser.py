@@ -1,8 +1,6 @@
-"""What a visitor's browser says of itself: a phone or not, dark or light, and what time it is."""
+"""What a visitor's browser says of itself: a phone or not, dark or light."""
 
 from __future__ import annotations
-
-from datetime import UTC, datetime, timedelta
 
 import streamlit as st
 
@@ -15,16 +13,3 @@ def is_phone() -> bool:
 def is_dark() -> bool:
     """Return whether the page is dark."""
     return st.context.theme.get("type") == "dark"
-
-
-def local(at: datetime) -> datetime:
-    """Return a moment in the time of the person's browser, without a zone."""
-    minutes = st.context.timezone_offset
-    if minutes is None:
-        return at.astimezone().replace(tzinfo=None)
-    return at.astimezone(UTC).replace(tzinfo=None) - timedelta(minutes=minutes)
-
-
-def now() -> datetime:
-    """Return the local time where the person stands, to the second."""
-    return local(datetime.now(UTC)).replace(microsecond=0)

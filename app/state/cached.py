@@ -14,12 +14,14 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.hotspots import HotSpots, hot_spots, record_states
+from fieldmon.infestation import hotspots
+from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.infestation.spread import Spread
 from fieldmon.io import prepare, read
 from fieldmon.io.rasters.read import read_backdrop
 from fieldmon.monitoring import Season, worked_route
+from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
@@ -51,6 +53,7 @@ if TYPE_CHECKING:
     )
     from fieldmon.monitoring import DayFigures, KeptMessage, Progress
     from fieldmon.planning.route import Route
+    from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
@@ -123,39 +126,41 @@ def plot_around(
 def day_plan(
     key: str,
     day: str,
-    robot: Robot,
-    sampler_name: str,
+    settings: PlanSettings,
+    sampler_name: str,  # noqa: ARG001 - whom the settings hold
     _plot: Plot,
     _known: tuple[Observations, Array | None],
+    wishes: Wishes,
 ) -> DayPlan:
     """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
-    chance = chance_map(key, day, _plot, _known)
-    return plan_from(_plot, chance, PlanSettings(robot, sampler(sampler_name)))
+    chance = chance_map(key, day, settings.prior, _plot, _known)
+    return with_bound(plan_from(_plot, chance, settings, wishes))
 
 
 @st.cache_resource(max_entries=_FEW)
 def chance_map(
     key: str,  # noqa: ARG001
     day: str,
+    prior: PriorSettings,
     _plot: Plot,
     _known: tuple[Observations, Array | None],
 ) -> Array:
     """Return the chance map of a day, whoever is to work on it; `key` as above."""
     records, at_risk = _known
     on = np.datetime64(day, "D")
-    return prior_chance(_plot.grid, _plot.field, records, on, PriorSettings(), at_risk)
+    return prior_chance(_plot.grid, _plot.field, records, on, prior, at_risk)
 
 
 @st.cache_resource(max_entries=_FEW)
-def recorded_states(key: str, _plot: Plot, _records: Observations) -> NDArray[np.int8]:  # noqa: ARG001
+def newest_records(key: str, _plot: Plot, _records: Observations) -> NewestRecords:  # noqa: ARG001
     """Return what records say of plants; `key` stands for the plot, its records and the day."""
-    return record_states(_plot.grid, _records)
+    return hotspots.newest_records(_plot.grid, _records)
 
 
 @st.cache_resource(max_entries=_FEW)
 def recorded_hot_spots(key: str, _plot: Plot, _records: Observations) -> HotSpots:
     """Return where records cluster; `key` as above."""
-    return hot_spots(_plot.grid, recorded_states(key, _plot, _records))
+    return hot_spots(_plot.grid, newest_records(key, _plot, _records).state)
 
 
 # -- seasons that are kept
@@ -179,9 +184,15 @@ def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:  # n
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
-def season_plan(path: str, revision: str, day: str, _season: Season) -> DayPlan:  # noqa: ARG001
+def season_plan(
+    path: str,  # noqa: ARG001
+    revision: str,  # noqa: ARG001
+    day: str,
+    _season: Season,
+    wishes: Wishes,
+) -> DayPlan:
     """Return what is left of a season's day."""
-    return _season.plan(np.datetime64(day).item(), keep=False)
+    return with_bound(_season.plan(np.datetime64(day).item(), keep=False, wishes=wishes))
 
 
 @st.cache_resource(max_entries=_FEW)
@@ -218,7 +229,7 @@ def progress(path: str, revision: str, day: str, _season: Season) -> Progress:  
 def season_hot_spots(path: str, revision: str, day: str, _season: Season) -> HotSpots:  # noqa: ARG001
     """Return where finds cluster on a day of a season."""
     number = _season.settings.day(np.datetime64(day).item())
-    return hot_spots(_season.plot.grid, _season.history.states(number))
+    return hot_spots(_season.plot.grid, _season.history.known(number))
 
 
 @st.cache_resource(max_entries=_MAPS)

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import date
 from typing import TYPE_CHECKING
 
+from fieldmon.infestation.prior import PriorSettings
+from fieldmon.planning.plan import PlanSettings
+from fieldmon.plot.local_clock import LocalClock, local_clock
+from fieldmon.samplers import sampler
+
 from ..words import texts
-from . import browser, cached
+from . import browser, cached, wishes
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
     from fieldmon.infestation.observations import Observations
     from fieldmon.monitoring import Season
     from fieldmon.planning.plan import DayPlan
+    from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
 
     from ..words.units import Units
-    from .brought_files import FileMessage
+    from .brought_files import FileMessage, LeftOut
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +49,12 @@ class Choices:
         Names the plot before anything was drawn on it.
     risk
         ``(n,)`` risk of the plants from a raster, or None; a season has taken it in.
+    today
+        The date on the plot now; None: that of the day.
+    prior
+        How records become chances; a season has its own.
+    left_out
+        Files that could not be used: what is shown does without them, and says so.
     """
 
     key: str
@@ -56,6 +68,9 @@ class Choices:
     season: Season | None = None
     plot_key: str = ""
     risk: cached.Array | None = None
+    today: date | None = None
+    left_out: tuple[LeftOut, ...] = ()
+    prior: PriorSettings = field(default_factory=PriorSettings)
 
     @property
     def name(self) -> str:
@@ -68,6 +83,16 @@ class Choices:
         return date.fromisoformat(self.day)
 
     @property
+    def is_today(self) -> bool:
+        """Return whether the day is today on the plot."""
+        return self.today is None or self.on == self.today
+
+    @property
+    def clock(self) -> LocalClock:
+        """Return the clock of the plot's time zone."""
+        return local_clock(self.plot.field)
+
+    @property
     def revision(self) -> str:
         """Return what changes with everything that is recorded."""
         return "" if self.season is None else self.season.revision
@@ -77,12 +102,26 @@ class Choices:
         """Return whether the page is dark."""
         return browser.is_dark()
 
+    @property
+    def place(self) -> str:
+        """Return what a plot and the season that begins on it have in common."""
+        edges = self.plot.field.boundary.bounds
+        return " ".join([self.plot.field.name, *(f"{edge:.5f}" for edge in edges)])
+
+    @property
+    def wishes(self) -> Wishes:
+        """Return what people want of the day besides."""
+        return wishes.of(self.place, self.day)
+
     def plan(self) -> DayPlan:
         """Return the planned day: what is left of it, once something of it was recorded."""
         if self.season is not None:
-            return cached.season_plan(self.key, self.revision, self.day, self.season)
+            return cached.season_plan(self.key, self.revision, self.day, self.season, self.wishes)
         known = self.records, self.risk
-        return cached.day_plan(self.key, self.day, self.robot, self.sampler, self.plot, known)
+        settings = PlanSettings(self.robot, sampler(self.sampler), self.prior)
+        return cached.day_plan(
+            self.key, self.day, settings, self.sampler, self.plot, known, self.wishes
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,10 +29,11 @@ STARTS = time(6, 0)
 
 @dataclass(frozen=True, eq=False)
 class DayRoute:
-    """A route on the map, and the local time at which it starts."""
+    """A route on the map, the local time at which it starts, and whether it was worked."""
 
     route: Route
     begins: datetime
+    worked: bool = False
 
 
 def starts(choices: Choices, plan: DayPlan) -> datetime:
@@ -48,7 +49,8 @@ def route(choices: Choices) -> DayRoute:
     if season is not None and (not len(plan.route) or choices.on < season.last_date()):
         done = cached.worked(choices.key, choices.revision, choices.day, season)
         if len(done):
-            return DayRoute(done, datetime.combine(choices.on, season.settings.starts))
+            begins = datetime.combine(choices.on, season.settings.starts)
+            return DayRoute(done, begins, worked=True)
     return DayRoute(plan.route, starts(choices, plan))
 
 
@@ -70,10 +72,10 @@ def morning(choices: Choices, day: str) -> cached.Array:
 
 
 def states(choices: Choices) -> cached.Array:
-    """Return ``(n,)`` found (1), clean (0) or never inspected (-1); of records without a season."""
+    """Return ``(n,)`` found (1), clean (0) or never inspected (-1), by records and inspections."""
     if choices.season is None:
-        return cached.recorded_states(*_recorded(choices))
-    return choices.season.history.states(choices.season.settings.day(choices.on))
+        return cached.newest_records(*_recorded(choices)).state
+    return choices.season.history.known(choices.season.settings.day(choices.on))
 
 
 def hot_spots(choices: Choices) -> HotSpots:
@@ -89,12 +91,15 @@ def season_hot_spots(choices: Choices, day: str) -> HotSpots:
 
 
 def ages(choices: Choices) -> cached.Array:
-    """Return ``(n,)`` days since each plant was inspected; -1: never."""
+    """Return ``(n,)`` days since each plant was inspected, or its record made; -1: never."""
+    newest = cached.newest_records(*_recorded(choices)).day
+    since = (np.datetime64(choices.day, "D") - newest).astype(np.int64)
+    recorded = np.where(np.isnat(newest), -1, since)
     if choices.season is None:
-        return np.full(len(choices.plot.grid), -1)
+        return recorded
     day = choices.season.settings.day(choices.on)
     last = choices.season.history.last_inspected(day)
-    return np.where(last < 0, -1, day - last)
+    return np.where(last < 0, recorded, day - last)
 
 
 def progress(choices: Choices) -> Progress:
@@ -135,6 +140,11 @@ def messages_on_records(choices: Choices) -> list[str]:
 
 
 def _recorded(choices: Choices) -> tuple[str, Plot, Observations]:
-    """Return the records that are known on the chosen day, their plot, and a key for both."""
-    known = usable(choices.records, np.datetime64(choices.day)).observations
-    return f"{choices.key} {choices.day}", choices.plot, known
+    """Return the records that are known, their plot, and a key for both.
+
+    On the chosen day; in a season on its first day, for that is what it began with.
+    """
+    season = choices.season
+    on = choices.day if season is None else str(season.settings.begins)
+    known = usable(choices.records, np.datetime64(on)).observations
+    return f"{choices.key} {on}", choices.plot, known

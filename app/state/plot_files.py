@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.errors import FieldmonError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
 
 from . import brought_files, cached, rasters, sample_estate
-from .brought_files import File, FileMessage, messages_of, settled
+from .brought_files import File, FileMessage, LeftOut, messages_of, settled
 from .plot_edits import Edit, edited
 from .row_settings import row_settings
 
@@ -82,6 +83,8 @@ class PlotFromFiles:
         ``(n,)`` risk of the plants from a raster, or None.
     messages
         What the imports had to say.
+    left_out
+        The records, where they could not be used: one file must not lock a plot out.
     """
 
     key: str
@@ -89,11 +92,13 @@ class PlotFromFiles:
     records: Observations
     risk: cached.Array | None
     messages: tuple[FileMessage, ...]
+    left_out: tuple[LeftOut, ...] = ()
 
 
 def of_sample() -> Files:
     """Return the files of the sample estate."""
-    return Files(_sample(sample_estate.PLOTS), _sample(sample_estate.RECORDS), None)
+    plots = _sample(brought_files.PLOT, sample_estate.PLOTS)
+    return Files(plots, _sample(brought_files.RECORDS, sample_estate.RECORDS), None)
 
 
 def of_session() -> Files | None:
@@ -104,8 +109,8 @@ def of_session() -> Files | None:
     return None if files.plot is None and files.plants is None else files
 
 
-def _sample(name: str) -> File:
-    return File(_SAMPLE + name, sample_estate.FOLDER / name)
+def _sample(kind: str, name: str) -> File:
+    return File(_SAMPLE + name, sample_estate.FOLDER / name, kind)
 
 
 def outline(files: Files, which: Which) -> Outline:
@@ -120,8 +125,8 @@ def outline(files: Files, which: Which) -> Outline:
     if measured is not None:
         field = replace(field, plants=measured.lonlat)
     if files.plot.key.startswith(_SAMPLE):
-        field = replace(field, paths=cached.paths(_sample(sample_estate.PATHS).source))
-    said = messages_of(files.plot.key, read)
+        field = replace(field, paths=cached.paths(_sample("path", sample_estate.PATHS).source))
+    said = messages_of(files.plot, read)
     own = tuple(one for one in said if one.message.feature in (None, field.name))
     return Outline(f"{key}{files.plot.key}{options}{number}", field, read.value, measured, own)
 
@@ -137,10 +142,11 @@ def prepared(files: Files, outline: Outline) -> PlotFromFiles:
     """Return the plot with its plants, records and risk."""
     plot, key = _plot(files, outline)
     # records may name plants by numbers that count those missing too
-    records, read, key = _records(files.records, outline, plot, key)
+    records, read, left_out, key = _records(files.records, outline, plot, key)
     plot, missing, key = rasters.without_missing(plot, key)
     risk, said, key = rasters.risk(plot, key)
-    return PlotFromFiles(key, plot, records, risk, (*outline.messages, *missing, *read, *said))
+    messages = (*outline.messages, *missing, *read, *said)
+    return PlotFromFiles(key, plot, records, risk, messages, left_out)
 
 
 def _plot(files: Files, outline: Outline) -> tuple[Plot, str]:
@@ -185,11 +191,15 @@ def draw(plot_key: str, edits: tuple[Edit, ...]) -> None:
 
 def _records(
     file: File | None, outline: Outline, plot: Plot, key: str
-) -> tuple[Observations, tuple[FileMessage, ...], str]:
+) -> tuple[Observations, tuple[FileMessage, ...], tuple[LeftOut, ...], str]:
+    """Return the records, what was said, whether they had to be left out, and the longer key."""
     if file is None:
-        return Observations.none(), (), key
-    options = settled(file, RecordOptions())
-    key = f"{key}{file.key}{options}"
-    source = RecordSource(file.source, options)
-    read = cached.records(key, source, plot, outline.fields, outline.measured)
-    return read.value, messages_of(file.key, read), key
+        return Observations.none(), (), (), key
+    try:
+        options = settled(file, RecordOptions())
+        longer = f"{key}{file.key}{options}"
+        source = RecordSource(file.source, options)
+        read = cached.records(longer, source, plot, outline.fields, outline.measured)
+    except FieldmonError as problem:
+        return Observations.none(), (), (LeftOut(file, problem),), key
+    return read.value, messages_of(file, read), (), longer

@@ -33,3 +33,13 @@ def keep_in_address(source: str) -> None:
 def open_season(name: str) -> None:
     """Let the season of this name be open from the next run on (for callbacks)."""
     st.session_state[KEY] = name
+
+
+def feature_key(file_key: str) -> str:
+    """Return the key of the box that says which plot of a file is open."""
+    return f"feature {file_key}"
+
+
+def choose_feature(file_key: str, number: int) -> None:
+    """Let this plot of a file be open from the next run on (for callbacks)."""
+    st.session_state[feature_key(file_key)] = number

@@ -83,7 +83,7 @@ def _read(
     except FieldmonError as error:
         st.session_state[_problem_key(kind)] = error
         return None, (), key
-    return imported.value, messages_of(file.key, imported), longer
+    return imported.value, messages_of(file, imported), longer
 
 
 def _problem_key(kind: str) -> str:

@@ -39,6 +39,12 @@ def value(key: str, default: object = None) -> Any:  # noqa: ANN401 - whatever t
     return kept
 
 
+def values_of(names: frozenset[str]) -> dict[str, Any]:
+    """Return the values of all widgets whose keys begin with one of the names, if they have one."""
+    kept = {key: value(key) for key in list(_values()) if key.split(" ")[0] in names}
+    return {key: one for key, one in kept.items() if one is not None}
+
+
 def change(names: tuple[str, ...], new: Callable[[Any], Any]) -> None:
     """Change the values of all widgets whose keys begin with one of the names (for callbacks)."""
     for key, (page, kept) in list(_values().items()):

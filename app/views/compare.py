@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from ..actions import changing, comparing
-from ..show import charts, verdicts
+from ..show import charts, field_map, map_layers, verdicts
 from ..state import cached, chosen_day
 from ..state.comparison import Comparison, curve, outcomes
 from ..words import texts
@@ -20,7 +20,7 @@ _MOST = 12
 
 def show(choices: Choices) -> None:
     """Choose what to compare, and watch the results come."""
-    st.subheader(f"{choices.name}: {texts.COMPARE}")
+    field_map.want(map_layers.day_map(choices))
     st.caption(texts.COMPARE_INTRO)
     settings = comparing.settings(choices)
     if not 1 <= len(settings.strategies) <= _MOST:

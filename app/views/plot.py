@@ -11,7 +11,7 @@ from fieldmon.errors import PlotError
 
 from ..actions import bringing_files, drawing, rasters
 from ..show import field_map, plot_figures
-from ..show.maps import marks
+from ..show.assumed import sentence
 from ..show.records import records_until
 from ..state import chosen_day, plot_files, plot_source
 from ..state.row_settings import row_settings
@@ -42,35 +42,28 @@ def show(choices: Choices) -> None:
     """Show the plot as it was understood, and change what was not."""
     if plot_source.chosen() == texts.UPLOAD:
         bringing_files.show()
-    st.subheader(f"{choices.name}: {texts.PLOT}")
-    left, right = st.columns([3, 2])
-    with right:
-        if choices.season is None:
-            drawing.rows(choices.plot_key)
-            drawing.tools(choices)
-            rasters.show_missing()
-            rasters.show_risk()
-        else:
-            st.info(texts.FIXED)
-        with st.expander(texts.MESSAGES, expanded=True):
-            bringing_files.show_messages(choices.messages)
-            for message in chosen_day.messages_on_records(choices):
-                st.markdown(f"- {message}")
-    with left:
-        plot_figures.show(choices.plot, choices.units)
-        _map(choices)
-
-
-def _map(choices: Choices) -> None:
+    plot_figures.show(choices.plot, choices.units)
+    st.caption(sentence(choices.plot.assumed, choices.units))
     records, said = records_until(choices.records)
-    layers = [
-        *drawing.plain_plants(choices),
-        *marks.records(records, dark=choices.dark),
-        *drawing.layers(choices),
-    ]
-    field_map.draw(choices, layers, "plot_map", clicked=drawing.clicks(choices))
-    field_map.captions([texts.LEGEND_RECORDS, *([said] if said else [])])
+    if choices.season is None:
+        drawing.rows(choices.plot_key)
+        drawing.tools(choices)
+        rasters.show_missing()
+        rasters.show_risk()
+    else:
+        st.info(texts.FIXED)
+    with st.expander(texts.MESSAGES, expanded=True):
+        bringing_files.show_messages(choices.messages)
+        for message in chosen_day.messages_on_records(choices):
+            st.markdown(f"- {message}")
+    _say_records(choices, said)
+    field_map.want(*drawing.content(choices, records))
+
+
+def _say_records(choices: Choices, said: str) -> None:
     if not len(choices.records):
         st.caption(texts.RECORDS_NONE)
-    elif np.isnat(choices.records.day).any():
+        return
+    st.caption(said)
+    if np.isnat(choices.records.day).any():
         st.caption(texts.UNDATED)

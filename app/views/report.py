@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..show import day, report
-from ..state import chosen_day
+from ..show import day, map_layers, plant_history, report
+from ..show.assumed import sentence
+from ..state import assumptions, chosen_day
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -17,17 +18,17 @@ if TYPE_CHECKING:
 
 def show(choices: Choices) -> None:
     """Show the report, and hand it out."""
-    st.subheader(f"{choices.name}: {texts.REPORT}")
+    plant_history.want(choices, map_layers.day_map(choices))
     st.caption(texts.REPORT_INTRO)
-    plan = choices.plan()
+    shown = chosen_day.route(choices)
     days = [] if choices.season is None else chosen_day.figures_so_far(choices)
     facts = report.Facts(
         choices.plot.field.name, choices.units.day(choices.day), choices.units,
         chosen_day.chance(choices), chosen_day.states(choices), choices.robot,
-        texts.SAMPLERS[choices.sampler], chosen_day.route(choices).route,
-        day.found_by_row(choices),
+        texts.SAMPLERS[choices.sampler], shown, day.found_by_row(choices),
+        sentence(assumptions.of(choices), choices.units),
     )  # fmt: skip
-    page = report.html(facts, plan, day.stops(choices, plan), days)
+    page = report.html(facts, day.stops(choices, shown), days)
     st.download_button(
         texts.REPORT_DOWNLOAD, page, f"report_{choices.day}.html", "text/html", type="primary",
         on_click="ignore",

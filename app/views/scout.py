@@ -25,12 +25,14 @@ _STYLE = Path(__file__).with_name("scout.css")
 
 def show(choices: Choices) -> None:
     """Lead from plant to plant."""
+    field_map.want(map_layers.day_map(choices, first="state"))
     if choices.season is None:
         st.markdown(texts.SCOUT_NEEDS)
         return
     st.html(_STYLE)
     scouting.give_out(choices)
-    scouting.ask_start(choices)
+    with st.container():  # empty or not: buttons that move are there twice for a moment
+        scouting.ask_start(choices)
     plan, progress = choices.plan(), chosen_day.progress(choices)
     if not len(plan.route):
         st.markdown(texts.SCOUT_DONE.format(inspected=progress.inspected_today,
@@ -57,14 +59,8 @@ def show(choices: Choices) -> None:
         st.button(texts.SKIP_BUTTON, key="scout_skip", width="stretch", on_click=scouting.tap,
                   args=(choices, stop.plant, SKIPPED))  # fmt: skip
     _undo(choices)
-    layers = [
-        *map_layers.plants(choices, "state"),
-        *map_layers.route(choices, plan.route, numbers=False),
-        marks.places([stop.lonlat], "next", (255, 190, 0), texts.NEXT),
-    ]
-    field_map.draw(choices, layers, "scout_map")
-    field_map.state_legend()
-    field_map.captions([texts.LEGEND_ROUTE])
+    here = marks.places([stop.lonlat], "next", (255, 190, 0), texts.NEXT)
+    field_map.want(map_layers.day_map(choices, above=[here], first="state"))
 
 
 def _undo(choices: Choices) -> None:

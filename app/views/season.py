@@ -1,15 +1,16 @@
-"""The season: found and inspected by day, what is still out there; recording and undoing."""
+"""The season: found and inspected by day, and what is still out there."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import streamlit as st
 
-from ..actions import beginning, recording
-from ..show import charts
-from ..state import chosen_day
+from ..actions import assuming, beginning
+from ..show import charts, map_layers, plant_history
+from ..state import assumptions, chosen_day
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -19,34 +20,40 @@ if TYPE_CHECKING:
 
 
 def show(choices: Choices) -> None:
-    """Show where the season stands, and take in what was found."""
-    st.subheader(f"{choices.name}: {texts.SEASON}")
+    """Show where the season stands."""
+    content = map_layers.day_map(choices)
+    plant_history.want(choices, replace(content, frames=map_layers.season_frames(choices)))
     if choices.season is None:
         st.markdown(texts.NEEDS_SEASON)
         beginning.show(choices)
         return
     days, progress = chosen_day.figures_so_far(choices), chosen_day.progress(choices)
     _figures(choices, days[-1], progress)
-    left, right = st.columns([1, 1])
-    with left:
-        _charts(choices, days, progress)
-    with right:
-        recording.show(choices)
-        with st.expander(texts.BATCHES, expanded=True):
-            recording.show_batches(choices)
+    _again(progress)
+    assuming.show(choices)
+    _charts(choices, days, progress)
 
 
 def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
     plants = len(choices.plot.grid)
     everything = progress.found + now.expected
     detected = 100.0 * progress.found / everything if everything else 100.0
+    star = " *" if assumptions.of(choices) else ""
     with st.container(horizontal=True):
-        st.metric(texts.EXPECTED_LEFT, f"{now.expected:.1f} ({now.low}-{now.high})",
+        st.metric(f"{texts.EXPECTED_LEFT}{star}", f"{now.expected:.1f} ({now.low}-{now.high})",
                   help=texts.EXPECTED_HELP, width="content")  # fmt: skip
         st.metric(texts.FOUND_EVER, f"{progress.found:,}", width="content")
-        st.metric(texts.DETECTED, f"{detected:.0f} %", width="content")
+        st.metric(f"{texts.DETECTED}{star}", f"{detected:.0f} %", width="content")
         st.metric(texts.INSPECTED_EVER, f"{progress.inspected:,} / {plants:,}", width="content")
-        st.metric(texts.CLEAN_CHANCE, f"{now.chance_clean:.1%}", width="content")
+        st.metric(f"{texts.CLEAN_CHANCE}{star}", f"{now.chance_clean:.1%}", width="content")
+
+
+def _again(progress: Progress) -> None:
+    """Say why the days' finds are more than the plants found, where they are."""
+    if progress.finds > progress.found:
+        again = progress.finds - progress.found
+        said = texts.FOUND_AGAIN.format(finds=progress.finds, plants=progress.found, again=again)
+        st.caption(said)
 
 
 def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> None:

@@ -22,11 +22,9 @@ if TYPE_CHECKING:
 
 def show(choices: Choices) -> None:
     """Simulate, and show any day of any sampler on the map."""
-    st.subheader(f"{choices.name}: {texts.SIMULATE}")
     st.caption(texts.SEASON_INTRO)
-    *columns, last = st.columns(4)
-    numbers = comparing.season(columns)
-    seed = last.number_input(texts.SEED, 0, 10_000, 1, help=texts.SEED_HELP, key="seed")
+    numbers = comparing.season(st.columns(3))
+    seed = st.number_input(texts.SEED, 0, 10_000, 1, help=texts.SEED_HELP, key="seed")
     names = _names(choices)
     chance, key = chosen_day.chance(choices), f"{choices.key}{choices.revision}{choices.day}"
     seasons = {
@@ -35,21 +33,19 @@ def show(choices: Choices) -> None:
         )
         for name in names
     }
-    left, right = st.columns([2, 3])
-    with right:
-        name = st.segmented_control(
-            texts.SHOW_SAMPLER, names, default=choices.sampler, required=True,
-            format_func=sampler_name, key=f"season_sampler {names}",
-        )  # fmt: skip
-        number = st.slider(texts.SHOW_DAY, 1, numbers[0], min(5, numbers[0]), key="season_day")
-        _map(choices, seasons[name][0], number - 1)
-    with left:
-        figures = {sampler_name(name): value[1] for name, value in seasons.items()}
-        axes = texts.DAY_AXIS, texts.DETECTION_AXIS
-        st.altair_chart(charts.detection(figures, number, axes), alt=texts.DETECTION_AXIS)
-        _figures(seasons[name][0][number - 1])
-        st.altair_chart(charts.found(seasons[name][1], (texts.DAY_AXIS, texts.FOUND_AXIS)),
-                        alt=texts.FOUND_AXIS)  # fmt: skip
+    name = st.segmented_control(
+        texts.SHOW_SAMPLER, names, default=choices.sampler, required=True,
+        format_func=sampler_name, key=f"season_sampler {names}",
+    )  # fmt: skip
+    number = st.slider(texts.SHOW_DAY, 1, numbers[0], min(5, numbers[0]), key="season_day")
+    truth = st.toggle(texts.SHOW_TRUTH, key="truth")
+    field_map.want(simulated_day.content(choices, seasons[name][0], number - 1, truth=truth))
+    _figures(seasons[name][0][number - 1])
+    figures = {sampler_name(name): value[1] for name, value in seasons.items()}
+    axes = texts.DAY_AXIS, texts.DETECTION_AXIS
+    st.altair_chart(charts.detection(figures, number, axes), alt=texts.DETECTION_AXIS)
+    st.altair_chart(charts.found(seasons[name][1], (texts.DAY_AXIS, texts.FOUND_AXIS)),
+                    alt=texts.FOUND_AXIS)  # fmt: skip
 
 
 def _names(choices: Choices) -> list[str]:
@@ -65,12 +61,3 @@ def _figures(day: SimulatedDay) -> None:
         st.metric(texts.FOUND_TODAY, day.found, width="content")
         st.metric(texts.LEFT, day.left, width="content")
         st.metric(texts.VISITED_TODAY, f"{day.visited_pct:.0f} %", width="content")
-
-
-def _map(choices: Choices, season: list[SimulatedDay], number: int) -> None:
-    truth = st.toggle(texts.SHOW_TRUTH, key="truth")
-    layers = simulated_day.layers(choices, season, number, truth=truth)
-    field_map.draw(choices, layers, "season_map")
-    field_map.state_legend()
-    more = [texts.LEGEND_TRUTH] if truth else []
-    field_map.captions([texts.LEGEND_ROUTE, texts.LEGEND_HOT, *more])

@@ -9,15 +9,23 @@ def isolated(name: str) -> str:
 
 
 TITLE = "fieldmon"
-TODAY, MAP, SEASON, SCOUTING, COMPARE = "Today", "Map", "Season", "Scout", "Compare"
-PLOT, REPORT, SIMULATE, STUDY = "Plot & records", "Report", "Simulate", "Study"
+# rooms, and the parts of each
+ROOMS = {"plots": "Plots", "today": "Today", "season": "Season", "ahead": "Plan ahead",
+         "plot": "Plot & data"}  # fmt: skip
+PARTS_OF = "What to see here"
+PARTS = {
+    "plots": "Plots", "plot": "Plot & data",
+    "today": "Plan", "scout": "Scout", "record": "Record",
+    "season": "How it goes", "field": "Plants & hot spots", "report": "Report",
+    "compare": "Compare", "simulate": "Simulate",
+}  # fmt: skip
+RESEARCH, REPORT, STUDY = "Research", "Report", "The thesis, without records"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
-SAMPLE_NOTE = "A made-up estate near Paran, to try things out. Nothing of it exists."
-PLOT_FROM = "Plot or season"
-PLOT_FROM_HELP = (
-    "The sample estate and your own files are only looked at. A season is kept on this machine, "
-    "step by step: begin one on the Today page."
+SAMPLE_NOTE = (
+    "A made-up estate near Paran, to try things out. Nothing of it exists, and time stands still "
+    "there on the last day of its records."
 )
+PLOT_FROM = "Plot or season"
 PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
 RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
 PLANT_FILE = "Measured plant positions (optional)"
@@ -27,8 +35,9 @@ WHICH_PLOT = "Which plot"
 EMPTY = (
     "### Bring a plot\n"
     "Drop a plot file into the first box: the boundary of a real plot, in any coordinate system. "
-    "Records of pests are welcome but not needed. Your files stay in this session; nobody else "
-    "sees them, and nothing is sent anywhere. Or choose the sample estate on the left first."
+    "Records of pests are welcome but not needed. Your files stay on this machine, for a day after "
+    "you saw them last; nobody sees them who does not have this page's address, and nothing is "
+    "sent anywhere. Or choose the sample estate above first."
 )
 ROWS = "Rows"
 BEARING = "Row bearing (degrees from north)"
@@ -42,20 +51,45 @@ HOURS, INSPECTION_S = "Working hours", "Seconds at a plant"
 SAMPLER = "Who chooses the plants"
 SAMPLERS = {name: f"{kind.title}: {kind.does}" for name, kind in of_equal_times().items()}
 DATE = "Day"
+DATE_HELP = "Today by the clock of {zone}, unless you choose another day."
+ZONE_OF_MACHINE = "this computer, since no time zone is known where the plot lies"
+OTHER_DAY = (
+    "This page is about **{day}**, which is not today ({today}). What you record here is recorded "
+    "for {day}."
+)
+BACK_TO_TODAY = "Back to today"
 PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
-FINDS_HELP = (
-    "Infested plants on the route, by the chance map, times the chance that an inspection finds "
-    "them."
+ASSUMED = "\\* assumed: {what}."
+ASSUMED_WHAT = {
+    "row_spacing_m": "rows {value} apart",
+    "plant_spacing_m": "plants {value} apart",
+    "background_chance": "{value} % of plants infested where nothing is known",
+    "speed_m_s": "{value} km/h",
+    "detects": "an inspection finds {value} % of what is there",
+    "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
+}
+ASSUMED_CHANGE, ASSUMED_USE = "Change", "Use these"
+ASSUMED_NOTHING = "Nothing is assumed: all of it was said, or stands in your files."
+ASSUMED_ROBOT = "Who inspects, how long and how thoroughly is chosen below, under Who inspects."
+ASSUMED_LAID = "Rows and plants were laid when the season began and stay as they are."
+ASSUMED_CHANGED = "The season reckons with these from its first morning on."
+BACKGROUND = "Plants infested where nothing is known (%)"
+BACKGROUND_HELP = "Far from records, edges and paths. Leave it empty for our guess."
+BOUND_HELP = (
+    "Whichever plants it visits, no route fixed in the morning can expect more finds. Who plans "
+    "again after each find may find more."
 )
 DOWNLOAD = "Download the route (GeoJSON)"
 NO_STOPS = (
-    "The working day is too short to reach a plant and come back. Give more hours on the left."
+    "The working day is too short to reach a plant and come back. Give more hours below, under "
+    "Who inspects."
 )
 MESSAGES = "What the import found"
 MESSAGES_NONE = "Nothing to report: the files were read as they are."
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
 CHOOSE_QUICK = "Most likely:"
+LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
 UNDO_ANSWER = "Take back: {option} = {value}"
 SEVERITIES = {
     "seen": "Seen",
@@ -65,26 +99,26 @@ SEVERITIES = {
     "doubtful": "Please look",
 }
 STOPS = "Stops in order"
-LAYERS = "Show"
-LAYER_NAMES = {
-    "plants": "plants",
-    "route": "route",
-    "numbers": "stop numbers",
-    "hot": "hot spots",
-    "records": "records",
-}
 LEGEND_CHANCE = "Chance that a plant is infested"
-LEGEND_ROUTE = (
-    "Route: blue line, arrows in driving direction; green ring: gate, start and end; numbers: stops"
-)
+LEGEND_ROUTE, LEGEND_GATE = "route, arrows show the way", "gate: start and end"
 LEGEND_DAYS, LEGEND_NEVER = "{n} days ago", "never inspected"
-LEGEND_HOT = "Purple outlines: hot spots, where finds cluster more than chance allows"
-LEGEND_RECORDS = "Records: filled where pests were seen, empty where not"
+LEGEND_HOT = "hot spot: finds cluster more than chance allows"
+LEGEND_SEEN, LEGEND_NOT_SEEN = "record: pests seen", "record: none seen"
 LEGEND_STATES = {"found": "found", "clean": "looked clean", "never": "never inspected"}
-LEGENDS = {"route": LEGEND_ROUTE, "hot": LEGEND_HOT, "records": LEGEND_RECORDS}
-LEGEND_TRUTH = "Black dots (white in the dark): infested, not yet found (only a simulation knows)"
-SCALE_FIRST = " (before zooming)"
-SCALE_ALT = "The scale bar is {bar} long; the arrow points north."
+LEGEND_TRUTH = "infested, not yet found (only a simulation knows)"
+# on the map itself, where the browser shows it
+MAP_WORDS = {
+    "zoom_in": "Closer", "zoom_out": "Further", "whole_plot": "The whole plot", "layers": "Layers",
+    "shade": "Plants by", "opacity": "Opacity", "select": "Select plants", "play": "Play the day",
+    "time_of_day": "Time of the day", "picture": "Save a picture", "picture_name": "map.png",
+    "fold": "Fold the panel away", "unfold": "Show the panel", "sheet": "Pull the day's work up",
+    "draw_hint": "Click on the map.", "draw_back": "Back", "draw_drop": "Drop",
+    "draw_done": "Finish",
+    "play_season": "Play the season", "day": "Day", "film": "Save the season as a film",
+    "film_name": "season.webm",
+    "lasso_hint": "Draw round the plants.", "corners": "{n} point(s)",
+    "scale": "The scale bar is {bar} long; the arrow points north.",
+}  # fmt: skip
 SEASON_INTRO = (
     "A simulated season on this plot. The start is drawn from the chance map; insects spread to "
     "neighbouring plants at night; every sampler meets the same insects. Detection is all finds "
@@ -129,11 +163,36 @@ SEASON_NAMED = (
 )
 SEASON_LONG = "A season's name must have {most} letters at most, but it has {n}."
 
+# -- plants picked on the map
+PICKED = "**{plants} selected.**"
+PICKED_ALSO, PICKED_NEVER, PICKED_NONE = "Inspect these too", "Not these", "Clear"
+WISHED, UNWISHED = "{plants} to be inspected besides.", "{plants} left out."
+WISHES_UNMET = (
+    "{plants} of those are not on the route: the hours, or the strategy, do not allow it."
+)
+WISHES_DROP = "As planned before"
+
+# -- all plots
+PLOTS_TITLE = "{n} plots"
+PLOTS_ALT = "Map of {n} plots: {names}."
+PLOTS_COLUMNS = {"name": "plot", "days_since": "days since seen", "expected": "expected infested"}
+PLOTS_STATES = {"fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
+                "late": "a week ago or never", "new": "no season yet"}  # fmt: skip
+PLOTS_TIP = "{name}: {expected:.0f} infested expected, {seen}"
+PLOTS_TIP_NEW = "{name}: no season yet"
+PLOTS_SEEN = {0: "seen today", None: "never seen", "n": "seen {n} days ago"}
+PLOTS_PICK = "Click a plot on the map, or a row here."
+WAYS_IN = {"sample": "Try the sample estate", "file": "Bring a plot of mine"}
+
 # -- today
+HEADLINE = (
+    "Inspect {plants} in rows {rows} on {day}, {hours:.1f} h: about {finds:.0f} finds expected."
+)
+HEADLINE_NONE = "Nothing to inspect on {day}."
 BEGIN_TITLE = "Keep this season"
 BEGIN_NOTE = (
     "Begin a season, and everything is kept from here on: routes, what was found, and what that "
-    "says about the rest of the plot. Come back to it tomorrow from the list on the left."
+    "says about the rest of the plot. Come back to it tomorrow from the list above."
 )
 SEASON_NAME, BEGIN = "Name of the season", "Begin the season"
 BEGUN = "Season {name} has begun. Its file is {path}."
@@ -150,7 +209,7 @@ CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
 TODAY_OVER = (
     "{inspected} plants inspected today, {found} found: the working day is over. Choose the next "
-    "day on the left for its route, or give more hours."
+    "day above for its route, or give more hours."
 )
 TODAY_DONE = "{inspected} plants inspected today so far, {found} found. The route shows the rest."
 OTHER_FORMATS, FORMAT, DOWNLOAD_AS = "Robot, phone, paper", "Format", "Download for {reader}"
@@ -159,10 +218,10 @@ MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {fin
 
 # -- what stands beside a thing on the map that is pointed at
 TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start and end", "path"
-TIP_CHANCE, TIP_STATE = ": {chance:.1%} chance", ": {state}"
+TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
 TIP_HOT = "hot spot: {found} found of {inspected} inspected"
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
-TIP_INFESTED, TIP_HERE, TIP_CORNER = "infested", "here", "corner"
+TIP_INFESTED, TIP_CORNER = "infested", "corner"
 
 # -- plot and records
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
@@ -172,6 +231,8 @@ FIXED = "The plants of a season are laid once and for all: its plant numbers sta
 DRAW, DRAW_KIND = "Gate, paths, no-go areas", "A click on the map sets"
 DRAW_KINDS = {"": "nothing", "gate": "the gate", "path": "points of a path",
               "no_go": "corners of a no-go area"}  # fmt: skip
+DRAW_HINTS = {"gate": "Click where the gate is.", "path": "Click along the path.",
+              "no_go": "Click the corners, one way round."}  # fmt: skip
 DRAW_TYPED = "or type positions (lon,lat lon,lat ...)"
 DRAW_ADD, DRAW_DONE, DRAW_UNDO, DRAW_DROP = "Add", "Finish", "Undo the last one", "Drop points"
 DRAW_POINTS = "{n} point(s) so far."
@@ -207,17 +268,19 @@ RECORDS_SHOWN = "{shown} of {all} records shown ({found} with pests, {clean} wit
 UNDATED = "Records without a date are always shown."
 
 # -- the map of the field
-SHADE_BY = "Plants by"
 SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspected",
           "age": "days since inspected"}  # fmt: skip
 MAP_LAYERS = {"route": "route", "numbers": "stop numbers", "hot": "hot spots",
-              "records": "records", "backdrop": "picture"}  # fmt: skip
-MAP_DAY, MAP_CLOCK, PLAY, PAUSE = "Day", "Time of the day", "Play", "Pause"
-ROWS_CLOSE, ROWS_CLOSE_HELP = "Rows shown plant by plant", "Other rows are shown as one picture."
+              "records": "records", "rows": "row numbers", "backdrop": "picture"}  # fmt: skip
+BACKDROP_TITLE, HOT_TITLE = "Picture of the ground", "Hot spots"
 BACKDROP = "Picture of the ground (GeoTIFF)"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
 HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
 HISTORY_NOW = "Chance of infestation now: **{now:.1%}** (first morning: {first:.1%})."
+HISTORY_TREATED = (
+    "It was found infested, and in this season plants found are taken as treated at once: from "
+    "then on it counts as clean, and its chance grows again as insects come from its neighbours."
+)
 HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
 HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}
@@ -243,6 +306,10 @@ EXPECTED_LEFT, EXPECTED_HELP = "Still infested", "Expected, and the interval tha
 CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Found of all expected"
 INSPECTED_EVER = "Inspected so far"
 FOUND_EVER = "Found"
+FOUND_AGAIN = (
+    "{finds} finds on {plants} plants: {again} of them on plants that had been found on an earlier "
+    "day. Days count finds, the figure above counts plants."
+)
 RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
 RECORD_FILE_IN = (
     "The route file with its found column filled in, or any table or GPS file with plants, rows "
@@ -252,8 +319,26 @@ TAKE_DOUBTFUL = "Take doubtful positions too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
 RESULT, COUNT, RESULTS_OF = "Result", "Count", {0: "clean", 1: "found", 2: "could not inspect"}
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
-RECORD_REST = "So many stops from the first are recorded: clean, unless marked as found."
+RECORD_REST = (
+    "Say how many stops were done, from the first: they are recorded as clean, unless marked as "
+    "found. A mark counts wherever it stands."
+)
 RECORD_STOPS = "Stops done"
+RECORD_UNSAID = (
+    "Something must be said before it is recorded, but no stop is done and none is marked. Say how "
+    "many stops were done, or mark those where pests were found."
+)
+ONE_UNSAID = (
+    "Row, plant and result must be said before they are recorded, but one of them is empty. Fill "
+    "in all three."
+)
+CONTRADICTING = (
+    "{n} results from {source} contradict what is recorded of the same plants and day. Nothing is "
+    "recorded yet, nor are the {others} others. Which holds?"
+)
+AND_MORE = "... and {n} more."
+LEAVE_OUT, CONFIRM = "Leave these out, record {n} others", "Record these {n} too, both hold"
+RECORD_NONE = "Record nothing"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
 BATCHES_SAID = {
     "findings": "{day} {time} · {source} · {n} plant(s)",
@@ -261,10 +346,15 @@ BATCHES_SAID = {
 }
 TYPED_IN, ROUTE_TABLE = "typed in", "route table"
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
+TREAT_UNSAID = (
+    "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
+    "it kills, as on the label or by experience."
+)
 TREAT_BUTTON, TREATED = "Note the treatment", "Treatment noted."
 TREATED_BEFORE = "This treatment was noted already; nothing changed."
 ROW_AGES, DAYS_SINCE, ROW_AXIS = "Days since each row was inspected", "days", "row"
 OUT_AXIS, INSPECTED_AXIS, DATE_AXIS = "still infested (expected)", "inspected", "day"
+ROW_NEVER, ROW_TODAY = "never", "today"
 NEVER_ROWS = "{n} of {all} rows were never inspected."
 
 # -- scouting
@@ -326,10 +416,12 @@ REPORT_DOWNLOAD, REPORT_PREVIEW = "Download the report (HTML)", "Preview"
 REPORT_TITLE = "Plot {name}, {day}"
 REPORT_SETTINGS, REPORT_ROUTE, REPORT_SEASON = "Settings", "Route", "Season so far"
 REPORT_FOUND, REPORT_IN_ROW = "Found that day", "Row {row}"
-REPORT_TICK = "found?"
+REPORT_TICK, REPORT_WAS = "found?", "result"
+REPORT_WORKED = "Route as it was worked"
+PLANTS_INSPECTED = "Plants inspected"
 SPEED, DETECTS = "Speed", "Finds what is there with a chance of"
 
-PRIOR = "Study, prior"
+PRIOR = "The thesis, with records"
 PRIOR_TITLE = "The thesis's samplers with prior information"
 PRIOR_INTRO = (
     "Chapter 5 of A. Yehoshua's thesis (2023), made again: Dynamic, Naive and Bouncy with the "

@@ -12,6 +12,8 @@ import typer
 from fieldmon.cli.waiting import WAITING
 from fieldmon.errors import SettingError
 
+_GOODBYE_S = 10
+
 
 def open_app(
     port: Annotated[int, typer.Option(help="Port on this machine.", min=1, max=65535)] = 8501,
@@ -25,7 +27,6 @@ def open_app(
 ) -> None:
     """Open the app in the browser. It needs no internet; stop it with Ctrl-C."""
     import socket  # noqa: PLC0415
-    import subprocess  # noqa: PLC0415
 
     from fieldmon.io.sandbox.process import own_path  # noqa: PLC0415
 
@@ -50,8 +51,38 @@ def open_app(
         "PYTHONPATH": own_path(),
     }
     with WAITING.silent():
-        ended = subprocess.run(command, check=False, env=env)  # noqa: S603 - our own
-    raise typer.Exit(ended.returncode)
+        raise typer.Exit(_run(command, env))
+
+
+def _run(command: list[str], env: dict[str, str]) -> int:
+    """Run the server until it ends; what ends this program ends it too. Return its exit code."""
+    import signal  # noqa: PLC0415
+    import subprocess  # noqa: PLC0415
+
+    ended = False
+    server: subprocess.Popen[bytes] | None = None
+
+    def end(*_: object) -> None:
+        nonlocal ended
+        ended = True
+        if server is not None:
+            server.terminate()
+
+    for name in ("SIGTERM", "SIGHUP"):  # the second is not known everywhere
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), end)
+    server = subprocess.Popen(command, env=env)  # noqa: S603 - our own
+    if ended:  # before there was a server to tell
+        server.terminate()
+    try:
+        code = server.wait()
+    except KeyboardInterrupt:  # which the server has heard too
+        try:
+            code = server.wait(_GOODBYE_S)
+        except subprocess.TimeoutExpired:
+            server.kill()
+            code = server.wait()
+    return code if code >= 0 else 128 - code
 
 
 def _server() -> str:

@@ -23,9 +23,11 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
-from fieldmon.cli.times import clock, day
+from fieldmon.cli.times import WorkStart, clock, day
 
 if TYPE_CHECKING:
+    from datetime import datetime
+
     from fieldmon.monitoring import MonitoringSettings
 
 
@@ -56,7 +58,11 @@ class InitOptions:
     worker: WorkerOptions = field(default_factory=WorkerOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
 
-    def settings(self) -> MonitoringSettings:
+    def starts(self) -> WorkStart:
+        """Return when the first day's work starts, as it was told."""
+        return WorkStart(day(self.begins, "--begins"), clock(self.start))
+
+    def settings(self, begins: datetime) -> MonitoringSettings:
         """Return how the season is worked."""
         from dataclasses import replace  # noqa: PLC0415
 
@@ -65,8 +71,8 @@ class InitOptions:
 
         belief = BeliefSettings(treated=not self.flag_only)
         return MonitoringSettings(
-            day(self.begins),
-            clock(self.start),
+            begins.date(),
+            begins.time(),
             self.worker.robot(),
             self.sampler.value,
             sampler_settings(self.sampler, self.every),
@@ -87,9 +93,10 @@ def init(options: InitOptions) -> None:
 
     from fieldmon.monitoring import KeptMessage, Season  # noqa: PLC0415
 
-    settings, path = options.settings(), options.season
+    path, starts = options.season, options.starts()
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
+    settings = options.settings(starts.on_plot(known.plot.field))
     tell_unusable(known.records, np.datetime64(settings.begins, "D"))
     messages = [KeptMessage.of(said.source, said.message) for said in known.messages]
     season = Season.create(path, known.plot, known.records, settings, messages, known.risk)

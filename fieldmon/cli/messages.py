@@ -11,12 +11,13 @@ import typer
 from fieldmon.errors import ChoiceNeeded
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     import numpy as np
 
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.prepare import Laid, SourceMessage
+    from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.plot import Plot
 
 #: the options that take what a file leaves open, by what the file is to the plot
@@ -104,6 +105,13 @@ def describe(plot: Plot) -> None:
         f"{name}: {len(grid)} plants in {grid.n_rows} rows, {run}, rows {grid.row_spacing_m:.2f} m "
         f"and plants {grid.plant_spacing_m:.2f} m apart."
     )
+
+
+def tell_assumed(assumed: Iterable[Assumed]) -> None:
+    """Print what the figures of a day rest on though nobody said it, in one line."""
+    said = "; ".join(str(one).removeprefix("guessed: ") for one in assumed)
+    if said:
+        typer.echo(f"assumed: {said}", err=True)
 
 
 def tell_unusable(records: Observations, day: np.datetime64) -> None:

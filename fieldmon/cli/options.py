@@ -124,6 +124,13 @@ Outputs = Annotated[
         "route.geojson if none.",
     ),
 ]
+Bounded = Annotated[
+    bool,
+    typer.Option(
+        "--bound/--no-bound",
+        help="Say what no other route of these hours can expect to find (10 s at most).",
+    ),
+]
 WorkDate = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; today.")]
 TheDate = Annotated[str | None, typer.Option("--date", help="The day, YYYY-MM-DD; today.")]
 StartTime = Annotated[str, typer.Option(help="Local time the work starts, HH:MM.")]

@@ -40,9 +40,10 @@ def write_chance_map(to: Path | None, plot: Plot, chance: NDArray[np.float64]) -
 
 
 def day_in_words(route: Route) -> str:
-    """Return what a planned day comes to."""
-    return (
+    """Return what a planned day comes to, and what no other route can exceed, where it is known."""
+    said = (
         f"{len(route)} of {len(route.aisles.grid)} plants in {route.end_s / 3600:.1f} h, "
         f"{route.drive_m / 1000:.2f} km; about {route.expected_finds:.1f} of them infested, "
         f"about {route.expected_found:.1f} of these would be found."
     )
+    return f"{said}\n{route.bound_sentence}" if route.bound_sentence else said

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import tell_unusable
+from fieldmon.cli.messages import tell_assumed, tell_unusable
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
+    Bounded,
     Every,
     Feature,
     MaybePlotFile,
@@ -28,7 +28,7 @@ from fieldmon.cli.outputs import ChanceMap, day_in_words, write_chance_map, writ
 from fieldmon.cli.plan_season import plan_season
 from fieldmon.cli.preparing import estate, prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
-from fieldmon.cli.times import clock, day
+from fieldmon.cli.times import WorkStart, clock, day
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -61,10 +61,11 @@ class PlanOptions:
     files: PlotFiles = field(default_factory=PlotFiles)
     chance_map: ChanceMap = None
     every_plot: EveryPlot = False
+    bound: Bounded = True
 
-    def begins(self) -> datetime:
-        """Return the local date and time at which the work starts."""
-        return datetime.combine(day(self.on), clock(self.start))
+    def starts(self) -> WorkStart:
+        """Return when the work starts, as it was told."""
+        return WorkStart(day(self.on), clock(self.start))
 
 
 @with_options
@@ -81,6 +82,9 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
     Example: fieldmon plan vines.zip --feature 3 --observations mites.csv --hours 6 -o route.geojson
     Example: fieldmon plan season.gpkg -o route.geojson
     Example: fieldmon plan estate.zip --all --observations mites.csv -o routes
+
+    Of a whole day it is said what no other route of these hours can expect to find, whichever
+    plants it visits: how much a better plan could gain at most.
 
     With --all, columns robot (robot or scout), hours, speed_km_h and look_s of the plot file say
     who works on each plot; options given here go before them.
@@ -102,13 +106,16 @@ def _plan_one(options: PlanOptions) -> None:
     import numpy as np  # noqa: PLC0415
 
     from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
+    from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
+    from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
     from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
 
-    begins, robot = options.begins(), options.worker.robot()
-    on = np.datetime64(begins.date(), "D")
+    robot, starts = options.worker.robot(), options.starts()
     settings = PlanSettings(robot, sampler_of(options.sampler, options.every))
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
+    begins = starts.on_plot(known.plot.field)
+    on = np.datetime64(begins.date(), "D")
     tell_unusable(known.records, on)
     today = first_day(known.plot, known.records, on, settings, known.risk)
     if not len(today.route):
@@ -116,7 +123,10 @@ def _plan_one(options: PlanOptions) -> None:
             f"The working day must be long enough to reach a plant and come back, but "
             f"{robot.hours:g} h are not. Give more --hours."
         )
+    if options.bound:
+        today = with_bound(today)
     typer.echo(day_in_words(today.route))
+    tell_assumed(assumed_by((), settings.prior, robot))
     notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
     write_routes(replace(today.route, notes=notes), options.output)
     write_chance_map(options.chance_map, known.plot, today.chance)
@@ -129,8 +139,10 @@ def _plan_every_plot(options: PlanOptions) -> None:
     from fieldmon.cli.plan_all import Day, plan_all  # noqa: PLC0415
     from fieldmon.planning.batch import Orders  # noqa: PLC0415
 
-    begins, worker = options.begins(), options.worker
+    worker, starts = options.worker, options.starts()
     request, folder = _request_of_all(options), _folder(options.output)
+    plots = estate(request)
+    begins = starts.on_plot(plots.fields[0])
     orders = Orders(
         day=np.datetime64(begins.date(), "D"),
         sampler=options.sampler.value,
@@ -138,8 +150,8 @@ def _plan_every_plot(options: PlanOptions) -> None:
         on_foot=worker.scout,
         robot=worker.given(),
         planting=request.planting.given(),
+        bound=options.bound,
     )
-    plots = estate(request)
     tell_unusable(plots.records.anywhere, orders.day)
     plan_all(plots, orders, Day(plots.records, folder, begins))
 

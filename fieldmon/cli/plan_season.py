@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from fieldmon.cli.messages import tell_assumed
 from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
-from fieldmon.cli.times import clock, day
+from fieldmon.cli.times import clock, day, day_on
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -16,17 +17,20 @@ if TYPE_CHECKING:
     from fieldmon.cli.plan import PlanOptions
 
 # what a plan of a season may be told; all else was chosen when it began
-_OF_A_PLAN = {"plot", "output", "on", "now", "chance_map"}
+_OF_A_PLAN = {"plot", "output", "on", "now", "chance_map", "bound"}
 
 
 def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> None:
     """Plan a day of a season, keep the route in its file, and write it for whoever drives."""
     from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
 
     _refuse_what_was_chosen(context)
     season = Season(file)
-    on, now = day(options.on), options.now
+    on, now = day_on(season.plot.field, day(options.on)), options.now
     today = season.plan(on, None if now is None else clock(now, "--now"))
+    if options.bound and len(today.route):
+        today = with_bound(today)
     route = today.route
     if not len(route):
         left_h = today.scene.seconds_left / 3600
@@ -37,6 +41,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     seen = season.history.on(today.scene.day)
     done = f"{len(seen)} done, " if len(seen) else ""
     typer.echo(f"{on}: {done}{day_in_words(route)}")
+    tell_assumed(season.assumed())
     write_routes(route, options.output)
     write_chance_map(options.chance_map, season.plot, today.chance)
 

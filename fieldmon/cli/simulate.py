@@ -22,7 +22,7 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import COMPARED_SAMPLERS, SamplerName
-from fieldmon.cli.times import day
+from fieldmon.cli.times import day, day_on
 
 if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
@@ -71,9 +71,10 @@ def simulate(options: SimulateOptions) -> None:
     from fieldmon.infestation.prior import PriorSettings, prior_chance  # noqa: PLC0415
     from fieldmon.simulation.start import season_start  # noqa: PLC0415
 
-    on, robot = np.datetime64(day(options.on), "D"), options.worker.robot()
+    robot, told = options.worker.robot(), day(options.on)
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
+    on = np.datetime64(day_on(known.plot.field, told), "D")
     tell_unusable(known.records, on)
     plot, records = known.plot, known.records
     chance = prior_chance(plot.grid, plot.field, records, on, PriorSettings(), known.risk)

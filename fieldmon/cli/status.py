@@ -35,7 +35,7 @@ def status(
     from fieldmon.monitoring import Season  # noqa: PLC0415
 
     kept = Season(season)
-    now = kept.status(kept.last_date() if on is None else day(on))
+    now = kept.status(day(on) or kept.last_date())
     typer.echo("\n".join(lines(kept, now)))
     if rows:
         _show_rows(kept, now)
@@ -59,6 +59,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     yield (
         f"  inspected so far       {now.inspected:6d} of {now.plants} plants "
         f"({100 * now.inspected / now.plants:.0f} %), {now.found} found infested"
+        + (f" ({now.finds} finds: some again)" if now.finds > now.found else "")
     )
     yield (
         f"  expected still there   {ahead.expected:6.1f} ({ahead.low} to {ahead.high} with a "

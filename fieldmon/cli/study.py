@@ -8,6 +8,7 @@ from fieldmon.cli.study_beliefs import beliefs
 from fieldmon.cli.study_calibrate import calibrate
 from fieldmon.cli.study_no_prior import no_prior
 from fieldmon.cli.study_prior import prior
+from fieldmon.cli.study_routes import routes
 from fieldmon.cli.study_run import study_run
 from fieldmon.cli.study_samplers import samplers
 
@@ -18,6 +19,7 @@ app.command("prior")(prior)
 app.command("calibrate")(calibrate)
 app.command("samplers")(samplers)
 app.command("beliefs")(beliefs)
+app.command("routes")(routes)
 app.command("run")(study_run)
 app.command("no-prior")(no_prior)
 

@@ -11,7 +11,7 @@ import typer
 from fieldmon.cli.messages import Terminal
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.preparing import estate
-from fieldmon.cli.times import day
+from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
 
 if TYPE_CHECKING:
@@ -73,10 +73,11 @@ class StudyOptions:
         from fieldmon.plot.plot import planting_of  # noqa: PLC0415
         from fieldmon.simulation.design import StudyPlot  # noqa: PLC0415
 
-        on = np.datetime64(day(self.on), "D")
+        told = day(self.on)
         records = None if self.observations is None else RecordSource(self.observations)
         sources = PlotSources(self.plot, PlotOptions(feature=self.feature))
         known = estate(PlotRequest(sources, records=records), Terminal(flags={}))
+        on = np.datetime64(day_on(known.fields[0], told), "D")
         return tuple(
             StudyPlot(field, planting_of(field), known.records.on(field), on)
             for field in known.fields

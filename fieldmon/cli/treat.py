@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.options import SeasonFile, TheDate
-from fieldmon.cli.times import day
+from fieldmon.cli.times import day, day_on
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon
@@ -31,9 +31,10 @@ def treat(
     """
     from fieldmon.monitoring import Season  # noqa: PLC0415
 
+    told = day(on)
     kept = Season(season)
     treated = None if area is None else _area(area)
-    on_day = day(on)
+    on_day = day_on(kept.plot.field, told)
     done = kept.treat(on_day, efficacy, treated, product)
     if not done.new:
         typer.echo("This treatment was noted already; nothing changed.")

@@ -14,12 +14,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numba as nb
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from fieldmon.compute.jit import routine
 from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.nearby_plants import outside_m
@@ -137,10 +137,33 @@ def states(n: int, plants: NDArray[np.integer], found: NDArray[np.bool_]) -> NDA
     return state
 
 
+@dataclass(frozen=True, eq=False)
+class NewestRecords:
+    """What the newest record of each plant says.
+
+    Parameters
+    ----------
+    state
+        ``(n,)`` `PRESENT`, `ABSENT`, or `UNKNOWN` where no record speaks of the plant.
+    day
+        ``(n,)`` datetime64[D] of that record; NaT: no record, or one without a date.
+    """
+
+    state: NDArray[np.int8]
+    day: NDArray[np.datetime64]
+
+
 def record_states(
     grid: PlantGrid, observations: Observations, within_m: float | None = None
 ) -> NDArray[np.int8]:
-    """Return the state ``(n,)`` that records give the plants nearest to them.
+    """Return the state ``(n,)`` that records give the plants nearest to them; see below."""
+    return newest_records(grid, observations, within_m).state
+
+
+def newest_records(
+    grid: PlantGrid, observations: Observations, within_m: float | None = None
+) -> NewestRecords:
+    """Return what the newest records of the plants nearest to them say.
 
     The newest record of a plant counts, an undated one as older than all; of several of one day a
     find. Records farther than `within_m` (default: half a row spacing, and the record's own
@@ -156,7 +179,9 @@ def record_states(
     last = order[near[order]]
     state = np.full(len(grid), UNKNOWN, np.int8)
     state[plant[last]] = said.present[last]
-    return state
+    day = np.full(len(grid), "NaT", "datetime64[D]")
+    day[plant[last]] = said.day[last]
+    return NewestRecords(state, day)
 
 
 def hot_spots(
@@ -303,7 +328,7 @@ def _centre_m(finds_m: Floats, of_find: NDArray[np.int32], found: NDArray[np.int
     return np.stack(sums, axis=1) / found[:, None]
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _tails(windows: NDArray[np.int64], inspected: int, found: int) -> Floats:
     """Return P(at least as many finds) for windows ``(w, 2)`` of (inspected, found) plants.
 
@@ -315,7 +340,7 @@ def _tails(windows: NDArray[np.int64], inspected: int, found: int) -> Floats:
     return p
 
 
-@nb.njit(cache=True)
+@routine
 def _tail(x: int, drawn: int, special: int, total: int) -> float:
     """Return P(X >= x) for `drawn` of `total` plants of which `special` are finds.
 

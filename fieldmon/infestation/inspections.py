@@ -116,6 +116,13 @@ class Inspections:
         """Return those at the given indices, mask or slice."""
         return Inspections(**{name: getattr(self, name)[which] for name in _TYPES})
 
+    def and_those(self, others: Inspections) -> Inspections:
+        """Return these and then others."""
+        both = {
+            name: np.concatenate([getattr(self, name), getattr(others, name)]) for name in _TYPES
+        }
+        return Inspections(**both)
+
     def on(self, date: dt.date | np.datetime64) -> Inspections:
         """Return those of one date."""
         return self.take(self.date == np.asarray(date, "datetime64[D]"))

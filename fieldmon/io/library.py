@@ -192,7 +192,8 @@ def read_inspections(source: Source, plot: Plot, **options: str) -> Inspections:
     >>> seen.plant.tolist(), seen.result.tolist()
     ([17, 18], [1, 0])
     """
-    read = read_on_grid(source, plot.grid, _chosen(InspectionOptions(), options))
+    wanted = _chosen(InspectionOptions(), options).on(plot.field)
+    read = read_on_grid(source, plot.grid, wanted)
     _warn(read.messages)
     return read.value
 

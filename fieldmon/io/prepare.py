@@ -28,6 +28,7 @@ from fieldmon.io.readers.crews import Crew
 from fieldmon.io.readers.nearby import near_plot, on_plants
 from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
 from fieldmon.io.sources import PlantingChoices
+from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.layout import Planting
 from fieldmon.plot.plot import Plot, planting_of
 
@@ -77,32 +78,16 @@ class SourceMessage:
     message: ImportMessage
 
 
-@dataclass(frozen=True)
-class Assumed:
-    """Something about a plot that nobody said and no file states.
-
-    Parameters
-    ----------
-    setting
-        Its name in `PlantingChoices`, which says otherwise: ``"row_spacing_m"``.
-    value
-        What was taken, metres.
-    """
-
-    setting: str
-    value: float
-
-    def __str__(self) -> str:
-        words = self.setting.removesuffix("_m").replace("_", " ")
-        return f"guessed: {words} {self.value:g} m"
-
-
 @dataclass(frozen=True, eq=False)
 class Laid:
     """A plot with its plants, what had to be assumed for them, and what is said of its rows."""
 
     plot: Plot
-    assumed: tuple[Assumed, ...] = ()
+
+    @property
+    def assumed(self) -> tuple[Assumed, ...]:
+        """Return what nobody said of its rows."""
+        return self.plot.assumed
 
     @property
     def messages(self) -> tuple[ImportMessage, ...]:
@@ -292,7 +277,8 @@ def lay(field: Field, choices: PlantingChoices | None = None) -> Laid:
     if len(field.row_lines.geoms) > 1:  # rows are as far apart as they were drawn
         missing = [name for name in missing if name != "row_spacing_m"]
     assumed = tuple(Assumed(name, getattr(planting, name)) for name in missing)
-    return Laid(Plot.of(field, planting), assumed if field.plants is None else ())
+    plot = Plot.of(field, planting)
+    return Laid(plot if field.plants is not None else replace(plot, assumed=assumed))
 
 
 def lay_around(

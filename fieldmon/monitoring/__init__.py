@@ -5,6 +5,7 @@ from __future__ import annotations
 from fieldmon.monitoring.batches import Batch, Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.inspection_table import counting_copy
+from fieldmon.monitoring.recorded_before import Contradictions
 from fieldmon.monitoring.season_file import Season
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.monitoring.status import Status
@@ -14,6 +15,7 @@ from fieldmon.monitoring.worked_route import worked_route
 
 __all__ = [
     "Batch",
+    "Contradictions",
     "DayFigures",
     "KeptMessage",
     "MonitoringSettings",

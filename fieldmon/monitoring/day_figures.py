@@ -62,6 +62,8 @@ class Progress:
     ----------
     inspected, found
         Plants inspected so far at least once, and plants found infested so far.
+    finds
+        Finds so far, a plant once a day: more than `found` where plants were found again.
     inspected_today, found_today
         Plants inspected and found infested on this day.
     days_since
@@ -70,6 +72,7 @@ class Progress:
 
     inspected: int
     found: int
+    finds: int
     inspected_today: int
     found_today: int
     days_since: NDArray[np.float64]
@@ -78,14 +81,16 @@ class Progress:
     def of(cls, history: History, day: int) -> Progress:
         """Return the progress up to a day, given by its number."""
         grid, state = history.grid, history.states(day)
-        today = history.on(day).inspected
+        today, done = history.on(day).inspected, history.until(day)
+        found = done.take(done.result == FOUND)
         last = np.full(grid.n_rows, NEVER, np.int64)
         np.maximum.at(last, grid.row, history.last_inspected(day))
         return cls(
             inspected=int(np.count_nonzero(state >= 0)),
             found=int(np.count_nonzero(state == PRESENT)),
-            inspected_today=len(today),
-            found_today=int(np.count_nonzero(today.result == FOUND)),
+            finds=len(set(zip(found.plant.tolist(), found.date.tolist(), strict=True))),
+            inspected_today=len(np.unique(today.plant)),
+            found_today=len(np.unique(today.plant[today.result == FOUND])),
             days_since=np.where(last == NEVER, np.nan, day - last),
         )
 

@@ -60,9 +60,10 @@ def refresh(
 def _day_row(history: History, morning: Belief, day: int) -> tuple[object, ...]:
     today = history.on(day).inspected
     estimate = history.estimate(morning, day)
-    found = int(np.count_nonzero(today.result == FOUND))
+    plants = today.plant, today.plant[today.result == FOUND]
+    inspected, found = (len(np.unique(which)) for which in plants)
     return (
-        *(day, str(history.date_of(day)), len(today), found),
+        *(day, str(history.date_of(day)), inspected, found),
         *(estimate.expected, estimate.low, estimate.high, estimate.chance_clean),
         map_digest(morning.chance),
     )
@@ -70,7 +71,7 @@ def _day_row(history: History, morning: Belief, day: int) -> tuple[object, ...]:
 
 def _write_spots(db: sqlite3.Connection, plot: Plot, history: History, day: int) -> HotSpots:
     grid = plot.grid
-    spots = hot_spots(grid, history.states(day))
+    spots = hot_spots(grid, history.known(day))
     db.execute("DELETE FROM hot_spots")
     rows = []
     for h in range(len(spots)):
@@ -104,7 +105,7 @@ def _write_states(
     rows = zip(
         range(1, len(history.grid) + 1),
         np.round(history.evening(morning, day).chance, 6).tolist(),
-        [STATES[state] for state in history.states(day).tolist()],
+        [STATES[state] for state in history.known(day).tolist()],
         [name.get(last) for last in history.last_inspected(day).tolist()],
         [None if h < 0 else h + 1 for h in spots.of_plant.tolist()],
         strict=True,

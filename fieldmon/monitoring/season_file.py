@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass, replace
-from datetime import date
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +12,8 @@ import shapely
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.hotspots import record_states
+from fieldmon.infestation.observations import Observations, usable
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.io.writers.geojson import RouteNotes
@@ -29,17 +29,21 @@ from fieldmon.monitoring import (
 )
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
-from fieldmon.monitoring.history import History, Shift, Treatment
+from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
+from fieldmon.monitoring.recorded_before import Contradictions, contradictions, said_before
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
+from fieldmon.planning.assumptions import assumed_by
 from fieldmon.planning.plan import plan_in
+from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.grid import RowLabel, row_label
+from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable
-    from datetime import time
+    from datetime import date, time
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -50,6 +54,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.tables import KeptMessage
     from fieldmon.planning.plan import DayPlan
+    from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
 
     Floats = NDArray[np.float64]
@@ -111,19 +116,20 @@ class Season:
         """Begin a season in a new file, whole or not at all; raise `FileProblem` if it exists.
 
         Settings may be given one by one instead, as ``begins=date(2026, 11, 18)`` or
-        ``robot=Robot(hours=4)``; a season begins today unless told otherwise.
+        ``robot=Robot(hours=4)``; a season begins today (in the plot's time zone) unless told
+        otherwise.
 
         `risk` ``(n,)`` is one more chance of being infested at the start, from a raster for
         instance, see `fieldmon.infestation.prior.prior_chance`.
         """
         if settings is None:
-            today = date.today()  # noqa: DTZ011 - the local day
+            today = local_clock(plot.field).today()
             settings = MonitoringSettings(**({"begins": today} | chosen))
         if observations is None:
             observations = Observations.none()
         begins = np.datetime64(settings.begins, "D")
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
-        history = _nothing_yet(plot, settings, prior)
+        history = _nothing_yet(plot, settings, prior, observations)
         first = _Contents("", settings, history, [history.first_morning])
         with Store.new(path) as db:
             tables.write_plot(db, plot)
@@ -156,6 +162,15 @@ class Season:
     def history(self) -> History:
         """Return all that happened so far."""
         return self._now().history
+
+    def assumed(self) -> tuple[Assumed, ...]:
+        """Return what the season's figures rest on though nobody said it."""
+        settings = self.settings
+        made = assumed_by(self.plot.assumed, settings.prior, settings.robot)
+        rate = settings.belief.spread.rate_per_day
+        if rate != BeliefSettings().spread.rate_per_day:
+            return made
+        return (*made, Assumed("rate_per_day", rate))
 
     @cached_property
     def label(self) -> RowLabel:
@@ -191,7 +206,10 @@ class Season:
 
     # -- the working day
 
-    def plan(self, on: date, now: time | None = None, *, keep: bool = True) -> DayPlan:
+    def plan(
+        self, on: date, now: time | None = None, *, keep: bool = True,
+        wishes: Wishes | None = None,
+    ) -> DayPlan:  # fmt: skip
         """Plan what is left of a day from all that is known.
 
         Parameters
@@ -203,6 +221,8 @@ class Season:
             the time of the last of it.
         keep
             whether the route is kept in the file: the same one once, an empty one never.
+        wishes
+            What people want of the day besides.
         """
         with self._lock:
             contents = self._now()
@@ -216,7 +236,7 @@ class Season:
             )
             now_s = None if now is None else seconds(now)
             scene = contents.history.scene(shift, day, contents.morning(day), now_s)
-            today = plan_in(scene, settings.decides())
+            today = plan_in(scene, settings.decides(), wishes)
             begins = routes.begins(settings, today)
             notes = RouteNotes(self.plot.field.name, settings.sampler, begins)
             today = replace(today, route=replace(today.route, notes=notes))
@@ -232,20 +252,46 @@ class Season:
         with self.store.reading() as db:
             return routes.plants(db, day)
 
-    def record(self, inspections: Inspections, source: str = "", who: str = "") -> Recorded:
+    def contradictions(self, inspections: Inspections) -> Contradictions:
+        """Return those that say otherwise than what is recorded of the same plant and day."""
+        return contradictions(inspections, self.history.inspections)
+
+    def record(
+        self,
+        inspections: Inspections,
+        source: str = "",
+        who: str = "",
+        *,
+        confirmed: bool = False,
+    ) -> Recorded:
         """Add inspections; those that the season holds already change nothing.
+
+        Parameters
+        ----------
+        inspections
+            What was found where and when.
+        source, who
+            File or screen it comes from; the person, where the inspections name none.
+        confirmed
+            Whether results count that contradict what is recorded of the same plant and day.
 
         Raises
         ------
+        ContradictionError
+            If there are such results and nobody confirmed them.
         ObservationError
             If a plant is not on this plot, or a result has no date or an impossible one.
         SettingError
             If a date is not of this season.
         """
         with self._lock, self.store.writing() as db:
+            held = self._read(db).history.inspections
+            if not confirmed:
+                contradictions(inspections, held).refuse(self.label)
+            news = inspections.take(~said_before(inspections, held))
             batch = batches.begin(db, "findings", source, who)
             made = inspection_table.rows(
-                inspections, self.plot.grid, self.label, _settings(db), (batch, who)
+                news, self.plot.grid, self.label, _settings(db), (batch, who)
             )
             new = inspection_table.store(db, made)
             batches.end(db, batch, new)
@@ -377,7 +423,7 @@ class Season:
             settings = _settings(db)
             prior = self._first_morning(settings)
             history = replace(
-                _nothing_yet(self.plot, settings, prior),
+                _nothing_yet(self.plot, settings, prior, self.observations),
                 inspections=inspection_table.load(db, settings.begins),
                 treatments=treatments.load(db, self._inside),
             )
@@ -407,10 +453,18 @@ class Season:
         self._last = None  # the transaction may yet fail
 
 
-def _nothing_yet(plot: Plot, settings: MonitoringSettings, prior: Floats) -> History:
+def _nothing_yet(
+    plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
+) -> History:
     belief = PairApproximation.of(plot.grid, prior)
+    known = usable(records, np.datetime64(settings.begins, "D")).observations
     return History(
-        plot.grid, settings.begins, belief, belief=settings.belief, detection=settings.robot.detects
+        plot.grid,
+        settings.begins,
+        belief,
+        belief=settings.belief,
+        detection=settings.robot.detects,
+        recorded=record_states(plot.grid, known) if len(known) else None,
     )
 
 

@@ -19,8 +19,8 @@ from fieldmon.samplers import USUAL, sampler
 if TYPE_CHECKING:
     from fieldmon.samplers.base import Sampler
 
-# a season of a perennial crop fits into it twice; a slip in a date does not
-_MOST_DAYS = 800
+#: a season of a perennial crop fits into it twice; a slip in a date does not
+MOST_DAYS = 800
 
 
 @dataclass(frozen=True)
@@ -73,9 +73,9 @@ class MonitoringSettings:
                 f"The day must be of this season, which began on {self.begins}, but it is {on}. "
                 "Check the date."
             )
-        if number > _MOST_DAYS:
+        if number > MOST_DAYS:
             raise SettingError(
-                f"A season lasts {_MOST_DAYS} days at most, but {on} is {number} days after it "
+                f"A season lasts {MOST_DAYS} days at most, but {on} is {number} days after it "
                 f"began on {self.begins}. Check the date, or begin a new season."
             )
         return number

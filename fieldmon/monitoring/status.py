@@ -34,6 +34,8 @@ class Status:
         Plants of the plot.
     inspected, found
         Plants inspected so far at least once, and plants found infested so far.
+    finds
+        Finds so far, a plant once a day.
     inspected_today, found_today
         Plants inspected and found infested on this day.
     estimate
@@ -49,6 +51,7 @@ class Status:
     plants: int
     inspected: int
     found: int
+    finds: int
     inspected_today: int
     found_today: int
     estimate: PlotEstimate
@@ -65,7 +68,7 @@ class Status:
             plants=len(history.grid),
             **vars(progress),
             estimate=history.estimate(morning, day),
-            hot_spots=hot_spots(history.grid, history.states(day)),
+            hot_spots=hot_spots(history.grid, history.known(day)),
         )
 
     @property

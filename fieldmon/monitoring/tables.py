@@ -16,6 +16,7 @@ from fieldmon.errors import FileProblem
 from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, geometry, insert, point_blobs, touch
+from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import PlantGrid, row_corners, row_label
 from fieldmon.plot.plot import Plot
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
 _FRAME = "frame"
 _SPACINGS = ("row_spacing_m", "plant_spacing_m")
+_ASSUMED = ("row_spacing_m", "plant_spacing_m")
 _STATED = ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
 
 
@@ -111,6 +113,9 @@ def _write_field(db: sqlite3.Connection, plot: Plot) -> None:
         write_array(db, "measured_lonlat", field.plants)
     stated = [np.nan if (v := getattr(field, name)) is None else v for name in _STATED]
     write_array(db, "stated", np.array(stated, np.float64))
+    taken = {one.setting: one.value for one in plot.assumed}
+    assumed = [taken.get(name, np.nan) for name in _ASSUMED]
+    write_array(db, "assumed", np.array(assumed, np.float64))
     for table in (schema.PLOTS, schema.PLACES):
         touch(db, table.name, field.boundary.bounds)
 
@@ -160,7 +165,11 @@ def read_plot(db: sqlite3.Connection) -> Plot:
         ) from error
     gate = None if field.gate is None else grid.frame.xy_m(field.gate)[0]
     gate_xy_m = None if gate is None else (float(gate[0]), float(gate[1]))
-    return Plot(field, Aisles.of(grid, gate_xy_m, grid.frame.geometry_m(field.no_go)))
+    # a file of an earlier version does not say
+    taken = arrays.get("assumed", np.full(len(_ASSUMED), np.nan)).tolist()
+    assumed = [Assumed(*one) for one in zip(_ASSUMED, taken, strict=True) if not np.isnan(one[1])]
+    aisles = Aisles.of(grid, gate_xy_m, grid.frame.geometry_m(field.no_go))
+    return Plot(field, aisles, tuple(assumed))
 
 
 def _grid(arrays: dict[str, NDArray[Any]]) -> PlantGrid:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
+from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.samplers import USUAL, kind_of, sampler
@@ -38,6 +39,8 @@ class Orders:
         Settings of `Robot`; what is not here, the plot's own columns say.
     planting
         Settings of `Planting`, likewise.
+    bound
+        Whether each day says what no other route can expect to find.
     """
 
     day: np.datetime64
@@ -46,6 +49,7 @@ class Orders:
     on_foot: bool = False
     robot: dict[str, float] = field(default_factory=dict)
     planting: dict[str, float] = field(default_factory=dict)
+    bound: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +90,7 @@ def plan_task(task: Task, plot: Plot, observations: Observations) -> DayPlan:
             f"The working day must be long enough to reach a plant and come back, but "
             f"{robot.hours:g} h are not. Give more hours."
         )
-    return today
+    return with_bound(today) if orders.bound else today
 
 
 def _robot(task: Task) -> Robot:

@@ -32,6 +32,7 @@ def explain(
     work: Workday,
     finds: NDArray[np.int32] | None = None,
     found_on: Sequence[str] = (),
+    recorded: NDArray[np.bool_] | None = None,
 ) -> list[str]:
     """Return what a day's stops are for: those around finds first, then the blocks of rows.
 
@@ -41,12 +42,16 @@ def explain(
         ``(f,)`` plants found infested lately.
     found_on
         ``(f,)`` when each was found, as it is to be said: "Tuesday", "day 3".
+    recorded
+        ``(n,)`` plants of which records speak that are older than all inspections.
     """
     if not len(work):
         return ["No plant can be reached in the hours left."]
     finds = np.empty(0, np.int32) if finds is None else finds
     near = _nearest_find(scene, work.plant, finds)
-    return _told_finds(scene, near, finds, found_on) + _blocks(scene, work.plant[near < 0])
+    recorded = np.zeros(len(scene.grid), bool) if recorded is None else recorded
+    blocks = _blocks(scene, work.plant[near < 0], recorded)
+    return _told_finds(scene, near, finds, found_on) + blocks
 
 
 def _told_finds(
@@ -80,7 +85,7 @@ def _nearest_find(
     return near
 
 
-def _blocks(scene: Scene, plants: NDArray[np.int32]) -> list[str]:
+def _blocks(scene: Scene, plants: NDArray[np.int32], recorded: NDArray[np.bool_]) -> list[str]:
     """Return a sentence for each block of rows, in the order of the first stop in it."""
     if not len(plants):
         return []
@@ -91,17 +96,26 @@ def _blocks(scene: Scene, plants: NDArray[np.int32]) -> list[str]:
     order = list(dict.fromkeys(block.tolist()))
     if len(order) > _BLOCKS:
         order, block = [0], np.zeros_like(block)
-    return [_block(scene, plants[block == each], line[block == each]) for each in order]
+    return [_block(scene, plants[block == each], line[block == each], recorded) for each in order]
 
 
-def _block(scene: Scene, plants: NDArray[np.int32], line: NDArray[np.int64]) -> str:
+def _block(
+    scene: Scene,
+    plants: NDArray[np.int32],
+    line: NDArray[np.int64],
+    recorded: NDArray[np.bool_],
+) -> str:
     low, high = int(line.min()), int(line.max())
     where = f"in row {low}" if low == high else f"in rows {low} to {high}"
     last = scene.last_inspected[plants]
-    never = int(np.count_nonzero(last == NEVER))
+    unseen = last == NEVER
+    never = int(np.count_nonzero(unseen & ~recorded[plants]))
+    known = int(np.count_nonzero(unseen)) - never
     if never == len(plants):
         return f"{counted(len(plants), 'plant')} {where}: never inspected yet."
-    days = round(float(np.median(scene.day - last[last != NEVER])))
-    unseen = f"not inspected for {counted(days, 'day')}"
-    others = f", {never} of them never" if never else ""
-    return f"{counted(len(plants), 'plant')} {where}: {unseen}{others}."
+    said = [f"{known} known from records only"] if known else []
+    if not unseen.all():
+        days = round(float(np.median(scene.day - last[~unseen])))
+        said = [f"not inspected for {counted(days, 'day')}", *said]
+    said += [f"{never} {'of them ' if not known else ''}never inspected yet"] if never else []
+    return f"{counted(len(plants), 'plant')} {where}: {', '.join(said)}."

@@ -16,6 +16,7 @@ from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
+from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler as sampler_of
 from fieldmon.samplers.adaptive import Adaptive
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.planning.route import Route
+    from fieldmon.planning.wishes import Wishes
     from fieldmon.planning.workday import Workday
     from fieldmon.plot.plot import Plot
 
@@ -134,7 +136,7 @@ def plan_day(
         Dated pest records; None: every plant has the chance of a plot without any.
     on
         The day, as ``"2026-11-18"``, a date, or a datetime that says when work starts (else
-        06:00); None: today.
+        06:00); None: today, in the time zone in which the plot lies.
     robot
         Who inspects; None: the thesis's robot, 12 h. `scout()` is a person on foot.
     sampler
@@ -158,7 +160,7 @@ def plan_day(
     >>> len(day.route)
     160
     """
-    starts = _starts(on)
+    starts = _starts(on, plot)
     decides = sampler_of(sampler) if isinstance(sampler, str) else sampler
     plans = PlanSettings(robot or Robot(), decides)
     given = Observations.none() if records is None else records
@@ -173,12 +175,12 @@ def plan_day(
     return replace(today, route=replace(today.route, notes=notes))
 
 
-def _starts(on: str | date | datetime | np.datetime64 | None) -> datetime:
+def _starts(on: str | date | datetime | np.datetime64 | None, plot: Plot) -> datetime:
     """Return the local date and time at which work starts."""
     if isinstance(on, datetime):
         return on
     try:
-        day = date.today() if on is None else date.fromisoformat(str(on))  # noqa: DTZ011 - local
+        day = local_clock(plot.field).today() if on is None else date.fromisoformat(str(on))
     except ValueError as error:
         raise SettingError(f"A day must be as 2026-11-18, but it is {on!r}.") from error
     return datetime.combine(day, _STARTS)
@@ -196,8 +198,10 @@ def first_day(
     return plan_from(plot, chance, plans)
 
 
-def plan_from(plot: Plot, chance: NDArray[np.float64], plans: PlanSettings) -> DayPlan:
-    """Plan a first day from a chance map ``(n,)``."""
+def plan_from(
+    plot: Plot, chance: NDArray[np.float64], plans: PlanSettings, wishes: Wishes | None = None
+) -> DayPlan:  # fmt: skip
+    """Plan a first day from a chance map ``(n,)``, and from what people wish for besides."""
     scene = Scene(
         aisles=plot.aisles,
         robot=plans.robot,
@@ -207,10 +211,13 @@ def plan_from(plot: Plot, chance: NDArray[np.float64], plans: PlanSettings) -> D
         # as a season believes: it goes the same way on its first day
         pair_chance=pair_chances(chance, plot.grid),
     )
-    return plan_in(scene, plans.sampler)
+    return plan_in(scene, plans.sampler, wishes)
 
 
-def plan_in(scene: Scene, sampler: Sampler) -> DayPlan:
-    """Plan the rest of the day that a scene stands in, as it goes if nothing is found."""
-    work = plan_work(scene, sampler)
+def plan_in(scene: Scene, sampler: Sampler, wishes: Wishes | None = None) -> DayPlan:
+    """Plan the rest of the day that a scene stands in, as it goes if nothing is found.
+
+    Wishes change where it goes, not what is believed of the plants.
+    """
+    work = plan_work(scene if wishes is None else wishes.told(scene), sampler)
     return DayPlan(scene, work, route_of(scene, work))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import counted
+from fieldmon.planning.bound_wording import told
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -48,6 +49,9 @@ class Route:
         Seconds at the end of the line.
     notes
         Plot, sampler and start, for files; None: files say nothing of them.
+    found_bound
+        What no route of these hours can expect to find, see `fieldmon.planning.day_bound`; None:
+        it is not known.
     """
 
     aisles: Aisles
@@ -61,6 +65,7 @@ class Route:
     line_s: NDArray[np.float64]
     end_s: float
     notes: RouteNotes | None = None
+    found_bound: float | None = None
 
     def __repr__(self) -> str:
         length_km, hours = self.drive_m / 1000, self.end_s / 3600
@@ -84,6 +89,13 @@ class Route:
     def expected_found(self) -> float:
         """Infested plants that would be found on the route, as believed."""
         return float((self.chance * self.detects).sum())
+
+    @property
+    def bound_sentence(self) -> str:
+        """Return for people what is expected, and what no other route can exceed; "" if unknown."""
+        if self.found_bound is None:
+            return ""
+        return told(self.expected_found, self.found_bound)
 
     def line_lonlat(self) -> NDArray[np.float64]:
         """Return the driven line in degrees, ``(m, 2)``."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple, Self
 
-import numba as nb
 import numpy as np
 import shapely
 
 from fieldmon.compute.arrays import offsets
+from fieldmon.compute.jit import routine
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -175,7 +175,7 @@ def row_steps(grid: PlantGrid, clearance_m: float) -> tuple[Float, Float]:
     return box[order], np.concatenate([start, end], axis=1)[order]
 
 
-@nb.njit(cache=True)
+@routine
 def off_steps(
     rows: tuple[Float, Float], clearance_m: float, from_m: Float, to_m: Float, off: Mask
 ) -> None:
@@ -194,7 +194,7 @@ def off_steps(
             b += 1
 
 
-@nb.njit(cache=True)
+@routine
 def _square_between(step: Float, a: Float, b: Float) -> float:
     """Return the square of the distance between two straight pieces."""
     cx, cy, dx, dy = step
@@ -208,7 +208,7 @@ def _square_between(step: Float, a: Float, b: Float) -> float:
     return min(of_ends, _square_to_step(a, step), _square_to_step(b, step))
 
 
-@nb.njit(cache=True)
+@routine
 def _square_off(x: float, y: float, a: Float, b: Float) -> float:
     wx, wy = b[0] - a[0], b[1] - a[1]
     share = ((x - a[0]) * wx + (y - a[1]) * wy) / max(wx * wx + wy * wy, 1e-18)
@@ -217,7 +217,7 @@ def _square_off(x: float, y: float, a: Float, b: Float) -> float:
     return square
 
 
-@nb.njit(cache=True)
+@routine
 def _square_to_step(p: Float, step: Float) -> float:
     wx, wy = step[2] - step[0], step[3] - step[1]
     share = ((p[0] - step[0]) * wx + (p[1] - step[1]) * wy) / max(wx * wx + wy * wy, 1e-18)

@@ -11,6 +11,7 @@ import shapely
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.arrays import offsets, runs
+from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot import adjacency
 from fieldmon.plot.bent_layout import Ground
@@ -97,6 +98,10 @@ class Pieces(NamedTuple):
     aisle_y_m: Float  # (r, 2): middle of the aisle below and of the aisle above
     lane_x_m: Float  # (r, 2)
 
+    def __repr__(self) -> str:
+        plants = counted(len(self.xy_m), "plant")
+        return f"<Pieces: {plants} in {counted(len(self.row_line), 'row')}>"
+
 
 class Intervals(NamedTuple):
     """Stretches of x, k in all, each on one of several horizontal strips."""
@@ -104,6 +109,9 @@ class Intervals(NamedTuple):
     strip: NDArray[np.intp]
     low_x: Float
     high_x: Float
+
+    def __repr__(self) -> str:
+        return f"<Intervals: {counted(len(self.strip), 'piece')}>"
 
 
 def lay(field: Field, planting: Planting) -> PlantGrid:
@@ -381,6 +389,11 @@ def _corridors(lane_y: Float, lane_x: Float) -> NDArray[np.intp]:
 
 
 def _check_size(name: str, area: MultiPolygon, planting: Planting) -> None:
+    if area.is_empty:
+        raise PlotError(
+            f"A plot must have ground to drive on, but no-go areas cover all of plot {name!r}. "
+            "Take the no-go areas back, or make them smaller."
+        )
     about = area.area / (planting.row_spacing_m * planting.plant_spacing_m)
     if about > _MOST_PLANTS:
         raise PlotError(

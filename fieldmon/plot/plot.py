@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, check_apart, grid_from_plants, lay, planting_in
 from fieldmon.plot.measured_rows import SaidRows, row_numbers
@@ -20,6 +18,7 @@ if TYPE_CHECKING:
     from geopandas import GeoDataFrame
     from numpy.typing import NDArray
 
+    from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.grid import PlantGrid
 
 
@@ -63,16 +62,17 @@ class Plot:
 
     Parameters
     ----------
-    field
-        What is known of the plot.
-    aisles
-        Its plants and the ways between them.
+    field, aisles
+        The field; its plants, and the ways between them.
+    assumed
+        What was taken for its rows because nobody said it.
     rows
         How well its measured plants stand in rows; None where plants were laid, or read back.
     """
 
     field: Field
     aisles: Aisles
+    assumed: tuple[Assumed, ...] = ()
     rows: RowReport | None = None
 
     def __repr__(self) -> str:
@@ -178,7 +178,11 @@ class Plot:
         """Return the plot without the plants marked ``(n,)``, which are not there."""
         if not missing.any():
             return self
-        return self._with(self.field, without(self.grid, missing))
+        return replace(
+            self._with(self.field, without(self.grid, missing)),
+            assumed=self.assumed,
+            rows=self.rows,
+        )
 
     @classmethod
     def _with(cls, field: Field, grid: PlantGrid) -> Plot:

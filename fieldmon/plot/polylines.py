@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple, Self
 
-import numba as nb
 import numpy as np
 import shapely
 
 from fieldmon.compute.arrays import offsets, runs
+from fieldmon.compute.jit import routine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -137,7 +137,7 @@ def _unit(way: Float) -> Float:
     return units
 
 
-@nb.njit(cache=True)
+@routine
 def _corner_before(lines: Polylines, line: Int, place_m: Float, at: Int) -> None:
     for i in range(at.size):
         low, high = lines.start[line[i]], lines.start[line[i] + 1] - 1
@@ -150,7 +150,7 @@ def _corner_before(lines: Polylines, line: Int, place_m: Float, at: Int) -> None
         at[i] = low
 
 
-@nb.njit(cache=True)
+@routine
 def _project(lines: Polylines, xy_m: Float, line: Int, place: Float, left: Float) -> None:
     start, corner, at_m = lines
     at, last_line = 0, -1
@@ -179,7 +179,7 @@ def _project(lines: Polylines, xy_m: Float, line: Int, place: Float, left: Float
         left[i] = side * np.hypot(x - share * wx, y - share * wy)
 
 
-@nb.njit(cache=True)
+@routine
 def _nearest_step(
     corner: Float, among: tuple[int, int], xy_m: Float, known: tuple[int, float]
 ) -> tuple[int, float]:
@@ -192,7 +192,7 @@ def _nearest_step(
     return at, best
 
 
-@nb.njit(cache=True)
+@routine
 def _square_to(corner: Float, k: int, x: float, y: float) -> float:
     wx, wy = corner[k + 1, 0] - corner[k, 0], corner[k + 1, 1] - corner[k, 1]
     px, py = x - corner[k, 0], y - corner[k, 1]

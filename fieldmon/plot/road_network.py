@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.arrays import runs
+from fieldmon.compute.jit import kept, routine
 from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError
 from fieldmon.plot.bent_ways import Bends, bends_of, off_steps, row_end_places, row_steps
@@ -179,7 +180,7 @@ def _bends(area: shapely.Geometry, coarse_m: float, sign: float) -> Float:
     return np.concatenate(found)
 
 
-@nb.njit(cache=True)
+@routine
 def _off_boxes(box_m: Float, from_m: Float, to_m: Float, off: Mask) -> None:
     """Set `off` to False for the straight lines that touch a box; boxes are sorted by low y."""
     low_y = box_m[:, 1]
@@ -196,7 +197,8 @@ def _off_boxes(box_m: Float, from_m: Float, to_m: Float, off: Mask) -> None:
             b += 1
 
 
-@nb.njit(cache=True, inline="always")
+@kept
+@nb.njit(inline="always")
 def _within(
     at: float, way: float, low: float, high: float, part: tuple[float, float]
 ) -> tuple[float, float]:

@@ -11,8 +11,9 @@ from __future__ import annotations
 import heapq
 from typing import TYPE_CHECKING, NamedTuple
 
-import numba as nb
 import numpy as np
+
+from fieldmon.compute.jit import routine
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -93,13 +94,13 @@ def pieces(xy_m: Float, windows: Windows) -> tuple[Int, Directions]:
     return np.unique(piece, return_inverse=True)[1], Directions(angle, bend)
 
 
-@nb.njit(cache=True)
+@routine
 def _find(key: Int, wanted: int) -> int:
     place = np.searchsorted(key, wanted)
     return int(place) if place < key.size and key[place] == wanted else -1
 
 
-@nb.njit(cache=True)
+@routine
 def _members(xy_m: Float, windows: Windows, w: int, buffer: Float, who: Int) -> int:
     """Fill in x, y and closeness to the middle of a window's plants; return how many there are."""
     n = 0
@@ -124,7 +125,7 @@ def _members(xy_m: Float, windows: Windows, w: int, buffer: Float, who: Int) -> 
     return n
 
 
-@nb.njit(cache=True)
+@routine
 def _sharpness(
     buffer: Float, n: int, way: tuple[float, float], bin_m: float, tally: Float
 ) -> float:
@@ -148,7 +149,7 @@ def _sharpness(
     return total
 
 
-@nb.njit(cache=True)
+@routine
 def _score_directions(xy_m: Float, windows: Windows, score: Float) -> None:
     buffer, who = np.empty((_MOST_MEMBERS, 3)), np.empty(_MOST_MEMBERS, np.int64)
     bin_m = 0.25 * windows.near_m
@@ -160,13 +161,13 @@ def _score_directions(xy_m: Float, windows: Windows, score: Float) -> None:
             score[w, k] = _sharpness(buffer, n, way, bin_m, tally)
 
 
-@nb.njit(cache=True)
+@routine
 def _off(a: float, b: float) -> float:
     """Return the angle between two directions, either way along them."""
     return abs((a - b + np.pi / 2) % np.pi - np.pi / 2)
 
 
-@nb.njit(cache=True)
+@routine
 def _best_near(score: Float, angle: float, reach: float) -> float:
     """Return the best direction near one, or the best of all where none there is as good."""
     best, near = 0, -1
@@ -180,7 +181,7 @@ def _best_near(score: Float, angle: float, reach: float) -> float:
     return np.pi * (near if good else best) / score.size
 
 
-@nb.njit(cache=True)
+@routine
 def _grow(windows: Windows, score: Float, angle: Float) -> None:
     """Choose each window's direction, from the clearest window on to its neighbours."""
     m = windows.key.size
@@ -208,7 +209,7 @@ def _grow(windows: Windows, score: Float, angle: Float) -> None:
                     heapq.heappush(queue, (-clear[other], other))
 
 
-@nb.njit(cache=True)
+@routine
 def _refine(xy_m: Float, windows: Windows, angle: Float, bend: Float) -> None:
     """Make each direction exact, and find how rows bend there."""
     buffer, who = np.empty((_MOST_MEMBERS, 3)), np.empty(_MOST_MEMBERS, np.int64)
@@ -228,7 +229,7 @@ def _refine(xy_m: Float, windows: Windows, angle: Float, bend: Float) -> None:
         angle[w], bend[w] = here, curve
 
 
-@nb.njit(cache=True)
+@routine
 def _cuts(tally: Float, least_apart: int, cuts: Int) -> int:
     """Fill in the bins at which one line ends and the next one starts; return how many."""
     n, peak, low, low_at, falling = 0, 0.0, 0.0, 0, False
@@ -249,7 +250,7 @@ def _cuts(tally: Float, least_apart: int, cuts: Int) -> int:
     return n
 
 
-@nb.njit(cache=True)
+@routine
 def _see_lines(
     xy_m: Float, windows: Windows, angle: Float, bend: Float
 ) -> tuple[Int, Int, Int, Int]:
@@ -284,7 +285,7 @@ def _see_lines(
     return start, member, line, n_lines
 
 
-@nb.njit(cache=True)
+@routine
 def _blurred(tally: Float, room: Float) -> None:
     n = tally.size
     for k in range(n):
@@ -294,7 +295,7 @@ def _blurred(tally: Float, room: Float) -> None:
     tally[:] = room
 
 
-@nb.njit(cache=True)
+@routine
 def _top(root: Int, k: int) -> int:
     while root[k] != k:
         root[k] = root[root[k]]
@@ -324,7 +325,7 @@ def _united(n: int, windows: Windows, seen: tuple[Int, Int, Int], first: Int) ->
     return _tops(lines.top)
 
 
-@nb.njit(cache=True)
+@routine
 def _tops(root: Int) -> Int:
     tops = np.empty(root.size, np.int64)
     for k in range(root.size):
@@ -332,7 +333,7 @@ def _tops(root: Int) -> Int:
     return tops
 
 
-@nb.njit(cache=True)
+@routine
 def _unite(
     n: int, windows: Windows, seen: tuple[Int, Int, Int], known: tuple[Int, _Lines], same: float
 ) -> None:
@@ -366,7 +367,7 @@ def _unite(
                             _join(first, lines, first[w] + a, first[other] + b)
 
 
-@nb.njit(cache=True)
+@routine
 def _join(first: Int, lines: _Lines, one: int, two: int) -> None:
     """Make two lines one, unless both would then run through one window side by side."""
     one, two = _top(lines.top, one), _top(lines.top, two)
@@ -389,7 +390,7 @@ def _join(first: Int, lines: _Lines, one: int, two: int) -> None:
     lines.after[one], lines.after[two] = lines.after[two], lines.after[one]
 
 
-@nb.njit(cache=True)
+@routine
 def _voted(
     xy_m: Float, windows: Windows, seen: tuple[Int, Int, Int], first: Int, united: Int
 ) -> Int:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numba as nb
 import numpy as np
 import shapely
 from scipy.sparse import coo_array
@@ -12,6 +11,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.arrays import offsets
+from fieldmon.compute.jit import routine
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.row_pieces import Windows, pieces
 
@@ -182,7 +182,7 @@ def _ordered(xy_m: Float, strand: Int, along: Float, angle: Float | None = None)
     return _Strands(plant, start, line_m, ahead)
 
 
-@nb.njit(cache=True)
+@routine
 def _smooth(xy_m: Float, start: Int, along: Float, made: tuple[Float, Float, Float]) -> None:
     """Fit a parabola about each plant: its point and direction there, and the plant's own part."""
     line_m, ahead, own = made
@@ -214,7 +214,7 @@ def _smooth(xy_m: Float, start: Int, along: Float, made: tuple[Float, Float, Flo
             ahead[i, 1] = dy / length if length > 0 else 0.0
 
 
-@nb.njit(cache=True)
+@routine
 def _fit(
     n: int, s: tuple[float, float, float, float, float], v: tuple[float, float, float]
 ) -> tuple[float, float, float]:

@@ -5,18 +5,37 @@ import shutil
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 import urllib.request
+from datetime import UTC, datetime, timedelta
+from itertools import count
 from pathlib import Path
 
 import pytest
 import streamlit as st
 
 from fieldmon.monitoring import Season
+from fieldmon.plot import local_clock
 from tests.app.driving import begun, opened
 from tests.paths import SHARED
 
 SHOTS = Path(__file__).with_name("screenshots")
+
+
+@pytest.fixture(autouse=True)
+def clock(monkeypatch):
+    """Let it be the morning of the sample estate's last day; each look at the clock takes 5 s."""
+    begins, looks = datetime(2026, 11, 16, 4, tzinfo=UTC), count()
+    now = lambda: begins + timedelta(seconds=5 * next(looks))  # noqa: E731
+    monkeypatch.setattr(local_clock, "utc_now", now)
+
+
+@pytest.fixture(autouse=True)
+def files_folder(tmp_path_factory, monkeypatch):
+    """Let each test keep files of its own."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path_factory.mktemp("files")))
+    return tempfile.gettempdir()
 
 
 @pytest.fixture

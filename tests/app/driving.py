@@ -1,8 +1,10 @@
 """Driving the app without a browser."""
 
 import json
+import sqlite3
 import time
 import zipfile
+from contextlib import closing
 from io import BytesIO
 
 import geopandas as gpd
@@ -12,11 +14,15 @@ from shapely import MultiPolygon, box
 from streamlit.testing.v1 import AppTest
 from streamlit.util import calc_hash
 
+from app.state import rooms
+from app.state.map_store import STORE
+from tests.app.shown_plants import shown_plants
+from tests.monitoring.seasons import a_season
 from tests.paths import ROOT
 
 ESTATE = ROOT / "sample_data"
 SQUARE = MultiPolygon([box(35.15, 30.36, 35.1506, 30.3606)])
-PAGES = ("today", "map", "scout", "season", "compare", "plot", "report", "simulate")
+PAGES = tuple(part for room in rooms.ROOMS.values() for part in room.parts)
 
 
 def until(is_so, within_s=60.0):
@@ -27,17 +33,19 @@ def until(is_so, within_s=60.0):
         time.sleep(0.005)
 
 
-def opened(season=None):
+def opened(season=None, **address):
     """Return a new session of the app, with a season open if one is named."""
     app = AppTest.from_file(str(ROOT / "app" / "streamlit_app.py"), default_timeout=120)
-    if season is not None:
-        app.query_params["season"] = season
+    for word, value in ({} if season is None else {"season": season}).items() | address.items():
+        app.query_params[word] = value
     return app.run()
 
 
 def go(app, page):
-    """Turn to a page, as its link does: the address is bare, and the next run is the page's."""
-    app._page_hash = calc_hash("" if page == "today" else page)
+    """Turn to a part of a room, as its link does: the address is bare, the next run is its own."""
+    room = rooms.room_of(page)
+    app._page_hash = calc_hash("" if room == "today" else room)
+    app.session_state[rooms.key(room)] = page
     app.query_params.clear()
     return app.run()
 
@@ -56,7 +64,17 @@ def press(app, label):
 
 
 def map_of(app):
-    return json.loads(app.get("deck_gl_json_chart")[0].proto.json)
+    """Return what the map's component is sent, with each layer's JSON in its place."""
+    named = (one.proto for one in app.get("bidi_component"))
+    (sent,) = (one for one in named if one.component_name == "fieldmon_map")
+    data = json.loads(sent.json)
+    data["layers"] = [{**one, **json.loads(fetched(one["url"]))} for one in data["layers"]]
+    return data
+
+
+def fetched(address):
+    """Return the bytes that the server has under an address."""
+    return STORE.get(address)[1]
 
 
 def row_box(app, name):
@@ -65,16 +83,37 @@ def row_box(app, name):
 
 
 def layer(app, name):
+    """Return a layer as the browser gets it, or None."""
     return next((one for one in map_of(app)["layers"] if one["id"] == name), None)
 
 
+def plants(app, name="plants-chance"):
+    """Return the plants on the map, in one of their shades."""
+    sent = layer(app, name)
+    arrays = {kind: fetched(sent[kind]) for kind in ("places", "ranks", "values") if kind in sent}
+    return shown_plants(arrays, sent["table"])
+
+
 def metric(app, label):
-    return next(m.value for m in app.metric if m.label == label)
+    return next(m.value for m in app.metric if m.label.removesuffix(" *") == label)
+
+
+def plot_name(app):
+    """Return what the map calls the plot."""
+    return map_of(app)["alt"].removeprefix("Map of plot ").split(": ")[0]
 
 
 def heading(app):
-    """Return the page's heading without the marks that keep names of any script together."""
-    return app.subheader[0].value.replace("\u2068", "").replace("\u2069", "")
+    """Return which plot and which day the page is about."""
+    day = next(box.value for box in app.date_input if box.key.startswith("day "))
+    return f"{plot_name(app)} · {day}"
+
+
+def headline(app):
+    """Return the sentence at the top of Today: what there is to do."""
+    leads = ("Inspect ", "Nothing to inspect")
+    (said,) = (text.value for text in app.markdown if text.value.startswith(leads))
+    return said
 
 
 def texts_of(app):
@@ -119,6 +158,14 @@ def geotiff(values, edges=(35.1, 30.3, 35.2, 30.4)):
         with memory.open(**shape, driver="GTiff", crs="EPSG:4326", transform=place) as raster:
             raster.write(values[None])
         return memory.read()
+
+
+def broken(path):
+    """Leave a season that a later fieldmon wrote, as far as its file says."""
+    a_season(path)
+    with closing(sqlite3.connect(path)) as file:
+        file.execute("UPDATE fieldmon SET value = '99' WHERE key = 'version'")
+        file.commit()
 
 
 def square(size=0.001, name="square"):

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from datetime import date
 from itertools import pairwise
 from pathlib import Path
@@ -19,13 +20,14 @@ from pathlib import Path
 import numpy as np
 
 from app.show.maps import colours, deck, plant_layers, route_layers
+from app.show.maps.plant_layers import PlantNotes
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.independent import IndependentPlants, overnight
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
 from fieldmon.infestation.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.infestation.spread import Spread, night
-from fieldmon.io.writers.geojson import RouteNotes, write_route
+from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.route import route_of
@@ -114,10 +116,8 @@ def files_and_map(plot, chance, observations):
     today = plan_from(plot, chance, PlanSettings())
     with tempfile.TemporaryDirectory() as folder:
         to = Path(folder)
-        notes = RouteNotes("plot", "adaptive")
-        took["writing the route"], _ = best_of(
-            lambda: write_route(to / "route.geojson", today.route, notes)
-        )
+        route = replace(today.route, notes=RouteNotes("plot", "adaptive"))
+        took["writing the route"], _ = best_of(lambda: route.to_file(to / "route.geojson"))
         setup = MonitoringSettings(date(2026, 5, 20))
         took["beginning a season's file"], _ = best_of(
             lambda: Season.create(to / "season.gpkg", plot, observations, setup), 1
@@ -125,9 +125,9 @@ def files_and_map(plot, chance, observations):
         took["opening a season's file"], _ = best_of(lambda: Season(to / "season.gpkg"))
 
     def first_map():
-        plants = plant_layers.plants(plot.grid, colours.by_chance(chance), plant_layers.unsaid)
+        plants = plant_layers.plants(plot.grid, colours.by_chance(chance), PlantNotes(chance))
         layers = [plants, *route_layers.route(today.route)]
-        return deck.deck(plot.grid, layers).to_json()
+        return [deck.published(layer) for layer in layers]
 
     took["the first map, as sent to the browser"], _ = best_of(first_map)
     return took

@@ -7,7 +7,8 @@ from fieldmon.cli.messages import Terminal, tell_unusable
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.io.import_report import Remedy, guessed
-from fieldmon.io.prepare import Assumed, Laid, SourceMessage
+from fieldmon.io.prepare import Laid, SourceMessage
+from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.plot import Plot
@@ -33,7 +34,7 @@ def test_a_command_without_such_options_names_none(capsys):
 def test_a_plot_is_described_with_what_was_assumed_for_it(capsys):
     grid = rectangle(3, 4)
     field = Field("Gate", grid.frame.geometry_lonlat(grid.drivable_m))
-    laid = Laid(Plot(field, Aisles.of(grid)), (Assumed("row_spacing_m", 4.0),))
+    laid = Laid(Plot(field, Aisles.of(grid), (Assumed("row_spacing_m", 4.0),)))
     Terminal(shows_plot=False).laid(laid)
     assert capsys.readouterr() == ("", "")
     Terminal().laid(laid)

@@ -24,6 +24,21 @@ def test_a_day_is_planned_and_its_route_written(run, tmp_path):
     assert "seen:" in err
 
 
+def test_the_day_says_what_no_other_route_can_expect_unless_it_is_switched_off(run, tmp_path):
+    words = ("plan", ZIP, "--feature", "Nursery", "--hours", 1)
+    _, out, _, _ = run(*words, "-o", "a.geojson")
+    _, silent, _, _ = run(*words, "--no-bound", "-o", "b.geojson")
+    said = next(line for line in out.splitlines() if "no route of these hours" in line)
+    assert "no route of these hours" not in silent
+    told, quiet = (
+        json.loads((tmp_path / name).read_text(encoding="utf-8"))["features"][0]["properties"]
+        for name in ("a.geojson", "b.geojson")
+    )
+    assert told["bound"] == said
+    assert told["finds_expected"] <= told["finds_bound"]
+    assert "finds_bound" not in quiet
+
+
 def test_what_the_options_say_is_done(run, tmp_path):
     code, out, err, _ = run(
         *["plan", ZIP, "--feature", "Nursery", "--hours", 2, "--look", 20, "--sampler", "bouncy"],

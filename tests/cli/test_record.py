@@ -33,3 +33,33 @@ def test_what_qfield_adds_to_a_copy_comes_back_and_what_was_undone_does_not(
     copy = shutil.copy(season, tmp_path / "later.gpkg")
     code, out, err, _ = run("record", season, copy)
     assert "0 new, 1 known" in out
+
+
+def test_a_file_that_contradicts_what_is_recorded_is_listed_and_taken_only_when_told(
+    run, season, tmp_path
+):
+    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    filled_in(tmp_path / "r.csv", finds={0, 2}, n=5)
+    run("record", season, "r.csv", "--date", BEGINS)
+    filled_in(tmp_path / "r.csv", finds=set(), n=5)
+    code, out, err, _ = run("record", season, "r.csv", "--date", BEGINS)
+    assert code == 2
+    assert "2 of them contradict it: Row" in err
+    assert "recorded as found, now clean" in err
+    assert len(Season(season).history.inspections) == 5
+    code, out, err, _ = run("record", season, "r.csv", "--date", BEGINS, "--contradicting")
+    assert code == 0, err
+    assert "2 new, 3 known" in out
+
+
+def test_two_files_that_contradict_each_other_are_refused_before_either_is_recorded(
+    run, season, tmp_path
+):
+    run("plan", season, "--date", BEGINS, "-o", "a.csv")
+    shutil.copy(tmp_path / "a.csv", tmp_path / "b.csv")
+    filled_in(tmp_path / "a.csv", finds={0}, n=3)
+    filled_in(tmp_path / "b.csv", finds=set(), n=3)
+    code, _, err, _ = run("record", season, "a.csv", "b.csv", "--date", BEGINS)
+    assert code == 2
+    assert "1 of them contradict it" in err
+    assert not len(Season(season).history.inspections)

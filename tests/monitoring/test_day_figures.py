@@ -5,6 +5,7 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from tests.monitoring.seasons import BEGINS, Insects, a_plot, a_season
@@ -78,3 +79,16 @@ def test_the_revision_changes_with_what_is_recorded_and_with_nothing_else(tmp_pa
     assert recorded != before
     season.undo()
     assert season.revision not in {before, recorded}
+
+
+def test_the_days_finds_sum_to_all_finds_though_plants_are_found_again(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    for day, plants in ((0, [1, 2, 3]), (1, [2, 3, 4]), (3, [3])):
+        on = np.datetime64(BEGINS + timedelta(days=day))
+        season.record(Inspections.of(np.array(plants), np.ones(len(plants), int), on), f"{day}")
+    # once more in the same day, at another time
+    season.record(Inspections.of(np.array([3]), np.array([1]), on, second=np.array([5e4])), "again")
+    now = season.status(BEGINS + timedelta(days=3))
+    assert (now.found, now.finds) == (4, 7)
+    assert now.inspected_today == now.found_today == 1
+    assert sum(one.found for one in season.days()) == now.finds

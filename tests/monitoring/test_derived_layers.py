@@ -43,7 +43,7 @@ def test_the_state_of_every_plant_is_that_of_the_season(season):
     chance, state, last = zip(*kept, strict=True)
     assert chance == pytest.approx(season.evening(BEGINS), abs=1e-6)
     states = season.history.states(0)
-    assert list(state) == [STATES[code] for code in states.tolist()]
+    assert list(state) == [STATES[code] for code in season.history.known(0).tolist()]
     assert [on is not None for on in last] == (states >= 0).tolist()
     assert {on for on in last if on} == {"2026-04-06"}
 
@@ -58,8 +58,12 @@ def cluster(season):
     near = np.argsort(np.hypot(*(grid.xy_m - grid.xy_m[200]).T))[:9]
     found = np.full(9, FOUND)
     clean = np.setdiff1d(np.arange(0, len(grid), 2), near)
-    season.record(Inspections.of(near, found, np.datetime64(BEGINS)), "cluster")
-    season.record(Inspections.of(clean, np.zeros(len(clean), int), np.datetime64(BEGINS)), "clean")
+    season.record(Inspections.of(near, found, np.datetime64(BEGINS)), "cluster", confirmed=True)
+    season.record(
+        Inspections.of(clean, np.zeros(len(clean), int), np.datetime64(BEGINS)),
+        "clean",
+        confirmed=True,
+    )
     return near
 
 

@@ -67,3 +67,17 @@ def test_a_day_without_stops_says_so():
     assert explain(scene, plan_work(scene, Adaptive())) == [
         "No plant can be reached in the hours left."
     ]
+
+
+def test_plants_of_which_records_speak_are_not_called_never_inspected():
+    scene = day()
+    work = plan_work(scene, Adaptive())
+    recorded = np.zeros(len(GRID), bool)
+    recorded[work.plant[::2]] = True
+    said = explain(scene, work, recorded=recorded)
+    known = sum(int(n) for s in said for n in re.findall(r"(\d+) known from records only", s))
+    never = sum(int(n) for s in said for n in re.findall(r"(\d+) never inspected yet", s))
+    assert known == len(work.plant[::2])
+    assert known + never == len(work)
+    recorded[:] = True
+    assert not [s for s in explain(scene, work, recorded=recorded) if "never" in s]

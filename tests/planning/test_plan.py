@@ -10,6 +10,7 @@ from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.planning.plan import plan_day
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
@@ -40,7 +41,7 @@ def test_a_day_is_named_in_any_usual_way(plot, day, on):
 
 
 def test_no_day_is_today(plot):
-    assert plan_day(plot, robot=ROBOT).route.notes.start.date() == date.today()
+    assert plan_day(plot, robot=ROBOT).route.notes.start.date() == local_clock(plot.field).today()
 
 
 def test_a_record_raises_the_chance_about_it_on_its_day_and_less_later(plot):

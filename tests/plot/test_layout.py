@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -247,6 +249,12 @@ def test_a_rectangle_that_holds_so_many_rows_and_plants_exactly_gets_them(
     grid = lay(plot_of(length_m, n_rows * planting.row_spacing_m, bearing_deg), planting)
     assert np.diff(grid.row_start).tolist() == [n_plants] * n_rows
     assert grid.xy_m.mean(axis=0) == pytest.approx([0, 0], abs=1e-3)
+
+
+def test_a_plot_all_under_no_go_areas_is_refused_in_a_sentence():
+    field = plot_of(60, 20)
+    with pytest.raises(PlotError, match="no-go areas cover all"):
+        lay(replace(field, no_go=field.boundary), Planting(row_bearing_deg=90))
 
 
 def test_a_hole_cuts_the_rows_it_touches_into_pieces_with_headlands():

@@ -11,11 +11,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Colour = tuple[int, int, int]
-# pale to dark, told apart without hue too
 CHANCE_FROM = (0.0, 0.01, 0.02, 0.05, 0.10, 0.25, 0.50)
-CHANCE_COLOURS: tuple[Colour, ...] = (
-    *((255, 250, 220), (254, 227, 145), (254, 178, 76), (240, 120, 40), (210, 55, 30)),
-    *((150, 10, 40), (70, 0, 30)),
+# magma (M. Bostock after S. van der Walt and N. Smith, 2015), cut to what stands out from the
+# ground: even steps of lightness, so that grey prints and colour-blind readers see them too
+_MAGMA: tuple[Colour, ...] = (
+    *((254, 194, 135), (251, 150, 104), (241, 102, 92), (205, 64, 113), (158, 47, 127)),
+    *((106, 28, 129), (45, 17, 96)),
+)
+_MAGMA_IN_DARK: tuple[Colour, ...] = (
+    *((104, 42, 132), (148, 50, 131), (196, 62, 118), (236, 95, 96), (251, 146, 102)),
+    *((254, 200, 140), (252, 250, 200)),
 )
 FOUND: Colour = (213, 30, 30)
 CLEAN: Colour = (90, 160, 230)
@@ -24,15 +29,20 @@ TRUTH: Colour = (0, 0, 0)
 TRUTH_IN_DARK: Colour = (255, 255, 255)
 ROUTE: Colour = (20, 80, 200)
 ROUTE_IN_DARK: Colour = (110, 220, 255)
+CASING: Colour = (255, 255, 255)
+CASING_IN_DARK: Colour = (10, 20, 26)
 GATE: Colour = (0, 140, 90)
-HOT: Colour = (140, 40, 180)
-HOT_IN_DARK: Colour = (205, 130, 255)
+HOT: Colour = (20, 26, 30)
+HOT_IN_DARK: Colour = (255, 255, 255)
 OUTLINE: Colour = (70, 80, 70)
 OUTLINE_IN_DARK: Colour = (190, 200, 190)
 # days since a plant was inspected: fresh is pale green, long ago is dark
 AGE_FROM = (0, 1, 3, 7, 14)
 AGE_COLOURS: tuple[Colour, ...] = (
     (217, 240, 163), (120, 198, 121), (49, 163, 84), (0, 104, 55), (0, 50, 30),
+)  # fmt: skip
+AGE_IN_DARK: tuple[Colour, ...] = (
+    (34, 74, 48), (40, 108, 64), (56, 154, 88), (128, 204, 128), (224, 244, 172),
 )  # fmt: skip
 _EMPTY = 30  # opacity of a plant never inspected: an outline with next to nothing in it
 
@@ -54,10 +64,15 @@ class Shade:
         return cls(table, rank.astype(np.uint8))
 
 
-def by_chance(chance: NDArray[np.float64]) -> Shade:
+def of_chance(*, dark: bool = False) -> tuple[Colour, ...]:
+    """Return the colours of the chance classes: on either ground the highest stands out most."""
+    return _MAGMA_IN_DARK if dark else _MAGMA
+
+
+def by_chance(chance: NDArray[np.float64], *, dark: bool = False) -> Shade:
     """Return plants shaded by their chance of infestation, in the legend's classes."""
     rank = np.searchsorted(CHANCE_FROM, chance, side="right") - 1
-    return Shade.of([*CHANCE_COLOURS], rank)
+    return Shade.of([*of_chance(dark=dark)], rank)
 
 
 def by_state(state: NDArray[np.int8]) -> Shade:
@@ -65,10 +80,10 @@ def by_state(state: NDArray[np.int8]) -> Shade:
     return Shade.of([(*NEVER, _EMPTY), CLEAN, FOUND], state + np.int8(1))
 
 
-def by_age(days: NDArray[np.integer]) -> Shade:
+def by_age(days: NDArray[np.integer], *, dark: bool = False) -> Shade:
     """Return plants shaded by the days since they were inspected; -1 (never): an empty ring."""
     rank = np.searchsorted(AGE_FROM, days, side="right")
-    return Shade.of([(*NEVER, _EMPTY), *AGE_COLOURS], rank)
+    return Shade.of([(*NEVER, _EMPTY), *(AGE_IN_DARK if dark else AGE_COLOURS)], rank)
 
 
 def plain(n: int) -> Shade:

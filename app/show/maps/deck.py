@@ -1,9 +1,9 @@
-"""The map itself: layers become the page's JSON, seen from where the whole plot is in view."""
+"""pydeck's layers as the browser gets them: compact JSON, written once, under its address."""
 
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -11,6 +11,7 @@ import pydeck as pdk
 import shapely
 from pydeck.bindings.json_tools import default_serialize
 
+from ...state.map_store import JSON, STORE
 from . import colours
 
 if TYPE_CHECKING:
@@ -20,95 +21,60 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 Layer = pdk.Layer
-#: room for a map, width and height: a whole page, most or half of it beside something else
-PAGE_PX, MOST_PX, HALF_PX, PHONE_PX = (720, 480), (620, 480), (500, 480), (340, 380)
-_TILE_PX = 512
-# after a layer's name: the same layer once more
-RENAMED = "~"
 # layers are not changed once made; their texts go when they do
-_WRITTEN: WeakKeyDictionary[Layer, str] = WeakKeyDictionary()
+_WRITTEN: WeakKeyDictionary[Layer, bytes] = WeakKeyDictionary()
 
 
-class Deck(pdk.Deck):
-    """A deck whose JSON has no white space, and whose layers are written once each.
+class ArraysLayer(Layer):  # type: ignore[misc]
+    """A layer of pydeck's whose data are arrays, sent as bytes beside its JSON.
 
-    Half the size and several times the speed; a layer that is shown again costs nothing.
-    Layers in `renamed` have another id in the page: what was tapped on them is not selected there
-    any more, and Streamlit no longer fades everything else.
+    Parameters
+    ----------
+    arrays
+        The bytes by the names under which the browser knows them.
     """
 
-    renamed: frozenset[str] = frozenset()
-
-    def to_json(self) -> str:
-        """Return the deck as compact JSON."""
-        layers, self.layers = self.layers, []
-        try:
-            frame = _json(self)
-        finally:
-            self.layers = layers
-        texts = ",".join(self._named(layer) for layer in layers)
-        return frame.replace('"layers":[]', f'"layers":[{texts}]', 1)
-
-    def _named(self, layer: Layer) -> str:
-        text, name = _layer_json(layer), json.dumps(layer.id)
-        if layer.id not in self.renamed:
-            return text
-        return text.replace(f'"id":{name}', f'"id":{json.dumps(layer.id + RENAMED)}', 1)
+    def __init__(self, kind: str, arrays: dict[str, bytes], **settings: Any) -> None:  # noqa: ANN401
+        super().__init__(kind, None, **settings)
+        self.arrays = arrays
 
 
-def _layer_json(layer: Layer) -> str:
+def published(layer: Layer) -> dict[str, str]:
+    """Return where the browser finds a layer: its name, and the addresses of its parts."""
     text = _WRITTEN.get(layer)
     if text is None:
-        text = _WRITTEN[layer] = _json(layer)
-    return text
+        text = _WRITTEN[layer] = _json(layer).encode()
+    parts = getattr(layer, "arrays", {})
+    return {
+        "id": layer.id,
+        "url": STORE.publish(text, JSON),
+        **{name: STORE.publish(data) for name, data in parts.items()},
+    }
 
 
 def _json(thing: object) -> str:
-    return json.dumps(thing, sort_keys=True, default=default_serialize, separators=(",", ":"))
+    return json.dumps(thing, sort_keys=True, default=_attributes, separators=(",", ":"))
 
 
-def deck(
-    grid: PlantGrid, layers: list[Layer], room_px: tuple[int, int] = PAGE_PX
-) -> Deck:  # fmt: skip
-    """Return the map of a plot; its first view depends on the plot and the room for it alone."""
-    return Deck(
-        layers=layers,
-        initial_view_state=view(
-            grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m)), room_px
-        ),
-        map_provider=None,
-        tooltip={"html": "{t}", "style": {"fontSize": "13px"}},
-    )
+def _attributes(thing: object) -> object:
+    made = default_serialize(thing)
+    if isinstance(made, dict):
+        made.pop("arrays", None)
+    return made
 
 
-def outline(
-    field: Field, room_px: tuple[int, int] = PAGE_PX, *, dark: bool = False
-) -> Deck:  # fmt: skip
-    """Return the map of a plot on which no plants are laid yet."""
-    return Deck(
-        layers=[boundary(field, dark=dark)],
-        initial_view_state=view(shapely.get_coordinates(field.boundary), room_px),
-        map_provider=None,
-    )
+def of_grid(grid: PlantGrid) -> list[float]:
+    """Return what a plot covers: west, south, east, north."""
+    return _bounds(grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m)))
 
 
-def view(corners: NDArray[np.float64], room_px: tuple[int, int]) -> pdk.ViewState:
-    """Return the view that holds corners ``(n, 2)`` lon/lat where there is so much room."""
-    (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
-    low, high = (_mercator(lat) for lat in (south, north))
-    room = [
-        np.log2(360.0 * px * 0.85 / (_TILE_PX * span))
-        for px, span in zip(room_px, (east - west, high - low), strict=True)
-        if span > 0
-    ]
-    return pdk.ViewState(
-        longitude=float((west + east) / 2),
-        latitude=float((south + north) / 2),
-        zoom=float(min([*room, 21.0])),
-        max_zoom=24,
-        bearing=0,
-        pitch=0,
-    )
+def of_field(field: Field) -> list[float]:
+    """Return what a plot's outline covers: west, south, east, north."""
+    return _bounds(shapely.get_coordinates(field.boundary))
+
+
+def _bounds(corners: NDArray[np.float64]) -> list[float]:
+    return [*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist()]
 
 
 def boundary(field: Field, *, dark: bool = False) -> Layer:
@@ -127,7 +93,3 @@ def boundary(field: Field, *, dark: bool = False) -> Layer:
         get_width=0.5,
         width_min_pixels=1.5,
     )
-
-
-def _mercator(lat: float) -> float:
-    return float(np.rad2deg(np.log(np.tan(np.pi / 4 + np.deg2rad(lat) / 2))))

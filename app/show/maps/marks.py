@@ -39,7 +39,7 @@ def hot(grid: PlantGrid, spots: HotSpots, *, dark: bool = False) -> list[Layer]:
     colour = HOT_IN_DARK if dark else HOT
     return [
         Layer("PolygonLayer", rows, id="hot", get_polygon="p", get_fill_color=[*colour, 20],
-              stroked=False, pickable=True),
+              stroked=False),
         Layer("PathLayer", rows, id="hot-edge", get_path="p", get_color=list(colour),
               width_min_pixels=3, get_width=0.4),
     ]  # fmt: skip
@@ -47,7 +47,7 @@ def hot(grid: PlantGrid, spots: HotSpots, *, dark: bool = False) -> list[Layer]:
 
 def with_hot(layers: list[Layer], spots: list[Layer]) -> list[Layer]:
     """Return the layers with hot spots outlined, their tint under plants that can be tapped."""
-    points = [k for k, layer in enumerate(layers) if layer.type == "ScatterplotLayer"]
+    points = [k for k, layer in enumerate(layers) if layer.type == "PlantsLayer"]
     under = min([*points, len(layers)])
     return [*layers[:under], *spots[:1], *layers[under:], *spots[1:]]
 
@@ -84,7 +84,7 @@ def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
         Layer(
             "ScatterplotLayer", rows, id="records", get_position="p", get_fill_color="c",
             get_radius=1.2, radius_min_pixels=3, stroked=True, get_line_color=[*colour, 170],
-            line_width_min_pixels=1, pickable=True,
+            line_width_min_pixels=1,
         )
     ]  # fmt: skip
 
@@ -107,7 +107,7 @@ def places(lonlat: list[list[float]], name: str, colour: Colour, note: str) -> L
     return Layer(
         "ScatterplotLayer", rows, id=name, get_position="p", get_radius=1.5, radius_min_pixels=11,
         filled=True, get_fill_color=[*colour, 60], stroked=True, get_line_color=list(colour),
-        line_width_min_pixels=4, pickable=True,
+        line_width_min_pixels=4,
     )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""The route on a map: its line, its direction, its stops, and how far it is driven by a moment."""
+"""The route on a map: its line, its direction, the gate, and what plays it."""
 
 from __future__ import annotations
 
@@ -8,62 +8,43 @@ import numpy as np
 from pydeck import Layer
 
 from ...words import texts
-from .colours import GATE, ROUTE, ROUTE_IN_DARK
+from .colours import CASING, CASING_IN_DARK, GATE, ROUTE, ROUTE_IN_DARK
 
 if TYPE_CHECKING:
+    from datetime import datetime
+
     from fieldmon.planning.route import Route
 
 _ARROWS = 40
-_NUMBERS = 24
-# how large a stop's number is, and how long the route on a small map
-_NUMBER_PX, _ROUTE_PX = (30, 17), 300
 
 
-def route(the_route: Route, *, numbers: bool = True, dark: bool = False) -> list[Layer]:
-    """Return the driven line with arrows in its direction, the gate, and stop numbers."""
+def route(the_route: Route, *, dark: bool = False) -> list[Layer]:
+    """Return the driven line in its casing, arrows in its direction, and the gate."""
     if not len(the_route):
         return []
     colour = list(ROUTE_IN_DARK if dark else ROUTE)
     line = np.round(the_route.line_lonlat(), 7).tolist()
     gate = the_route.aisles.grid.frame.lonlat(the_route.aisles.gate_m)[0].tolist()
-    layers = [
+    return [
         Layer(
-            "PathLayer", [{"path": line}], id="route", get_path="path", get_color=[*colour, 190],
-            get_width=0.5, width_min_pixels=1.5,
+            "PathLayer", [{"path": line}], id="casing", get_path="path",
+            get_color=[*(CASING_IN_DARK if dark else CASING), 200], get_width=1.6,
+            width_min_pixels=2.4, width_max_pixels=6, joint_rounded=True, cap_rounded=True,
         ),
         Layer(
-            "PolygonLayer", _arrows(the_route), id="arrows", get_polygon="p",
+            "PathLayer", [{"path": line}], id="route", get_path="path", get_color=colour,
+            get_width=0.8, width_min_pixels=1.3, width_max_pixels=3, joint_rounded=True,
+        ),
+        Layer(
+            "PolygonLayer", _arrows(the_route), id="arrows", get_polygon="a",
             get_fill_color=colour, stroked=False,
         ),
         Layer(
             "ScatterplotLayer", [{"p": gate, "t": texts.TIP_GATE}], id="gate",
-            get_position="p", get_radius=3, radius_min_pixels=7, filled=False, stroked=True,
-            get_line_color=list(GATE), line_width_min_pixels=3, pickable=True,
+            get_position="p", get_radius=3, radius_min_pixels=7, filled=True,
+            get_fill_color=[255, 255, 255], stroked=True, get_line_color=list(GATE),
+            line_width_min_pixels=4,
         ),
-    ]  # fmt: skip
-    return [*layers, *_numbers(the_route)] if numbers else layers
-
-
-def _numbers(the_route: Route) -> list[Layer]:
-    n = len(the_route)
-    every = max(1, int(np.ceil(n / _NUMBERS)))
-    lonlat = the_route.stops_lonlat()
-    span = np.ptp(lonlat, axis=0)
-    # as wide and as high as a number where the whole route is in view, in degrees
-    flat = np.cos(np.radians(lonlat[0, 1]))
-    room = max(span[0] * flat, span[1]) / _ROUTE_PX * np.array(_NUMBER_PX) / [flat, 1.0]
-    shown: list[int] = []
-    for k in (0, n - 1, *range(every, n - 1, every)):
-        if k not in shown and not (np.abs(lonlat[shown] - lonlat[k]) < room).all(axis=1).any():
-            shown.append(k)
-    here = np.round(lonlat[shown], 7).tolist()
-    rows = [{"p": p, "n": str(k + 1)} for p, k in zip(here, shown, strict=True)]
-    return [
-        Layer(
-            "TextLayer", rows, id="numbers", get_position="p", get_text="n", get_size=12,
-            get_color=[10, 30, 90], background=True, get_background_color=[255, 255, 255, 220],
-            background_padding=[3, 1],
-        )
     ]  # fmt: skip
 
 
@@ -85,32 +66,18 @@ def _arrows(the_route: Route) -> list[dict[str, Any]]:
     )  # fmt: skip
     frame = the_route.aisles.grid.frame
     lonlat = np.round(frame.lonlat(corners.reshape(-1, 2)), 7).reshape(-1, 3, 2)
-    return [{"p": corner} for corner in lonlat.tolist()]
+    return [{"a": corner} for corner in lonlat.tolist()]
 
 
-def playback(the_route: Route, second: float, *, dark: bool = False) -> list[Layer]:
-    """Return the line driven up to a second of the day, the stops made, and the robot."""
+def playback(the_route: Route, begins: datetime) -> dict[str, Any] | None:
+    """Return what plays the day on the map: where who drives is at which second, and the stops."""
     if not len(the_route):
-        return []
-    line, at_s = the_route.line_lonlat(), the_route.line_s
-    gone = int(np.searchsorted(at_s, second, side="right"))
-    here = [float(np.interp(second, at_s, line[:, axis])) for axis in (0, 1)]
-    path = [*np.round(line[:gone], 7).tolist(), here]
-    done = the_route.leave_s <= second
-    colour = ROUTE_IN_DARK if dark else ROUTE
-    stops = np.round(the_route.stops_lonlat()[done], 7).tolist()
-    return [
-        Layer(
-            "PathLayer", [{"path": path}], id="trail", get_path="path",
-            get_color=[*colour, 230], get_width=0.6, width_min_pixels=2.5,
-        ),
-        Layer(
-            "ScatterplotLayer", [{"p": p} for p in stops], id="stops", get_position="p",
-            get_fill_color=[*colour, 150], get_radius=0.5, radius_min_pixels=2,
-        ),
-        Layer(
-            "ScatterplotLayer", [{"p": here, "t": texts.TIP_HERE}], id="robot", get_position="p",
-            get_fill_color=[255, 210, 0], get_radius=1.5, radius_min_pixels=8, stroked=True,
-            get_line_color=[0, 0, 0], line_width_min_pixels=3, pickable=True,
-        ),
-    ]  # fmt: skip
+        return None
+    midnight = begins.replace(hour=0, minute=0, second=0, microsecond=0)
+    return {
+        "line": np.round(the_route.line_lonlat(), 7).tolist(),
+        "at_s": np.round(the_route.line_s, 1).tolist(),
+        "stops": np.round(the_route.stops_lonlat(), 7).tolist(),
+        "leave_s": np.round(the_route.leave_s, 1).tolist(),
+        "starts_s": (begins - midnight).total_seconds(),
+    }

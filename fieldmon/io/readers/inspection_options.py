@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -11,6 +11,10 @@ from fieldmon.errors import SettingError
 from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.clock import zone_of
 from fieldmon.io.parse.values import dates
+from fieldmon.plot.local_clock import local_clock
+
+if TYPE_CHECKING:
+    from fieldmon.plot.field import Field
 
 
 @dataclass(frozen=True)
@@ -27,7 +31,8 @@ class InspectionOptions(RecordOptions):
         How far off positions may be where the file does not say; None: they are taken as exact.
     zone
         Time zone of the plot (``"Asia/Jerusalem"``, ``"+02:00"``), for times that a file states in
-        UTC or another zone, as all GPX files do. None: such times keep their own clock.
+        UTC or another zone, as all GPX files do. None: such times keep their own clock; `on`
+        gives the plot's.
     take_doubtful
         Take what would be listed and left out: the nearest plant, the plant's id before its row
         and number or position, a find before a contradicting "clean".
@@ -47,6 +52,10 @@ class InspectionOptions(RecordOptions):
             )
         if self.zone is not None:
             zone_of(self.zone)
+
+    def on(self, field: Field) -> Self:
+        """Return these options with the time zone in which a plot lies, where none was told."""
+        return self if self.zone else replace(self, zone=local_clock(field).zone or None)
 
     def choose(self, option: str, value: str) -> Self:
         """Return these options with one of them set from text."""

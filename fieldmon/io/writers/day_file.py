@@ -118,6 +118,21 @@ class DrivenRoute(Protocol):
         """Return infested plants on the route, as believed."""
         ...
 
+    @property
+    def expected_found(self) -> float:
+        """Return infested plants that would be found on the route, as believed."""
+        ...
+
+    @property
+    def found_bound(self) -> float | None:
+        """Return what no route of these hours can expect to find; None if it is not known."""
+        ...
+
+    @property
+    def bound_sentence(self) -> str:
+        """Return for people what is expected and what no other route can exceed, or ""."""
+        ...
+
     def __len__(self) -> int:
         """Return the number of stops."""
         ...
@@ -157,6 +172,11 @@ class HandoffPlan:
         """Return what to call the day: the plot, and the date where it is known."""
         start = self.notes.start
         return plain_text(self.notes.plot if start is None else f"{self.notes.plot} {start:%F}")
+
+    @property
+    def bound(self) -> str:
+        """Return what is expected and what no other route can exceed, in a sentence, or ""."""
+        return self.route.bound_sentence
 
     @property
     def has_faces(self) -> bool:

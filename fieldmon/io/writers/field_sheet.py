@@ -60,12 +60,13 @@ def route_sheet(plan: HandoffPlan) -> bytes:
     hours = f"{figures['seconds'] / 3600:.1f} h"
     if when:
         hours += f" ({plan.clock(0.0)[11:16]} to {plan.clock(plan.route.end_s)[11:16]})"
+    told = f"{figures['stops']} plants, {figures['drive_m'] / 1000:.2f} km, {hours}."
     return page(
         "fieldmon/io/writers/field_sheet.html.j2",
         plan=plan,
         plot=plain_text(plan.notes.plot),
         date=when,
-        told=f"{figures['stops']} plants, {figures['drive_m'] / 1000:.2f} km, {hours}.",
+        told=f"{told} {plan.bound}".strip(),
         map=_svg(plan),
     ).encode()
 

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.io.atomic_write import write_whole
 from fieldmon.plot.grid import block_label, row_label
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from numpy.typing import NDArray
 
     from fieldmon.io.writers.day_file import DrivenRoute, HandoffPlan
@@ -43,7 +41,7 @@ class RouteNotes:
 
 
 def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
-    """Return the figures of a route: stops, seconds, metres, expected finds."""
+    """Return the figures of a route: stops, seconds, metres, expected finds, their bound."""
     return {
         "plot": notes.plot,
         "sampler": notes.sampler,
@@ -52,8 +50,20 @@ def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
         "drive_m": round(route.drive_m, 3),
         "inspect_s": round(float((route.leave_s - route.arrive_s).sum()), 3),
         "infested_expected": round(route.expected_finds, 3),
+        **_bound(route),
         **({} if notes.start is None else {"start": _clock(notes.start, 0.0)}),
         **({} if notes.start is None else {"end": _clock(notes.start, route.end_s)}),
+    }
+
+
+def _bound(route: DrivenRoute) -> dict[str, Any]:
+    """Return what is expected to be found and what no other route can exceed, if it is known."""
+    if route.found_bound is None:
+        return {}
+    return {
+        "finds_expected": round(route.expected_found, 3),
+        "finds_bound": math.ceil(1000.0 * route.found_bound) / 1000.0,
+        "bound": route.bound_sentence,
     }
 
 
@@ -75,11 +85,6 @@ def route_geojson(route: DrivenRoute, notes: RouteNotes) -> str:
 def handed_geojson(plan: HandoffPlan) -> bytes:
     """Return a day to hand off as GeoJSON; see `route_geojson`."""
     return route_geojson(plan.route, plan.notes).encode()
-
-
-def write_route(path: str | Path, route: DrivenRoute, notes: RouteNotes) -> None:
-    """Write a route's GeoJSON file, whole or not at all; raise `FileProblem` if it cannot be."""
-    write_whole(path, route_geojson(route, notes).encode())
 
 
 def _line_feature(

@@ -118,6 +118,7 @@ def _line(plan: HandoffPlan) -> gpd.GeoDataFrame:
         "stops": figures["stops"],
         "seconds": figures["seconds"],
         "drive_m": figures["drive_m"],
+        **({"bound": _cut(plan.bound)} if plan.bound else {}),
     }
     lines = [LineString(plan.line_lonlat)] if there else []
     columns = {name: pd.Series([value] * len(lines)) for name, value in row.items()}

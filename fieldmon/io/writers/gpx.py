@@ -65,7 +65,7 @@ def _metadata(metadata: ET.Element, plan: HandoffPlan) -> None:
     figures = summary(plan.route, plan.notes)
     _text(metadata, "name", plan.title)
     told = f"{figures['stops']} stops, {figures['drive_m']:.0f} m, {figures['seconds']:.0f} s"
-    _text(metadata, "desc", told)
+    _text(metadata, "desc", f"{told}. {plan.bound}" if plan.bound else told)
     start = plan.notes.start
     if start is not None and start.tzinfo is not None:
         _text(metadata, "time", f"{start.astimezone(UTC):%Y-%m-%dT%H:%M:%SZ}")

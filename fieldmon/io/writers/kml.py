@@ -30,7 +30,8 @@ def route_kml(plan: HandoffPlan) -> bytes:
     document = ET.SubElement(root, "Document")
     figures = summary(plan.route, plan.notes)
     _text(document, "name", plan.title)
-    _text(document, "description", f"{figures['stops']} stops, {figures['drive_m']:.0f} m")
+    told = f"{figures['stops']} stops, {figures['drive_m']:.0f} m"
+    _text(document, "description", f"{told}. {plan.bound}" if plan.bound else told)
     _styles(document)
     if len(plan.line_lonlat) > 1:
         line = ET.SubElement(document, "Placemark", {"id": "route"})

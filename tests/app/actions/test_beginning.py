@@ -2,7 +2,9 @@
 
 from datetime import date
 
-from tests.app.driving import begun, heading, layer, opened, texts_of
+import pytest
+
+from tests.app.driving import begun, headline, layer, opened, plants, plot_name, texts_of
 
 
 def test_a_season_begins_and_is_found_again_by_a_new_session(season):
@@ -15,9 +17,11 @@ def test_a_season_begins_and_is_found_again_by_a_new_session(season):
     assert season().settings.begins == date(2026, 11, 16)
     assert season().messages()
     again = opened("Gate 2026")
-    assert heading(again) == "Gate · 2026-11-16"
+    assert plot_name(again) == "Gate"
+    assert "on 2026-11-16, " in headline(again)
     assert "first day of the season" in texts_of(again)
-    assert layer(again, "plants")["data"] == layer(app, "plants")["data"]
+    assert plants(again).rank.tolist() == plants(app).rank.tolist()
+    assert plants(again).lonlat == pytest.approx(plants(app).lonlat, abs=1e-9)
 
 
 def test_a_season_is_never_begun_over_another_and_its_name_stays_in_the_folder(season_app, season):

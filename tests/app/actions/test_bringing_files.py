@@ -1,8 +1,12 @@
 """Files that leave a choice are asked about; bad ones are a sentence."""
 
+import geopandas as gpd
+import numpy as np
+import pandas as pd
 import pytest
 
-from tests.app.driving import heading, press, square, upload, zipped
+from app.words import texts
+from tests.app.driving import go, plot_name, press, square, texts_of, upload, zipped
 
 
 def test_a_missing_crs_is_asked_for_and_answered_by_button(app, tmp_path):
@@ -16,7 +20,7 @@ def test_a_missing_crs_is_asked_for_and_answered_by_button(app, tmp_path):
     press(app, "Use this")
     assert not app.exception
     assert not app.warning
-    assert heading(app).startswith("square")
+    assert plot_name(app) == "square"
     press(app, "Take back: crs = EPSG:2039")
     assert "coordinate system" in app.warning[0].value
 
@@ -34,3 +38,48 @@ def test_a_bad_file_is_a_sentence(app, name, data, says):
     assert not app.exception
     assert any(says in message.value for message in [*app.error, *app.warning])
     assert app.file_uploader(key="plot_file")
+
+
+def two_layers(folder):
+    """Return a plot and its records as the bytes of one GeoPackage."""
+    path = folder / "both.gpkg"
+    square().to_file(path, layer="plots")
+    here = gpd.points_from_xy(35.1502 + np.arange(5) * 1e-4, [30.3605] * 5)
+    finds = gpd.GeoDataFrame({"date": "2026-11-10", "count": [3, 0, 2, 0, 9]}, geometry=here,
+                             crs="EPSG:4326")  # fmt: skip
+    finds.to_file(path, layer="finds")
+    return path.read_bytes()
+
+
+def test_one_file_is_plot_and_records_each_with_its_own_answer(app, tmp_path):
+    data = two_layers(tmp_path)
+    upload(app, plot=("both.gpkg", data), record=("both.gpkg", data))
+    press(app, "plots")
+    assert plot_name(app).startswith("square")
+    assert "are not used on this plot" in texts_of(app)
+    press(app, "finds")
+    assert not app.warning
+    assert "5 of 5 records shown (3 with pests, 2 without)" in texts_of(app)
+    assert plot_name(app).startswith("square")
+
+
+def test_records_of_one_block_do_not_lock_the_others_out(app, tmp_path):
+    east, west = square(name="east"), square(name="west")
+    west.geometry = west.translate(-0.3)
+    blocks = pd.concat([east, west])
+    mites = b"lon,lat,date,count\n35.1505,30.3605,2026-11-10,4\n"
+    data = zipped(tmp_path, gpd.GeoDataFrame(blocks, crs="EPSG:4326"))
+    upload(app, plot=("blocks.zip", data), record=("mites.csv", mites))
+    which = next(box for box in app.selectbox if box.label == texts.WHICH_PLOT)
+    which.set_value(1).run()
+    assert not app.exception
+    assert plot_name(app).startswith("west")
+    for page in ("today", "plot", "field"):
+        go(app, page)
+        assert not app.exception
+        assert "mites.csv" in texts_of(app)
+        assert "must lie on plot west or near it" in texts_of(app)
+    next(box for box in app.selectbox if box.label == texts.WHICH_PLOT).set_value(0).run()
+    assert "not used" not in texts_of(app)
+    assert "not used" not in texts_of(go(app, "plot"))
+    assert "1 of 1 records shown" in texts_of(app)

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+from app.actions.changing import is_on_foot
+from fieldmon.plot.robot import Robot, scout
 from tests.app.driving import go, metric, press, until
 
 
@@ -52,3 +54,29 @@ def test_a_strategy_in_use_is_that_of_the_season_and_says_so(season_app, season)
     press(season_app, "Use this strategy")
     assert season_app.success[0].value == "Naive · 12 h · 40 s is in use now."
     assert season().settings.sampler == "naive"
+
+
+def test_a_robot_gives_way_to_a_scout_in_a_season_and_comes_back(season_app, season):
+    def who(app):
+        return next(one for one in app.segmented_control if (one.key or "").startswith("who "))
+
+    go(season_app, "season")
+    assert who(season_app).value == "Robot"
+    who(season_app).set_value("Scout on foot").run()
+    press(season_app, "Use from now on")
+    assert not season_app.exception
+    assert season().settings.robot == scout()
+    assert who(season_app).value == "Scout on foot"
+    hours_box(season_app).set_value(5.0).run()
+    press(season_app, "Use from now on")
+    assert season().settings.robot == scout().with_hours(5.0)
+    who(season_app).set_value("Robot").run()
+    press(season_app, "Use from now on")
+    assert season().settings.robot == Robot()
+
+
+def test_a_scout_is_known_by_foot_whatever_the_hours():
+    assert is_on_foot(scout().with_hours(7))
+    assert is_on_foot(replace(scout(), look_s=50.0))
+    assert not is_on_foot(Robot())
+    assert not is_on_foot(Robot(speed_m_s=scout().speed_m_s))

@@ -1,21 +1,23 @@
-"""The sidebar: what is chosen there counts on every page."""
+"""Where, when and who: what is chosen counts in every room."""
 
-from tests.app.driving import go, heading, layer, metric
+from tests.app.driving import go, headline, map_of, metric, plants, plot_name
 
 
 def test_another_plot_is_another_map(app):
-    n = len(layer(app, "plants")["data"])
+    before, n = map_of(app), len(plants(app))
+    assert plot_name(app) == "Gate"
     app.selectbox(key="feature sample/paran_estate.zip").set_value(1).run()
     assert not app.exception
-    assert not heading(app).startswith("Gate")
-    assert len(layer(app, "plants")["data"]) != n
+    assert plot_name(app) != "Gate"
+    assert len(plants(app)) != n
+    assert map_of(app)["place"] != before["place"], "the browser flies there"
 
 
 def test_shorter_hours_give_a_shorter_route_on_every_page(app):
     stops = int(metric(app, "Plants to inspect").split(" / ")[0])
     app.slider(key="hours Robot").set_value(3.0).run()
     assert int(metric(app, "Plants to inspect").split(" / ")[0]) < stops / 2
-    go(app, "map")
+    go(app, "field")
     assert app.slider(key="hours Robot").value == 3.0
 
 
@@ -28,7 +30,7 @@ def test_a_scout_is_planned_for_too(app):
 def test_lengths_and_dates_are_written_as_the_person_wants(app):
     app.selectbox(key="length").set_value("ft").run()
     app.selectbox(key="date_like").set_value("16.11.2026").run()
-    assert heading(app) == "Gate · 16.11.2026"
+    assert "on 16.11.2026, " in headline(app)
     assert metric(app, "Drive").endswith(" mi")
     go(app, "plot")
     app.selectbox(key="area").set_value("dunam").run()

@@ -3,29 +3,35 @@
 import numpy as np
 
 from fieldmon.monitoring import Season
-from tests.app.driving import begun, geotiff, go, layer, map_of, metric, press, texts_of
+from tests.app.driving import begun, geotiff, go, layer, map_of, metric, plants, press, texts_of
 
 
 def test_a_picture_of_the_ground_lies_under_the_plants_where_it_is(app):
     data = geotiff(np.full((400, 400), 90, np.uint8))
-    go(app, "map")
-    app.pills(key="map_layers").set_value(["backdrop"]).run()
+    go(app, "field")
     app.file_uploader(key="backdrop_file").upload("ground.tif", data).run()
     assert not app.exception
-    assert map_of(app)["layers"][1]["id"] == "backdrop"
+    ids = [one["id"] for one in map_of(app)["layers"]]
+    assert ids[0] == "backdrop", "below all else"
+    assert "backdrop" in {one["key"] for one in map_of(app)["switches"]}
     corners = np.array(layer(app, "backdrop")["bounds"])
-    plants = np.array([p["p"] for p in layer(app, "plants")["data"]])
-    assert (corners.min(axis=0) <= plants.min(axis=0)).all()
-    assert (corners.max(axis=0) >= plants.max(axis=0)).all()
+    lonlat = plants(app).lonlat
+    assert (corners.min(axis=0) <= lonlat.min(axis=0)).all()
+    assert (corners.max(axis=0) >= lonlat.max(axis=0)).all()
     app.file_uploader(key="backdrop_file").upload("ground.tif", b"no picture").run()
     assert not app.exception
     assert app.error
     assert layer(app, "backdrop") is None
 
 
+def places(app):
+    """Return where plants are, to the centimetre."""
+    return np.round(plants(app, "plants").lonlat, 7)
+
+
 def test_plants_that_a_raster_shows_to_be_missing_are_not_laid(app):
     go(app, "plot")
-    every = np.array([p["p"] for p in layer(app, "plants")["data"]])
+    every = places(app)
     west, east = every[:, 0].min(), every[:, 0].max()
     low, high = every[:, 1].min(), every[:, 1].max()
     half = np.repeat(np.array([[0.2, 1.5]], np.float32), 50, axis=1).repeat(50, axis=0)
@@ -33,7 +39,7 @@ def test_plants_that_a_raster_shows_to_be_missing_are_not_laid(app):
     quarter = (east - west) / 4
     data = geotiff(half, (west + quarter, low - 0.001, east - quarter, high + 0.001))
     app.file_uploader(key="missing_plants_file").upload("canopy.tif", data).run()
-    left = np.array([p["p"] for p in layer(app, "plants")["data"]])
+    left = places(app)
     gone = (every[:, 0] > west + 1.05 * quarter) & (every[:, 0] < west + 1.95 * quarter)
     assert gone.sum() > 500
     assert not set(map(tuple, every[gone])) & set(map(tuple, left))
@@ -42,9 +48,9 @@ def test_plants_that_a_raster_shows_to_be_missing_are_not_laid(app):
     assert f"{len(every) - len(left)} of {len(every)} plants are missing" in texts_of(app)
     assert "have no value on the raster and count as there" in texts_of(app)
     app.number_input(key="missing_below").set_value(2.0).run()
-    assert len(layer(app, "plants")["data"]) < len(left)
+    assert len(places(app)) < len(left)
     press(app, "Take it out")
-    assert len(layer(app, "plants")["data"]) == len(every)
+    assert len(places(app)) == len(every)
 
 
 def test_a_raster_of_risk_changes_the_chances_and_the_season_keeps_it(app, seasons_folder):

@@ -7,11 +7,11 @@ import pytest
 
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
-from tests.app.driving import go, metric, press, texts_of
+from tests.app.driving import begun, go, metric, press, texts_of
 
 
-def test_one_plant_is_recorded_and_undone_on_the_season_page(season_app, season):
-    go(season_app, "season")
+def test_one_plant_is_recorded_and_undone(season_app, season):
+    go(season_app, "record")
     season_app.number_input(key="one_row").set_value(3)
     season_app.number_input(key="one_plant").set_value(4)
     season_app.segmented_control(key="one_result").set_value(1)
@@ -23,25 +23,39 @@ def test_one_plant_is_recorded_and_undone_on_the_season_page(season_app, season)
     (plant,) = season().history.inspections.plant
     label = season().label
     assert (label.line[plant], label.number[plant]) == (3, 4)
-    assert metric(season_app, "Found") == "1"
+    assert metric(go(season_app, "season"), "Found") == "1"
+    go(season_app, "record")
     press(season_app, "Undo")
-    assert metric(season_app, "Found") == "0"
+    assert metric(go(season_app, "season"), "Found") == "0"
     assert not len(season().history.inspections)
 
 
-def test_a_treatment_is_taken_back(season_app):
-    before = metric(go(season_app, "season"), "Still infested")
-    next(b for b in season_app.button if b.label == "Note the treatment").click()
-    season_app.run()
-    assert metric(season_app, "Still infested") != before
-    assert "treatment of the plot" in texts_of(season_app)
+def expected(app):
+    """Return the season's figure of what is still infested, as a number."""
+    return float(metric(go(app, "season"), "Still infested").split(" ")[0])
+
+
+def treated(app):
+    go(app, "record")
+    app.number_input(key="efficacy").set_value(90)
+    next(b for b in app.button if b.label == "Note the treatment").click()
+    app.run()
+    assert not app.error
+    assert "treatment of the plot" in texts_of(app)
+
+
+def test_a_treatment_lowers_what_is_expected_and_is_taken_back(season_app):
+    before = expected(season_app)
+    treated(season_app)
+    assert expected(season_app) < 0.2 * before
+    go(season_app, "record")
     press(season_app, "Undo")
-    assert metric(season_app, "Still infested") == before
     assert "undone" in texts_of(season_app)
+    assert expected(season_app) == before
 
 
 def test_a_file_of_findings_is_recorded_once(season_app, season):
-    go(season_app, "season")
+    go(season_app, "record")
     table = b"row,number,found,count\n1,1,yes,3\n1,2,no,\n2,5,,\n"
     for says in ("2 recorded, 0 known", "0 recorded, 2 known"):
         season_app.file_uploader(key="findings_file").upload("found.csv", table).run()
@@ -52,22 +66,13 @@ def test_a_file_of_findings_is_recorded_once(season_app, season):
 
 @pytest.mark.parametrize("data", [b"a,b\n1,2\n", b"row,number,found\n999,1,yes\n", b"\x00\x01"])
 def test_a_file_that_does_not_fit_is_a_sentence(season_app, season, data):
-    go(season_app, "season")
+    go(season_app, "record")
     season_app.file_uploader(key="findings_file").upload("found.csv", data).run()
     season_app.button(key="record_file").click().run()
     assert not season_app.exception
     (said,) = [*season_app.error, *season_app.success]
     assert "found must" in said.value or "found.csv" in said.value or "0 recorded" in said.value
     assert not len(season().history.inspections)
-
-
-def test_a_treatment_lowers_what_is_expected(season_app):
-    go(season_app, "season")
-    before = float(metric(season_app, "Still infested").split(" ")[0])
-    next(b for b in season_app.button if b.label == "Note the treatment").click()
-    season_app.run()
-    assert not season_app.error
-    assert float(metric(season_app, "Still infested").split(" ")[0]) < 0.2 * before
 
 
 def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(
@@ -78,7 +83,7 @@ def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(
     for day in range(16, 26):
         on = date(2026, 11, day)
         season_app.date_input(key="day Gate 2026").set_value(on).run()
-        go(season_app, "season")
+        go(season_app, "record")
         season_app.number_input(key="stops_done").set_value(30)
         next(
             b for b in season_app.button if b.label == "Record" and "route" in b.proto.form_id
@@ -98,3 +103,64 @@ def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(
 def record_clean(project, on, n):
     plants = project.plan(on, keep=False).route.plant[:n]
     project.record(Inspections.of(plants, np.zeros(n, np.int8), np.datetime64(on)), "twin")
+
+
+def send(app, form):
+    """Press the button of a form."""
+    next(b for b in app.button if form in b.proto.form_id).click()
+    app.run()
+    assert not app.exception
+
+
+@pytest.mark.parametrize("form", ["route", "one_plant", "treatment"])
+def test_a_click_on_an_untouched_form_records_nothing(season_app, season, form):
+    go(season_app, "record")
+    before = season().revision
+    send(season_app, form)
+    assert "must be said" in season_app.error[0].value
+    assert season().revision == before
+
+
+def test_only_marked_stops_are_recorded_where_no_number_is_said(season_app, season):
+    go(season_app, "record")
+    route = season().plan(date(2026, 11, 16), keep=False).route.plant
+    season_app.session_state[f"marks 2026-11-16 {len(route)}"] = {
+        "edited_rows": {4: {"found": True}}, "added_rows": [], "deleted_rows": []
+    }  # fmt: skip
+    send(season_app, "route")
+    done = season().history.inspections
+    assert done.plant.tolist() == [route[4]]
+    assert done.result.tolist() == [1]
+
+
+def contradicted(app, season, n=4):
+    """Record finds, then say of the same plants and one more that they are clean."""
+    season().plan(date(2026, 11, 16))
+    plants = season().kept_route(date(2026, 11, 16))[:n]
+    season().record(Inspections.of(plants, np.ones(n, int), np.datetime64("2026-11-16")), "file")
+    go(app, "record")
+    app.number_input(key="stops_done").set_value(n + 1)
+    send(app, "route")
+    assert f"{n} results from route table contradict" in app.warning[0].value
+    assert "recorded as found, now clean" in texts_of(app)
+    assert len(season().history.inspections) == n, "nothing is added silently"
+
+
+@pytest.mark.parametrize(("key", "results"), [
+    ("leave_out", [1, 1, 1, 1, 0]), ("confirm", [1, 1, 1, 1, 0, 0, 0, 0, 0]),
+    ("record_none", [1, 1, 1, 1]),
+])  # fmt: skip
+def test_what_contradicts_the_same_day_is_shown_and_confirmed(season_app, season, key, results):
+    contradicted(season_app, season)
+    season_app.button(key=key).click().run()
+    assert not season_app.exception
+    assert not season_app.warning
+    assert season().history.inspections.result.tolist() == results
+
+
+def test_another_season_is_not_asked_about_what_waits_in_this_one(season_app, season):
+    contradicted(season_app, season)
+    season_app.selectbox(key="season").set_value("Sample estate").run()
+    begun(season_app, "Other")
+    go(season_app, "record")
+    assert not season_app.warning

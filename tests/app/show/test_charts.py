@@ -65,11 +65,19 @@ def test_a_band_holds_mean_and_interval():
     }  # fmt: skip
 
 
-def test_days_of_a_season_are_those_given():
-    made = rows(charts.season_days(DAYS, ("day", "inspected", "found")))
-    assert {(row["day"], row["inspected"], row["found"]) for row in made} == {
-        ("11-16", 40, 3), ("11-18", 45, 5)
-    }  # fmt: skip
+def test_a_day_without_work_is_a_gap_and_not_a_day_without_finds():
+    idle = DayFigures(date(2026, 11, 19), 0, 0, 18.0, 10, 27, 0.01)
+    clean = DayFigures(date(2026, 11, 20), 30, 0, 17.0, 10, 26, 0.01)
+    chart = charts.season_days([*DAYS, idle, clean], ("day", "inspected", "found"))
+    made = {row["day"]: (row["inspected"], row["found"]) for row in rows(chart)}
+    nothing = (None, None)
+    assert made == {"11-16": (40, 3), "11-17": nothing, "11-18": (45, 5), "11-19": nothing,
+                    "11-20": (30, 0)}  # fmt: skip
+    line = next(one for one in spec(chart)["layer"] if one["mark"]["type"] == "line")
+    assert line["mark"]["invalid"] == "break-paths-filter-domains"
+
+
+def test_what_is_still_out_there_is_of_the_days_given():
     out = rows(charts.still_out(DAYS, ("day", "left")))
     assert {(row["expected"], row["low"], row["high"]) for row in out} == {
         (21.3, 12, 30), (19.1, 11, 28)
@@ -81,8 +89,29 @@ def test_finds_are_counted_from_day_one():
     assert [(row["day"], row["found"]) for row in made] == [(1, 4), (2, 7)]
 
 
-def test_a_row_in_parts_was_last_inspected_when_its_latest_part_was_and_unseen_rows_are_left_out():
-    since = np.array([3.0, 1.0, np.nan, 5.0])
-    line = np.array([1, 1, 2, 3])
-    made = rows(charts.row_ages(since, line, ("row", "days")))
-    assert [(row["row"], row["days"]) for row in made] == [(1, 1.0), (3, 5.0)]
+def test_a_row_never_inspected_is_told_from_one_inspected_today():
+    since = np.array([3.0, 1.0, np.nan, 5.0, 0.0, np.nan])
+    line = np.array([1, 1, 2, 3, 4, 4])
+    chart = charts.row_ages(since, line, ("row", "days"))
+    seen, today, never = (rows_of(chart, k) for k in range(3))
+    assert [(row["row"], row["high"], row["said"]) for row in seen] == [
+        (1, 1.0, "1"), (3, 5.0, "5"), (4, 0.0, "today")
+    ]  # fmt: skip
+    assert [row["row"] for row in today] == [4]
+    assert [(row["row"], row["said"]) for row in never] == [(2, "never")]
+    bar = spec(chart)["layer"][2]["mark"]
+    assert (bar["type"], bar["filled"]) == ("bar", False)
+
+
+def test_a_plot_of_which_nothing_was_inspected_has_hollow_bars_only():
+    chart = charts.row_ages(np.full(3, np.nan), np.arange(3), ("row", "days"))
+    assert len(rows_of(chart, 0)) == 3
+    assert len(spec(chart)["layer"]) == 1
+    assert spec(chart)["layer"][0]["mark"]["filled"] is False
+
+
+def rows_of(chart, number):
+    """Return the rows of data of one layer."""
+    made = spec(chart)
+    name = made["layer"][number].get("data", made.get("data"))["name"]
+    return made["datasets"][name]

@@ -8,6 +8,8 @@ import pandas as pd
 import pytest
 
 from app.show import day
+from app.state import chosen_day
+from app.state.chosen_day import DayRoute
 from app.words import texts
 from fieldmon.plot.grid import row_label
 from tests.app.chosen import a_plot, chosen, in_season, records_at
@@ -52,7 +54,7 @@ def test_stops_are_the_route_s_in_order_with_the_times_of_their_arrival():
     plot = a_plot()
     choices = chosen(plot, records_at(plot, [50], [1]))
     plan = choices.plan()
-    table = day.stops(choices, plan)
+    table = day.stops(choices, DayRoute(plan.route, chosen_day.starts(choices, plan)))
     label = row_label(plot.grid, plan.route.plant)
     assert table["row"].tolist() == label.line.tolist()
     assert table["plant"].tolist() == label.number.tolist()
@@ -62,6 +64,14 @@ def test_stops_are_the_route_s_in_order_with_the_times_of_their_arrival():
         (pd.Timestamp(f"2026-11-16 {at}") - begins).total_seconds() for at in table["arrive"]
     ]
     assert seconds == pytest.approx(plan.route.arrive_s, abs=0.51)
+
+
+def test_stops_of_a_day_that_was_worked_say_what_was_found_there(worked):
+    choices = on(worked, 0)
+    table = day.stops(choices, chosen_day.route(choices))
+    done = worked.history.inspections.on(BEGINS)
+    assert len(table) == 40
+    assert (table["result"] == "found").sum() == (done.result == 1).sum()
 
 
 def test_what_changed_is_the_difference_of_two_days(worked):

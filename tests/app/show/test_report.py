@@ -2,14 +2,14 @@
 
 import re
 from dataclasses import replace
-from datetime import date
-from types import SimpleNamespace
+from datetime import date, datetime
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from app.show import report
+from app.state.chosen_day import DayRoute
 from app.words.units import Units
 from fieldmon.monitoring import DayFigures
 from fieldmon.plot.layout import rectangle
@@ -41,7 +41,7 @@ def facts(route):
         state=state,
         robot=Robot(hours=1.5),
         sampler="Adaptive",
-        route=route,
+        shown=DayRoute(route, datetime(2026, 11, 18, 6)),
         results={"Row 3": "17, 18"},
     )
 
@@ -54,7 +54,7 @@ def stops_of(n):
 
 
 def made(facts, n_stops=130, days=DAYS):
-    return report.html(facts, SimpleNamespace(route=facts.route), stops_of(n_stops), days)
+    return report.html(facts, stops_of(n_stops), days)
 
 
 def test_figures_finds_season_and_settings_stand_in_their_tables(facts):
@@ -85,6 +85,25 @@ def test_every_stop_has_its_line_and_a_box_to_tick_sixty_a_table(facts):
         lines, table.reset_index().itertuples(index=False, name=None), strict=True
     ):
         assert line == [str(stop), arrive, str(row), f"{chance:.1f}", "☐"]
+
+
+def test_after_the_work_the_report_says_what_was_done(facts):
+    done = replace(facts, shown=replace(facts.shown, worked=True))
+    page = Page(report.html(done, stops_of(5).assign(result="clean"), DAYS))
+    route = facts.route
+    assert list(page.tables[0]) == [
+        ["Plants inspected", f"{len(route):,} / {len(facts.chance):,}"],
+        ["Hours", f"{route.end_s / 3600:.1f} h"],
+        ["Drive", facts.units.metres(route.drive_m)],
+        ["Found that day", "2"],
+    ]
+    assert page.tables[-1][0] == ["stop", "arrive", "row", "chance %", "result"]
+    assert "Route as it was worked" in page.headings
+
+
+def test_what_is_assumed_stands_under_the_figures(facts):
+    text = made(replace(facts, assumed="\\* assumed: rows 4 m apart."))
+    assert "<p>* assumed: rows 4 m apart.</p>" in text
 
 
 def test_what_is_not_there_has_no_heading(facts):

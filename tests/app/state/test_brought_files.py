@@ -5,13 +5,13 @@ from types import SimpleNamespace
 import pytest
 
 from app.state import brought_files
-from fieldmon.io.options import PlotOptions, Upload
-from tests.app.driving import heading, opened, square, texts_of, upload, zipped
+from fieldmon.io.options import PlotOptions, RecordOptions, Upload
+from tests.app.driving import opened, plot_name, square, texts_of, upload, zipped
 
 
 def test_one_session_does_not_see_the_files_of_another(app, tmp_path):
     upload(app, plot=("plot.zip", zipped(tmp_path, square(name="secret"))))
-    assert heading(app).startswith("secret")
+    assert plot_name(app) == "secret"
     other = opened()
     other.selectbox(key="season").set_value("My own files").run()
     assert "Bring a plot" in texts_of(other)
@@ -46,14 +46,25 @@ def test_the_same_bytes_under_another_name_are_another_file():
 
 @pytest.mark.usefixtures("session")
 def test_answers_about_a_file_settle_its_options_and_are_taken_back_in_order():
-    file = brought_files.File("key", Upload("a.csv", b""))
-    brought_files.answer("key", "crs", "EPSG:2039")
-    brought_files.answer("key", "crs", "")
-    brought_files.answer("key", "crs", "EPSG:4326")
+    file = brought_files.File("key", Upload("a.csv", b""), "plot")
+    brought_files.answer(file.asked, "crs", "EPSG:2039")
+    brought_files.answer(file.asked, "crs", "")
+    brought_files.answer(file.asked, "crs", "EPSG:4326")
     brought_files.answer("other", "crs", "EPSG:25831")
     assert brought_files.settled(file, PlotOptions()).crs == "EPSG:4326"
-    assert brought_files.asking() == "key"
-    brought_files.take_back("key")
+    assert brought_files.asking() == file.asked
+    brought_files.take_back(file.asked)
     assert brought_files.settled(file, PlotOptions()).crs == "EPSG:2039"
-    brought_files.take_back("key")
+    brought_files.take_back(file.asked)
     assert brought_files.settled(file, PlotOptions()) == PlotOptions()
+
+
+@pytest.mark.usefixtures("session")
+def test_one_file_as_plot_and_as_records_is_answered_twice():
+    both = [part("both.gpkg", b"1")]
+    for kind in (brought_files.PLOT, brought_files.RECORDS):
+        brought_files.keep(kind, both)
+    plot, records = brought_files.brought().values()
+    brought_files.answer(plot.asked, "layer", "plots")
+    assert brought_files.settled(plot, PlotOptions()).layer == "plots"
+    assert brought_files.settled(records, RecordOptions()).layer is None

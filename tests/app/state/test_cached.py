@@ -5,11 +5,13 @@ import numpy as np
 from app.state import cached
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.observations import Observations
-from fieldmon.infestation.prior import start_infested
+from fieldmon.infestation.prior import PriorSettings, start_infested
 from fieldmon.plot.robot import Robot
 from tests.app.chosen import a_plot
 from tests.app.driving import go, metric, opened, tap
 from tests.monitoring.seasons import a_season
+
+PRIOR, NOTHING = PriorSettings(), (Observations.none(), None)
 
 
 def test_two_windows_on_one_season_see_each_other(season_app):
@@ -24,10 +26,10 @@ def test_plots_that_differ_in_one_plant_are_kept_apart_by_their_keys():
     """Streamlit hashes a sample of an array: plants must not be what a value is kept by."""
     plot = a_plot()
     other = plot.without(np.arange(len(plot.grid)) == 7)
-    kept = [cached.chance_map(f"plot {k}", "2026-11-16", one, (Observations.none(), None))
+    kept = [cached.chance_map(f"plot {k}", "2026-11-16", PRIOR, one, NOTHING)
             for k, one in enumerate((plot, other))]  # fmt: skip
     assert len(kept[0]) == len(kept[1]) + 1
-    again = cached.chance_map("plot 0", "2026-11-16", other, (Observations.none(), None))
+    again = cached.chance_map("plot 0", "2026-11-16", PRIOR, other, NOTHING)
     assert again is kept[0]
 
 

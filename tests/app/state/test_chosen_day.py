@@ -5,8 +5,10 @@ from datetime import date, datetime, timedelta
 import numpy as np
 import pytest
 
+from app.show.day import reasons
 from app.state import chosen_day
-from tests.app.chosen import a_plot, chosen, in_season, records_at
+from fieldmon.monitoring import Season
+from tests.app.chosen import DAY, a_plot, chosen, in_season, records_at
 from tests.app.driving import map_of
 from tests.monitoring.seasons import BEGINS, Insects, a_season
 
@@ -57,12 +59,16 @@ def test_what_is_known_is_what_the_season_says(worked):
         status = worked.status(choices.on)
         assert chosen_day.chance(choices).tolist() == worked.evening(choices.on).tolist()
         state = chosen_day.states(choices)
-        assert (state >= 0).sum() == status.inspected
-        assert (state == 1).sum() == status.found
+        inspected = worked.history.states(day)
+        assert (inspected >= 0).sum() == status.inspected
+        assert (inspected == 1).sum() == status.found
+        assert state.tolist() == np.maximum(inspected, worked.history.recorded).tolist()
         assert chosen_day.progress(choices).found_today == status.found_today
         assert chosen_day.figures(choices, choices.day) == worked.day_figures(choices.on)
         assert len(chosen_day.found(choices)) == status.found_today
-        assert (chosen_day.ages(choices) >= 0).tolist() == (state >= 0).tolist()
+        undated = 60
+        aged = np.delete(chosen_day.ages(choices) >= 0, undated)
+        assert aged.tolist() == np.delete(state >= 0, undated).tolist()
         assert len(chosen_day.hot_spots(choices)) == len(status.hot_spots)
 
 
@@ -93,9 +99,29 @@ def test_without_a_season_records_say_what_is_known():
     state = chosen_day.states(choices)
     assert (state[7], state[9], state[30]) == (1, 0, 1)
     assert (state >= 0).sum() == 3
-    assert set(chosen_day.ages(choices).tolist()) == {-1}
+    ages = chosen_day.ages(choices)
+    assert (ages[7], ages[9], ages[30]) == (6, 6, 6)
+    assert (ages >= 0).sum() == 3
     assert len(chosen_day.found(choices)) == 0
     assert chosen_day.messages_on_records(choices) == []
     early = chosen(plot, records_at(plot, [7], [1], day="2027-01-01"))
     assert set(chosen_day.states(early).tolist()) == {-1}
     assert chosen_day.messages_on_records(early) != []
+
+
+def test_what_is_known_is_the_same_before_and_after_a_season_begins(tmp_path):
+    plot = a_plot()
+    close = plot.grid.tree.query(plot.grid.xy_m[40], k=6)[1]
+    others = np.setdiff1d(np.arange(0, len(plot.grid), 3), close)
+    records = records_at(
+        plot, np.append(close, others), np.repeat([1, 0], [len(close), len(others)])
+    )
+    before = chosen(plot, records)
+    season = Season.create(tmp_path / "s.gpkg", plot, records, begins=DAY)
+    after = in_season(season, DAY)
+    assert len(chosen_day.hot_spots(before)) > 0
+    for known in (chosen_day.states, chosen_day.ages, lambda c: chosen_day.hot_spots(c).of_plant):
+        assert known(after).tolist() == known(before).tolist()
+    assert len(season.status(DAY).hot_spots) == len(chosen_day.hot_spots(before))
+    why = reasons(after, after.plan())
+    assert any("known from records only" in sentence for sentence in why)

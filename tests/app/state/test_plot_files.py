@@ -11,7 +11,17 @@ from fieldmon.io.options import Upload
 from fieldmon.io.prepare import prepare
 from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
 from fieldmon.plot.grid import plant_at, row_label
-from tests.app.driving import geotiff, go, heading, layer, square, texts_of, upload, zipped
+from tests.app.driving import (
+    geotiff,
+    go,
+    layer,
+    plants,
+    plot_name,
+    square,
+    texts_of,
+    upload,
+    zipped,
+)
 
 
 def test_an_uploaded_plot_and_records_are_planned(app, tmp_path):
@@ -19,10 +29,11 @@ def test_an_uploaded_plot_and_records_are_planned(app, tmp_path):
     plot = zipped(tmp_path, square(name="שדה"))
     upload(app, plot=("plot.zip", plot), record=("mites.csv", mites))
     assert not app.exception
-    assert heading(app).startswith("שדה")
+    assert plot_name(app) == "שדה"
     go(app, "today")
-    worst = max(layer(app, "plants")["data"], key=lambda p: float(p["t"].split(": ")[1][:-8]))
-    assert worst["p"] == pytest.approx([35.1505, 30.3605], abs=4e-5)
+    shown = plants(app)
+    worst = shown.lonlat[np.argmax(shown.chance)]
+    assert worst == pytest.approx([35.1505, 30.3605], abs=4e-5)
 
 
 PLANTS = b"row,plant,date,count\n2,3,2026-11-10,9\n2,4,2026-11-12,0\n5,1,2026-11-14,2\n"
@@ -36,7 +47,7 @@ def test_records_by_row_and_plant_are_planned_as_the_commands_plan_them(app, tmp
     assert "3 of 3 records shown (2 with pests, 1 without)" in texts_of(app)
     app.date_input[0].set_value(date(2026, 11, 16)).run()
     go(app, "today")
-    shown = {p["t"].split(":")[0]: p["c"] for p in layer(app, "plants")["data"]}
+    shown = plants(app)
     request = PlotRequest(
         PlotSources(Upload("plot.zip", data)), records=RecordSource(Upload("mites.csv", PLANTS))
     )
@@ -46,10 +57,10 @@ def test_records_by_row_and_plant_are_planned_as_the_commands_plan_them(app, tmp
     )
     label = row_label(made.plot.grid)
     shade = colours.by_chance(chance)
-    assert shown == {
-        f"row {line}, plant {number}": shade.table[rank].tolist()
-        for line, number, rank in zip(label.line, label.number, shade.rank, strict=True)
-    }
+    assert shown.row.tolist() == label.line.tolist()
+    assert shown.number.tolist() == label.number.tolist()
+    assert shown.colour.tolist() == shade.table[shade.rank].tolist()
+    assert shown.chance == pytest.approx(chance, abs=1e-7)
     two_three, two_four, five_one = (
         chance[plant_at(made.plot.grid, *place)] for place in ((2, 3), (2, 4), (5, 1))
     )
@@ -61,10 +72,10 @@ def test_records_that_name_plants_which_are_missing_stay_at_theirs(app, tmp_path
     upload(app, plot=("plot.zip", zipped(tmp_path, square(0.0008))),
            record=("mites.csv", PLANTS))  # fmt: skip
     records = layer(app, "records")["data"]
-    plants = len(layer(app, "plants")["data"])
+    before = len(plants(app, "plants"))
     low = geotiff(np.full((40, 40), 0.2, np.float32), (35.15, 30.36, 35.1504, 30.3608))
     app.file_uploader(key="missing_plants_file").upload("canopy.tif", low).run()
-    assert len(layer(app, "plants")["data"]) < plants
+    assert len(plants(app, "plants")) < before
     assert layer(app, "records")["data"] == records
 
 

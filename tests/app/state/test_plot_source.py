@@ -9,10 +9,10 @@ from tests.app.driving import go, opened, texts_of
 
 
 def test_the_first_click_after_a_reload_stays_in_the_season(season_app):
-    go(season_app, "map")
+    go(season_app, "field")
     assert season_app.selectbox(key="season").value == "Gate 2026"
     again = opened("Gate 2026")
-    for page in ("season", "study", "today"):
+    for page in ("season", "compare", "today"):
         go(again, page)
     assert again.selectbox(key="season").value == "Gate 2026"
     assert "first day of the season" in texts_of(again)

@@ -33,7 +33,7 @@ def test_a_raster_s_key_stands_for_the_file_and_how_it_is_read(plot, session):
     bring(rasters.RISK, geotiff(np.full((30, 30), 0.2, np.float32), EDGES))
     risk, said, key = rasters.risk(plot, "key")
     assert risk == pytest.approx(0.2, abs=1e-6)
-    assert [one.file_key for one in said] == [brought_files.brought()[rasters.RISK].key] * len(said)
+    assert [one.asked for one in said] == [brought_files.brought()[rasters.RISK].asked] * len(said)
     session[rasters.RISK_MEANING] = "percent"
     less, _, other = rasters.risk(plot, "key")
     assert less == pytest.approx(0.002, abs=1e-6)

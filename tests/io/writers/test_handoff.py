@@ -2,7 +2,10 @@
 
 import json
 import sys
+from dataclasses import replace
+from io import BytesIO
 from types import ModuleType
+from zipfile import ZipFile
 
 import pandas as pd
 import pyogrio
@@ -69,6 +72,19 @@ def test_every_format_is_read_back_by_another_program(tmp_path, name, make):
     plan = make()
     paths = write_handoff(plan, tmp_path / f"day{FORMATS[name].endings[0]}")
     assert [int(plant) for plant in READERS[name](paths)] == plan.route.plant.tolist()
+
+
+@pytest.mark.parametrize("name", ["geojson", "gpkg", "shapefile", "kml", "gpx", "sheet"])
+def test_a_file_with_room_for_it_says_what_no_other_route_can_expect(name):
+    plan = usual()
+    known = replace(plan, route=replace(plan.route, found_bound=2.0 * plan.route.expected_found))
+    made = FORMATS[name].make(known)
+    whole = b"".join(made.values())
+    if name == "shapefile":
+        with ZipFile(BytesIO(whole)) as archive:
+            whole = archive.read("route.dbf")
+    assert b"no route of these hours can expect more than" in whole
+    assert b"no route of these hours" not in b"".join(FORMATS[name].make(plan).values())
 
 
 @pytest.mark.parametrize("name", FORMATS)

@@ -5,6 +5,9 @@ import pytest
 
 from app.show.maps import colours
 
+# of the page's style, light and dark
+GROUND = {False: (233, 236, 228), True: (18, 24, 26)}
+
 
 def shaded(shade):
     return [tuple(colour) for colour in shade.table[shade.rank].tolist()]
@@ -13,10 +16,12 @@ def shaded(shade):
 def test_chances_at_the_edge_of_a_class_are_in_the_upper_one():
     edges = np.array(colours.CHANCE_FROM)
     just_below = np.nextafter(edges[1:], 0)
-    assert [c[:3] for c in shaded(colours.by_chance(edges))] == list(colours.CHANCE_COLOURS)
-    below = [c[:3] for c in shaded(colours.by_chance(just_below))]
-    assert below == list(colours.CHANCE_COLOURS[:-1])
-    assert shaded(colours.by_chance(np.array([1.0])))[0][:3] == colours.CHANCE_COLOURS[-1]
+    for dark in (False, True):
+        classes = list(colours.of_chance(dark=dark))
+        assert [c[:3] for c in shaded(colours.by_chance(edges, dark=dark))] == classes
+        below = [c[:3] for c in shaded(colours.by_chance(just_below, dark=dark))]
+        assert below == classes[:-1]
+        assert shaded(colours.by_chance(np.array([1.0]), dark=dark))[0][:3] == classes[-1]
 
 
 def test_found_plants_win_a_pixel_from_clean_ones_and_these_from_unseen_ones():
@@ -41,11 +46,36 @@ def test_a_plant_never_inspected_is_an_empty_ring_by_age_too():
     )
 
 
-def test_classes_grow_darker_so_that_they_are_told_apart_without_hue():
-    weights = np.array([0.2126, 0.7152, 0.0722])
-    for classes in (colours.CHANCE_COLOURS, colours.AGE_COLOURS):
-        light = (np.array(classes) / 255) ** 2.2 @ weights
-        assert (np.diff(light) < 0).all()
+def lightness(classes):
+    """Return CIE L* of colours: what is left of them in grey print."""
+    linear = np.array(classes) / 255
+    linear = np.where(linear <= 0.04045, linear / 12.92, ((linear + 0.055) / 1.055) ** 2.4)
+    light = linear @ [0.2126, 0.7152, 0.0722]
+    return np.where(light > 216 / 24389, 116 * np.cbrt(light) - 16, light * 24389 / 27)
+
+
+def test_classes_are_told_apart_without_hue_and_the_highest_stands_out_most():
+    light = lightness(colours.of_chance())
+    assert (np.diff(light) < -6).all(), "each class is darker than the one below"
+    dark = lightness(colours.of_chance(dark=True))
+    assert (np.diff(dark) > 6).all(), "on dark ground each class is lighter"
+    assert (np.diff(lightness(colours.AGE_COLOURS)) < -6).all()
+    assert (np.diff(lightness(colours.AGE_IN_DARK)) > 6).all()
+
+
+def test_the_lowest_class_is_seen_on_either_ground():
+    for dark in (False, True):
+        ground = GROUND[dark]
+        contrast = np.abs(lightness(colours.of_chance(dark=dark)) - lightness([ground]))
+        assert contrast.min() > 7
+        assert contrast.argmax() == len(colours.CHANCE_FROM) - 1
+
+
+def test_a_dark_page_has_the_same_classes():
+    for by, values in ((colours.by_chance, [0.0, 0.03, 0.9]), (colours.by_age, [0, 5, 40])):
+        day, night = by(np.array(values)), by(np.array(values), dark=True)
+        assert day.rank.tolist() == night.rank.tolist()
+        assert shaded(day)[-1] != shaded(night)[-1]
 
 
 def test_plain_plants_have_one_colour():

@@ -1,31 +1,46 @@
-"""Legends name every class with its colour."""
+"""Legends name every class and every sign with its colour, beside the layer it is of."""
 
-import re
+import pytest
 
+from app.show import map_layers
 from app.show.maps import colours, legends
-from app.words import texts
 
 
-def signs(html):
-    """Return colour and text of each sign."""
-    return re.findall(r"rgb(\(\d+, \d+, \d+\)).*?</svg>(.*?)</span>", html)
-
-
-def test_every_class_of_chance_has_its_edges_and_its_colour():
-    made = signs(legends.chance_legend())
-    assert [colour for colour, _ in made] == [str(colour) for colour in colours.CHANCE_COLOURS]
-    assert [text for _, text in made] == [
-        "0-1 %", "1-2 %", "2-5 %", "5-10 %", "10-25 %", "25-50 %", "over 50 %"
-    ]  # fmt: skip
+@pytest.mark.parametrize("dark", [False, True])
+def test_every_class_of_chance_has_its_lower_end_and_its_colour(dark):
+    part = legends.by_chance(dark=dark)
+    kinds, shown, names = zip(*part["items"], strict=True)
+    assert shown == colours.of_chance(dark=dark)
+    assert names == ("0 %", "1 %", "2 %", "5 %", "10 %", "25 %", "50 %+")
+    assert set(kinds) == {"square"}
+    assert part["scale"]
+    assert part["of"] == "shade:chance"
 
 
 def test_the_three_states_differ_by_shape_too():
-    html = legends.state_legend(texts.LEGEND_STATES)
-    assert [text for _, text in signs(html)] == ["found", "looked clean", "never inspected"]
-    shapes = re.findall(r"<svg.*?>(.*?)</svg>", html)
-    assert len({re.sub(r"\d+", "", shape) for shape in shapes}) == 3
+    kinds, shown, names = zip(*legends.by_state()["items"], strict=True)
+    assert names == ("found", "looked clean", "never inspected")
+    assert shown == (colours.FOUND, colours.CLEAN, colours.NEVER)
+    assert len(set(kinds)) == 3
 
 
 def test_ages_are_whole_days_without_a_gap():
-    texts_ = [text for _, text in signs(legends.age_legend("never", "{n} days"))]
-    assert texts_ == ["0 days", "1-2 days", "3-6 days", "7-13 days", "14+ days", "never"]
+    kinds, shown, names = zip(*legends.by_age()["items"], strict=True)
+    said = ["0 days ago", "1-2 days ago", "3-6 days ago", "7-13 days ago", "14+ days ago"]
+    assert list(names) == [*said, "never inspected"]
+    assert shown[:-1] == colours.AGE_COLOURS
+    assert kinds[-1] == "ring"
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_every_layer_that_can_be_switched_has_its_signs_in_its_own_colours(dark):
+    parts = {part["of"]: part["items"] for part in legends.signs(dark=dark)}
+    switched = set(map_layers.PARTS) - {"numbers", "rows", "backdrop"}
+    assert set(parts) == switched, "numbers are words, and a picture speaks for itself"
+    route, hot = (
+        (colours.ROUTE_IN_DARK, colours.HOT_IN_DARK) if dark else (colours.ROUTE, colours.HOT)
+    )
+    assert [sign[:2] for sign in parts["route"]] == [("line", route), ("ring", colours.GATE)]
+    assert parts["hot"][0][:2] == ("outline", hot)
+    seen, unseen = parts["records"]
+    assert (seen[0], unseen[0]) == ("dot", "ring")

@@ -43,7 +43,7 @@ def test_no_hot_spot_is_no_layer(plot):
 
 def test_a_hot_spot_s_tint_lies_under_plants_that_can_be_tapped_its_edge_over_all(plot, spots):
     state = np.zeros(len(plot.grid), np.int8)
-    plants = plant_layers.plants(plot.grid, by_state(state), plant_layers.unsaid)
+    plants = plant_layers.plants(plot.grid, by_state(state))
     paths = marks.paths(plot.field)
     made = marks.with_hot([*paths, plants], marks.hot(plot.grid, spots))
     assert [layer.id for layer in made] == ["paths", "hot", "plants", "hot-edge"]

@@ -1,62 +1,67 @@
 """Plants on a map: what is seen of them is what is known of them."""
 
 import base64
-from io import BytesIO
+import json
 
 import numpy as np
 import pytest
-from PIL import Image
 
 from app.show.maps import colours, plant_layers
+from app.show.maps.plant_layers import PlantNotes
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.layout import rectangle
-
-
-def test_each_pixel_of_a_picture_shows_the_most_important_plant_on_it(monkeypatch):
-    monkeypatch.setattr(plant_layers, "_PICTURE_AT_MOST", 7)
-    grid = rectangle(20, 30)
-    shade = colours.by_state(np.random.default_rng(3).choice([-1, 0, 1], 600, p=[0.8, 0.1, 0.1]))
-    layer = plant_layers._picture(grid, shade)
-    packed = layer.image.value.split(",")[1]
-    image = np.array(Image.open(BytesIO(base64.b64decode(packed))).convert("RGBA"))
-    (west, south), _, (east, north), _ = layer.bounds
-    across, down = ((grid.lonlat() - [west, north]) / [east - west, south - north]).T
-    tall, wide = image.shape[:2]
-    pixel = (down * tall).astype(int) * wide + (across * wide).astype(int)
-    best = np.zeros(tall * wide, int)
-    np.maximum.at(best, pixel, shade.rank + 1)
-    table = np.vstack([[0, 0, 0, 0], shade.table])
-    assert (image.reshape(-1, 4) == table[best]).all()
-    assert len(np.unique(best)) > 2
-
+from tests.app.shown_plants import plants_in, shown_plants
+from tests.paths import ROOT
 
 GRID = rectangle(6, 8)
+STATE = np.tile(np.array([-1, 0, 1], np.int8), 16)
+# a centimetre, in degrees
+CM = 1e-7
 
 
-def layer_of(state, part=None):
-    def said(which):
-        return [f": {s}" for s in state[which].tolist()]
-
-    return plant_layers.plants(GRID, colours.by_state(state), said, part)
-
-
-def test_every_plant_is_a_point_that_says_where_it_stands():
-    state = np.tile(np.array([-1, 0, 1], np.int8), 16)
-    rows = layer_of(state).data
-    label = row_label(GRID)
-    assert [row["i"] for row in rows] == list(range(len(GRID)))
-    assert np.array([row["p"] for row in rows]) == pytest.approx(GRID.lonlat(), abs=1e-7)
-    wanted = zip(label.line, label.number, state.tolist(), strict=True)
-    assert [row["t"] for row in rows] == [f"row {r}, plant {n}: {s}" for r, n, s in wanted]
+def test_every_plant_is_sent_with_its_place_its_row_and_number_and_the_colour_of_its_state():
+    shown = plants_in(plant_layers.plants(GRID, colours.by_state(STATE)))
+    label = row_label(GRID, np.arange(len(GRID)))
+    assert shown.lonlat == pytest.approx(GRID.lonlat(), abs=CM)
+    assert (shown.row, shown.number) == (
+        pytest.approx(label.line),
+        pytest.approx(label.number),
+    )
+    assert shown.rank.tolist() == (STATE + 1).tolist()
+    assert shown.of_colour(colours.FOUND).tolist() == np.flatnonzero(STATE == 1).tolist()
 
 
-def test_very_many_plants_are_one_picture_but_for_those_shown_close(monkeypatch):
-    monkeypatch.setattr(plant_layers, "POINTS_AT_MOST", 10)
-    state = np.zeros(len(GRID), np.int8)
-    assert layer_of(state).type == "BitmapLayer"
-    part = layer_of(state, np.array([3, 7]))
-    assert (part.type, part.id) == ("ScatterplotLayer", "part")
-    assert [row["i"] for row in part.data] == [3, 7]
+def test_a_million_plants_keep_their_places_to_the_centimetre():
+    grid = rectangle(1000, 1000)
+    shown = plants_in(plant_layers.plants(grid, colours.plain(len(grid))))
+    assert np.abs(shown.lonlat - grid.lonlat()).max() < 5 * CM
+    assert len(plant_layers.plants(grid, colours.plain(len(grid))).arrays["places"]) < 17e6
+
+
+def test_places_are_written_once_for_all_shades_of_a_plot():
+    by_state, plain = (
+        plant_layers.plants(GRID, shade) for shade in (colours.by_state(STATE), colours.plain(48))
+    )
+    assert by_state.arrays["places"] is plain.arrays["places"]
+    assert by_state.arrays["ranks"] != plain.arrays["ranks"]
+
+
+def test_chances_are_said_of_each_plant_or_a_sentence_of_each_rank_but_nothing_unasked():
+    chance = np.linspace(0, 1, len(GRID))
+    told = plant_layers.plants(GRID, colours.by_chance(chance), PlantNotes(chance))
+    assert plants_in(told).chance == pytest.approx(chance, abs=1e-7)
+    assert "{chance}" in told.tips["values"]
+    sentences = PlantNotes(by_rank=("a", "b", "c"))
+    by_rank = plant_layers.plants(GRID, colours.by_state(STATE), sentences)
+    assert by_rank.tips["ranks"] == ["a", "b", "c"]
+    assert "values" not in by_rank.arrays
+    assert set(plant_layers.plants(GRID, colours.plain(48)).tips) == {"text"}
+
+
+def test_points_touch_no_neighbour():
+    layer = plant_layers.plants(GRID, colours.plain(48))
+    assert layer.radius < layer.apart / 2
+    assert layer.apart == pytest.approx(min(GRID.plant_spacing_m, GRID.row_spacing_m))
 
 
 def test_finds_have_two_rings_and_a_dot_where_they_are():
@@ -66,9 +71,29 @@ def test_finds_have_two_rings_and_a_dot_where_they_are():
     assert [layer.id for layer in layers] == ["finds0", "finds1", "found"]
     for layer in layers:
         here = np.array([row["p"] for row in layer.data])
-        assert here == pytest.approx(GRID.lonlat()[[5, 20]], abs=1e-7)
+        assert here == pytest.approx(GRID.lonlat()[[5, 20]], abs=CM)
 
 
 def test_the_plant_whose_history_is_shown_has_a_ring_of_its_own():
     for layer in plant_layers.chosen(GRID, 11):
-        assert layer.data[0]["p"] == pytest.approx(GRID.lonlat()[11], abs=1e-7)
+        assert layer.data[0]["p"] == pytest.approx(GRID.lonlat()[11], abs=CM)
+
+
+def test_plants_that_are_selected_have_a_ring_each():
+    rows = plant_layers.picked(GRID, np.array([3, 30])).data
+    assert np.array([row["p"] for row in rows]) == pytest.approx(GRID.lonlat()[[3, 30]], abs=CM)
+
+
+def test_what_the_map_s_own_tests_read_is_what_is_written_here():
+    """The file is read by app/map_view/tests; `python -m tests.app.show.maps.plants_file`."""
+    kept = json.loads((ROOT / "app" / "map_view" / "tests" / "plants.json").read_text())
+    grid = rectangle(kept["rows"], kept["plants"])
+    layer = plant_layers.plants(grid, colours.plain(len(grid)))
+    now = plants_in(layer)
+    places = base64.b64decode(kept["places"])
+    then = shown_plants({**layer.arrays, "places": places}, layer.table)
+    assert len(layer.arrays["places"]) == len(places)
+    assert then.lonlat == pytest.approx(now.lonlat, abs=1e-12)
+    assert np.array(kept["lonlat"]) == pytest.approx(now.lonlat, abs=1e-12)
+    assert then.row.tolist() == kept["row"] == now.row.tolist()
+    assert then.number.tolist() == kept["number"] == now.number.tolist()

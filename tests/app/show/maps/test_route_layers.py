@@ -1,4 +1,6 @@
-"""A route on a map: driven in order, numbered where there is room."""
+"""A route on a map: driven in order, arrows along the way, played as it is timed."""
+
+from datetime import datetime
 
 import numpy as np
 import pytest
@@ -10,24 +12,12 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from tests.app.driving import SQUARE
 
+SIX = datetime(2026, 11, 16, 6, 30)
+
 
 @pytest.fixture(scope="module")
 def plot():
     return Plot.of(Field("square", SQUARE, gate=(35.15, 30.36)))
-
-
-def test_numbers_of_stops_do_not_cover_each_other_where_the_whole_route_is_in_view(plot):
-    chance = np.random.default_rng(1).random(len(plot.grid))
-    route = plan_from(plot, chance, PlanSettings()).route
-    numbers = next(layer for layer in route_layers.route(route) if layer.id == "numbers")
-    shown = [int(row["n"]) for row in numbers.data]
-    assert 1 in shown
-    assert 5 < len(shown) < len(route)
-    here = np.array([row["p"] for row in numbers.data])
-    span = np.ptp(route.stops_lonlat(), axis=0) * [np.cos(np.radians(here[0, 1])), 1.0]
-    px = (here[:, None] - here) * [np.cos(np.radians(here[0, 1])), 1.0] / span.max() * 300
-    beside = (np.abs(px) >= [29.9, 16.9]).any(axis=2)
-    assert beside[~np.eye(len(here), dtype=bool)].all()
 
 
 @pytest.fixture(scope="module")
@@ -36,31 +26,58 @@ def route(plot):
 
 
 def test_the_line_is_the_one_that_is_driven_and_arrows_point_along_it(route):
-    line, arrows, gate, *_ = route_layers.route(route, numbers=False)
-    assert np.array(line.data[0]["path"]) == pytest.approx(route.line_lonlat(), abs=1e-7)
-    assert gate.data[0]["p"] == pytest.approx((35.15, 30.36), abs=1e-6)
-    frame = route.aisles.grid.frame
-    step, before = (
-        np.diff(route.line_m, axis=0),
-        np.cumsum(np.hypot(*np.diff(route.line_m, axis=0).T)),
-    )
-    for k, arrow in enumerate(arrows.data):
-        tip, *wings = frame.xy_m(np.array(arrow["p"]))
+    layers = {layer.id: layer for layer in route_layers.route(route)}
+    assert list(layers) == ["casing", "route", "arrows", "gate"]
+    for name in ("casing", "route"):
+        drawn = np.array(layers[name].data[0]["path"])
+        assert drawn == pytest.approx(route.line_lonlat(), abs=1e-7)
+    assert layers["gate"].data[0]["p"] == pytest.approx((35.15, 30.36), abs=1e-6)
+    frame, arrows = route.aisles.grid.frame, layers["arrows"].data
+    step = np.diff(route.line_m, axis=0)
+    before = np.cumsum(np.hypot(*step.T))
+    assert len(arrows) > 20
+    for k, arrow in enumerate(arrows):
+        tip, *wings = frame.xy_m(np.array(arrow["a"]))
         heading = tip - np.mean(wings, axis=0)
-        leg = np.searchsorted(before, (k + 0.5) / len(arrows.data) * before[-1])
+        leg = np.searchsorted(before, (k + 0.5) / len(arrows) * before[-1])
         along = heading @ step[leg] / np.hypot(*heading) / np.hypot(*step[leg])
         assert along == pytest.approx(1.0, abs=0.05)
 
 
-def test_no_stop_is_no_layer(plot):
+def test_only_the_gate_says_what_it_is_so_that_no_arrow_hides_a_plant(route):
+    said = {layer.id for layer in route_layers.route(route) if "t" in layer.data[0]}
+    assert said == {"gate"}
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_the_line_stands_out_from_its_casing(route, dark):
+    layers = route_layers.route(route, dark=dark)[:2]
+    casing, line = (np.array(layer.get_color[:3]) for layer in layers)
+    assert np.abs(casing - line).max() > 90
+
+
+def test_no_stop_is_no_layer_and_nothing_to_play(plot):
     empty = plan_from(plot, np.full(len(plot.grid), 0.1), PlanSettings(Robot(hours=0.01))).route
     assert len(empty) == 0
-    assert route_layers.route(empty) == route_layers.playback(empty, 10.0) == []
+    assert route_layers.route(empty) == []
+    assert route_layers.playback(empty, SIX) is None
 
 
-def test_the_trail_ends_where_the_robot_is_and_stops_made_are_marked(route):
-    for second in (0.0, float(route.leave_s[3]), route.end_s):
-        trail, stops, robot = route_layers.playback(route, second)
-        assert trail.data[0]["path"][-1] == pytest.approx(robot.data[0]["p"])
-        assert len(stops.data) == (route.leave_s <= second).sum()
-    assert robot.data[0]["p"] == pytest.approx(route.line_lonlat()[-1].tolist(), abs=1e-6)
+def test_what_is_played_is_where_who_drives_is_at_which_second(route):
+    play = route_layers.playback(route, SIX)
+    assert np.array(play["line"]) == pytest.approx(route.line_lonlat(), abs=1e-7)
+    assert np.array(play["at_s"]) == pytest.approx(route.line_s, abs=0.05)
+    assert np.array(play["stops"]) == pytest.approx(route.stops_lonlat(), abs=1e-7)
+    assert np.array(play["leave_s"]) == pytest.approx(route.leave_s, abs=0.05)
+    assert play["starts_s"] == 6.5 * 3600
+    assert len(play["line"]) == len(play["at_s"])
+    assert (np.diff(play["at_s"]) >= 0).all()
+
+
+def test_while_played_each_stop_is_reached_and_left_when_it_is(route):
+    play = route_layers.playback(route, SIX)
+    at_s = np.array(play["at_s"])
+    assert at_s[route.line_stop] == pytest.approx(route.arrive_s, abs=0.05)
+    assert (np.array(play["leave_s"]) > at_s[route.line_stop]).all()
+    after = at_s[route.line_stop[:-1] + 1]
+    assert (after > np.array(play["leave_s"])[:-1]).all()

@@ -1,0 +1,62 @@
+"""What is assumed, said beside the figures that rest on it, and changed there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.infestation.prior import PriorSettings
+
+from ..show.assumed import sentence
+from ..state import assumptions, notices, widget_memory
+from ..words import texts
+from . import drawing
+
+if TYPE_CHECKING:
+    from ..state.choices import Choices
+
+
+def show(choices: Choices) -> None:
+    """Say what the figures above rest on, with the way to say otherwise."""
+    assumed = assumptions.of(choices)
+    st.caption(sentence(assumed, choices.units) or texts.ASSUMED_NOTHING)
+    with st.popover(texts.ASSUMED_CHANGE):
+        if choices.season is None:
+            _boxes(choices)
+        else:
+            _boxes_of_season(choices)
+
+
+def _boxes(choices: Choices) -> None:
+    if choices.plot.field.plants is None:
+        drawing.spacings(choices.plot_key)
+    usual = f"{100 * PriorSettings().background_chance:g}"
+    widget_memory.show(
+        st.number_input, texts.BACKGROUND, 0.0, 100.0, step=0.5, key=assumptions.BACKGROUND,
+        placeholder=usual, help=texts.BACKGROUND_HELP,
+    )  # fmt: skip
+    st.caption(texts.ASSUMED_ROBOT)
+
+
+def _boxes_of_season(choices: Choices) -> None:
+    settings = choices.season.settings
+    with st.form("assumed_form", border=False):
+        st.caption(texts.ASSUMED_LAID)
+        st.number_input(texts.BACKGROUND, 0.0, 100.0, 100 * settings.prior.background_chance, 0.5,
+                        key="season_background", help=texts.BACKGROUND_HELP)  # fmt: skip
+        st.number_input(texts.SPREAD, 0.0, 100.0, 100 * settings.belief.spread.rate_per_day, 0.5,
+                        key="season_spread", help=texts.SPREAD_HELP)  # fmt: skip
+        st.form_submit_button(texts.ASSUMED_USE, on_click=_change, args=(choices,))
+
+
+@notices.reporting
+def _change(choices: Choices) -> str:
+    """Let a season believe otherwise, from its first morning on."""
+    settings, state = choices.season.settings, st.session_state
+    prior = replace(settings.prior, background_chance=state["season_background"] / 100)
+    spread = replace(settings.belief.spread, rate_per_day=state["season_spread"] / 100)
+    belief = replace(settings.belief, spread=spread)
+    choices.season.change(replace(settings, prior=prior, belief=belief), settings)
+    return texts.ASSUMED_CHANGED

@@ -1,0 +1,67 @@
+// What lies under the pointer, looked up in the data: no second drawing of the map is needed.
+
+// Return the plant nearest to a place within some metres, or -1. The index is made once a plot.
+export function nearestPlant(places, [lon, lat], reachM) {
+  const index = (places.index ??= indexOf(places));
+  const { west, south, flat, cell, wide, tall, starts, order } = index, reach = reachM / 111320;
+  const clip = (value, most) => Math.max(0, Math.min(most - 1, Math.floor(value)));
+  const x0 = clip(((lon - west) * flat - reach) / cell, wide), x1 = clip(((lon - west) * flat + reach) / cell, wide);
+  const y0 = clip((lat - south - reach) / cell, tall), y1 = clip((lat - south + reach) / cell, tall);
+  let best = -1, least = reach * reach;
+  for (let y = y0; y <= y1; y++) {
+    for (let at = starts[y * wide + x0]; at < starts[y * wide + x1 + 1]; at++) {
+      const k = order[at];
+      const east = (places.lon[k] - lon) * flat, north = places.lat[k] - lat;
+      const far = east * east + north * north;
+      if (far <= least) { least = far; best = k; }
+    }
+  }
+  return best;
+}
+
+function indexOf({ n, lon, lat, bounds, step }) {
+  const [west, south, east, north] = bounds;
+  const flat = Math.cos((((south + north) / 2) * Math.PI) / 180);
+  const cell = Math.max(2 * step, (east - west) * flat / 1000, (north - south) / 1000);
+  const wide = Math.ceil(((east - west) * flat) / cell) + 1, tall = Math.ceil((north - south) / cell) + 1;
+  const starts = new Uint32Array(wide * tall + 1), order = new Uint32Array(n);
+  const cellOf = (k) => Math.floor((lat[k] - south) / cell) * wide + Math.floor(((lon[k] - west) * flat) / cell);
+  for (let k = 0; k < n; k++) starts[cellOf(k) + 1]++;
+  for (let c = 0; c < wide * tall; c++) starts[c + 1] += starts[c];
+  const next = starts.slice();
+  for (let k = 0; k < n; k++) order[next[cellOf(k)]++] = k;
+  return { west, south, flat, cell, wide, tall, starts, order };
+}
+
+// Return whether a place is within a ring.
+export function within([lon, lat], ring) {
+  let inside = false;
+  for (let k = 0, j = ring.length - 1; k < ring.length; j = k++) {
+    const [x1, y1] = ring[k], [x2, y2] = ring[j];
+    if (y1 > lat !== y2 > lat && lon < ((x2 - x1) * (lat - y1)) / (y2 - y1) + x1) inside = !inside;
+  }
+  return inside;
+}
+
+// Return the plants within a ring, as their numbers.
+export function plantsWithin(places, ring) {
+  const found = [];
+  for (let k = 0; k < places.n; k++) if (within([places.lon[k], places.lat[k]], ring)) found.push(k);
+  return found;
+}
+
+// Return what one row of a layer's data says, if the pointer is on it: a point, or an area.
+export function rowUnder(rows, here, reachM) {
+  const flat = Math.cos((here[1] * Math.PI) / 180);
+  for (let k = rows.length - 1; k >= 0; k--) {
+    const { p, t } = rows[k];
+    if (!t || !p) continue;
+    if (Array.isArray(p[0])) {
+      if (within(here, p)) return k;
+    } else {
+      const far = Math.hypot((p[0] - here[0]) * flat, p[1] - here[1]) * 111320;
+      if (far <= reachM) return k;
+    }
+  }
+  return -1;
+}

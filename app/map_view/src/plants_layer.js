@@ -1,0 +1,113 @@
+// The plants of a plot: points from near, one picture from far, whatever their number.
+
+import { CompositeLayer } from "@deck.gl/core";
+import { BitmapLayer, ScatterplotLayer } from "@deck.gl/layers";
+
+import { metresPerPixel } from "./view.js";
+
+// up to so many plants are always points; of more, those in view, if they stand far enough apart
+const ALL = 20000, IN_VIEW = 60000, APART_PX = 3;
+const PICTURE_PX = 2048;
+
+export class PlantsLayer extends CompositeLayer {
+  static layerName = "PlantsLayer";
+  static defaultProps = {
+    places: { type: "object", value: null },
+    ranks: { type: "object", value: null },
+    table: { type: "array", value: [] },
+    rim: { type: "array", value: [120, 110, 90, 140] },
+    radius: 1,
+    apart: 1,
+  };
+
+  shouldUpdateState({ changeFlags }) {
+    const far = this.props.places.n > ALL;
+    return changeFlags.propsOrDataChanged || (far && changeFlags.viewportChanged);
+  }
+
+  updateState({ props, oldProps, changeFlags }) {
+    const { viewport } = this.context;
+    const fresh = props.places !== oldProps.places || props.ranks !== oldProps.ranks ||
+      props.table !== oldProps.table || !this.state.made;
+    if (props.places.n <= ALL) {
+      if (fresh) this.setState({ made: true, points: pointsOf(props, null), picture: null });
+      return;
+    }
+    const apart = props.apart / metresPerPixel(viewport);
+    const seen = apart < APART_PX ? null : inView(props.places, viewport.getBounds());
+    if (seen !== null) {
+      this.setState({ made: true, points: pointsOf(props, seen), picture: null });
+    } else if (fresh || !this.state.picture || changeFlags.dataChanged) {
+      const picture = fresh || !this.kept ? (this.kept = pictureOf(props)) : this.kept;
+      this.setState({ made: true, points: null, picture });
+    }
+  }
+
+  renderLayers() {
+    const { points, picture } = this.state;
+    if (picture) {
+      return new BitmapLayer(this.getSubLayerProps({ id: "picture" }), {
+        image: picture.image, bounds: picture.bounds,
+        textureParameters: { magFilter: "nearest", minFilter: "nearest" },
+      });
+    }
+    return points && new ScatterplotLayer(this.getSubLayerProps({ id: "points" }), {
+      data: points, getRadius: this.props.radius, radiusMinPixels: 1.5, stroked: true,
+      getLineColor: this.props.rim, getLineWidth: 0.05, lineWidthMinPixels: 0.5,
+    });
+  }
+}
+
+// Return the points' attributes, the more important plants drawn last and so on top.
+export function pointsOf({ places, ranks, table }, which) {
+  const n = which ? which.length : places.n;
+  const positions = new Float64Array(2 * n), colours = new Uint8Array(4 * n);
+  const starts = new Uint32Array(table.length + 1);
+  for (let k = 0; k < n; k++) starts[ranks[which ? which[k] : k] + 1]++;
+  for (let r = 0; r < table.length; r++) starts[r + 1] += starts[r];
+  for (let k = 0; k < n; k++) {
+    const plant = which ? which[k] : k, at = starts[ranks[plant]]++;
+    positions[2 * at] = places.lon[plant];
+    positions[2 * at + 1] = places.lat[plant];
+    colours.set(table[ranks[plant]], 4 * at);
+  }
+  return {
+    length: n,
+    attributes: {
+      getPosition: { value: positions, size: 2 },
+      getFillColor: { value: colours, size: 4, normalized: true },
+    },
+  };
+}
+
+// Return the plants within bounds, or null where there are too many to draw each.
+export function inView(places, [west, south, east, north]) {
+  const which = [];
+  for (let k = 0; k < places.n; k++) {
+    const lon = places.lon[k], lat = places.lat[k];
+    if (lon < west || lon > east || lat < south || lat > north) continue;
+    if (which.length === IN_VIEW) return null;
+    which.push(k);
+  }
+  return which;
+}
+
+// Return all plants as one picture: the most important plant of a pixel gives it its colour.
+export function pictureOf({ places, ranks, table }) {
+  const [west, south, east, north] = places.bounds;
+  const flat = Math.cos((((south + north) / 2) * Math.PI) / 180);
+  const step = Math.max(places.step, (east - west) * flat / PICTURE_PX, (north - south) / PICTURE_PX);
+  const width = Math.max(1, Math.ceil(((east - west) * flat) / step));
+  const height = Math.max(1, Math.ceil((north - south) / step));
+  const top = new Uint8Array(width * height);
+  for (let k = 0; k < places.n; k++) {
+    const x = Math.min(width - 1, Math.floor(((places.lon[k] - west) * flat) / step));
+    const y = Math.min(height - 1, Math.floor((north - places.lat[k]) / step));
+    const at = y * width + x;
+    if (ranks[k] + 1 > top[at]) top[at] = ranks[k] + 1;
+  }
+  const data = new Uint8ClampedArray(4 * width * height);
+  for (let at = 0; at < top.length; at++) if (top[at]) data.set(table[top[at] - 1], 4 * at);
+  // whole pixels: stretched over the plot alone, plants would stand up to a pixel beside their places
+  return { image: { width, height, data }, bounds: [west, north - height * step, west + (width * step) / flat, north] };
+}

@@ -1,0 +1,98 @@
+// The page's shape: the panel beside the map folds away; on a phone it is a sheet to be pulled up.
+
+import { element } from "./chrome.js";
+import style from "./shape.css";
+
+// where a phone's sheet begins, and how far up a tap pulls it
+const HALF = 0.58, UP = 0.14;
+const KEY = "fieldmon panel";
+const page = document.documentElement;
+
+let now = null;
+
+function shapeOf() {
+  try {
+    now ??= JSON.parse(sessionStorage.getItem(KEY)) ?? {};
+  } catch {
+    now ??= {};
+  }
+  return now;
+}
+
+function keep(shape) {
+  try {
+    sessionStorage.setItem(KEY, JSON.stringify(shape));
+  } catch { /* the shape is then forgotten with the page */ }
+}
+
+// Return what the panel covers of the window, in pixels from each side.
+export function covered() {
+  const panel = document.querySelector(".st-key-panel")?.getBoundingClientRect();
+  const none = { left: 0, right: 0, bottom: 0 };
+  if (!panel || !panel.width || shapeOf().folded) return none;
+  if (panel.width > 0.9 * innerWidth) return { ...none, bottom: Math.max(0, innerHeight - panel.top) };
+  return panel.left > innerWidth / 2 ? { ...none, right: innerWidth - panel.left } : { ...none, left: panel.right };
+}
+
+function measure() {
+  const { left, right, bottom } = covered();
+  page.style.setProperty("--covers-left", `${left}px`);
+  page.style.setProperty("--covers-right", `${right}px`);
+  page.style.setProperty("--covers-bottom", `${bottom}px`);
+}
+
+// Set the panel's handle up; return what fits it to the page again, and what takes it away.
+export function keepShape(words) {
+  const shape = shapeOf();
+  const host = document.body.appendChild(element("div", { class: "fieldmon-shape" }));
+  const shadow = host.attachShadow({ mode: "open" });
+  const sheet = new CSSStyleSheet();
+  sheet.replaceSync(style);
+  shadow.adoptedStyleSheets = [sheet];
+  const fold = shadow.appendChild(element("button", { type: "button", class: "fold", onclick: () => set({ folded: !shape.folded }) }));
+  const grip = shadow.appendChild(element("button", { type: "button", class: "grip" }, [element("i")]));
+  const set = (change) => {
+    Object.assign(shape, change);
+    keep(shape);
+    page.toggleAttribute("data-panel-folded", Boolean(shape.folded));
+    page.style.setProperty("--sheet-top", `${Math.round(100 * (shape.sheet ?? HALF))}dvh`);
+    measure();
+    const said = words() ?? {};
+    fold.textContent = shape.folded ? "›" : "‹";
+    fold.setAttribute("aria-label", (shape.folded ? said.unfold : said.fold) ?? "");
+    fold.setAttribute("aria-expanded", String(!shape.folded));
+    grip.setAttribute("aria-label", said.sheet ?? "");
+  };
+  pull(grip, shape, set);
+  set({});
+  const again = () => set({});
+  window.addEventListener("resize", again);
+  const end = () => {
+    window.removeEventListener("resize", again);
+    host.remove();
+  };
+  return { again, end };
+}
+
+function pull(grip, shape, set) {
+  let from = null;
+  grip.addEventListener("pointerdown", (event) => {
+    from = { y: event.clientY, moved: false };
+    grip.setPointerCapture(event.pointerId);
+  });
+  grip.addEventListener("pointermove", (event) => {
+    if (!from) return;
+    from.moved ||= Math.abs(event.clientY - from.y) > 5;
+    if (from.moved) set({ sheet: Math.min(0.85, Math.max(0.1, event.clientY / innerHeight)) });
+  });
+  grip.addEventListener("pointerup", () => {
+    // a tap pulls the sheet up, or lets it down again
+    if (from && !from.moved) set({ sheet: (shape.sheet ?? HALF) > 0.3 ? UP : HALF });
+    from = null;
+  });
+  grip.addEventListener("keydown", (event) => {
+    const step = { ArrowUp: -0.1, ArrowDown: 0.1 }[event.key];
+    if (event.key === "Enter" || event.key === " ") set({ sheet: (shape.sheet ?? HALF) > 0.3 ? UP : HALF });
+    else if (step) set({ sheet: Math.min(0.85, Math.max(0.1, (shape.sheet ?? HALF) + step)) });
+  });
+}

@@ -1,0 +1,56 @@
+// What the server has made for the map, each thing fetched once under the digest of its content.
+
+const kept = new Map();
+const MOST = 200;
+
+function once(url, read) {
+  if (!kept.has(url)) {
+    const got = fetch(url).then((answer) => {
+      if (!answer.ok) throw new Error(`${url}: ${answer.status}`);
+      return read(answer);
+    });
+    got.catch(() => kept.delete(url));
+    kept.set(url, got);
+    if (kept.size > MOST) kept.delete(kept.keys().next().value);
+  } else {
+    const got = kept.get(url);
+    kept.delete(url); // the ones used last go last
+    kept.set(url, got);
+  }
+  return kept.get(url);
+}
+
+const json = (url) => once(url, (answer) => answer.json());
+const places = (url) => once(url, async (answer) => placesOf(await answer.arrayBuffer()));
+const bytes = (url) => once(url, async (answer) => new Uint8Array(await answer.arrayBuffer()));
+
+// Return a layer's JSON, with the arrays it names in place of their addresses.
+export async function layer({ url, places: where, ranks, values }) {
+  const [made, placed, ranked, valued] = await Promise.all([
+    json(url), where && places(where), ranks && bytes(ranks), values && bytes(values),
+  ]);
+  if (!placed) return made;
+  const share = valued && new Float32Array(valued.buffer);
+  return { ...made, places: placed, ranks: ranked, values: share };
+}
+
+// Plants' places: a head of six doubles (n, lon, lat, step in degrees of latitude, 0, 0); then
+// offsets of lon and lat as floats, rows and numbers in the row as integers, n each.
+export function placesOf(buffer) {
+  const [n, lon0, lat0, step] = new Float64Array(buffer, 0, 6);
+  const part = (Kind, at) => new Kind(buffer, 48 + 4 * n * at, n);
+  const east = part(Float32Array, 0), north = part(Float32Array, 1);
+  const lon = new Float64Array(n), lat = new Float64Array(n);
+  const bounds = [Infinity, Infinity, -Infinity, -Infinity];
+  for (let k = 0; k < n; k++) {
+    lon[k] = lon0 + east[k];
+    lat[k] = lat0 + north[k];
+    bounds[0] = Math.min(bounds[0], lon[k]);
+    bounds[1] = Math.min(bounds[1], lat[k]);
+    bounds[2] = Math.max(bounds[2], lon[k]);
+    bounds[3] = Math.max(bounds[3], lat[k]);
+  }
+  const half = step / 2, wide = half / Math.cos((lat0 * Math.PI) / 180);
+  bounds[0] -= wide; bounds[1] -= half; bounds[2] += wide; bounds[3] += half;
+  return { n, lon, lat, bounds, step, row: part(Int32Array, 2), number: part(Int32Array, 3) };
+}

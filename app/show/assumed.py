@@ -1,0 +1,38 @@
+"""What is assumed, in words beside the figures that rest on it. No Streamlit in here."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..words import texts
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fieldmon.plot.assumed import Assumed
+
+    from ..words.units import Units
+
+_LENGTHS = frozenset({"row_spacing_m", "plant_spacing_m"})
+
+
+def sentence(assumed: Sequence[Assumed], units: Units) -> str:
+    """Return what is assumed, as one line; empty if nothing is."""
+    if not assumed:
+        return ""
+    return texts.ASSUMED.format(what=", ".join(_words(one, units) for one in assumed))
+
+
+def mark(label: str, assumed: Sequence[Assumed], settings: Sequence[str]) -> str:
+    """Return the label of a figure, with a star if it rests on one of these settings."""
+    return f"{label} *" if any(one.setting in settings for one in assumed) else label
+
+
+def _words(one: Assumed, units: Units) -> str:
+    if one.setting in _LENGTHS:
+        value = f"{units.shown(one.value):g} {units.length}"
+    elif one.setting == "speed_m_s":
+        value = f"{3.6 * one.value:.3g}"
+    else:
+        value = f"{100 * one.value:g}"
+    return texts.ASSUMED_WHAT[one.setting].format(value=value)

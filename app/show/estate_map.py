@@ -1,0 +1,83 @@
+"""All plots on one map, coloured by how long ago they were seen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from pydeck import Layer
+
+from ..words import texts
+from .map_view import MapContent
+from .maps import legends
+
+if TYPE_CHECKING:
+    from ..state.estate import PlotState
+    from .maps.colours import Colour
+
+#: the layer in which a tapped plot is looked up
+PLOTS = "plots"
+_COLOURS: dict[str, Colour] = {
+    "fresh": (46, 139, 87), "due": (230, 159, 0), "late": (200, 60, 40), "new": (130, 140, 135),
+}  # fmt: skip
+_DUE, _LATE = 3, 7
+
+
+def state_of(plot: PlotState) -> str:
+    """Return the name of a plot's state."""
+    if plot.expected is None:
+        return "new"
+    if plot.days_since is None or plot.days_since >= _LATE:
+        return "late"
+    return "due" if plot.days_since >= _DUE else "fresh"
+
+
+def said(plot: PlotState) -> str:
+    """Return what is said of a plot that is pointed at."""
+    name = texts.isolated(plot.name)
+    if plot.expected is None:
+        return texts.PLOTS_TIP_NEW.format(name=name)
+    days = plot.days_since
+    seen = texts.PLOTS_SEEN[days] if days in (0, None) else texts.PLOTS_SEEN["n"].format(n=days)
+    return texts.PLOTS_TIP.format(name=name, expected=plot.expected, seen=seen)
+
+
+def content(plots: list[PlotState]) -> MapContent:
+    """Return the map of the plots."""
+    parts = [
+        (number, ring)
+        for number, plot in enumerate(plots)
+        for ring in shapely.get_exterior_ring(shapely.get_parts(plot.outline))
+    ]
+    rows = [
+        {
+            "p": np.round(shapely.get_coordinates(ring), 7).tolist(),
+            "t": said(plots[number]),
+            "n": number,
+            "c": [*_COLOURS[state_of(plots[number])], 130],
+        }
+        for number, ring in parts
+    ]
+    bounds = shapely.total_bounds([plot.outline for plot in plots]).tolist()
+    areas = Layer(
+        "PolygonLayer", rows, id=PLOTS, get_polygon="p", get_fill_color="c", stroked=True,
+        get_line_color=[60, 70, 65], line_width_min_pixels=1.5,
+    )  # fmt: skip
+    states = dict.fromkeys(map(state_of, plots))
+    items = [("square", _COLOURS[name], texts.PLOTS_STATES[name]) for name in states]
+    names = [
+        {"p": shapely.get_coordinates(plot.outline.representative_point())[0].round(7).tolist(),
+         "t": plot.name, "k": "name"}
+        for plot in plots
+    ]  # fmt: skip
+    alt = texts.PLOTS_ALT.format(n=len(plots), names=", ".join(plot.name for plot in plots))
+    return MapContent(
+        "all plots", bounds, alt, [areas], legend=[legends.part("", items)], labels=names
+    )
+
+
+def plot_tapped(plots: list[PlotState], index: int) -> PlotState | None:
+    """Return the plot whose part was tapped, by its number in the layer."""
+    parts = [plot for plot in plots for _ in range(shapely.get_num_geometries(plot.outline))]
+    return parts[index] if 0 <= index < len(parts) else None

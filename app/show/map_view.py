@@ -1,0 +1,185 @@
+"""The map on the page: which layers, what can be switched, what is written on it; one component.
+
+What the person does on the map alone (zooming, switching layers, pointing, playing, drawing) is
+the browser's; the server hears of taps, of finished drawings and of selections.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import streamlit as st
+
+from ..state import browser, chosen_units
+from ..state.map_file import ADDRESS
+from ..words import texts
+from .maps import deck
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from pydeck import Layer
+
+    from .maps.labels import Label
+    from .maps.legends import LegendPart
+
+    #: takes the layer's name and the number in it of what was tapped
+    Tapped = Callable[[str, int], None]
+    #: takes the kind of what was drawn and its corners, lon/lat
+    Drawn = Callable[[str, tuple[tuple[float, float], ...]], None]
+    #: takes the plants that were selected
+    Selected = Callable[[list[int]], None]
+
+#: the one map of a page
+KEY = "map"
+# the script is fetched once; the component is run with every answer of the server
+_LOADER = """export default (component) => {
+  const place = component.parentElement;
+  place.wanted = component;
+  place.ended = false;
+  import(new URL(%r, location.href).href).then(({ mount }) => {
+    if (!place.ended) place.end = mount(place.wanted);
+  });
+  return () => { place.ended = true; place.end?.(); };
+}"""
+_component = st.components.v2.component("fieldmon_map", html="", js=_LOADER % ADDRESS)
+
+
+@dataclass(frozen=True)
+class Switch:
+    """Layers that are switched together: name, words, their ids, and whether they are on first."""
+
+    key: str
+    label: str
+    layers: tuple[str, ...]
+    on: bool = True
+
+
+@dataclass(frozen=True)
+class Drawable:
+    """What clicks draw: its kind (``point``, ``line``, ``area``), name, a hint, where it snaps."""
+
+    kind: str
+    name: str
+    hint: str = ""
+    snap: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Frames:
+    """Days to slide over: a key for all of it, their names, each one's layers, the one shown first.
+
+    A day's layers take the place of the map's layers of the same names.
+    """
+
+    key: str
+    names: tuple[str, ...]
+    layers: tuple[list[Layer], ...]
+    now: int
+
+
+@dataclass(frozen=True, eq=False)
+class MapContent:
+    """What a map shows.
+
+    Parameters
+    ----------
+    place
+        Names what is shown: the view stays as long as it is the same.
+    bounds
+        West, south, east, north of what must be in view.
+    alt
+        What the map says to those who do not see it.
+    layers
+        From below to above.
+    switches, shades
+        What can be switched; of the shades, one is on.
+    legend, labels
+        Signs with their meanings; words on the map, the most important first.
+    play
+        What plays a day, or None.
+    frames
+        The days of a season, to be slid over and played, or None.
+    draw
+        What clicks draw, or None.
+    """
+
+    place: str
+    bounds: list[float]
+    alt: str
+    layers: list[Layer]
+    switches: tuple[Switch, ...] = ()
+    shades: tuple[Switch, ...] = ()
+    legend: list[LegendPart] = field(default_factory=list)
+    labels: list[Label] = field(default_factory=list)
+    play: dict[str, Any] | None = None
+    frames: Frames | None = None
+    draw: Drawable | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class MapAnswers:
+    """Who hears of what is done on the map; where nobody does, it cannot be done."""
+
+    tapped: Tapped | None = None
+    drawn: Drawn | None = None
+    selected: Selected | None = None
+
+
+def show(content: MapContent, answers: MapAnswers | None = None) -> None:
+    """Show the map, or what has changed of it."""
+    answers = answers or MapAnswers()
+    _component(
+        key=KEY, data=as_data(content, answers), height="stretch",
+        on_tapped_change=lambda: _heard(answers),
+        on_drawn_change=lambda: _heard(answers),
+        on_selected_change=lambda: _heard(answers),
+        # the server had let go of something: the run that follows publishes it again
+        on_missing_change=lambda: None,
+    )  # fmt: skip
+
+
+def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
+    """Return what the browser is sent."""
+    draw = content.draw
+    return {
+        "place": content.place,
+        "bounds": content.bounds,
+        "alt": content.alt,
+        "layers": [deck.published(layer) for layer in content.layers],
+        "switches": [
+            {"key": s.key, "label": s.label, "layers": [*s.layers], "off": not s.on}
+            for s in content.switches
+        ],
+        "shades": [
+            {"key": s.key, "label": s.label, "layers": [*s.layers]} for s in content.shades
+        ],
+        "legend": content.legend,
+        "labels": content.labels,
+        "play": content.play,
+        "frames": None if content.frames is None else _sent(content.frames),
+        "draw": draw and {"id": draw.name, "kind": draw.kind, "hint": draw.hint,
+                          "snap": [list(p) for p in draw.snap]},
+        "taps": answers.tapped is not None,
+        "select": answers.selected is not None,
+        "dark": browser.is_dark(),
+        "lengths": chosen_units.units().lengths(),
+        "words": texts.MAP_WORDS,
+    }  # fmt: skip
+
+
+def _sent(frames: Frames) -> dict[str, Any]:
+    days = [[deck.published(layer) for layer in layers] for layers in frames.layers]
+    return {"key": frames.key, "names": [*frames.names], "layers": days, "now": frames.now}
+
+
+def _heard(answers: MapAnswers) -> None:
+    state = st.session_state[KEY]
+    if (hit := state.get("tapped")) and answers.tapped:
+        answers.tapped(str(hit["layer"]), int(hit["index"]))
+    if (made := state.get("drawn")) and answers.drawn:
+        points = tuple((float(lon), float(lat)) for lon, lat in made["points"])
+        answers.drawn(str(made["kind"]), points)
+    if (some := state.get("selected")) and answers.selected:
+        answers.selected([int(plant) for plant in some["plants"]])

@@ -1,0 +1,62 @@
+"""Words and numbers on a map: the browser shows as many as have room, the first ones first."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from fieldmon.planning.route import Route
+    from fieldmon.plot.grid import PlantGrid
+
+    #: ``{"p": [lon, lat], "t": words, "k": kind}``; with ``from``, ``to``: at these zooms only
+    Label = dict[str, Any]
+
+# a stop's number has room where plants are this far apart on the screen
+_STOP_PX = 16.0
+_EARTH_M, _TILE_PX = 40_075_016.686, 512
+
+
+def stops(route: Route) -> list[Label]:
+    """Return the numbers of legs from far, of stops from near.
+
+    A leg is what is inspected without leaving an aisle.
+    """
+    if not len(route):
+        return []
+    grid = route.aisles.grid
+    lonlat = np.round(route.stops_lonlat(), 7)
+    near = _zoom(grid, float(lonlat[0, 1]))
+    aisle = grid.corridor[grid.row[route.plant]]
+    first = np.flatnonzero(np.append(True, np.diff(aisle) != 0))
+    middle = (first + np.append(first[1:], len(route))) // 2
+    legs = [
+        {"p": lonlat[k].tolist(), "t": f"{number}", "k": "leg", "to": near}
+        for number, k in enumerate(middle.tolist(), start=1)
+    ]
+    own = [
+        {"p": place, "t": f"{number}", "k": "stop", "from": near}
+        for number, place in enumerate(lonlat.tolist(), start=1)
+    ]
+    return [*legs, *own]
+
+
+def rows(grid: PlantGrid) -> list[Label]:
+    """Return each row's number before its first plant, every tenth row before the others."""
+    line = grid.row_line[grid.row]
+    _, first = np.unique(line, return_index=True)
+    before_m = grid.xy_m[first] - [1.5 * grid.plant_spacing_m, 0.0]
+    lonlat = np.round(grid.frame.lonlat(before_m), 7).tolist()
+    made = [
+        {"p": place, "t": f"{number + 1}", "k": "row"}
+        for number, place in zip(line[first].tolist(), lonlat, strict=True)
+    ]
+    tens = {"0", "1"}
+    return sorted(made, key=lambda one: (one["t"][-1] not in tens, one["t"][-1] != "5"))
+
+
+def _zoom(grid: PlantGrid, lat: float) -> float:
+    """Return the zoom from which stops are numbered."""
+    metres_per_px = grid.plant_spacing_m / _STOP_PX
+    return float(np.log2(_EARTH_M * np.cos(np.deg2rad(lat)) / (_TILE_PX * metres_per_px)))

@@ -1,0 +1,31 @@
+"""What is assumed of a plot's insects unless a person says otherwise, in boxes of any page."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fieldmon.infestation.prior import PriorSettings
+from fieldmon.planning.assumptions import assumed_by
+
+from . import widget_memory
+
+if TYPE_CHECKING:
+    from fieldmon.plot.assumed import Assumed
+
+    from .choices import Choices
+
+#: the box for the chance of a plant of which nothing is known, percent
+BACKGROUND = "background_pct"
+
+
+def prior() -> PriorSettings:
+    """Return how records become chances, as far as a person said so."""
+    percent = widget_memory.value(BACKGROUND)
+    return PriorSettings() if percent is None else PriorSettings(background_chance=percent / 100)
+
+
+def of(choices: Choices) -> tuple[Assumed, ...]:
+    """Return what the figures of a day rest on though nobody said it."""
+    if choices.season is not None:
+        return choices.season.assumed()
+    return assumed_by(choices.plot.assumed, choices.prior, choices.robot)

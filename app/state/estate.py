@@ -1,0 +1,102 @@
+"""All plots that can be opened, with their state: of the seasons, and of the files at hand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.errors import FieldmonError
+from fieldmon.io.options import PlotOptions
+from fieldmon.plot.local_clock import local_clock
+
+from ..words import texts
+from . import cached, plot_files, plot_source, sample_estate, seasons_folder
+from .brought_files import settled
+
+if TYPE_CHECKING:
+    from shapely import MultiPolygon
+
+    from fieldmon.monitoring import Season
+
+
+@dataclass(frozen=True, eq=False)
+class PlotState:
+    """A plot on the map of all plots.
+
+    Parameters
+    ----------
+    name
+        The plot's, or the season's.
+    source
+        What is opened for it: see `plot_source.chosen`.
+    outline
+        Its boundary, lon/lat.
+    number
+        Which plot of its file it is; None: a season has one only.
+    days_since
+        Days since a plant of it was inspected; None: never.
+    expected
+        Plants still infested, as expected; None: nobody asked yet.
+    """
+
+    name: str
+    source: str
+    outline: MultiPolygon
+    number: int | None = None
+    days_since: int | None = None
+    expected: float | None = None
+
+
+def plots() -> tuple[list[PlotState], list[str]]:
+    """Return the plots, seasons first, and why seasons that cannot be opened are not among them."""
+    found, problems = [], []
+    for name in seasons_folder.names():
+        try:
+            found.append(_of_season(name, cached.season(seasons_folder.path_of(name))))
+        except FieldmonError as error:
+            problems.append(f"{name}: {error}")
+    files = plot_files.of_session()
+    if files is not None and files.plot is not None:
+        try:
+            read = cached.plots(
+                files.plot.key, settled(files.plot, PlotOptions()), files.plot.source
+            )
+            found += [
+                PlotState(field.name, texts.UPLOAD, field.boundary, number)
+                for number, field in enumerate(read.value)
+            ]
+        except FieldmonError as error:
+            problems.append(str(error))
+    if not found:
+        found = [
+            PlotState(field.name, texts.SAMPLE, field.boundary, number)
+            for number, field in enumerate(sample_estate.plots())
+        ]
+    return found, problems
+
+
+def _of_season(name: str, season: Season) -> PlotState:
+    today = local_clock(season.plot.field).today()
+    # nothing is known of a season before its first day
+    on = max(today, season.settings.begins)
+    figures = cached.day_figures(str(season.path), season.revision, str(on), season)
+    dates = season.history.inspections.date
+    seen = None
+    if len(dates):
+        seen = int((np.datetime64(today) - dates.max()) / np.timedelta64(1, "D"))
+    return PlotState(
+        name, name, season.plot.field.boundary, None,
+        None if seen is None else max(seen, 0), figures.expected,
+    )  # fmt: skip
+
+
+def open_plot(plot: PlotState) -> None:
+    """Let this plot be the one that is open from the next run on (for callbacks)."""
+    plot_source.open_season(plot.source)
+    if plot.number is None:
+        return
+    files = plot_files.of_sample() if plot.source == texts.SAMPLE else plot_files.of_session()
+    if files is not None and files.plot is not None:
+        plot_source.choose_feature(files.plot.key, plot.number)

@@ -1,0 +1,159 @@
+"""What a session brought and said of it, kept on this machine: a reload finds it again.
+
+The way back is a long random word in the address. Whoever has it sees the files; who does not
+cannot guess it. What nobody came back to for a day is removed.
+"""
+
+from __future__ import annotations
+
+import getpass
+import json
+import os
+import re
+import secrets
+import shutil
+import tempfile
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import streamlit as st
+
+from fieldmon.io.atomic_write import write_whole
+from fieldmon.io.options import Upload
+
+from . import brought_files, plot_edits, widget_memory
+from .brought_files import File
+
+#: the word in the address that leads back to the files
+KEY = "files"
+KEEP_S = 86_400.0
+_WORD = re.compile(r"[\w-]{22}")
+_SESSION, _SAVED = "files key", "files saved"
+_MANIFEST = "files.json"
+#: boxes that say how files are read and plants are laid
+_BOXES = frozenset(
+    {"row_bearing", "row_spacing", "plant_spacing", "headland", "both_faces", "feature"}
+    | {"missing_below", "risk_meaning", "risk_share", "risk_low", "background_pct"}
+)
+
+
+def sync() -> None:
+    """Take what an earlier session kept, once; then keep what this one has."""
+    if _SESSION not in st.session_state:
+        st.session_state[_SESSION] = ""
+        _restore(st.query_params.get(KEY) or "")
+    _keep()
+    _keep_in_address()
+
+
+def folder() -> Path:
+    """Return the folder of all sessions' files, which nobody else on this machine can read."""
+    path = Path(tempfile.gettempdir()) / f"fieldmon-files-{getpass.getuser()}"
+    path.mkdir(mode=0o700, exist_ok=True)
+    return path
+
+
+def clean(now: float) -> None:
+    """Remove what nobody came back to for a day."""
+    for kept in folder().iterdir():
+        with suppress(OSError):
+            if now - kept.stat().st_mtime > KEEP_S:
+                shutil.rmtree(kept)
+
+
+def _restore(word: str) -> None:
+    """Take the files that this word leads to, and what was said of them."""
+    if not _WORD.fullmatch(word) or not _is_ours():
+        return
+    here = folder() / word
+    try:
+        said = json.loads((here / _MANIFEST).read_text(encoding="utf-8"))
+        files = {kind: _file(here, kind, *one) for kind, one in said["files"].items()}
+        edits = {
+            key: tuple(plot_edits.Edit(kind, tuple(map(tuple, at))) for kind, at in drawn)
+            for key, drawn in said["edits"].items()
+        }
+    except (OSError, ValueError, KeyError, TypeError):
+        return  # gone, or half of it is: the boxes are empty, as they would be
+    brought_files.brought().update(files)
+    for key, answers in said["answers"].items():
+        st.session_state[key] = tuple(map(tuple, answers))
+    st.session_state.update(edits)
+    for key, value in said["boxes"].items():
+        widget_memory.first(key, value)
+    st.session_state[_SESSION] = word
+    os.utime(here)
+
+
+def _file(here: Path, kind: str, key: str, names: list[str]) -> File:
+    parts = [
+        Upload(name, (here / f"{key}-{number}").read_bytes()) for number, name in enumerate(names)
+    ]
+    return File(key, parts[0] if len(parts) == 1 else tuple(parts), kind)
+
+
+def _keep() -> None:
+    """Write what changed since it was written last; nothing to keep: remove it."""
+    files = brought_files.brought()
+    said = _said(files)
+    if st.session_state.get(_SAVED) == said or not _is_ours():
+        return
+    word = st.session_state[_SESSION]
+    if not files:
+        if word:
+            shutil.rmtree(folder() / word, ignore_errors=True)
+        st.session_state[_SESSION], st.session_state[_SAVED] = "", said
+        return
+    clean(time.time())
+    word = word or secrets.token_urlsafe(16)
+    here = folder() / word
+    here.mkdir(mode=0o700, exist_ok=True)
+    wanted = {_MANIFEST}
+    for file in files.values():
+        for number, part in enumerate(_parts(file)):
+            wanted.add(f"{file.key}-{number}")
+            if not (here / f"{file.key}-{number}").exists():
+                write_whole(here / f"{file.key}-{number}", part.data)
+    write_whole(here / _MANIFEST, said.encode())
+    for old in here.iterdir():
+        if old.name not in wanted:
+            old.unlink(missing_ok=True)
+    st.session_state[_SESSION], st.session_state[_SAVED] = word, said
+
+
+def _said(files: dict[str, File]) -> str:
+    """Return what is kept beside the files' bytes, as JSON."""
+    state: dict[str, Any] = {str(key): value for key, value in st.session_state.items()}
+    answers = {key: value for key, value in state.items() if key.startswith("answers ")}
+    edits = {
+        key: [(edit.kind, edit.lonlat) for edit in value]
+        for key, value in state.items()
+        if key.startswith("edits ")
+    }
+    named = {k: (file.key, [part.name for part in _parts(file)]) for k, file in files.items()}
+    boxes = widget_memory.values_of(_BOXES)
+    return json.dumps({"files": named, "answers": answers, "edits": edits, "boxes": boxes})
+
+
+def _parts(file: File) -> tuple[Upload, ...]:
+    source = file.source
+    return source if isinstance(source, tuple) else (source,)  # type: ignore[return-value]
+
+
+def _is_ours() -> bool:
+    """Return whether the folder is this person's own: another's could read or forge files."""
+    try:
+        owner = folder().stat().st_uid
+    except OSError:
+        return False
+    return not hasattr(os, "getuid") or owner == os.getuid()
+
+
+def _keep_in_address() -> None:
+    word = st.session_state[_SESSION]
+    if not word:
+        st.query_params.pop(KEY, None)
+    elif st.query_params.get(KEY) != word:
+        st.query_params[KEY] = word

@@ -1,0 +1,63 @@
+"""The rooms of the app, their parts, and which part of each is shown."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import streamlit as st
+
+from . import widget_memory
+
+
+@dataclass(frozen=True)
+class Room:
+    """A room: its icon, and its parts, each a module of `views`; the first is shown first."""
+
+    icon: str
+    parts: tuple[str, ...]
+
+
+#: by their addresses, in the order in which they stand at the top
+ROOMS = {
+    "plots": Room("grid_view", ("plots",)),
+    "today": Room("route", ("today", "scout", "record")),
+    "season": Room("calendar_month", ("season", "field", "report")),
+    "ahead": Room("balance", ("compare", "simulate")),
+    "plot": Room("polyline", ("plot",)),
+}
+
+
+_TURN = "turn to"
+
+
+def turn_to(name: str) -> None:
+    """Let a room be turned to in the next run (for callbacks, in which no page can be turned)."""
+    st.session_state[_TURN] = name
+
+
+def turned_to() -> str | None:
+    """Return the room that is to be turned to, once."""
+    name: str | None = st.session_state.pop(_TURN, None)
+    return name
+
+
+def room_of(part: str) -> str:
+    """Return the room that a part is in."""
+    return next(name for name, room in ROOMS.items() if part in room.parts)
+
+
+def key(name: str) -> str:
+    """Return the key of the box that says which part of a room is shown."""
+    return f"part {name}"
+
+
+def part_of(name: str) -> str:
+    """Return which part of a room is shown."""
+    parts = ROOMS[name].parts
+    chosen = widget_memory.value(key(name))
+    return chosen if chosen in parts else parts[0]
+
+
+def open_part(part: str) -> None:
+    """Let a part be shown from the next run on (for callbacks)."""
+    st.session_state[key(room_of(part))] = part

@@ -1,0 +1,26 @@
+"""Record: what was found, by stops, one plant, or a file; what was recorded, and its undo."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from ..actions import beginning, recording
+from ..show import map_layers, plant_history
+from ..words import texts
+
+if TYPE_CHECKING:
+    from ..state.choices import Choices
+
+
+def show(choices: Choices) -> None:
+    """Take in what was found."""
+    plant_history.want(choices, map_layers.day_map(choices, first="state"))
+    if choices.season is None:
+        st.markdown(texts.NEEDS_SEASON)
+        beginning.show(choices)
+        return
+    recording.show(choices)
+    with st.expander(texts.BATCHES, expanded=True):
+        recording.show_batches(choices)

@@ -1,0 +1,122 @@
+"""What is brought to a season, held to what is recorded of the same plants and days."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.errors import ContradictionError
+from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.inspections import Inspections
+    from fieldmon.plot.grid import RowLabel
+
+    #: a plant and a day
+    Key = tuple[int, int]
+
+_MOST_NAMED = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Contradictions:
+    """Inspections that say otherwise than what is recorded of the same plant and day.
+
+    Parameters
+    ----------
+    which
+        ``(c,)`` their numbers among those brought.
+    plant, date
+        ``(c,)`` of what, and of which day.
+    recorded, brought
+        ``(c,)`` result that is recorded, and the one brought: `CLEAN` or `FOUND`.
+    """
+
+    which: NDArray[np.intp]
+    plant: NDArray[np.int32]
+    date: NDArray[np.datetime64]
+    recorded: NDArray[np.int8]
+    brought: NDArray[np.int8]
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self.which)
+
+    def sentences(self, label: RowLabel) -> list[str]:
+        """Return one sentence for each; `label` names all plants of the plot."""
+        return [
+            f"Row {label.line[plant]}, plant {label.number[plant]} on {date}: recorded as "
+            f"{RESULT_NAMES[was]}, now {RESULT_NAMES[now]}."
+            for plant, date, was, now in zip(
+                self.plant.tolist(),
+                self.date.astype(str).tolist(),
+                self.recorded.tolist(),
+                self.brought.tolist(),
+                strict=True,
+            )
+        ]
+
+    def refuse(self, label: RowLabel) -> None:
+        """Raise `ContradictionError` if there are any, with the first few by name."""
+        if not len(self):
+            return
+        named = " ".join(self.sentences(label)[:_MOST_NAMED])
+        more = " ..." if len(self) > _MOST_NAMED else ""
+        raise ContradictionError(
+            "Results must not contradict what is recorded of the same plants and day unless that "
+            f"is confirmed, but {len(self)} of them contradict it: {named}{more} "
+            "Check both; then undo what was wrong, or confirm that these hold too."
+        )
+
+
+def contradictions(brought: Inspections, held: Inspections) -> Contradictions:
+    """Return which of the inspections brought say otherwise than those held.
+
+    Clean against found or found against clean, of one plant on one day. Where both are held
+    already, neither is news; a plant that could not be inspected says nothing.
+    """
+    results = _held(held.inspected, brought)
+    found = [
+        (k, min(was))
+        for k, (same, result) in enumerate(zip(_keys(brought), brought.result, strict=True))
+        if result != SKIPPED and (was := results.get(same)) and result not in was
+    ]
+    at = np.array([k for k, _ in found], np.intp)
+    recorded = np.array([result for _, result in found], np.int8)
+    return Contradictions(at, brought.plant[at], brought.date[at], recorded, brought.result[at])
+
+
+def said_before(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:
+    """Return ``(k,)`` whether each adds nothing: the same is held, and it has no time or count.
+
+    A route file filled in after its stops were tapped in the field says what is known.
+    """
+    results = _held(held, brought)
+    bare: NDArray[np.bool_] = np.isnan(brought.second) & np.isnan(brought.count)
+    same = [
+        result in results.get(key, ())
+        for key, result in zip(_keys(brought), brought.result.tolist(), strict=True)
+    ]
+    bare &= np.array(same, bool)
+    return bare
+
+
+def _held(held: Inspections, brought: Inspections) -> dict[Key, set[int]]:
+    """Return the results held of the plants brought, by plant and day."""
+    held = held.take(np.isin(held.plant, brought.plant))
+    results: dict[Key, set[int]] = {}
+    for key, result in zip(_keys(held), held.result.tolist(), strict=True):
+        results.setdefault(key, set()).add(result)
+    return results
+
+
+def _keys(inspections: Inspections) -> Iterator[Key]:
+    # a day that is no time is one number too
+    days = inspections.date.astype(np.int64).tolist()
+    return zip(inspections.plant.tolist(), days, strict=True)

@@ -1,0 +1,36 @@
+"""What the figures of a planned day rest on though nobody said it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fieldmon.infestation.prior import PriorSettings
+from fieldmon.plot.assumed import Assumed
+from fieldmon.plot.robot import Robot, scout
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+
+def assumed_by(
+    planting: Iterable[Assumed], prior: PriorSettings, robot: Robot
+) -> tuple[Assumed, ...]:
+    """Return everything assumed of a day: of the planting, and what still is as it came.
+
+    Examples
+    --------
+    >>> from fieldmon.infestation.prior import PriorSettings
+    >>> from fieldmon.plot.robot import Robot
+    >>> for each in assumed_by((), PriorSettings(background_chance=0.03), Robot(speed_m_s=0.5)):
+    ...     print(each)
+    guessed: chance to find what is there 84 %
+    """
+    made = [*planting]
+    if prior.background_chance == PriorSettings().background_chance:
+        made.append(Assumed("background_chance", prior.background_chance))
+    usual = (Robot(), scout())
+    if robot.speed_m_s in {one.speed_m_s for one in usual}:
+        made.append(Assumed("speed_m_s", robot.speed_m_s))
+    if robot.detection is None and robot.viewpoints == Robot().viewpoints:
+        made.append(Assumed("detects", robot.detects))
+    return tuple(made)

@@ -1,0 +1,47 @@
+"""What a route holds and what no other can exceed, in a sentence."""
+
+from __future__ import annotations
+
+import math
+
+#: gaps up to this are none, but for rounding
+PROVED = 1e-6
+
+
+def share_above(held: float, bound: float) -> float:
+    """Return by how much a bound is above what is held, as a share; infinite where that is 0."""
+    if bound <= held:
+        return 0.0
+    return bound / held - 1.0 if held > 0.0 else math.inf
+
+
+def told(held: float, bound: float, what: str = "finds") -> str:
+    """Return what a route is expected to hold and what no other can exceed.
+
+    The bound and the share are rounded up: no route exceeds what is said.
+
+    Examples
+    --------
+    >>> told(42.31, 42.97)
+    '42.3 finds expected; no route of these hours can expect more than 43.0 (1.6 %).'
+    >>> told(20.0, 20.0)
+    '20.0 finds expected; no route of these hours can expect more.'
+    """
+    digits = _digits(bound)
+    begins = f"{held:.{digits}f} {what} expected; no route of these hours can expect more"
+    gap = share_above(held, bound)
+    if gap <= PROVED:
+        return f"{begins}."
+    share = f" ({_up(100.0 * gap, 1)} %)" if math.isfinite(gap) else ""
+    return f"{begins} than {_up(bound, digits)}{share}."
+
+
+def _digits(value: float) -> int:
+    """Return decimals for two digits at least."""
+    return 1 if value >= 1.0 or value <= 0.0 else 1 - math.floor(math.log10(value))
+
+
+def _up(value: float, digits: int) -> str:
+    """Return a number rounded up, but for what is mere rounding of sums."""
+    scale = 10.0**digits
+    return f"{math.ceil(value * scale * (1.0 - 1e-9)) / scale:.{digits}f}"

@@ -1,0 +1,267 @@
+"""A ladder below a plot: two headlands and rungs between them on which no way is longer.
+
+A ladder has a left and a right node for each aisle, in the order of the aisles up the plot, and
+ways only between neighbours in that order and along the aisles. On it the best drive at a price of
+time can be found exactly. So that what no drive on the ladder can reach no drive on the plot can
+reach either, each distance on the ladder must be at most the true one. That is made sure for every
+pair of lane ends and the gate of the plot at hand: where the ladder's way would be longer, as
+around holes and between parts, a cross link is put in.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.travel import Aisles, TravelTable
+
+    Float = NDArray[np.float64]
+    Int = NDArray[np.int64]
+
+_EXACT_M = 1e-7
+_LESS = 1.0 - 1e-9
+_ROUNDS = 40
+
+
+class Ladder(NamedTuple):
+    """A ladder on which no way is longer than on the plot.
+
+    Its e elements are aisles, cross links and, once, the gate, in order up the plot.
+
+    Parameters
+    ----------
+    up_m
+        ``(e - 1, 2)`` metres from each element to the next along the left and right headland.
+    across_m
+        ``(e,)`` metres from the left to the right node of an aisle or cross link.
+    stub_m
+        ``(2,)`` metres from the gate to the left and to the right node of its element.
+    gate
+        Number of the gate's element.
+    plant
+        ``(n,)`` all plants, aisle after aisle, by their place along it.
+    start
+        ``(e + 1,)`` offsets: plants of element k are ``plant[start[k]:start[k + 1]]``.
+    in_m
+        ``(n,)`` metres from the left node to each of `plant`.
+    upper
+        ``(n,)`` whether each of `plant` stands on the upper side of its aisle.
+    cross_links
+        Number of cross links: 0 where the plot is a ladder.
+    """
+
+    up_m: Float
+    across_m: Float
+    stub_m: Float
+    gate: int
+    plant: Int
+    start: Int
+    in_m: Float
+    upper: NDArray[np.bool_]
+    cross_links: int
+
+
+class _Rungs(NamedTuple):
+    """Each aisle as a rung: its ends, and true metres between all of them and the gate.
+
+    ``low``, ``high`` ``(k,)``: x of the rung's ends. ``apart_m`` ``(2, 2, k + 1, k + 1)``: from
+    the left (0) or right (1) end of an aisle to the left or right end of another; the last is the
+    gate, whose two ends are one.
+    """
+
+    low: Float
+    high: Float
+    apart_m: Float
+
+
+def ladder_below(aisles: Aisles) -> Ladder:
+    """Return a ladder on which no way is longer than the true one."""
+    rungs = _rungs(aisles.travel)
+    order = _order(aisles, rungs)
+    apart_m = rungs.apart_m[:, :, order][:, :, :, order]
+    gate = int(np.flatnonzero(order == len(order) - 1)[0])
+    across_m = np.append(rungs.high - rungs.low, np.inf)[order]
+    left, right, links = _fitted(apart_m, across_m, gate)
+    stub_m = np.array([_stub(left, apart_m[0, 0], gate), _stub(right, apart_m[1, 1], gate)])
+    return _assembled(aisles.travel, rungs, order, (left, right), (links, across_m, stub_m))
+
+
+def _rungs(travel: TravelTable) -> _Rungs:
+    """Join rows that are inspected from one aisle."""
+    n_aisles = int(travel.corridor.max()) + 1
+    first, last = np.full(n_aisles, np.inf), np.full(n_aisles, -np.inf)
+    np.minimum.at(first, travel.corridor, travel.end_x_m[:, 0])
+    np.maximum.at(last, travel.corridor, travel.end_x_m[:, 1])
+    # metres that a lane ends short of the longest lane of its aisle
+    short = np.stack(
+        [
+            first[travel.corridor] - travel.end_x_m[:, 0],
+            travel.end_x_m[:, 1] - last[travel.corridor],
+        ]
+    )
+    while True:
+        apart_m = _between_aisles(travel, short)
+        least = np.array([apart_m[side].min(axis=(0, 2))[:-1] for side in range(2)])
+        bad = (least < 0.0) & _some_short(short, travel.corridor, n_aisles)
+        if not bad.any():
+            break
+        # ends of such an aisle count as one place: the innermost
+        for side in range(2):
+            short[side, bad[side][travel.corridor]] = 0.0
+            rows = np.flatnonzero(bad[side][travel.corridor])
+            inner = (first, last)[side]
+            inner[bad[side]] = (-np.inf, np.inf)[side]
+            pick = np.maximum if side == 0 else np.minimum
+            pick.at(inner, travel.corridor[rows], travel.end_x_m[rows, side])
+    middle = (first + last) / 2
+    crossed = first > last
+    first[crossed] = last[crossed] = middle[crossed]
+    return _Rungs(first, last, np.maximum(apart_m, 0.0))
+
+
+def _some_short(short: Float, corridor: NDArray[np.int32], n_aisles: int) -> NDArray[np.bool_]:
+    some = np.zeros((2, n_aisles), np.bool_)
+    for side in range(2):
+        some[side, corridor[short[side] < 0.0]] = True
+    return some
+
+
+def _between_aisles(travel: TravelTable, short: Float) -> Float:
+    """Return the least metres from aisle end to aisle end, and to the gate."""
+    n_rows, n_aisles = len(travel.end_x_m), int(travel.corridor.max()) + 1
+    owner = np.append(travel.corridor, n_aisles)
+    by = np.argsort(owner, kind="stable")
+    start = np.searchsorted(owner[by], np.arange(n_aisles + 1))
+    apart_m = np.empty((2, 2, n_aisles + 1, n_aisles + 1))
+    for a in range(2):
+        here = np.append(2 * np.arange(n_rows) + a, 2 * n_rows)
+        for b in range(2):
+            there = np.append(2 * np.arange(n_rows) + b, 2 * n_rows)
+            metres = travel.between_m[np.ix_(here, there)]
+            metres += np.append(short[a], 0.0)[:, None] + np.append(short[b], 0.0)
+            metres = np.minimum.reduceat(metres[by], start, axis=0)
+            apart_m[a, b] = np.minimum.reduceat(metres[:, by], start, axis=1)
+    # from an aisle to itself nothing is asked
+    apart_m[:, :, np.arange(n_aisles), np.arange(n_aisles)] = np.inf
+    return apart_m
+
+
+def _order(aisles: Aisles, rungs: _Rungs) -> Int:
+    """Return the aisles and the gate (the last) in order up the plot."""
+    y = np.zeros(len(rungs.low))
+    y[aisles.travel.corridor] = aisles.grid.lane_y_m
+    order = np.lexsort((rungs.low, np.round(y, 3)))
+    return np.insert(order, np.searchsorted(y[order], aisles.gate_m[1]), len(y))
+
+
+def _hull(apart_m: Float) -> Float:
+    """Return for a < b the least metres from any place up to a to any place from b on."""
+    metres = np.where(np.tri(len(apart_m), dtype=bool), np.inf, apart_m)
+    metres = np.minimum.accumulate(metres, axis=0)
+    return np.minimum.accumulate(metres[:, ::-1], axis=1)[:, ::-1]
+
+
+def _places(apart_m: Float) -> Float:
+    """Return places ``(e,)`` on a line, ascending, no two further apart than they truly are."""
+    hull = _hull(apart_m)
+    place = np.zeros(len(apart_m))
+    for k in range(1, len(place)):
+        place[k] = (place[:k] + hull[:k, k]).min() * _LESS
+    return place
+
+
+def _fitted(
+    apart_m: Float, across_m: Float, gate: int
+) -> tuple[Float, Float, list[tuple[int, float]]]:
+    """Return left and right places of all elements, and the cross links that are needed."""
+    left, right = _places(apart_m[0, 0]), _places(apart_m[1, 1])
+    links = _cross_links((left, right), apart_m[0, 1], across_m, gate)
+    if links is None:
+        # the sides lie so near each other that one headland must do for both
+        left = right = _places(apart_m.min(axis=(0, 1)))
+        links = _cross_links((left, right), apart_m[0, 1], across_m, gate)
+    if links is None:
+        links = [(k, 0.0) for k in range(len(left)) if k != gate]
+    return left, right, links
+
+
+def _cross_links(
+    places: tuple[Float, Float], apart_m: Float, across_m: Float, gate: int
+) -> list[tuple[int, float]] | None:
+    """Return cross links that make no way from left to right longer than the true one.
+
+    ``apart_m`` ``(e, e)`` is from left ends to right ends. None if no cross link is short enough.
+    """
+    left, right = places
+    cross = np.where(np.arange(len(left)) == gate, np.inf, across_m)
+    asked = np.where(np.eye(len(left), dtype=bool), np.inf, apart_m)
+    # the gate's own ways are its stubs
+    asked[gate], asked[:, gate] = np.inf, np.inf
+    links: dict[int, float] = {}
+    for _ in range(_ROUNDS * 10):
+        over = _from_left_to_right(left, right, cross) - asked
+        if over.max() <= _EXACT_M:
+            return sorted(links.items())
+        a, b = (int(k) for k in np.unravel_index(np.argmax(over), over.shape))
+        room = asked[a, b] - np.abs(left - left[a]) - np.abs(right - right[b])
+        room[gate] = -np.inf
+        best = int(np.argmax(room))
+        if room[best] < 0.0:
+            return None
+        links[best] = min(links.get(best, np.inf), float(room[best]))
+        cross[best] = min(cross[best], links[best])
+    return None
+
+
+def _from_left_to_right(left: Float, right: Float, cross: Float) -> Float:
+    """Return the metres ``(e, e)`` from left to right nodes by the best single crossing."""
+    to = np.abs(left[:, None] - left) + cross
+    up = np.minimum.accumulate(to - right, axis=1) + right
+    down = np.minimum.accumulate((to + right)[:, ::-1], axis=1)[:, ::-1] - right
+    return np.minimum(up, down)
+
+
+def _stub(place: Float, apart_m: Float, gate: int) -> float:
+    """Return how far the gate can be from its node with no way from it being too long."""
+    spare = np.delete(apart_m[gate] - np.abs(place - place[gate]), gate)
+    return max(float(spare.min()) * _LESS, 0.0)
+
+
+def _assembled(
+    travel: TravelTable,
+    rungs: _Rungs,
+    order: Int,
+    places: tuple[Float, Float],
+    fitted: tuple[list[tuple[int, float]], Float, Float],
+) -> Ladder:
+    """Return the ladder with its cross links as elements of their own."""
+    links, across_m, stub_m = fitted
+    n_aisles = len(rungs.low)
+    rank = np.empty(n_aisles + 1, np.int64)
+    rank[order] = np.arange(len(order))
+    aisle = travel.corridor[travel.row]
+    x = np.clip(travel.x_m, rungs.low[aisle], rungs.high[aisle])
+    in_m = x - rungs.low[aisle]
+    plant = np.lexsort((in_m, rank[aisle]))
+    count = np.bincount(rank[aisle], minlength=len(order))
+    after = np.array([k for k, _ in links], np.int64) + 1
+    left, right = (np.insert(p, after, p[after - 1]) for p in places)
+    across = np.insert(across_m, after, [metres for _, metres in links])
+    count = np.insert(count, after, 0)
+    gate = int(rank[-1] + (after <= rank[-1]).sum())
+    across[gate] = np.inf
+    return Ladder(
+        np.stack([np.diff(left), np.diff(right)], axis=1),
+        across,
+        stub_m,
+        gate,
+        plant,
+        np.concatenate([[0], np.cumsum(count)]),
+        in_m[plant],
+        travel.side[travel.row[plant]] > 0,
+        len(links),
+    )

@@ -1,0 +1,156 @@
+"""From a drive on a ladder to stops in order on the plot itself."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.planning.routes.frontier import (
+    END_LEFT,
+    END_LEFT_AND,
+    END_RIGHT,
+    END_RIGHT_AND,
+    FROM_BOTH,
+    FROM_LEFT,
+    FROM_RIGHT,
+    GATE_CLOSED,
+    GATE_OPEN,
+    LEFT_BACK,
+    ONCE,
+    RIGHT_BACK,
+    TWICE,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.planning.routes.priced import Drawn, Priced
+    from fieldmon.plot.robot import Robot
+
+    Float = NDArray[np.float64]
+    Int = NDArray[np.int64]
+
+_HOME = (-1, 0)
+_THROUGH = (ONCE, TWICE, LEFT_BACK, RIGHT_BACK)
+_FROM_LEFT = (FROM_LEFT, FROM_BOTH, END_RIGHT_AND)
+_FROM_RIGHT = (FROM_RIGHT, FROM_BOTH, END_LEFT_AND)
+
+
+def stops_of(priced: Priced, drawn: Drawn, price: Float, robot: Robot) -> Int:
+    """Return the plants of a drive on the ladder in the order of one way to drive it."""
+    links = _links(priced, drawn, robot)
+    chosen = _Chosen(priced, drawn, price, robot)
+    stops: list[Int] = []
+    for before, node in zip([None, *(path := _euler(links))], path, strict=False):
+        if node[1] == 2:
+            stops.append(chosen.end(node[0]))
+            continue
+        if before is not None and before[0] == node[0] and node != _HOME:
+            stops.append(chosen.through(node[0], up=node[1] == 1))
+        stops.append(chosen.excursion(*node))
+    return np.concatenate(stops) if stops else np.empty(0, np.int64)
+
+
+class _Chosen:
+    """The plants of each aisle that are visited, each handed out once."""
+
+    def __init__(self, priced: Priced, drawn: Drawn, price: Float, robot: Robot) -> None:
+        self.priced, self.drawn, self.price, self.robot = priced, drawn, price, robot
+        self.done: set[tuple[int, int]] = set()
+
+    def _plants(self, k: int, side: int) -> Int:
+        """Return those reached from the left (0) or the right (1), from the left on."""
+        # the gate's ways are of its stubs
+        if (k, side) in self.done or k == self.priced.ladder.gate:
+            return np.empty(0, np.int64)
+        self.done.add((k, side))
+        ladder, cut = self.priced.ladder, self.drawn.cut[k]
+        first, end = ladder.start[k], ladder.start[k + 1]
+        place = np.arange(first, cut[0]) if side == 0 else np.arange(cut[1], end)
+        sides = int(cut[2 + side])
+        good = self.priced.reward[place] > self.price[k] * self.priced.costs.stop_s
+        good &= np.where(ladder.upper[place], sides & 2, sides & 1) > 0
+        chosen: Int = place[good]
+        return chosen
+
+    def excursion(self, k: int, side: int) -> Int:
+        """Return the plants of an aisle that is entered and left by one end."""
+        if k < 0 or self.drawn.way[k] not in (_FROM_LEFT, _FROM_RIGHT)[side]:
+            return np.empty(0, np.int64)
+        place = self._plants(k, side)
+        place = place if side == 0 else place[::-1]
+        upper = self.priced.ladder.upper[place]
+        if not upper.all() and upper.any():
+            # one side on the way in, the other on the way out
+            place = np.concatenate([place[upper], place[~upper][::-1]])
+        return self.priced.ladder.plant[place]
+
+    def through(self, k: int, *, up: bool) -> Int:
+        """Return the plants of an aisle that is driven from end to end."""
+        if self.drawn.way[k] not in _THROUGH:
+            return np.empty(0, np.int64)
+        return self._in_line(k, self._plants(k, 0), up=up)
+
+    def end(self, k: int) -> Int:
+        """Return the plants of an aisle in which the day ends."""
+        from_left = self.drawn.way[k] in (END_LEFT, END_LEFT_AND)
+        return self._in_line(k, self._plants(k, 0 if from_left else 1), up=from_left)
+
+    def _in_line(self, k: int, place: Int, *, up: bool) -> Int:
+        """Return plants of both sides as they come, or a side after the other if that is less."""
+        ladder, costs = self.priced.ladder, self.priced.costs
+        place = place if up else place[::-1]
+        upper = ladder.upper[place]
+        turns_s = np.count_nonzero(upper[1:] != upper[:-1]) * costs.turn_s
+        if turns_s > costs.turn_s + 2.0 * costs.metre_s * ladder.across_m[k]:
+            place = np.concatenate([place[upper], place[~upper]])
+        return ladder.plant[place]
+
+
+def _links(  # noqa: C901 - one case a way
+    priced: Priced, drawn: Drawn, robot: Robot
+) -> dict[tuple[int, int], list[tuple[tuple[int, int], list[bool]]]]:
+    """Return the passes of a drive as edges between ladder nodes; (k, 2) is an end within k."""
+    links: dict[tuple[int, int], list[tuple[tuple[int, int], list[bool]]]] = {}
+
+    def link(a: tuple[int, int], b: tuple[int, int], passes: int) -> None:
+        for _ in range(passes):
+            driven = [False]
+            links.setdefault(a, []).append((b, driven))
+            links.setdefault(b, []).append((a, driven))
+
+    for k, way in enumerate(drawn.way.tolist()):
+        for side in range(2):
+            link((k, side), (k + 1, side), int(drawn.passes[k, side]))
+        if k == priced.ladder.gate:
+            stubs = (GATE_CLOSED if robot.returns else GATE_OPEN)[way]
+            for side in range(2):
+                link(_HOME, (k, side), stubs[side])
+        elif way in _THROUGH:
+            link((k, 0), (k, 1), 2 if way == TWICE else 1)
+            if way in (LEFT_BACK, RIGHT_BACK):
+                link((k, 1 if way == LEFT_BACK else 0), (k, 2), 1)
+        elif way in (END_LEFT, END_LEFT_AND):
+            link((k, 0), (k, 2), 1)
+        elif way in (END_RIGHT, END_RIGHT_AND):
+            link((k, 1), (k, 2), 1)
+    return links
+
+
+def _euler(
+    links: dict[tuple[int, int], list[tuple[tuple[int, int], list[bool]]]],
+) -> list[tuple[int, int]]:
+    """Return the nodes of a walk from the gate that drives every pass once."""
+    stack, path = [_HOME], []
+    while stack:
+        ways = links.get(stack[-1], [])
+        while ways and ways[-1][1][0]:
+            ways.pop()
+        if ways:
+            to, driven = ways.pop()
+            driven[0] = True
+            stack.append(to)
+        else:
+            path.append(stack.pop())
+    return path[::-1]

@@ -1,0 +1,40 @@
+"""What nobody said and no file states, though figures rest on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+_SHARES = {"background_chance", "rate_per_day", "detects"}
+_WORDS = {
+    "background_chance": "chance of a plant of which nothing is known",
+    "rate_per_day": "chance a night to infest a neighbour",
+    "detects": "chance to find what is there",
+    "speed_m_s": "speed",
+}
+
+
+@dataclass(frozen=True)
+class Assumed:
+    """Something that was taken because nobody said otherwise.
+
+    Parameters
+    ----------
+    setting
+        Its name where it can be said: ``"row_spacing_m"`` of `PlantingChoices`,
+        ``"background_chance"`` of `PriorSettings`, ``"rate_per_day"`` of `Spread`, ``"speed_m_s"``
+        and ``"detects"`` of `Robot`.
+    value
+        What was taken: metres, metres a second, or a chance.
+    """
+
+    setting: str
+    value: float
+
+    def __str__(self) -> str:
+        words = self.setting.removesuffix("_m").replace("_", " ")
+        words = _WORDS.get(self.setting, words)
+        if self.setting in _SHARES:
+            return f"guessed: {words} {100 * self.value:g} %"
+        if self.setting == "speed_m_s":
+            return f"guessed: {words} {3.6 * self.value:.3g} km/h"
+        return f"guessed: {words} {self.value:g} m"

@@ -1,0 +1,1 @@
+"""Routes along rows: published models and heuristics beside the exact ladder."""

@@ -1,0 +1,54 @@
+"""What is assumed is marked at the figures that rest on it, and changed there."""
+
+from app.words import texts
+from tests.app.driving import go, metric, press, square, texts_of, upload, zipped
+
+
+def starred(app):
+    return {one.label.removesuffix(" *") for one in app.metric if one.label.endswith(" *")}
+
+
+def test_a_plot_laid_at_the_usual_spacings_says_so_beside_its_figures(app, tmp_path):
+    upload(app, plot=("plot.zip", zipped(tmp_path, square())))
+    assert {"Plants", "Rows / plants apart"} <= starred(app)
+    go(app, "today")
+    assert "assumed: rows 4 m apart, plants 3 m apart, 1 % of plants infested" in texts_of(app)
+    assert {texts.PLANTS_TO_INSPECT, texts.FINDS} <= starred(app)
+    before = metric(app, texts.PLANTS_TO_INSPECT)
+    for box, value in ((texts.ROW_SPACING, 6.0), (texts.PLANT_SPACING, 5.0)):
+        label = box.format(unit="m")
+        next(one for one in app.number_input if one.label == label).set_value(value).run()
+    assert not app.exception
+    assert metric(app, texts.PLANTS_TO_INSPECT) != before
+    assert texts.PLANTS_TO_INSPECT not in starred(app)
+    assert "rows 4 m apart" not in texts_of(app)
+    go(app, "plot")
+    assert metric(app, "Rows / plants apart") == "6.0 m / 5.0 m"
+    assert "Rows / plants apart" not in starred(app)
+
+
+def test_the_background_chance_is_changed_where_the_finds_are_expected(app):
+    before = float(metric(app, texts.FINDS))
+    app.number_input(key="background_pct").set_value(5.0).run()
+    assert not app.exception
+    assert float(metric(app, texts.FINDS)) > before
+    assert "where nothing is known" not in texts_of(app)
+
+
+def test_a_season_keeps_what_was_assumed_and_is_told_otherwise(season_app, season):
+    assert [one.setting for one in season().assumed()] == [
+        *(one.setting for one in season().plot.assumed),
+        "background_chance", "speed_m_s", "detects", "rate_per_day",
+    ]  # fmt: skip
+    go(season_app, "season")
+    before = metric(season_app, texts.EXPECTED_LEFT)
+    assert texts.EXPECTED_LEFT in starred(season_app)
+    season_app.number_input(key="season_background").set_value(4.0)
+    season_app.number_input(key="season_spread").set_value(5.0)
+    press(season_app, texts.ASSUMED_USE)
+    assert not season_app.exception
+    assert metric(season_app, texts.EXPECTED_LEFT) != before
+    assert season().settings.prior.background_chance == 0.04
+    assert season().settings.belief.spread.rate_per_day == 0.05
+    assert season().verify() == ()
+    assert "where nothing is known" not in texts_of(season_app)

@@ -1,0 +1,65 @@
+"""Numbers on a map: legs from far, stops from near; rows before their first plants."""
+
+import numpy as np
+import pytest
+
+from app.show.maps import labels
+from fieldmon.planning.plan import PlanSettings, plan_from
+from fieldmon.plot.robot import Robot
+from tests.app.chosen import a_plot
+
+PLOT = a_plot(0.001)
+
+
+@pytest.fixture(scope="module")
+def route():
+    return plan_from(PLOT, np.random.default_rng(1).random(len(PLOT.grid)), PlanSettings()).route
+
+
+def of_kind(made, kind):
+    return [one for one in made if one["k"] == kind]
+
+
+def test_stops_are_numbered_in_order_where_they_are(route):
+    own = of_kind(labels.stops(route), "stop")
+    assert [one["t"] for one in own] == [str(k + 1) for k in range(len(route))]
+    assert np.array([one["p"] for one in own]) == pytest.approx(route.stops_lonlat(), abs=1e-7)
+
+
+def test_a_leg_is_what_is_inspected_without_leaving_an_aisle(route):
+    legs = of_kind(labels.stops(route), "leg")
+    grid = PLOT.grid
+    aisle = grid.corridor[grid.row[route.plant]]
+    changes = 1 + (np.diff(aisle) != 0).sum()
+    assert [one["t"] for one in legs] == [str(k + 1) for k in range(changes)]
+    lonlat = np.round(route.stops_lonlat(), 7).tolist()
+    its_aisle = [aisle[lonlat.index(one["p"])] for one in legs]
+    assert its_aisle == [aisle[0], *aisle[1:][np.diff(aisle) != 0]]
+
+
+def test_legs_give_way_to_stops_at_the_zoom_where_neighbours_are_16_pixels_apart(route):
+    legs, stops = (of_kind(labels.stops(route), kind) for kind in ("leg", "stop"))
+    (zoom,) = {one["to"] for one in legs} | {one["from"] for one in stops}
+    lat = np.deg2rad(route.stops_lonlat()[0, 1])
+    metres_of_pixel = 40_075_016.686 * np.cos(lat) / (512 * 2**zoom)
+    assert PLOT.grid.plant_spacing_m / metres_of_pixel == pytest.approx(16.0)
+
+
+def test_no_stop_has_no_number():
+    empty = plan_from(PLOT, np.full(len(PLOT.grid), 0.1), PlanSettings(Robot(hours=0.01))).route
+    assert labels.stops(empty) == []
+
+
+def test_every_row_has_its_number_before_its_first_plant_tens_first():
+    grid = PLOT.grid
+    made = labels.rows(grid)
+    line = grid.row_line[grid.row]
+    assert sorted(int(one["t"]) for one in made) == (np.unique(line) + 1).tolist()
+    tens = sum(int(one["t"]) % 10 in {0, 1} for one in made)
+    assert {int(one["t"]) % 10 for one in made[:tens]} <= {0, 1}
+    assert tens > 2
+    for one in made:
+        own = grid.xy_m[line == int(one["t"]) - 1]
+        x, y = grid.frame.xy_m(np.array([one["p"]]))[0]
+        assert x < own[:, 0].min()
+        assert np.hypot(*(own - [x, y]).T).min() < 2 * grid.plant_spacing_m

@@ -1,0 +1,20 @@
+"""What is assumed unless a person says otherwise."""
+
+import pytest
+
+from app.state import assumptions, widget_memory
+from fieldmon.infestation.prior import PriorSettings
+from tests.app.chosen import a_plot, chosen
+
+
+@pytest.mark.usefixtures("session")
+def test_an_empty_box_is_our_guess_and_a_number_is_what_was_said():
+    assert assumptions.prior() == PriorSettings()
+    widget_memory.first(assumptions.BACKGROUND, 3.0)
+    assert assumptions.prior().background_chance == pytest.approx(0.03)
+
+
+def test_without_a_season_nothing_is_said_of_nights():
+    settings = {one.setting for one in assumptions.of(chosen(a_plot()))}
+    assert "background_chance" in settings
+    assert "rate_per_day" not in settings

@@ -1,0 +1,106 @@
+"""What a session brought is found again after a reload, by whoever has the address."""
+
+import os
+import shutil
+import time
+from pathlib import Path
+
+import pytest
+
+from app.state import kept_files
+from app.words import texts
+from tests.app.driving import (
+    go,
+    metric,
+    opened,
+    plot_name,
+    press,
+    row_box,
+    square,
+    texts_of,
+    upload,
+    zipped,
+)
+
+MITES = b"lon,lat,date,count\n35.1505,30.3605,2026-11-10,4\n"
+
+
+def reloaded(app):
+    """Return a new session at the address at which this one stands."""
+    word = app.query_params["files"]
+    word = word[0] if isinstance(word, list) else word
+    return opened(texts.UPLOAD, files=word)
+
+
+@pytest.fixture
+def brought(app, tmp_path):
+    data = zipped(tmp_path, square(name="mine").to_crs(2039), without=".prj")
+    upload(app, plot=("plot.zip", data), record=("mites.csv", MITES))
+    ask = next(box for box in app.selectbox if box.label.endswith("crs"))
+    ask.set_value("EPSG:2039").run()
+    press(app, "Use this")
+    assert plot_name(app).startswith("mine")
+    return app
+
+
+def test_a_reload_finds_files_answers_rows_and_what_was_drawn(brought):
+    row_box(brought, "row_spacing").set_value(7.0).run()
+    brought.selectbox(key="draw_kind").set_value("gate").run()
+    brought.text_input(key="draw_typed").set_value("35.1501,30.3601").run()
+    press(brought, "Add")
+    brought.run()
+    plants = metric(brought, "Plants")
+    again = go(reloaded(brought), "plot")
+    assert not again.exception
+    assert plot_name(again).startswith("mine")
+    assert metric(again, "Plants") == plants
+    assert "1 of 1 records shown" in texts_of(again)
+    assert "In use" in texts_of(again)
+    assert "the gate: 1" in texts_of(again)
+
+
+@pytest.mark.usefixtures("brought")
+def test_nobody_sees_files_without_the_whole_word():
+    word = Path(next(kept_files.folder().iterdir())).name
+    assert len(word) == 22
+    for guess in ("", word[:-1], f"../{word}", "x" * 22, f"{word}/.."):
+        assert "Bring a plot" in texts_of(opened(texts.UPLOAD, files=guess))
+
+
+def test_a_file_taken_out_is_gone_from_the_machine_too(brought):
+    (kept,) = kept_files.folder().iterdir()
+    assert len(list(kept.iterdir())) == 3
+    again = go(reloaded(brought), "plot")
+    again.button(key="forget record").click().run()
+    assert len(list(kept.iterdir())) == 2
+    again.button(key="forget plot").click().run()
+    assert not kept.exists()
+    assert "files" not in again.query_params
+
+
+def test_what_nobody_came_back_to_for_a_day_is_removed():
+    old, new = kept_files.folder() / ("a" * 22), kept_files.folder() / ("b" * 22)
+    old.mkdir()
+    new.mkdir()
+    long_ago = time.time() - kept_files.KEEP_S - 60
+    os.utime(old, (long_ago, long_ago))
+    kept_files.clean(time.time())
+    assert not old.exists()
+    assert new.exists()
+
+
+def test_half_a_folder_is_none(brought):
+    (kept,) = kept_files.folder().iterdir()
+    for part in kept.glob("*-0"):
+        part.unlink()
+    again = reloaded(brought)
+    assert not again.exception
+    assert "Bring a plot" in texts_of(again)
+    shutil.rmtree(kept)
+    assert "Bring a plot" in texts_of(reloaded(brought))
+
+
+@pytest.mark.usefixtures("brought")
+def test_nobody_else_on_the_machine_can_read_them():
+    if os.name == "posix":
+        assert kept_files.folder().stat().st_mode & 0o077 == 0

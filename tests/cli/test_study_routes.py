@@ -1,0 +1,30 @@
+"""`fieldmon study routes`: a table of methods on reward matrices."""
+
+import csv
+
+
+def test_a_matrix_is_played_by_all_methods(run, tmp_path):
+    (tmp_path / "plot.csv").write_text("1,0,3\n0,2,2\n5,0,0\n")
+    budgets = ("--budget", 0.4, "--budget", 1)
+    code, out, err, made = run("study", "routes", tmp_path / "plot.csv", *budgets, "--milp")
+    assert code == 0, err
+    assert "plot.csv, 40% of the full budget" in out
+    assert "routes.csv" in {path.name for path in made}
+    with (tmp_path / "routes.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 2 * 7
+    exact = {row["budget"]: float(row["reward"]) for row in rows if row["method"] == "ladder"}
+    assert all(float(row["reward"]) <= exact[row["budget"]] for row in rows)
+    assert max(exact.values()) == 13
+
+
+def test_what_cannot_be_read_or_played_is_said_in_a_sentence(run, tmp_path):
+    (tmp_path / "bad.csv").write_text("1,x\n")
+    for words, said in (
+        ((tmp_path / "bad.csv",), "must hold numbers"),
+        ((), "A reward matrix or a seed must be given"),
+        (("--seed", 1, "--budget", 2), "share above 0 and up to 1"),
+    ):
+        code, _, err, _ = run("study", "routes", *words)
+        assert code == 2
+        assert said in err

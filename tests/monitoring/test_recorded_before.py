@@ -1,0 +1,68 @@
+"""What is brought to a season is held to what is recorded of the same plants and days."""
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import ContradictionError
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
+from fieldmon.monitoring.recorded_before import contradictions, said_before
+from tests.monitoring.seasons import BEGINS, a_season
+
+DAY, NEXT = np.datetime64("2026-04-06"), np.datetime64("2026-04-07")
+
+
+def results(*pairs, on=DAY, **columns):
+    plant, result = np.array(pairs, int).reshape(-1, 2).T
+    return Inspections.of(plant, result, on, **columns)
+
+
+def test_clean_against_found_contradicts_in_both_directions_and_on_the_same_day_only():
+    held = results((3, FOUND), (4, CLEAN), (5, FOUND))
+    brought = results((3, CLEAN), (4, FOUND), (5, FOUND), (6, CLEAN))
+    found = contradictions(brought, held)
+    assert found.which.tolist() == [0, 1]
+    assert found.plant.tolist() == [3, 4]
+    assert found.recorded.tolist() == [FOUND, CLEAN]
+    assert found.brought.tolist() == [CLEAN, FOUND]
+    assert not len(contradictions(results((3, CLEAN), on=NEXT), held))
+
+
+def test_a_plant_that_could_not_be_inspected_contradicts_nothing():
+    assert not len(contradictions(results((3, SKIPPED)), results((3, FOUND))))
+    assert not len(contradictions(results((3, FOUND)), results((3, SKIPPED))))
+
+
+def test_what_was_confirmed_once_is_no_news():
+    held = results((3, FOUND), (3, CLEAN))
+    assert not len(contradictions(results((3, CLEAN)), held))
+
+
+@pytest.fixture
+def season(tmp_path):
+    return a_season(tmp_path / "s.gpkg")
+
+
+def test_a_season_takes_no_contradiction_that_nobody_confirmed(season):
+    season.record(results(*((k, FOUND) for k in range(7))), "taps")
+    before = season.revision
+    clean = results(*((k, CLEAN) for k in range(7)), (20, CLEAN))
+    with pytest.raises(ContradictionError, match=r"7 of them contradict it: Row 1, plant 1 on"):
+        season.record(clean, "route table")
+    assert season.revision == before
+    assert season.morning(BEGINS).tolist() == season.morning(BEGINS).tolist()
+    assert season.record(clean, "route table", confirmed=True).new == 8
+    assert season.record(clean, "route table").new == 0
+
+
+def test_a_route_filled_in_after_its_stops_were_tapped_counts_once(season):
+    taps = results((3, FOUND), (4, CLEAN), second=np.array([25_000.0, 25_060.0]))
+    season.record(taps, "scout mode")
+    belief = season.evening(BEGINS)
+    done = season.record(results((3, FOUND), (4, CLEAN)), "route.csv")
+    assert (done.new, done.known) == (0, 2)
+    assert season.evening(BEGINS).tolist() == belief.tolist()
+    counted = results((3, FOUND), count=np.array([12.0]))
+    assert not said_before(counted, taps).any()
+    assert said_before(results((3, FOUND), (3, CLEAN), (9, FOUND)), taps).tolist() == [
+        True, False, False
+    ]  # fmt: skip

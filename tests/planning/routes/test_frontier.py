@@ -1,0 +1,86 @@
+"""All ways of going on up a ladder: what they put together is one piece with even ends."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+from fieldmon.planning.routes.frontier import GATE_CLOSED, GATE_OPEN, WAYS, tables
+
+
+def drawn(returns, gate, n):
+    """Yield all that the tables can put together over n elements: ways and passes of each."""
+    made = tables(returns=returns)
+
+    def onward(k, state):
+        if k == n:
+            if state == 1:
+                yield ()
+            return
+        for before, way, after in made.gate if k == gate else made.aisle:
+            if before == state and not (after == 1 and k < gate):
+                for rest in onward(k + 1, after):
+                    yield ((int(way), tuple(int(p) for p in made.passes[after])), *rest)
+
+    return onward(0, 0)
+
+
+def nodes_and_edges(drive, returns, gate):
+    """Return degrees of the row ends, and whether all that is driven is in one piece."""
+    n = len(drive)
+    degree = np.zeros((n, 2), int)
+    link = {end: end for end in product(range(n), range(2))} | {"gate": "gate"}
+
+    def find(a):
+        while link[a] != a:
+            a = link[a]
+        return a
+
+    ended = 0
+    for k, (way, passes) in enumerate(drive):
+        if k == gate:
+            stubs = (GATE_CLOSED if returns else GATE_OPEN)[way]
+            degree[k] += stubs
+            for side in range(2):
+                if stubs[side]:
+                    link[find((k, side))] = find("gate")
+        else:
+            left, right, meets, ends = WAYS[way]
+            degree[k] += left, right
+            ended += ends
+            if meets:
+                link[find((k, 0))] = find((k, 1))
+        for side in range(2):
+            degree[k, side] += passes[side]
+            if passes[side]:
+                degree[k + 1, side] += passes[side]
+                link[find((k, side))] = find((k + 1, side))
+    driven = {find(tuple(end)) for end in np.argwhere(degree > 0).tolist()}
+    return degree, driven == {find("gate")}, ended
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("gate", [0, 1, 2])
+def test_whatever_is_put_together_can_be_driven_from_the_gate(returns, gate):
+    count = 0
+    for drive in drawn(returns, gate, 3):
+        degree, one_piece, ended = nodes_and_edges(drive, returns, gate)
+        odd = int((degree % 2).sum())
+        assert one_piece
+        assert odd + ended == (0 if returns else 1)
+        count += 1
+    assert count > 50
+
+
+def test_states_between_aisles_are_the_five_of_ratliff_and_rosenthal():
+    passes = tables(returns=True).passes
+    used = {int(k) for k in tables(returns=True).aisle[:, 2]} - {0, 1}
+    start = {int(after) for before, _, after in tables(returns=True).gate if before == 0}
+    reached = set(start)
+    while True:
+        more = {int(a) for b, _, a in tables(returns=True).aisle if int(b) in reached} | reached
+        if more == reached:
+            break
+        reached = more
+    reached &= used
+    assert sorted(passes[list(reached)].tolist()) == [[0, 2], [1, 1], [2, 0], [2, 2], [2, 2]]

@@ -1,0 +1,67 @@
+"""A ladder below a plot: no way on it is longer than the true one."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import dijkstra
+
+from fieldmon.planning.routes.relaxation import ladder_below
+from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.travel import GATE, Aisles
+from tests.planning.routes.test_best_route import crooked_aisles
+
+# weights of 0 would count as no way at all
+_LEAST = 1e-12
+
+
+def on_the_ladder(ladder):
+    """Return metres ``(n + 1, n + 1)`` on the ladder between all plants and, last, the gate."""
+    e, n = len(ladder.across_m), len(ladder.plant)
+    links = [(2 * k + s, 2 * k + 2 + s, ladder.up_m[k, s]) for k in range(e - 1) for s in range(2)]
+    gate = 2 * e + n
+    for k in range(e):
+        if k == ladder.gate:
+            links += [(gate, 2 * k + s, ladder.stub_m[s]) for s in range(2)]
+            continue
+        at, before = 0.0, 2 * k
+        for i in range(ladder.start[k], ladder.start[k + 1]):
+            links.append((before, 2 * e + ladder.plant[i], ladder.in_m[i] - at))
+            at, before = ladder.in_m[i], 2 * e + ladder.plant[i]
+        links.append((before, 2 * k + 1, ladder.across_m[k] - at))
+    a, b, metres = (np.array(column) for column in zip(*links, strict=True))
+    assert (metres >= 0.0).all()
+    net = coo_array((np.maximum(metres, _LEAST), (a, b)), shape=(gate + 1, gate + 1)).tocsr()
+    places = np.arange(2 * e, gate + 1)
+    return dijkstra(net, directed=False, indices=places)[:, places]
+
+
+def truly(aisles):
+    places = np.append(np.arange(len(aisles.grid)), GATE)
+    return aisles.distance_m(places[:, None], places)
+
+
+@settings(max_examples=150, deadline=None)
+@given(crooked_aisles(max_radius_m=60.0, max_plants=400))
+def test_no_way_on_the_ladder_is_longer_than_the_true_one(aisles):
+    assert (on_the_ladder(ladder_below(aisles)) <= truly(aisles) + 1e-5).all()
+
+
+@pytest.mark.parametrize("faces", [1, 2])
+def test_a_plain_plot_is_a_ladder_itself(faces):
+    aisles = Aisles.of(rectangle(7, 9, Planting(faces=faces)))
+    ladder = ladder_below(aisles)
+    assert ladder.cross_links == 0
+    assert on_the_ladder(ladder) == pytest.approx(truly(aisles), abs=1e-4)
+
+
+@settings(max_examples=50, deadline=None)
+@given(crooked_aisles(max_radius_m=40.0), st.data())
+def test_every_plant_is_in_one_aisle_in_order(aisles, data):
+    ladder = ladder_below(aisles)
+    assert sorted(ladder.plant.tolist()) == list(range(len(aisles.grid)))
+    k = data.draw(st.integers(0, len(ladder.across_m) - 1))
+    part = slice(ladder.start[k], ladder.start[k + 1])
+    assert (np.diff(ladder.in_m[part]) >= 0).all()
+    assert len(set(aisles.grid.corridor[aisles.grid.row[ladder.plant[part]]])) <= 1

@@ -1,0 +1,39 @@
+"""What a day's figures rest on though nobody said it."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from fieldmon.infestation.prior import PriorSettings
+from fieldmon.io.prepare import lay
+from fieldmon.io.sources import PlantingChoices
+from fieldmon.planning.assumptions import assumed_by
+from fieldmon.plot.assumed import Assumed
+from fieldmon.plot.robot import Robot, scout
+from tests.monitoring.seasons import a_plot
+
+
+def names(assumed):
+    return [one.setting for one in assumed]
+
+
+def test_what_was_said_is_not_assumed():
+    mine = Robot(speed_m_s=0.5, detection=0.7)
+    assert assumed_by((), PriorSettings(background_chance=0.03), mine) == ()
+    assert names(assumed_by((), PriorSettings(), mine)) == ["background_chance"]
+    assert names(assumed_by((), PriorSettings(), scout())) == [
+        "background_chance", "speed_m_s", "detects"
+    ]  # fmt: skip
+
+
+def test_a_plot_carries_what_was_assumed_of_its_rows():
+    field = a_plot().field
+    assert lay(field).plot.assumed == (
+        Assumed("row_spacing_m", 4.0), Assumed("plant_spacing_m", 3.0)
+    )  # fmt: skip
+    assert names(lay(field, PlantingChoices(row_spacing_m=5.0)).plot.assumed) == ["plant_spacing_m"]
+    stated = replace(field, row_spacing_m=4.0, plant_spacing_m=3.0)
+    assert lay(stated).plot.assumed == ()
+    plot = lay(field).plot
+    missing = np.arange(len(plot.grid)) < 3
+    assert plot.without(missing).assumed == plot.assumed

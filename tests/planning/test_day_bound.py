@@ -1,0 +1,68 @@
+"""A planned day says what no other route of its hours can expect to find."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fieldmon.planning.day_bound import found_bound, with_bound
+from fieldmon.planning.plan import DayPlan, plan_in
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
+from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers.base import NEVER, Scene
+
+
+def scene(**more):
+    aisles = Aisles.of(rectangle(9, 12))
+    chance = np.random.default_rng(3).random(108) * 0.3
+    never = np.full(108, NEVER, np.int32)
+    robot = Robot()
+    return Scene(aisles, robot, chance, **{"last_inspected": never, "seconds_left": 3000.0, **more})
+
+
+def planned(name="adaptive", **more) -> DayPlan:
+    return plan_in(scene(**more), sampler(name))
+
+
+@pytest.mark.parametrize("name", [name for name, kind in SAMPLERS.items() if not kind.chooses_time])
+def test_no_sampler_expects_more_than_the_bound_and_all_share_it(name):
+    day = with_bound(planned(name))
+    assert day.route.expected_found <= day.route.found_bound
+    assert day.route.found_bound == pytest.approx(found_bound(planned("naive")))
+
+
+def test_the_sentence_says_the_expected_finds_and_the_bound():
+    route = with_bound(planned()).route
+    assert route.bound_sentence.startswith(f"{route.expected_found:.1f} finds expected; no route ")
+
+
+def test_a_day_that_was_not_asked_says_nothing():
+    assert planned().route.found_bound is None
+    assert planned().route.bound_sentence == ""
+
+
+def test_plants_inspected_today_are_worth_nothing_more():
+    done = np.full(108, NEVER, np.int32)
+    done[:54] = 0
+    left = found_bound(planned(last_inspected=done))
+    chance = scene().chance * Robot().detects
+    assert left <= chance[54:].sum() * (1 + 1e-6)
+    assert left < found_bound(planned())
+
+
+def test_no_bound_is_claimed_away_from_the_gate_nor_where_inspection_times_are_chosen():
+    assert found_bound(planned(at=5)) is None
+    assert found_bound(planned("adaptive-looks")) is None
+
+
+def test_with_no_time_to_compute_it_is_a_bound_all_the_same():
+    day = planned()
+    hurried = found_bound(day, within_s=0.0)
+    assert hurried >= found_bound(day) >= day.route.expected_found
+
+
+def test_a_plant_that_is_certain_to_be_clean_makes_no_bound_of_nan():
+    clean = replace(planned(), scene=replace(scene(), chance=np.zeros(108)))
+    assert found_bound(clean) >= 0.0

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
 
 _ICONS = {"seen": "👁", "repaired": "🔧", "guessed": "💡", "dropped": "🗑", "doubtful": "⚠️"}
+# questions that another file answers, in a box of its own
+_OTHER_FILES = frozenset({"kind", "plots", "plants"})
 
 
 # -- boxes
@@ -94,9 +96,11 @@ def say(error: FieldmonError, asked: str | None = None) -> None:
 
 
 def _ask(error: ChoiceNeeded, asking: str) -> None:
+    if error.option in _OTHER_FILES:
+        return
     label = f"{texts.CHOOSE}: {error.option}"
     widget = f"ask {asking} {error.option}"
-    if error.choices and error.option != "columns":
+    if error.choices:
         st.markdown(texts.CHOOSE_QUICK)
         with st.container(horizontal=True):
             for choice in error.choices[:4]:
@@ -105,8 +109,7 @@ def _ask(error: ChoiceNeeded, asking: str) -> None:
                           args=(asking, error.option, str(choice)))  # fmt: skip
         st.selectbox(label, error.choices, key=widget, accept_new_options=True)
     else:
-        hint = ", ".join(error.choices)
-        st.text_input(label, placeholder="date=Datum", help=hint or None, key=widget)
+        st.text_input(label, key=widget)
     st.button(texts.CHOOSE_BUTTON, key=f"use {asking} {error.option}", type="primary",
               on_click=_answer_from, args=(asking, error.option, widget))  # fmt: skip
 

@@ -29,7 +29,7 @@ _MOST_LINES = 96
 # those that are most alike; never two lines of one window
 _SAME = (0.9, 0.8, 0.7, 0.6)
 # directions this near to a neighbouring window's go on from there, if they are nearly the best
-_ON_DEG, _ON_SHARE = 12.0, 0.75
+_ON_DEG, _ON_SHARE = 12.0, 0.6
 
 
 class Windows(NamedTuple):

@@ -32,8 +32,8 @@ _ASTRAY_DEG, _BESIDE = 30.0, 1.7
 _REFITS = 2
 # the lines of so many of the nearest plants may be a plant's own
 _ASKED = 8
-# blocks of fewer plants may be scraps of others
-_SCRAP = 12
+# blocks of fewer plants, or of fewer a row, may be scraps of others
+_SCRAP, _SHORT = 12, 6
 # lines are looked about from so many places of each
 _LOOKS = 8
 
@@ -473,9 +473,10 @@ def _absorbed(
 
     At corners of a plot some plants may be seen in line another way.
     """
-    for _ in range(_REFITS):
+    for _ in range(2 * _REFITS):
         owner, n_plants = strands.owner, np.diff(strands.start)
-        scrap = np.bincount(rows.block, n_plants)[rows.block] < _SCRAP
+        size = np.bincount(rows.block, n_plants)
+        scrap = ((size < _SCRAP) | (size < _SHORT * np.bincount(rows.block)))[rows.block]
         whole = np.flatnonzero(~scrap & (n_plants >= 3))
         if not scrap.any() or not len(whole):
             return strands, rows

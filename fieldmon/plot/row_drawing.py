@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Float = NDArray[np.float64]
 
-_STEP_DEG, _FINE_DEG = 0.5, 0.02
+_STEP_DEG, _FINE_DEG = 0.1, 0.01
 # posts of one row lie nearer to one line than this part of the distance to the next row
 _IN_LINE = 0.35
 _MOST_STEPS = 20_000

@@ -483,9 +483,10 @@ def _absorbed(
         loose = np.flatnonzero(scrap[owner])
         kept = np.flatnonzero(np.isin(owner, whole))
         lines = Polylines.of(offsets(n_plants[whole]), strands.line_m[kept])
-        line, at, fits = _continued(
-            xy_m[strands.plant[loose]], lines, 0.35 * rows.spacing_m, reach_m
-        )
+        line, at, off_m = _continued(xy_m[strands.plant[loose]], lines, reach_m)
+        # one alone stands far beside its row rather than in one of its own
+        alone = size[rows.block[owner[loose]]] < 3
+        fits = off_m <= np.where(alone, 0.6, 0.35) * rows.spacing_m
         row, along = np.empty(len(xy_m), np.int64), np.empty(len(xy_m))
         row[strands.plant] = owner
         gone = np.append(0.0, np.cumsum(np.hypot(*np.diff(strands.line_m, axis=0).T)))
@@ -498,13 +499,11 @@ def _absorbed(
     return strands, rows
 
 
-def _continued(
-    xy_m: Float, lines: Polylines, beside_m: float, beyond_m: float | None
-) -> tuple[Int, Float, NDArray[np.bool_]]:
-    """Return the line that each plant continues best, its place on it, and whether it does.
+def _continued(xy_m: Float, lines: Polylines, beyond_m: float | None) -> tuple[Int, Float, Float]:
+    """Return the line that each plant continues best, its place on it, and how far off it stands.
 
-    It does if it stands no farther beside the line and beyond its end; without a limit to that the
-    nearest line counts.
+    Of lines that end no farther from it that beside which it stands nearest; without such a limit
+    the nearest line.
     """
     owner = np.repeat(np.arange(len(lines)), np.diff(lines.start))
     k = min(_ASKED, len(owner))
@@ -522,7 +521,7 @@ def _continued(
             off = np.where(beyond <= beyond_m, np.abs(left), np.inf)
         better = off < best
         best[better], line[better], place[better] = off[better], asked[better], at[better]
-    return line, place, best <= beside_m
+    return line, place, best
 
 
 def _in_line(strands: _Strands, rows: _Rows, parts: list[int]) -> list[int]:
@@ -541,7 +540,7 @@ def _in_line(strands: _Strands, rows: _Rows, parts: list[int]) -> list[int]:
 
 def _nearest_lines(xy_m: Float, strands: _Strands) -> _Strands:
     """Return the rows with each plant in that whose line is nearest, and in its order there."""
-    row, along, _ = _continued(xy_m, _lines(strands), np.inf, None)
+    row, along, _ = _continued(xy_m, _lines(strands), None)
     if len(np.unique(row)) < len(strands.start) - 1:
         return strands
     return _ordered(xy_m, row, along)

@@ -389,11 +389,6 @@ def _corridors(lane_y: Float, lane_x: Float) -> NDArray[np.intp]:
 
 
 def _check_size(name: str, area: MultiPolygon, planting: Planting) -> None:
-    if area.is_empty:
-        raise PlotError(
-            f"A plot must have ground to drive on, but no-go areas cover all of plot {name!r}. "
-            "Take the no-go areas back, or make them smaller."
-        )
     about = area.area / (planting.row_spacing_m * planting.plant_spacing_m)
     if about > _MOST_PLANTS:
         raise PlotError(

@@ -88,14 +88,14 @@ class Polylines(NamedTuple):
 
     def points(self, line: NDArray[np.integer], place_m: Float) -> Float:
         """Return where places on lines are, ``(m, 2)``; beyond an end, straight on."""
-        at = self._step(line, place_m)
+        at = self.corner_before(line, place_m)
         a, b = self.xy_m[at], self.xy_m[at + 1]
         length = np.maximum(self.at_m[at + 1] - self.at_m[at], 1e-12)
         return a + ((place_m - self.at_m[at]) / length)[:, None] * (b - a)
 
     def ahead(self, line: NDArray[np.integer], place_m: Float) -> Float:
         """Return the directions of lines at places, unit vectors ``(m, 2)``."""
-        at = self._step(line, place_m)
+        at = self.corner_before(line, place_m)
         return _unit(self.xy_m[at + 1] - self.xy_m[at])
 
     def corners_between(self, line: int, from_m: float, to_m: float) -> Float:
@@ -117,8 +117,8 @@ class Polylines(NamedTuple):
         _project(self, np.ascontiguousarray(xy_m), np.asarray(line, np.int64), place, left)
         return place, left
 
-    def _step(self, line: NDArray[np.integer], place_m: Float) -> Int:
-        """Return the corner before each place."""
+    def corner_before(self, line: NDArray[np.integer], place_m: Float) -> Int:
+        """Return the corner before each place, numbered through all lines."""
         at = np.empty(len(place_m), np.int64)
         _corner_before(self, np.asarray(line, np.int64), np.asarray(place_m, np.float64), at)
         return at

@@ -181,6 +181,17 @@ class Aisles:
         return self.grid.aisles_m.corners_between(int(self.grid.aisle[row]), from_m, to_m)
 
     @cached_property
+    def bend(self) -> NDArray[np.int64]:
+        """The straight stretch of aisle at which each plant is inspected, ``(n,)``; 0 if all are.
+
+        Between plants of one stretch one drives straight ahead.
+        """
+        grid = self.grid
+        if grid.aisles_m is None or grid.aisle is None:
+            return read_only(np.zeros(len(grid), np.int64))
+        return read_only(grid.aisles_m.corner_before(grid.aisle[grid.row], grid.along_m))
+
+    @cached_property
     def _stop_node(self) -> NDArray[np.int64]:
         """Node of each lane end, and of the gate, as numbered in `TravelTable.between_m`."""
         return np.append(self.roads.end.ravel(), self.roads.gate)

@@ -29,13 +29,11 @@ _OTHER_FILES = frozenset({"kind", "plots", "plants"})
 def show() -> None:
     """Show the boxes for a plot's files; what was dropped is kept while the session lasts."""
     labels = {PLOT: texts.PLOT_FILE, RECORDS: texts.RECORD_FILE, PLANTS: texts.PLANT_FILE}
-    columns = st.columns(3)
-    for column, (kind, label) in zip(columns, labels.items(), strict=True):
-        with column:
-            dropped = st.file_uploader(label, key=_box(kind), accept_multiple_files=True,
-                                       on_change=_take, args=(kind,))  # fmt: skip
-            if not dropped:
-                _kept(kind)
+    for kind, label in labels.items():
+        dropped = st.file_uploader(label, key=_box(kind), accept_multiple_files=True,
+                                   on_change=_take, args=(kind,))  # fmt: skip
+        if not dropped:
+            _kept(kind)
 
 
 def show_raster(label: str, kind: str) -> None:

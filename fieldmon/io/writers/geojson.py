@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import block_label, row_label
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -109,7 +109,8 @@ def _line_feature(
 
 
 def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]]:
-    label = row_label(route.aisles.grid, route.plant)
+    grid = route.aisles.grid
+    label = row_label(grid, route.plant)
     columns = zip(
         route.stops_lonlat().round(_DECIMALS).tolist(),
         route.plant.tolist(),
@@ -119,6 +120,7 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
         route.leave_s.tolist(),
         route.chance.tolist(),
         route.line_stop.tolist(),
+        block_label(grid, route.plant).tolist(),
         strict=True,
     )
     return [
@@ -130,6 +132,7 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
                 "kind": "stop",
                 "order": order,
                 "plant": plant,
+                **({"block": block} if grid.n_blocks > 1 else {}),
                 "row": row,
                 "number": number,
                 "arrive_s": round(arrive_s, 3),
@@ -143,8 +146,8 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
                 "notes": None,
             },
         }
-        for order, (place, plant, row, number, arrive_s, leave_s, chance, vertex) in enumerate(
-            columns, 1
+        for order, (place, plant, row, number, arrive_s, leave_s, chance, vertex, block) in (
+            enumerate(columns, 1)
         )
     ]
 

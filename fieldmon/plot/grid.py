@@ -12,13 +12,13 @@ import shapely
 from fieldmon.compute.arrays import offsets, read_only
 from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError
-from fieldmon.plot.polylines import Polylines
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
     from scipy.spatial import cKDTree
     from shapely import MultiPolygon
 
+    from fieldmon.plot.polylines import Polylines
     from fieldmon.plot.projection import Frame
 
 
@@ -152,6 +152,8 @@ class PlantGrid:
         """Middles of the aisles where rows bend or blocks turn, None where all is straight."""
         if self.aisle_start is None or self.aisle_m is None:
             return None
+        from fieldmon.plot.polylines import Polylines  # noqa: PLC0415 - as slow to import as link
+
         return Polylines.of(self.aisle_start, self.aisle_m)
 
     @property

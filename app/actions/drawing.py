@@ -19,6 +19,7 @@ from ..state.chosen_units import units
 from ..state.plot_edits import GATE, NO_GO, PATH, Edit, points_of
 from ..state.plot_files import draw, drawn, laid
 from ..words import texts
+from ..words.language import of_error
 
 if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
@@ -27,8 +28,7 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
     from ..state.plot_edits import Points
 
-_NAMES = {GATE: texts.DRAW_KINDS["gate"], PATH: texts.DRAW_KINDS["path"],
-          NO_GO: texts.DRAW_KINDS["no_go"]}  # fmt: skip
+_NAMES = {GATE: "gate", PATH: "path", NO_GO: "no_go"}
 _SHAPES = {GATE: "point", PATH: "line", NO_GO: "area"}
 # more corners than this are no help
 _SNAPS = 2_000
@@ -79,7 +79,7 @@ def tools(choices: Choices) -> None:
                 st.button(texts.DRAW_DROP, key="draw_drop", on_click=_drop, args=(choices,))
         made = drawn(choices.plot_key)
         for edit in made:
-            st.caption(f"{_NAMES[edit.kind]}: {len(edit.lonlat)}")
+            st.caption(f"{texts.DRAW_KINDS[_NAMES[edit.kind]]}: {len(edit.lonlat)}")
         if made:
             st.button(texts.DRAW_UNDO, key="draw_undo", icon=":material/undo:", on_click=_undo,
                       args=(choices,))  # fmt: skip
@@ -156,7 +156,7 @@ def _add(choices: Choices) -> None:
         _put(choices, points_of(st.session_state.get("draw_typed", "")))
         st.session_state["draw_typed"] = ""
     except FieldmonError as error:
-        notices.keep("error", str(error))
+        notices.keep("error", of_error(error))
 
 
 def _finish(choices: Choices) -> None:
@@ -167,7 +167,7 @@ def _finish(choices: Choices) -> None:
         draw(choices.plot_key, made)
         _drop(choices)
     except FieldmonError as error:
-        notices.keep("error", str(error))
+        notices.keep("error", of_error(error))
 
 
 def _drop(choices: Choices) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..words import texts
+from ..words.language import number
+from ..words.units import in_unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,9 +32,9 @@ def mark(label: str, assumed: Sequence[Assumed], settings: Sequence[str]) -> str
 
 def _words(one: Assumed, units: Units) -> str:
     if one.setting in _LENGTHS:
-        value = f"{units.shown(one.value):g} {units.length}"
+        value = in_unit(units.shown(one.value), "g", units.length)
     elif one.setting == "speed_m_s":
-        value = f"{3.6 * one.value:.3g}"
+        value = number(3.6 * one.value, ".3g")
     else:
-        value = f"{100 * one.value:g}"
+        value = number(100 * one.value, "g")
     return texts.ASSUMED_WHAT[one.setting].format(value=value)

@@ -8,6 +8,7 @@ import shapely
 import streamlit as st
 
 from ..words import texts
+from ..words.language import number
 from .assumed import mark
 
 if TYPE_CHECKING:
@@ -27,7 +28,9 @@ def show(plot: Plot, units: Units) -> None:
     )
     with st.container(horizontal=True):
         st.metric(texts.AREA_IS, units.square(float(area_m2)), width="content")
-        st.metric(plants, f"{len(grid):,}", width="content")
+        st.metric(plants, number(len(grid), ","), width="content")
         st.metric(texts.ROWS_ARE, int(grid.row_line.max()) + 1, width="content")
-        st.metric(texts.BEARING_IS, f"{grid.frame.bearing_deg % 180:.1f}°", width="content")
+        st.metric(
+            texts.BEARING_IS, f"{number(grid.frame.bearing_deg % 180, '.1f')}°", width="content"
+        )
         st.metric(spacing, apart, width="content")

@@ -11,7 +11,9 @@ from markupsafe import Markup
 
 from fieldmon.io.html import page
 
-from ..words import texts
+from ..words import language, texts
+from ..words.language import number
+from ..words.units import hours
 from .maps import colours, legends
 
 if TYPE_CHECKING:
@@ -29,14 +31,6 @@ _WIDE = 900.0
 _STOPS_A_TABLE = 60
 # beside this module, whatever the app is installed as
 _TEMPLATE = f"{__package__.replace('.', '/')}/report.html.j2"
-_WORDS = {
-    "chance": texts.LEGEND_CHANCE,
-    "found": texts.REPORT_FOUND,
-    "season": texts.REPORT_SEASON,
-    "settings": texts.REPORT_SETTINGS,
-    "route": texts.REPORT_ROUTE,
-    "columns": (texts.DATE, texts.VISITED_TODAY, texts.FOUND_TODAY, texts.EXPECTED_LEFT),
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +54,20 @@ class Facts:
         return self.shown.route
 
 
+def _words(*, worked: bool) -> dict[str, Any]:
+    """Return the words of the page, in the language of whoever makes it."""
+    return {
+        "chance": texts.LEGEND_CHANCE,
+        "found": texts.REPORT_FOUND,
+        "season": texts.REPORT_SEASON,
+        "settings": texts.REPORT_SETTINGS,
+        "route": texts.REPORT_WORKED if worked else texts.REPORT_ROUTE,
+        "columns": (texts.DATE, texts.VISITED_TODAY, texts.FOUND_TODAY, texts.EXPECTED_LEFT),
+        "language": language.current(),
+        "direction": "rtl" if language.is_right_to_left() else "ltr",
+    }
+
+
 def html(facts: Facts, stops: pd.DataFrame, days: list[DayFigures]) -> str:
     """Return the whole page."""
     signs = [
@@ -72,7 +80,7 @@ def html(facts: Facts, stops: pd.DataFrame, days: list[DayFigures]) -> str:
     return page(
         _TEMPLATE,
         title=texts.REPORT_TITLE.format(name=texts.isolated(facts.name), day=facts.day),
-        words=_WORDS | ({"route": texts.REPORT_WORKED} if worked else {}),
+        words=_words(worked=worked),
         figures=_figures(facts),
         assumed=facts.assumed.removeprefix("\\"),
         drawing=drawing(facts),
@@ -167,13 +175,13 @@ def _figures(facts: Facts) -> dict[str, str]:
     found = sum(len(plants.split(", ")) for plants in facts.results.values())
     plants = texts.PLANTS_INSPECTED if worked else texts.PLANTS_TO_INSPECT
     finds = (
-        {texts.FOUND_TODAY: f"{found:,}"}
+        {texts.FOUND_TODAY: number(found, ",")}
         if worked
-        else {texts.FINDS: f"{route.expected_found:.1f}"}
+        else {texts.FINDS: number(route.expected_found, ".1f")}
     )
     return {
-        plants: f"{len(np.unique(route.plant)):,} / {len(facts.chance):,}",
-        texts.TIME: f"{route.end_s / 3600:.1f} h",
+        plants: f"{number(len(np.unique(route.plant)), ',')} / {number(len(facts.chance), ',')}",
+        texts.TIME: hours(route.end_s / 3600),
         texts.DRIVE: facts.units.metres(route.drive_m),
         **finds,
     }
@@ -183,13 +191,13 @@ def _settings(facts: Facts) -> dict[str, str]:
     robot = facts.robot
     return {
         texts.SAMPLER: facts.sampler,
-        texts.HOURS: f"{robot.hours:g}",
-        texts.INSPECTION_S: f"{robot.look_s:g}",
-        texts.SPEED: f"{robot.speed_m_s * 3.6:.1f} km/h",
-        texts.DETECTS: f"{robot.detects:.0%}",
+        texts.HOURS: number(robot.hours, "g"),
+        texts.INSPECTION_S: number(robot.look_s, "g"),
+        texts.SPEED: texts.IN_SPEED.format(value=number(robot.speed_m_s * 3.6, ".1f")),
+        texts.DETECTS: number(robot.detects, ".0%"),
     }
 
 
 def _day(facts: Facts, one: DayFigures) -> tuple[object, ...]:
-    left = f"{one.expected:.1f} ({one.low}-{one.high})"
+    left = f"{number(one.expected, '.1f')} ({one.low}-{one.high})"
     return facts.units.day(one.on), one.inspected, one.found, left

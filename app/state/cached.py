@@ -28,7 +28,8 @@ from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
 from fieldmon.simulation.season import SeasonSettings, SimulatedDay, simulated_days
 from fieldmon.simulation.start import season_start
 
-from ..words import texts
+from ..words import language, texts
+from ..words.language import Late
 from .comparison import Comparison
 
 if TYPE_CHECKING:
@@ -61,6 +62,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+#: shown while something is made, in the language of whoever waits
+_WORKING = Late(lambda: texts.WORKING)
 _FEW = 24
 # maps of many plants are megabytes each, a day's figures a few numbers
 _MAPS, _DAYS = 60, 200
@@ -71,13 +74,13 @@ def digest(data: bytes) -> str:
     return sha256(data).hexdigest()
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def plots(key: str, options: PlotOptions, _source: Source) -> Imported[tuple[Field, ...]]:  # noqa: ARG001
     """Return the plots of a file."""
     return read.read_plots(_source, options)
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def records(
     key: str,  # noqa: ARG001
     _source: RecordSource,
@@ -92,25 +95,25 @@ def records(
     return prepare.records_on(_plot, _source, lambda: _fields, _measured)
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def measured_plants(key: str, options: ReadOptions, _source: Source) -> Plants:  # noqa: ARG001
     """Return measured plants: positions, and labels if the file has any."""
     return read.read_plants(_source, options).value
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def paths(source: Path) -> MultiLineString:
     """Return the lines of one of the program's own files."""
     return read.read_lines(source).value
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def plot(key: str, choices: PlantingChoices, _field: Field) -> Plot:  # noqa: ARG001
     """Return a field with its plants and aisles."""
     return prepare.lay(_field, choices).plot
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def plot_around(
     key: str,  # noqa: ARG001
     choices: PlantingChoices,
@@ -121,7 +124,7 @@ def plot_around(
     return prepare.lay_around(_sources, _measured, choices).plot
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def day_plan(
     key: str,
     day: str,
@@ -170,7 +173,7 @@ def season(path: Path) -> Season:
     return _season(path, inode)
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def _season(path: Path, inode: int) -> Season:  # noqa: ARG001 - another file of the same name
     return Season(path)
 
@@ -181,7 +184,7 @@ def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:  # n
     return _season.messages()
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def season_plan(path: str, revision: str, day: str, _season: Season) -> DayPlan:  # noqa: ARG001
     """Return what is left of a season's day."""
     return with_bound(_season.plan(np.datetime64(day).item(), keep=False))
@@ -236,13 +239,13 @@ def morning(path: str, revision: str, day: str, _season: Season) -> Array:  # no
     return _season.morning(np.datetime64(day).item())
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Backdrop:  # noqa: ARG001
     """Return a picture of the ground about a plot."""
     return read_backdrop(_source, options, _near).value
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def risk(
     key: str,  # noqa: ARG001
     _source: RiskSource,
@@ -252,7 +255,7 @@ def risk(
     return prepare.risk_on(_plot, _source)
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def without_missing(
     key: str,  # noqa: ARG001
     _source: CanopySource,
@@ -262,9 +265,13 @@ def without_missing(
     return prepare.without_missing(_plot, _source)
 
 
+def layers(key: str, make: Callable[[], list[Layer]]) -> list[Layer]:
+    """Return map layers, made once a language; `key` stands for all that they show."""
+    return _layers(f"{language.current()} {key}", make)
+
+
 @st.cache_resource(max_entries=_MAPS)
-def layers(key: str, _make: Callable[[], list[Layer]]) -> list[Layer]:  # noqa: ARG001
-    """Return map layers, made once; `key` stands for all that they show."""
+def _layers(key: str, _make: Callable[[], list[Layer]]) -> list[Layer]:  # noqa: ARG001
     return _make()
 
 
@@ -283,7 +290,7 @@ def comparison(
     return Comparison(settings, _plot, _chance, robot)
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def simulated_season(
     key: str,  # noqa: ARG001
     sampler_name: str,

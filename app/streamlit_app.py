@@ -72,7 +72,7 @@ def in_panel(name: str) -> None:
     with head:
         links()
     with said:
-        waiting = first_screen.Waiting(st.empty())
+        waiting = first_screen.FirstScreen(st.empty())
     preload.start().load(map_sent=waiting.begin())
     from .actions.bringing_files import show_left_out  # noqa: PLC0415 - as just loaded
     from .actions.choosing import choose, mark_day  # noqa: PLC0415
@@ -89,7 +89,7 @@ def in_panel(name: str) -> None:
             view("plot").bring(chosen.problem)
             return
         try:
-            view("rooms").show(name, chosen.choices)
+            view("rooms").show(name, chosen.choices, view)
         except FieldmonError as error:
             st.error(of_error(error))
 

@@ -21,9 +21,8 @@ if TYPE_CHECKING:
 def show(choices: Choices) -> None:
     """Say what the figures above rest on, with the way to say otherwise."""
     assumed = assumptions.of(choices)
-    left, right = st.columns([5, 1], vertical_alignment="center")
-    left.caption(sentence(assumed, choices.units) or texts.ASSUMED_NOTHING)
-    with right.popover(texts.ASSUMED_CHANGE, width="stretch"):
+    st.caption(sentence(assumed, choices.units) or texts.ASSUMED_NOTHING)
+    with st.popover(texts.ASSUMED_CHANGE):
         if choices.season is None:
             _boxes(choices)
         else:

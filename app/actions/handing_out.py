@@ -70,7 +70,7 @@ def made(chosen: HandoffFormat, plan: HandoffPlan) -> bytes:
 
 def _give_out(choices: Choices) -> None:
     if st.button(texts.GIVE_OUT, help=texts.GIVE_OUT_HELP, key="give_out"):
-        choices.season.plan(choices.on)
+        choices.season.plan(choices.on, wishes=choices.wishes)
         st.toast(texts.GIVEN_OUT.format(day=choices.units.day(choices.day)))
     with st.container(key="start_scouting", width="content"):
         st.button(texts.START_SCOUTING, key="begin_scouting", icon=":material/eco:",

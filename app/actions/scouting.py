@@ -25,7 +25,7 @@ SOURCE = "scout mode"
 def give_out(choices: Choices) -> None:
     """Keep the day's route with the season when the scouting begins."""
     if not len(chosen_day.given_out(choices)):
-        choices.season.plan(choices.on)
+        choices.season.plan(choices.on, wishes=choices.wishes)
 
 
 def _second(choices: Choices) -> float:

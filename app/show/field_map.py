@@ -51,5 +51,4 @@ def of_plot(choices: Choices, stops: int = 0) -> dict[str, object]:
     alt = texts.MAP_ALT.format(
         name=choices.plot.field.name, plants=len(grid), finds=finds, stops=stops
     )
-    place = choices.plot_key or choices.key
-    return {"place": place, "bounds": deck.of_grid(grid), "alt": alt}
+    return {"place": choices.place, "bounds": deck.of_grid(grid), "alt": alt}

@@ -21,15 +21,18 @@ from .maps import plant_layers
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
-    from .map_view import MapContent
+    from .map_view import MapContent, Selected
 
 _ROW, _PLANT, _TAPPED = "history row", "history plant", "history tapped"
 
 
-def want(choices: Choices, content: MapContent) -> None:
-    """Want a map on which a tap chooses the plant whose history is shown, with a ring round it."""
+def want(choices: Choices, content: MapContent, selected: Selected | None = None) -> None:
+    """Want a map on which a tap chooses the plant whose history is shown, with a ring round it.
+
+    `selected` hears of the plants that are selected on it.
+    """
     chosen = replace(content, layers=[*content.layers, *layers(choices)])
-    field_map.want(chosen, MapAnswers(tapped=partial(take_plant, choices)))
+    field_map.want(chosen, MapAnswers(partial(take_plant, choices), selected=selected))
 
 
 def take_plant(choices: Choices, layer: str, index: int) -> None:

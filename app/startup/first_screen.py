@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
 
 
-class Waiting:
+class FirstScreen:
     """Waits until plants can be laid, shows the outline meanwhile, and says what takes so long.
 
     Parameters

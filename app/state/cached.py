@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     )
     from fieldmon.monitoring import DayFigures, KeptMessage, Progress
     from fieldmon.planning.route import Route
+    from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
@@ -132,10 +133,11 @@ def day_plan(
     sampler_name: str,  # noqa: ARG001 - whom the settings hold
     _plot: Plot,
     _known: tuple[Observations, Array | None],
+    wishes: Wishes,
 ) -> DayPlan:
     """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
     chance = chance_map(key, day, settings.prior, _plot, _known)
-    return with_bound(plan_from(_plot, chance, settings))
+    return with_bound(plan_from(_plot, chance, settings, wishes))
 
 
 @st.cache_resource(max_entries=_FEW)
@@ -185,9 +187,15 @@ def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:  # n
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
-def season_plan(path: str, revision: str, day: str, _season: Season) -> DayPlan:  # noqa: ARG001
+def season_plan(
+    path: str,  # noqa: ARG001
+    revision: str,  # noqa: ARG001
+    day: str,
+    _season: Season,
+    wishes: Wishes,
+) -> DayPlan:
     """Return what is left of a season's day."""
-    return with_bound(_season.plan(np.datetime64(day).item(), keep=False))
+    return with_bound(_season.plan(np.datetime64(day).item(), keep=False, wishes=wishes))
 
 
 @st.cache_resource(max_entries=_FEW)

@@ -12,13 +12,14 @@ from fieldmon.plot.local_clock import LocalClock, local_clock
 from fieldmon.samplers import sampler
 
 from ..words import texts
-from . import browser, cached
+from . import browser, cached, wishes
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
     from fieldmon.infestation.observations import Observations
     from fieldmon.monitoring import Season
     from fieldmon.planning.plan import DayPlan
+    from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
 
@@ -101,13 +102,25 @@ class Choices:
         """Return whether the page is dark."""
         return browser.is_dark()
 
+    @property
+    def place(self) -> str:
+        """Return what names the plot, however its plants were laid last."""
+        return self.plot_key or self.key
+
+    @property
+    def wishes(self) -> Wishes:
+        """Return what people want of the day besides."""
+        return wishes.of(self.place, self.day)
+
     def plan(self) -> DayPlan:
         """Return the planned day: what is left of it, once something of it was recorded."""
         if self.season is not None:
-            return cached.season_plan(self.key, self.revision, self.day, self.season)
+            return cached.season_plan(self.key, self.revision, self.day, self.season, self.wishes)
         known = self.records, self.risk
         settings = PlanSettings(self.robot, sampler(self.sampler), self.prior)
-        return cached.day_plan(self.key, self.day, settings, self.sampler, self.plot, known)
+        return cached.day_plan(
+            self.key, self.day, settings, self.sampler, self.plot, known, self.wishes
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -11,11 +10,14 @@ from ..state import rooms, widget_memory
 from ..words import texts
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import ModuleType
+
     from ..state.choices import Choices
 
 
-def show(name: str, choices: Choices) -> None:
-    """Show the chosen part of a room."""
+def show(name: str, choices: Choices, view: Callable[[str], ModuleType]) -> None:
+    """Show the chosen part of a room; `view` returns a part's module."""
     parts = rooms.ROOMS[name].parts
     part = parts[0]
     if len(parts) > 1:
@@ -26,4 +28,4 @@ def show(name: str, choices: Choices) -> None:
         )  # fmt: skip
     # a box that several parts have begins again with what was chosen, as on another page
     widget_memory.turn(f"{name} {part}")
-    import_module(f".{part}", __package__).show(choices)
+    view(part).show(choices)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..actions import assuming, beginning, handing_out
+from ..actions import assuming, beginning, handing_out, picking
 from ..show import day, map_layers, plant_history
 from ..state import chosen_day
 from ..state.chosen_day import DayRoute
@@ -23,7 +24,9 @@ def show(choices: Choices) -> None:
         st.markdown(day.headline(choices, plan))
     day.said_of_day(choices, plan)
     handing_out.show(choices, plan)
-    plant_history.want(choices, map_layers.day_map(choices))
+    content = map_layers.day_map(choices, above=picking.layers(choices))
+    plant_history.want(choices, content, partial(picking.take, choices))
+    picking.show(choices, plan)
     day.route_figures(choices, plan)
     assuming.show(choices)
     if choices.season is None:

@@ -53,7 +53,7 @@ EMPTY = (
     "Drop a plot file into the first box: the boundary of a real plot, in any coordinate system. "
     "Records of pests are welcome but not needed. Your files stay on this machine, for a day after "
     "you saw them last; nobody sees them who does not have this page's address, and nothing is "
-    "sent anywhere. Or choose the sample estate on the left first."
+    "sent anywhere. Or choose the sample estate above first."
 )
 ROWS = "Rows"
 BEARING = "Row bearing (degrees from north)"
@@ -90,7 +90,7 @@ ASSUMED_WHAT = {
 }
 ASSUMED_CHANGE, ASSUMED_USE = "Change", "Use these"
 ASSUMED_NOTHING = "Nothing is assumed: all of it was said, or stands in your files."
-ASSUMED_ROBOT = "Who inspects, how long and how thoroughly is chosen on the left."
+ASSUMED_ROBOT = "Who inspects, how long and how thoroughly is chosen below, under Who inspects."
 ASSUMED_LAID = "Rows and plants were laid when the season began and stay as they are."
 ASSUMED_CHANGED = "The season reckons with these from its first morning on."
 BACKGROUND = "Plants infested where nothing is known (%)"
@@ -101,7 +101,8 @@ BOUND_HELP = (
 )
 DOWNLOAD = "Download the route (GeoJSON)"
 NO_STOPS = (
-    "The working day is too short to reach a plant and come back. Give more hours on the left."
+    "The working day is too short to reach a plant and come back. Give more hours below, under "
+    "Who inspects."
 )
 MESSAGES = "What the import found"
 MESSAGES_NONE = "Nothing to report: the files were read as they are."
@@ -191,6 +192,15 @@ SEASON_NAMED = (
 )
 SEASON_LONG = "A season's name must have {most} letters at most, but it has {n}."
 
+# -- plants picked on the map
+PICKED = "**{plants} selected.**"
+PICKED_ALSO, PICKED_NEVER, PICKED_NONE = "Inspect these too", "Not these", "Clear"
+WISHED, UNWISHED = "{plants} to be inspected besides.", "{plants} left out."
+WISHES_UNMET = (
+    "{plants} of those are not on the route: the hours, or the strategy, do not allow it."
+)
+WISHES_DROP = "As planned before"
+
 # -- all plots
 PLOTS_TITLE = Plural("{n} plot", "{n} plots")
 PLOTS_ALT = Plural("Map of {n} plot: {names}.", "Map of {n} plots: {names}.")
@@ -215,7 +225,7 @@ HEADLINE_NONE = "Nothing to inspect on {day}."
 BEGIN_TITLE = "Keep this season"
 BEGIN_NOTE = (
     "Begin a season, and everything is kept from here on: routes, what was found, and what that "
-    "says about the rest of the plot. Come back to it tomorrow from the list on the left."
+    "says about the rest of the plot. Come back to it tomorrow from the list above."
 )
 SEASON_NAME, BEGIN = "Name of the season", "Begin the season"
 BEGUN = "Season {name} has begun. Its file is {path}."
@@ -234,7 +244,7 @@ CHANGED_OUT = "Still infested, as expected: {now:.1f} after {before:.1f} ({sign}
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
 _OVER = (
-    "inspected today, {found} found: the working day is over. Choose the next day in the panel for "
+    "inspected today, {found} found: the working day is over. Choose the next day above for "
     "its route, or give more hours."
 )
 TODAY_OVER = Plural(

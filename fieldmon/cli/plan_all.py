@@ -9,7 +9,7 @@ import signal
 import time
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
@@ -21,7 +21,7 @@ from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.prepare import lay
 from fieldmon.io.sources import PlantingChoices
-from fieldmon.io.writers.geojson import RouteNotes, write_route
+from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.planning.batch import plan_task
 
 if TYPE_CHECKING:
@@ -207,9 +207,8 @@ def _work(name: str, task: Task) -> Row:
         (day.folder / name).unlink(missing_ok=True)
         return row | {"state": "refused", "sentence": str(error)}
     route = today.route
-    write_route(
-        day.folder / name, route, RouteNotes(task.plot.name, task.orders.sampler, day.began)
-    )
+    notes = RouteNotes(task.plot.name, task.orders.sampler, day.began)
+    replace(route, notes=notes).to_file(day.folder / name, "geojson")
     return row | {
         "state": "planned",
         "plants": len(route.aisles.grid),

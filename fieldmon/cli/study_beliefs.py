@@ -13,8 +13,13 @@ from fieldmon.errors import SettingError
 
 def beliefs(
     seeds: Annotated[int, typer.Option(min=1, help="Simulated seasons a belief.")] = 10,
-    cell: Annotated[
-        str, typer.Option(help="How the name of the situation begins (see `study samplers`).")
+    scenario: Annotated[
+        str,
+        typer.Option(
+            "--scenario",
+            "--cell",
+            help="How the name of the scenario begins (see `study samplers`).",
+        ),
     ] = "B, spread 30% to one, clusters, prior none",
     sampler: Annotated[str, typer.Option(help="Who inspects meanwhile.")] = "adaptive",
     output: Annotated[
@@ -34,9 +39,9 @@ def beliefs(
     from fieldmon.studies.samplers.scenarios import all_scenarios  # noqa: PLC0415
 
     must_be_folder(output)
-    chosen = next((each for each in all_scenarios() if each.name.startswith(cell)), None)
+    chosen = next((each for each in all_scenarios() if each.name.startswith(scenario)), None)
     if chosen is None:
-        raise SettingError(f"A cell must begin with {cell!r}, but none does.")
+        raise SettingError(f"A scenario must begin with {scenario!r}, but none does.")
     made = {}
     for name, believe in BELIEFS.items():
         made[name] = c = calibration([chosen], named(sampler), believe, seeds)

@@ -19,18 +19,21 @@ if TYPE_CHECKING:
 
 
 def samplers(
-    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons a cell.")] = 10,
+    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons a scenario.")] = 10,
     *,
     full: Annotated[
         bool,
         typer.Option("--full", help="Every combination of plot, spread, start and prior (hours)."),
     ] = False,
-    cell: Annotated[
-        list[str] | None, typer.Option(help="Only cells whose name begins so; repeat for more.")
+    scenario: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--scenario", "--cell", help="Only scenarios whose name begins so; repeat for more."
+        ),
     ] = None,
     maps: Annotated[
         Path | None,
-        typer.Option(help="Folder with the public plant maps: finds a look on these instead."),
+        typer.Option(help="Folder with the public plant maps: finds per inspection on these."),
     ] = None,
     tune: Annotated[
         bool, typer.Option("--tune", help="Search Dynamic's open choices instead (ten minutes).")
@@ -39,14 +42,14 @@ def samplers(
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV) and report (HTML).")
     ] = Path(),
 ) -> None:
-    """Compare samplers in scenarios A, B and C: infested plant-days, days to 50 and 80 %, looks.
+    """Compare samplers in scenarios A, B and C: infested plant-days, days to 50 and 80 %.
 
     A study that was stopped goes on where its table ends. With 10 seeds it takes about half an
     hour on two free cores.
 
-    On mapped plots (`--maps`) no plant infects another: the share of looks that find something.
+    On mapped plots (`--maps`) no plant infects another: the share of inspections with a find.
 
-    Example: fieldmon study samplers --cell "B, spread 30% to one" --seeds 20 -o study
+    Example: fieldmon study samplers --scenario "B, spread 30% to one" --seeds 20 -o study
     """
     from fieldmon.studies.samplers.report import report_html  # noqa: PLC0415
     from fieldmon.studies.samplers.summary import sentences  # noqa: PLC0415
@@ -59,7 +62,7 @@ def samplers(
         _tune()
         return
     table = output / "samplers.csv"
-    shown = _outcomes(_scenarios(cell, full=full), seeds, table)
+    shown = _outcomes(_scenarios(scenario, full=full), seeds, table)
     for sentence in sentences(shown):
         typer.echo(sentence)
     typer.echo(f"Written: {table}")
@@ -75,7 +78,7 @@ def _scenarios(beginnings: list[str] | None, *, full: bool) -> list[Scenario]:
         return scenarios
     meant = [each for each in scenarios if each.name.startswith(tuple(beginnings))]
     if not meant:
-        raise SettingError(f"A cell must begin with {' or '.join(beginnings)}, but none does.")
+        raise SettingError(f"A scenario must begin with {' or '.join(beginnings)}, but none does.")
     return meant
 
 
@@ -108,7 +111,7 @@ def _tune() -> None:
 
 
 def _on_maps(folder: Path, output: Path) -> None:
-    """Print and write how many infested plants a look finds on mapped plots."""
+    """Print and write how many infested plants an inspection finds on mapped plots."""
     from fieldmon.studies.samplers.mapped_plots import (  # noqa: PLC0415
         SHARES,
         plots_in,
@@ -117,9 +120,9 @@ def _on_maps(folder: Path, output: Path) -> None:
     )
 
     rows = table(plots_in(folder))
-    typer.echo(f"{'Infested plants found per look, after':38} " + _columns(SHARES, "{:6.0%}"))
+    typer.echo(f"{'Infested plants found per inspection, after':44} " + _columns(SHARES, "{:6.0%}"))
     for name, who, values in rows:
-        typer.echo(f"{name:28} {who:9} " + _columns(values, "{:6.2f}"))
+        typer.echo(f"{name:34} {who:9} " + _columns(values, "{:6.2f}"))
     write_all(output, {"maps.csv": table_csv(rows)})
 
 

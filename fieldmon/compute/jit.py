@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import logging
+from contextlib import suppress
+from pathlib import Path
+from types import FunctionType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numba as nb
 from numba.core import event
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.dispatcher import Dispatcher
 
 from fieldmon.compute.jit_progress import FIRST_USE
 
@@ -16,7 +22,6 @@ F = TypeVar("F", bound="Callable[..., object]")
 
 # nothing here is called from C; numba's own stubs leave the last two out
 _BARE: dict[str, Any] = {
-    "cache": True,
     "error_model": "numpy",
     "_nrt": False,
     "no_cfunc_wrapper": True,
@@ -39,6 +44,81 @@ class _Compiling(event.Listener):
 event.register("numba:compile", _Compiling())  # type: ignore[no-untyped-call]
 
 
+class _KeptLoops(FunctionCache):
+    """What numba keeps of a loop on disk; what cannot be loaded of it is compiled anew.
+
+    Numba's own raises what unpickling raises: for files that were cut short, and for those of an
+    earlier version, where a named tuple that the loop takes had another name. And it looks at the
+    loop's own source only: one whose callee in another file has changed would run as it was.
+    """
+
+    _looked = False
+
+    def load_overload(self, sig: object, target_context: object) -> object:
+        """Return the loop for these types, or None: it is to be compiled."""
+        if not self._looked:  # only now are all it calls defined
+            self._looked = True
+            self._cache_file = IndexDataCacheFile(  # type: ignore[no-untyped-call]
+                self._cache_path, self._impl.filename_base, _stamps(self._py_func)
+            )
+        try:
+            return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
+        except Exception as unloadable:  # noqa: BLE001 - a damaged pickle may raise anything
+            _say_once(unloadable)
+            self._forget()
+            return None
+
+    def _forget(self) -> None:
+        """Begin the loop's files anew; leave them alone where nothing can be written."""
+        self.disable()  # type: ignore[no-untyped-call]
+        with suppress(OSError):
+            self.flush()  # type: ignore[no-untyped-call]
+            self.enable()  # type: ignore[no-untyped-call]
+
+
+def _stamps(function: FunctionType) -> tuple[tuple[str, float, int], ...]:
+    """Return name, time and size of the files of a loop and of all loops that it calls."""
+    waiting, seen = [function], {function}
+    while waiting:
+        caller = waiting.pop()
+        for name in caller.__code__.co_names:
+            called = getattr(caller.__globals__.get(name), "py_func", None)
+            if isinstance(called, FunctionType) and called not in seen:
+                seen.add(called)
+                waiting.append(called)
+    files = sorted({Path(loop.__code__.co_filename) for loop in seen})
+    stats = [(file.name, file.stat()) for file in files if file.exists()]
+    return tuple((name, stat.st_mtime, stat.st_size) for name, stat in stats)
+
+
+_SAID: list[str] = []
+
+
+def _say_once(unloadable: Exception) -> None:
+    if not _SAID:
+        _SAID.append(
+            "Compiled loops that were kept on this machine cannot be loaded and are compiled anew, "
+            f"once: they are damaged or of another version ({unloadable})."
+        )
+        logging.getLogger("fieldmon").warning(_SAID[0])
+
+
+def kept(function: F) -> F:
+    """Keep on disk what numba makes of a function (``@kept`` above its decorator)."""
+    made: Any = function
+    if isinstance(made, Dispatcher):  # it is not where numba is told to compile nothing
+        loops = _KeptLoops(made.py_func)  # type: ignore[no-untyped-call]
+        setattr(made, "_cache", loops)  # noqa: B010 - as numba's own enable_caching does
+    return function
+
+
+def routine(function: F) -> F:
+    """Compile a function that may make arrays of its own."""
+    options: dict[str, Any] = {"nogil": True}
+    compiled: F = nb.njit(**options)(function)
+    return kept(compiled)
+
+
 def loop(function: F) -> F:
     """Compile a function that makes no arrays of its own, but works in those it is handed.
 
@@ -47,7 +127,7 @@ def loop(function: F) -> F:
     by zero follow IEEE 754, for the same reason: a loop that cannot raise needs no way out.
     """
     compiled: F = nb.njit(nogil=True, **_BARE)(function)
-    return compiled
+    return kept(compiled)
 
 
 def part(function: F) -> F:
@@ -57,11 +137,11 @@ def part(function: F) -> F:
     small function takes to compile.
     """
     compiled: F = nb.njit(**_NOT_FOR_PYTHON)(function)
-    return compiled
+    return kept(compiled)
 
 
 def inlined(function: F) -> F:
     """Compile a function likewise, to be copied into the loops that call it."""
     # copied as machine code; as numba's own it would be worked through again in every loop
     compiled: F = nb.njit(forceinline=True, **_BARE)(function)
-    return compiled
+    return kept(compiled)

@@ -11,10 +11,9 @@ import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numba as nb
 import numpy as np
 
-from fieldmon.compute.jit import inlined, loop
+from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -152,7 +151,7 @@ def coin_limit(chance: float) -> np.uint64:
     return np.uint64(math.ceil(chance * _COIN_PARTS))
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def coin_table(key: np.uint64, n: int) -> NDArray[np.float64]:
     """Return the first `n` entries of the table that `key` names, ``(n,)``."""
     table = np.empty(n)

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numba as nb
 import numpy as np
 
+from fieldmon.compute.jit import routine
 from fieldmon.compute.random_streams import RandomStreams, coin
 from fieldmon.infestation.clustering import CLUSTERING
 from fieldmon.infestation.pairs import pair_chances
@@ -85,8 +85,8 @@ class Ensemble:
 
     def treated(self, left: NDArray[np.float64]) -> Ensemble:
         """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
-        luck = self.chances.of("treated", self.steps).random(self.fields.shape)
-        return Ensemble(self.grid, self.fields & (luck < left), self.chances, self.steps + 1)
+        drawn = self.chances.of("treated", self.steps).random(self.fields.shape)
+        return Ensemble(self.grid, self.fields & (drawn < left), self.chances, self.steps + 1)
 
     def estimate(self, sure: float = 0.9) -> PlotEstimate:
         """Return what the fields say of the whole plot."""
@@ -96,7 +96,7 @@ class Ensemble:
         return PlotEstimate(float(counts.mean()), int(np.floor(low)), int(np.ceil(high)), clean)
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _pair_chance(
     fields: NDArray[np.bool_], adjacent: Csr, pair_chance: NDArray[np.float64]
 ) -> None:
@@ -110,7 +110,7 @@ def _pair_chance(
     pair_chance /= m
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _learn(
     fields: NDArray[np.bool_],
     adjacent: Csr,
@@ -142,10 +142,10 @@ def _learn(
             fields[:, i] = False
 
 
-@nb.njit(cache=True)
-def _donor(was: NDArray[np.bool_], wanted: bool, luck: float) -> int:  # noqa: FBT001 - a state
+@routine
+def _donor(was: NDArray[np.bool_], wanted: bool, drawn: float) -> int:  # noqa: FBT001 - a state
     """Return a field, drawn, in which the plant was as wanted; -1 if there is none."""
-    first = int(luck * was.size)
+    first = int(drawn * was.size)
     for step in range(was.size):
         k = (first + step) % was.size
         if was[k] == wanted:
@@ -153,7 +153,7 @@ def _donor(was: NDArray[np.bool_], wanted: bool, luck: float) -> int:  # noqa: F
     return -1
 
 
-@nb.njit(cache=True)
+@routine
 def _about(adjacent: Csr, i: int, block: NDArray[np.int64]) -> int:
     """Write down the plants up to three steps from plant i; return how many."""
     block[0] = i

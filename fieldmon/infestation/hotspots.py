@@ -14,12 +14,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numba as nb
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from fieldmon.compute.jit import routine
 from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.nearby_plants import outside_m
@@ -328,7 +328,7 @@ def _centre_m(finds_m: Floats, of_find: NDArray[np.int32], found: NDArray[np.int
     return np.stack(sums, axis=1) / found[:, None]
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _tails(windows: NDArray[np.int64], inspected: int, found: int) -> Floats:
     """Return P(at least as many finds) for windows ``(w, 2)`` of (inspected, found) plants.
 
@@ -340,7 +340,7 @@ def _tails(windows: NDArray[np.int64], inspected: int, found: int) -> Floats:
     return p
 
 
-@nb.njit(cache=True)
+@routine
 def _tail(x: int, drawn: int, special: int, total: int) -> float:
     """Return P(X >= x) for `drawn` of `total` plants of which `special` are finds.
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numba as nb
 import numpy as np
 import shapely
+
+from fieldmon.compute.jit import routine
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -77,7 +78,7 @@ def outside_m(grid: PlantGrid, lonlat: Floats) -> Floats:
     return off_m
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def distance_m(rows: PlantRows, pieces: Floats, farthest_m: float) -> Floats:
     """Return metres from each plant to straight pieces ``(s, 4)``; infinite beyond `farthest_m`."""
     squares = np.full(rows.x_m.size, np.inf)
@@ -101,7 +102,7 @@ def distance_m(rows: PlantRows, pieces: Floats, farthest_m: float) -> Floats:
     return metres
 
 
-@nb.njit(cache=True)
+@routine
 def first_from(x_m: Floats, first: int, end: int, least_m: float) -> int:
     """Return the first index in ``first:end`` whose x is at least `least_m` (else `end`)."""
     while first < end:

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-import numba as nb
 import numpy as np
 
-from fieldmon.compute.jit import inlined, loop
+from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.random_streams import coin
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import pair_chances
@@ -124,7 +123,7 @@ def _draw(
         counts[k] = total
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def draw_fields(
     believed: tuple[NDArray[np.float64], NDArray[np.float64]],
     adjacent: Csr,
@@ -139,7 +138,7 @@ def draw_fields(
             fields[k, i] = coin(key, k * chance.size + i) < _given(table, fields[k], i)
 
 
-@nb.njit(cache=True)
+@routine
 def _table(chance: NDArray[np.float64], pair_chance: NDArray[np.float64], adjacent: Csr) -> _Table:
     """Return what a neighbour of lower number does to each plant's odds: drawn hundreds of times.
 

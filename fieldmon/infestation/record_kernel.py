@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numba as nb
 import numpy as np
 
+from fieldmon.compute.jit import kept, routine
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.belief import MOST_CHANCE
 from fieldmon.infestation.nearby_plants import FAR_M, PlantRows, first_from, outside_m
@@ -152,7 +153,7 @@ def _in_words(metres: float) -> str:
     return f"{metres:.0f} m away" if metres < 1000.0 else f"{metres / 1000.0:.0f} km away"
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _apply_records(
     chance: Floats, rows: PlantRows, records: _Records, kernel: _RecordKernel, fade_per_day: float
 ) -> None:
@@ -184,7 +185,8 @@ def _apply_records(
         chance[i] = _aged(chance[i], base[i], age_days[i] * fade_per_day)
 
 
-@nb.njit(cache=True, inline="always")
+@kept
+@nb.njit(inline="always")
 def _aged(chance: float, base: float, half_lives: float) -> float:
     # a plant not spoken of yet sits at its base, whatever time has passed
     return chance if half_lives <= 0.0 else base + (chance - base) * 0.5**half_lives

@@ -16,8 +16,8 @@ from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.spread import Spread
-from fieldmon.plot.travel import GATE, driven_s, robot_clock
-from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.plot.travel import driven_s, robot_clock
+from fieldmon.samplers.base import NEVER, Scene, resting_place
 
 if TYPE_CHECKING:
     from datetime import date
@@ -51,9 +51,32 @@ class BeliefSettings:
     )
     treated: bool = True
 
-    def learning(self, detection: float) -> Learning:
-        """Return how findings of that detection rate change the chance map."""
-        return Learning(detection, treated=self.treated)
+    def evening(
+        self,
+        morning: Belief,
+        plants: NDArray[np.int32],
+        found: NDArray[np.bool_],
+        detection: float | NDArray[np.float64],
+    ) -> Belief:
+        """Return what is believed after a day's inspections.
+
+        Parameters
+        ----------
+        morning
+            What was believed before.
+        plants, found
+            ``(k,)`` plants in the order in which they were inspected, and whether each was found
+            infested.
+        detection
+            Chance that an inspection finds what is there: one for all, or ``(k,)``.
+        """
+        if not len(plants):
+            return morning
+        return morning.learn(plants, found, Learning(detection, treated=self.treated))
+
+    def overnight(self, evening: Belief) -> Belief:
+        """Return what is believed the next morning."""
+        return evening.overnight(self.spread)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,15 +160,12 @@ class History:
 
     def night_after(self, morning: Belief, day: int) -> Belief:
         """Return what is believed the next morning, from what was on the morning of a day."""
-        return self.evening(morning, day).overnight(self.belief.spread)
+        return self.belief.overnight(self.evening(morning, day))
 
     def evening(self, morning: Belief, day: int) -> Belief:
         """Return what is believed after what was found and treated on a day."""
         done = self.on(day).inspected
-        believed = morning
-        if len(done):
-            learning = self.belief.learning(self.detection)
-            believed = believed.learn(done.plant, done.result == FOUND, learning)
+        believed = self.belief.evening(morning, done.plant, done.result == FOUND, self.detection)
         for treatment in self.treatments:
             if treatment.day == day:
                 believed = believed.treated(np.where(treatment.plants, 1 - treatment.efficacy, 1.0))
@@ -199,7 +219,7 @@ class History:
         last = self.last_inspected(day)
         last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
         trail = self._trail(day)
-        resting = GATE if robot.returns or not len(trail) else int(trail[-1])
+        resting = resting_place(robot, trail)
         return Scene(
             aisles=aisles,
             robot=robot,

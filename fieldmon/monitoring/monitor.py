@@ -20,16 +20,15 @@ from fieldmon.planning.plan import plan_in
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.robot import Robot
-from fieldmon.plot.travel import GATE
 from fieldmon.samplers import sampler as sampler_of
-from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.samplers.base import NEVER, Scene, resting_place
 
 if TYPE_CHECKING:
     from types import TracebackType
 
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.belief import Belief, Learning
+    from fieldmon.infestation.belief import Belief
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.plot import Plot
     from fieldmon.samplers.base import Sampler, Stops, WouldFind
@@ -172,12 +171,11 @@ class Monitor:
         """
         if self._day is not None and not self._day.ended:
             raise SettingError("The day must end before the night. Leave its with statement first.")
-        self._belief = self._belief.overnight(self.belief_settings.spread)
+        self._belief = self.belief_settings.overnight(self._belief)
         self._day = None
         self.day_number += 1
 
     def _scene(self) -> Scene:
-        rests = GATE if self.robot.returns or not len(self._trail) else int(self._trail[-1])
         return Scene(
             aisles=self.plot.aisles,
             robot=self.robot,
@@ -185,7 +183,7 @@ class Monitor:
             pair_chance=self._belief.pair_chance,
             last_inspected=self._last_inspected,
             day=self.day_number,
-            at=rests,
+            at=resting_place(self.robot, self._trail),
             seconds_left=self.robot.day_s,
             trail=self._trail,
             key=self._streams.key("sampler", self.day_number),
@@ -193,16 +191,17 @@ class Monitor:
 
     def _learn(self, day: MonitorDay) -> None:
         """Take in what was told on a day."""
+        self._belief = self._believed_after(day)
         if len(day.plants):
-            self._belief = self._belief.learn(day.plants, day.found, self._learning(day.detects))
             self._last_inspected = self._last_inspected.copy()
             self._last_inspected[day.plants] = self.day_number
             self._trail = day.plants
 
-    def _learning(self, detects: NDArray[np.float64]) -> Learning:
-        one = self.belief_settings.learning(self.robot.detects)
-        alike = (detects == self.robot.detects).all()
-        return one if alike else replace(one, detection=detects)
+    def _believed_after(self, day: MonitorDay) -> Belief:
+        """Return what is believed after what was told on a day so far."""
+        alike = (day.detects == self.robot.detects).all()
+        detects = self.robot.detects if alike else day.detects
+        return self.belief_settings.evening(self._belief, day.plants, day.found, detects)
 
 
 class MonitorDay:
@@ -309,10 +308,8 @@ class MonitorDay:
 
     def _plan_on(self, at: int, now_s: float) -> None:
         """Begin again where the robot stands, from what is believed after all that was told."""
-        monitor, believed = self._monitor, self._monitor._belief  # noqa: SLF001 - as above
-        if len(self.plants):
-            learning = monitor._learning(self.detects)  # noqa: SLF001
-            believed = believed.learn(self.plants, self.found, learning)
+        monitor = self._monitor
+        believed = monitor._believed_after(self)  # noqa: SLF001 - as above
         last = monitor.last_inspected.copy()
         last[[stop.plant for stop, _ in self._told]] = monitor.day_number
         scene = replace(

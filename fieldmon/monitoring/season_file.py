@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.tables import KeptMessage
     from fieldmon.planning.plan import DayPlan
+    from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
 
     Floats = NDArray[np.float64]
@@ -205,7 +206,10 @@ class Season:
 
     # -- the working day
 
-    def plan(self, on: date, now: time | None = None, *, keep: bool = True) -> DayPlan:
+    def plan(
+        self, on: date, now: time | None = None, *, keep: bool = True,
+        wishes: Wishes | None = None,
+    ) -> DayPlan:  # fmt: skip
         """Plan what is left of a day from all that is known.
 
         Parameters
@@ -217,6 +221,8 @@ class Season:
             the time of the last of it.
         keep
             whether the route is kept in the file: the same one once, an empty one never.
+        wishes
+            What people want of the day besides.
         """
         with self._lock:
             contents = self._now()
@@ -230,7 +236,7 @@ class Season:
             )
             now_s = None if now is None else seconds(now)
             scene = contents.history.scene(shift, day, contents.morning(day), now_s)
-            today = plan_in(scene, settings.decides())
+            today = plan_in(scene, settings.decides(), wishes)
             begins = routes.begins(settings, today)
             notes = RouteNotes(self.plot.field.name, settings.sampler, begins)
             today = replace(today, route=replace(today.route, notes=notes))

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.planning.route import Route
+    from fieldmon.planning.wishes import Wishes
     from fieldmon.planning.workday import Workday
     from fieldmon.plot.plot import Plot
 
@@ -197,8 +198,10 @@ def first_day(
     return plan_from(plot, chance, plans)
 
 
-def plan_from(plot: Plot, chance: NDArray[np.float64], plans: PlanSettings) -> DayPlan:
-    """Plan a first day from a chance map ``(n,)``."""
+def plan_from(
+    plot: Plot, chance: NDArray[np.float64], plans: PlanSettings, wishes: Wishes | None = None
+) -> DayPlan:  # fmt: skip
+    """Plan a first day from a chance map ``(n,)``, and from what people wish for besides."""
     scene = Scene(
         aisles=plot.aisles,
         robot=plans.robot,
@@ -208,10 +211,13 @@ def plan_from(plot: Plot, chance: NDArray[np.float64], plans: PlanSettings) -> D
         # as a season believes: it goes the same way on its first day
         pair_chance=pair_chances(chance, plot.grid),
     )
-    return plan_in(scene, plans.sampler)
+    return plan_in(scene, plans.sampler, wishes)
 
 
-def plan_in(scene: Scene, sampler: Sampler) -> DayPlan:
-    """Plan the rest of the day that a scene stands in, as it goes if nothing is found."""
-    work = plan_work(scene, sampler)
+def plan_in(scene: Scene, sampler: Sampler, wishes: Wishes | None = None) -> DayPlan:
+    """Plan the rest of the day that a scene stands in, as it goes if nothing is found.
+
+    Wishes change where it goes, not what is believed of the plants.
+    """
+    work = plan_work(scene if wishes is None else wishes.told(scene), sampler)
     return DayPlan(scene, work, route_of(scene, work))

@@ -79,7 +79,8 @@ class Field:
         if self.no_go.is_empty:
             return self.boundary
         left = shapely.difference(self.boundary, self.no_go)
-        areas = [part for part in shapely.get_parts(left) if part.geom_type == "Polygon"]
+        # where nothing is left, GEOS has one part, which is empty
+        areas = [part for part in shapely.get_parts(left) if part.area > 0]
         if not areas:
             raise PlotError(
                 f"Some of plot {self.name!r} must lie outside its no-go areas, but nothing does. "

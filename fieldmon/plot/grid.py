@@ -26,12 +26,18 @@ class RowLabel(NamedTuple):
     line: NDArray[np.int64]
     number: NDArray[np.int64]
 
+    def __repr__(self) -> str:
+        return f"<RowLabel: {counted(len(self.line), 'plant')}>"
+
 
 class Csr(NamedTuple):
     """Lists of plants, one per plant: those of plant i are ``plant[start[i]:start[i + 1]]``."""
 
     start: NDArray[np.int32]
     plant: NDArray[np.int32]
+
+    def __repr__(self) -> str:
+        return f"<Csr: {counted(len(self.plant), 'plant')} in lists of {len(self.start) - 1}>"
 
 
 class Linked(NamedTuple):
@@ -40,6 +46,9 @@ class Linked(NamedTuple):
     start: NDArray[np.int32]
     plant: NDArray[np.int32]
     back: NDArray[np.int32]
+
+    def __repr__(self) -> str:
+        return f"<Linked: {counted(len(self.plant), 'plant')} in lists of {len(self.start) - 1}>"
 
 
 @dataclass(frozen=True, eq=False)

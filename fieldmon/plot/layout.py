@@ -11,6 +11,7 @@ import shapely
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.arrays import offsets, runs
+from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot import adjacency
 from fieldmon.plot.grid import PlantGrid
@@ -93,6 +94,10 @@ class Pieces(NamedTuple):
     aisle_y_m: Float  # (r, 2): middle of the aisle below and of the aisle above
     lane_x_m: Float  # (r, 2)
 
+    def __repr__(self) -> str:
+        plants = counted(len(self.xy_m), "plant")
+        return f"<Pieces: {plants} in {counted(len(self.row_line), 'row')}>"
+
 
 class Intervals(NamedTuple):
     """Stretches of x, k in all, each on one of several horizontal strips."""
@@ -100,6 +105,9 @@ class Intervals(NamedTuple):
     strip: NDArray[np.intp]
     low_x: Float
     high_x: Float
+
+    def __repr__(self) -> str:
+        return f"<Intervals: {counted(len(self.strip), 'piece')}>"
 
 
 def lay(field: Field, planting: Planting) -> PlantGrid:

@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.arrays import runs
+from fieldmon.compute.jit import kept, routine
 from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError
 
@@ -161,7 +162,7 @@ def _bends(area: shapely.Geometry, coarse_m: float, sign: float) -> Float:
     return np.concatenate(found)
 
 
-@nb.njit(cache=True)
+@routine
 def _off_boxes(box_m: Float, from_m: Float, to_m: Float, off: Mask) -> None:
     """Set `off` to False for the straight lines that touch a box; boxes are sorted by low y."""
     low_y = box_m[:, 1]
@@ -178,7 +179,8 @@ def _off_boxes(box_m: Float, from_m: Float, to_m: Float, off: Mask) -> None:
             b += 1
 
 
-@nb.njit(cache=True, inline="always")
+@kept
+@nb.njit(inline="always")
 def _within(
     at: float, way: float, low: float, high: float, part: tuple[float, float]
 ) -> tuple[float, float]:

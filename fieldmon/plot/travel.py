@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-import numba as nb
 import numpy as np
 import shapely
 
 from fieldmon.compute.arrays import read_only
-from fieldmon.compute.jit import inlined, loop
+from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.wording import counted
 from fieldmon.plot.road_network import RoadNetwork, find_roads, row_lines
 
@@ -208,7 +207,7 @@ def drive_m(travel: TravelTable, i: int, j: int) -> float:
     return float(min(to_low_m, to_high_m))
 
 
-@nb.njit(cache=True)
+@routine
 def _drive_all(
     travel: TravelTable, i: NDArray[np.int64], j: NDArray[np.int64], metres: Float
 ) -> None:
@@ -216,7 +215,7 @@ def _drive_all(
         metres[k] = drive_m(travel, i[k], j[k])
 
 
-@nb.njit(cache=True)
+@routine
 def _reach(roads: RoadNetwork, stops: NDArray[np.int64], between_m: Float) -> None:
     """Fill in the shortest ways ``(s, s)`` between the given nodes.
 
@@ -244,7 +243,7 @@ def _reach(roads: RoadNetwork, stops: NDArray[np.int64], between_m: Float) -> No
                 between_m[first + s, t] = between_m[t, first + s] = near[stops[t], s]
 
 
-@nb.njit(cache=True)
+@routine
 def _sweep(
     roads: RoadNetwork, near: Float, stale: NDArray[np.bool_], order: tuple[int, int, int]
 ) -> None:
@@ -269,7 +268,7 @@ def _sweep(
                 stale[roads.to[e]] = True
 
 
-@nb.njit(cache=True)
+@routine
 def _trace(roads: RoadNetwork, a: int, b: int) -> NDArray[np.int64]:
     """Return the nodes on the shortest way from node a to node b (Dijkstra's, from b)."""
     near = np.full(roads.xy_m.shape[0], np.inf)
@@ -291,7 +290,7 @@ def _trace(roads: RoadNetwork, a: int, b: int) -> NDArray[np.int64]:
     return np.array(nodes)
 
 
-@nb.njit(cache=True)
+@routine
 def _plain(line: Float) -> Float:
     """Return a line without points that are passed straight on; its ends stay."""
     k = 1

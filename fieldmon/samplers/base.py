@@ -13,6 +13,8 @@ from fieldmon.compute.wording import counted
 from fieldmon.plot.travel import GATE, robot_clock
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
@@ -38,6 +40,10 @@ class InspectionTimes(NamedTuple):
     stop_s: NDArray[np.float64]
     detects: NDArray[np.float64]
 
+    def __repr__(self) -> str:
+        pairs = zip(self.stop_s.tolist(), self.detects.tolist(), strict=True)
+        return f"<InspectionTimes: {', '.join(f'{s:g} s {d:.0%}' for s, d in pairs)}>"
+
 
 class Stops(NamedTuple):
     """The plants that a sampler inspects, in order.
@@ -58,6 +64,11 @@ class Stops(NamedTuple):
 
     def __repr__(self) -> str:
         return f"<Stops: {counted(len(self.plant), 'plant')}>"
+
+
+def resting_place(robot: Robot, trail: NDArray[np.int32]) -> int:
+    """Return where a day begins after the last one's `trail`: `GATE`, or the plant it ended at."""
+    return GATE if robot.returns or not len(trail) else int(trail[-1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,9 +133,15 @@ class Scene:
         """Return the robot's numbers for the rest of the day."""
         return robot_clock(self.robot, self.seconds_left)
 
-    def blank(self) -> Stops:
-        """Return room for as many stops as the time left or the plants allow."""
-        return self.room(self.robot.visit_s)
+    def walked(self, walk: Callable[..., int], *arrays: object) -> Stops:
+        """Return the stops of a compiled walk through the rest of the day.
+
+        It is handed the travel table, the clock, `arrays` of its own and room for as many stops
+        as the time left or the plants allow, and returns how many it made.
+        """
+        stops = self.room(self.robot.visit_s)
+        k = walk(self.aisles.travel, self.clock, *arrays, stops)
+        return Stops(stops.plant[:k], stops.arrive_s[:k])
 
     def room(self, stop_s: float) -> Stops:
         """Return room for as many stops of at least `stop_s` each."""

@@ -89,18 +89,14 @@ class Dynamic(Sampler):
 
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day."""
-        stops = scene.blank()
         steps = round(-_OCTAVE * math.log2(self.suspicious))
         grid, chance_bits = scene.grid, scene.chance.view(np.int64)
-        k = _walk(
-            scene.aisles.travel,
-            scene.clock,
+        return scene.walked(
+            _walk,
             (grid.adjacent, grid.lane_y_m, chance_bits, would_find.view(np.uint8)),
             (scene.last_inspected == scene.day, _Open.on(grid, steps)),
             (scene.at, steps, self.at_once),
-            stops,
         )
-        return Stops(stops.plant[:k], stops.arrive_s[:k])
 
 
 @loop

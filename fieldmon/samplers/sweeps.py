@@ -60,15 +60,8 @@ class Bouncy(Sampler):
 
 
 def _sweep(scene: Scene, every: int) -> Stops:
-    stops = scene.blank()
-    k = _walk(
-        scene.aisles.travel,
-        scene.clock,
-        (scene.grid.snake, scene.last_inspected.copy()),
-        (scene.at, scene.resume, scene.day, every),
-        stops,
-    )
-    return Stops(stops.plant[:k], stops.arrive_s[:k])
+    plants = (scene.grid.snake, scene.last_inspected.copy())
+    return scene.walked(_walk, plants, (scene.at, scene.resume, scene.day, every))
 
 
 @loop

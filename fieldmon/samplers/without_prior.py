@@ -16,6 +16,7 @@ import numpy as np
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import loop, part
 from fieldmon.compute.random_streams import coin, coin_table
+from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.plot.travel import Clock, in_time, travel_s
 from fieldmon.samplers.base import Sampler, Scene, Stops
@@ -38,6 +39,10 @@ class Stations(NamedTuple):
     start: NDArray[np.int32]
     plant: NDArray[np.int32]
     of: NDArray[np.int32]
+
+    def __repr__(self) -> str:
+        plants = counted(len(self.plant), "plant")
+        return f"<Stations: {counted(len(self.start) - 1, 'station')} of {plants}>"
 
 
 @dataclass(frozen=True)
@@ -190,16 +195,8 @@ def _walked(
     wanted: NDArray[np.bool_],
     start: tuple[int, int, int, bool],
 ) -> Stops:
-    stops = scene.blank()
-    k = _walk(
-        scene.aisles.travel,
-        scene.clock,
-        stations,
-        (wanted, scene.last_inspected.copy()),
-        (*start, scene.at, scene.day, scene.key),
-        stops,
-    )
-    return Stops(stops.plant[:k], stops.arrive_s[:k])
+    plants = (wanted, scene.last_inspected.copy())
+    return scene.walked(_walk, stations, plants, (*start, scene.at, scene.day, scene.key))
 
 
 @loop

@@ -12,8 +12,7 @@ from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.planning.workday import draw_detections, work_day
-from fieldmon.plot.travel import GATE
-from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.samplers.base import NEVER, Scene, resting_place
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -196,7 +195,7 @@ class _Season:
         )
         self.last_inspected = np.full(len(self.infested), NEVER, np.int32)
         self.ever_infested, self.ever_found = int(np.count_nonzero(self.infested)), 0
-        self.trail, self.at = np.empty(0, np.int32), GATE
+        self.trail = np.empty(0, np.int32)
 
     def work(self, number: int, own_key: np.uint64, inspect_key: np.uint64) -> SimulatedDay:
         """Work for a day; return what came of it."""
@@ -224,8 +223,6 @@ class _Season:
         # nobody recovers at night
         self.ever_infested += int(np.count_nonzero(self.infested) - np.count_nonzero(evening))
         self.trail = work.plant if len(work) else self.trail
-        stays = len(self.trail) and not self.robot.returns
-        self.at = int(self.trail[-1]) if stays else GATE
 
     def _scene(self, number: int, key: np.uint64) -> Scene:
         belief = self.mornings.on(number) if self.sampler.reads_chance else None
@@ -236,7 +233,7 @@ class _Season:
             pair_chance=None if belief is None else belief.pair_chance,
             last_inspected=self.last_inspected,
             day=number,
-            at=self.at,
+            at=resting_place(self.robot, self.trail),
             seconds_left=self.robot.day_s,
             trail=self.trail,
             key=key,

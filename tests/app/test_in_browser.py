@@ -15,6 +15,7 @@ from PIL import Image
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
 from app.show.maps import colours, deck
+from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.options import PlotOptions, RecordOptions
@@ -28,6 +29,19 @@ from tests.paths import SAMPLE_DATA
 PHONE = ((390, 844), "Mozilla/5.0 (Linux; Android 14) Chrome/150.0 Mobile Safari/537.36")
 MAP = "[data-testid=stDeckGlJsonChart]"
 IDLE = "[data-testid=stApp][data-test-script-state=notRunning]"
+# what only one page says
+OWN_WORDS = {
+    **{name: f": {name}" for name in ("Map", "Season", "Compare", "Plot & records", "Report")},
+    "Scout": texts.SCOUT_NEEDS.splitlines()[0].strip("# "),
+    "Simulate": f": {texts.SIMULATE}",
+    "Study": texts.STUDY_TITLE,
+    "Today": "Keep this season",
+}
+# settled when the browser has drawn so many frames
+FRAMES = """n => new Promise(done => {
+    const draw = () => n-- > 0 ? requestAnimationFrame(draw) : done()
+    draw()
+})"""
 
 
 def shown(page, address):
@@ -41,7 +55,7 @@ def still(page):
     chart = page.locator(MAP).first
     before = None
     for _ in range(100):
-        page.wait_for_timeout(200)
+        page.evaluate(FRAMES, 12)  # as many on a busy machine, where they take longer
         page.wait_for_selector(IDLE, timeout=60_000)
         now = np.array(Image.open(io.BytesIO(chart.screenshot())).convert("RGB")).astype(int)
         if before is not None and np.array_equal(now, before) and np.ptp(now) > 0:
@@ -52,10 +66,9 @@ def still(page):
 
 def becomes(page, as_wanted, what):
     """Wait until the map at rest is as wanted: the server may not have begun to answer."""
-    for _ in range(20):
+    for _ in range(60):
         if as_wanted(still(page)):
             return
-        page.wait_for_timeout(1_000)
     pytest.fail(f"{what} did not show as it should: the zoom is lost, or nothing changed")
 
 
@@ -64,8 +77,9 @@ def zoomed(page):
     box = page.locator(MAP).first.bounding_box()
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     for _ in range(2):
+        before = still(page)
         page.mouse.wheel(0, -300)
-        page.wait_for_timeout(300)
+        becomes(page, lambda now, old=before: not np.array_equal(now, old), "a turn of the wheel")
     page.mouse.move(box["x"], box["y"] - 25)
     return still(page)
 
@@ -149,13 +163,12 @@ def test_plants_and_route_are_drawn_where_they_are(page, address):
 
 def test_nothing_is_asked_of_the_world(page, address):
     shown(page, address)
-    for name in ("Map", "Scout", "Season", "Compare", "Plot & records", "Report", "Simulate",
-                 "Study", "Today"):  # fmt: skip
+    for name, says in OWN_WORDS.items():
         page.get_by_role("link", name=name, exact=True).click()
         page.get_by_role("link", name=name, exact=True).and_(
             page.locator("[aria-current=page]")
         ).wait_for()
-        page.wait_for_timeout(300)
+        page.get_by_text(says).first.wait_for(timeout=60_000)
         page.wait_for_selector(IDLE, timeout=60_000)
     still(page)
     assert len(page.requests) > 30

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from datetime import date
 from itertools import pairwise
 from pathlib import Path
@@ -25,7 +26,7 @@ from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
 from fieldmon.infestation.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.infestation.spread import Spread, night
-from fieldmon.io.writers.geojson import RouteNotes, write_route
+from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.route import route_of
@@ -114,10 +115,8 @@ def files_and_map(plot, chance, observations):
     today = plan_from(plot, chance, PlanSettings())
     with tempfile.TemporaryDirectory() as folder:
         to = Path(folder)
-        notes = RouteNotes("plot", "adaptive")
-        took["writing the route"], _ = best_of(
-            lambda: write_route(to / "route.geojson", today.route, notes)
-        )
+        route = replace(today.route, notes=RouteNotes("plot", "adaptive"))
+        took["writing the route"], _ = best_of(lambda: route.to_file(to / "route.geojson"))
         setup = MonitoringSettings(date(2026, 5, 20))
         took["beginning a season's file"], _ = best_of(
             lambda: Season.create(to / "season.gpkg", plot, observations, setup), 1

@@ -12,8 +12,8 @@ from fieldmon.studies.thesis.chapter5.study import run_prior
 
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_season_of_chapter_5_in_scenario_c(benchmark, name):
-    trial, luck = PriorTrial(name, CALIBRATED, 10.0), SeedKeys.of(RandomStreams(1))
-    assert len(benchmark(play, square(10.0), trial, luck)) == 25
+    trial, keys = PriorTrial(name, CALIBRATED, 10.0), SeedKeys.of(RandomStreams(1))
+    assert len(benchmark(play, square(10.0), trial, keys)) == 25
 
 
 def test_all_of_chapter_5_with_4_seeds(benchmark):

@@ -7,7 +7,7 @@ import pytest
     ("words", "says"),
     [
         (["-o", "none"], "must exist"),
-        (["--cell", "Z"], "A cell must begin with 'Z'"),
+        (["--scenario", "Z"], "A scenario must begin with 'Z'"),
     ],
 )
 def test_bad_words_are_a_sentence(run, words, says):

@@ -7,7 +7,7 @@ import pytest
     ("words", "says"),
     [
         (["-o", "none"], "must exist"),
-        (["--cell", "Z", "--cell", "Y"], "A cell must begin with Z or Y"),
+        (["--scenario", "Z", "--scenario", "Y"], "A scenario must begin with Z or Y"),
         (["--maps", "."], "must hold one of"),
     ],
 )

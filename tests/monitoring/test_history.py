@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread
@@ -57,8 +58,8 @@ def test_the_last_inspection_of_a_plant_is_that_up_to_the_day_asked():
 
 
 def test_an_evening_is_its_morning_after_the_days_findings_and_treatments():
-    learning = HISTORY.belief.learning(HISTORY.detection)
-    known = MORNING.learn(np.array([5, 6], np.int32), np.array([False, True]), learning)
+    looked = np.array([5, 6], np.int32)
+    known = MORNING.learn(looked, np.array([False, True]), Learning(HISTORY.detection))
     np.testing.assert_array_equal(HISTORY.evening(MORNING, 0).chance, known.chance)
     plants = np.arange(N) < 50
     treated = History(PLOT.grid, BEGINS, MORNING, DONE, (Treatment(0, plants, 0.75),))

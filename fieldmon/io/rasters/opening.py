@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import rasterio
 from rasterio._err import CPLE_BaseError
-from rasterio.enums import MaskFlags
+from rasterio.enums import MaskFlags, Resampling
 from rasterio.errors import RasterioError
 from rasterio.windows import Window
 
@@ -88,6 +88,25 @@ class OpenRaster:
     to_map: Affine
     crs: pyproj.CRS
     transformation: Transformation
+    messages: tuple[ImportMessage, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class ReadPixels:
+    """What was read of a raster.
+
+    Parameters
+    ----------
+    values
+        ``(bands, h, w)`` as they are stored.
+    missing
+        ``(h, w)`` whether a pixel has no value.
+    messages
+        What the raster is, how much of it was read, and what was seen on the way.
+    """
+
+    values: NDArray[Any]
+    missing: NDArray[np.bool_]
     messages: tuple[ImportMessage, ...]
 
 
@@ -294,7 +313,7 @@ def _around(bounds: Bounds) -> Float:
     return np.stack([lon.ravel(), np.clip(lat.ravel(), -90, 90)], axis=1)
 
 
-def without_value(
+def _without_value(
     opened: OpenRaster,
     bands: tuple[int, ...],
     part: RasterPart,
@@ -341,7 +360,23 @@ def _undeclared(raw: NDArray[Any], missing: NDArray[np.bool_]) -> list[ImportMes
     ]
 
 
-def what_was_read(opened: OpenRaster, bands: tuple[int, ...], part: RasterPart) -> ImportMessage:
+def read_pixels(
+    opened: OpenRaster,
+    bands: tuple[int, ...],
+    part: RasterPart,
+    options: RasterOptions,
+    resampling: Resampling = Resampling.nearest,
+) -> ReadPixels:
+    """Return a part of some bands."""
+    values = opened.tif.read(
+        bands, window=part.window, out_shape=(len(bands), *part.shape), resampling=resampling
+    )
+    missing, said = _without_value(opened, bands, part, values, options.nodata)
+    messages = (_what_was_read(opened, bands, part), *opened.messages, *said)
+    return ReadPixels(values, missing, messages)
+
+
+def _what_was_read(opened: OpenRaster, bands: tuple[int, ...], part: RasterPart) -> ImportMessage:
     """Return what the raster is, and how much of it was read."""
     tif = opened.tif
     window = part.window

@@ -17,8 +17,7 @@ from fieldmon.io.rasters.opening import (
     band_named,
     open_raster,
     part_of,
-    what_was_read,
-    without_value,
+    read_pixels,
 )
 from fieldmon.io.rasters.values import Backdrop, map_xy
 
@@ -51,9 +50,9 @@ def backdrop(
         kinds = {opened.tif.dtypes[band - 1] for band in bands}
         smooth = kinds <= {"uint8", "uint16"} and colours is None
         how = Resampling.average if smooth else Resampling.nearest
-        raw = opened.tif.read(bands, window=part.window, out_shape=part.shape, resampling=how)
-        missing, said = without_value(opened, bands, part, raw, options.nodata)
-        missing |= ~np.isfinite(raw).all(axis=0)
+        read = read_pixels(opened, bands, part, options, how)
+        raw, said = read.values, list(read.messages)
+        missing = read.missing | ~np.isfinite(raw).all(axis=0)
         if missing.all():
             raise FileProblem(
                 f"{opened.name} must show something, but there is no value in it"
@@ -65,8 +64,7 @@ def backdrop(
             image, stretched = _stretched(raw, ~missing)
             said += stretched
         corners, bent = _corners(opened, part)
-        messages = (what_was_read(opened, bands, part), *opened.messages, *said, *bent)
-        return Imported(Backdrop(*_encoded(image, missing), corners), messages)
+        return Imported(Backdrop(*_encoded(image, missing), corners), (*said, *bent))
 
 
 def _shown(opened: OpenRaster, wanted: str | None) -> tuple[int, ...]:

@@ -13,8 +13,7 @@ from fieldmon.io.rasters.opening import (
     band_named,
     open_raster,
     part_of,
-    what_was_read,
-    without_value,
+    read_pixels,
 )
 from fieldmon.io.rasters.values import Raster
 from fieldmon.io.sandbox import limits
@@ -38,17 +37,15 @@ def raster(
         band = _band(opened, options.band)
         kind = np.dtype(opened.tif.dtypes[band - 1])
         part = part_of(opened, bounds, limits.PIXELS)
-        raw = opened.tif.read(band, window=part.window, out_shape=part.shape)
-        values = raw.astype(np.result_type(kind, np.float32))
-        missing, said = without_value(opened, (band,), part, raw[None], options.nodata)
-        values[missing] = np.nan
+        read = read_pixels(opened, (band,), part, options)
+        values = read.values[0].astype(np.result_type(kind, np.float32))
+        values[read.missing] = np.nan
         values[~np.isfinite(values)] = np.nan
-        said += _scaled(opened, band, values)
+        messages = (*read.messages, *_scaled(opened, band, values), *_empty(values))
         is_classes = opened.tif.colorinterp[band - 1] == ColorInterp.palette
-        messages = [what_was_read(opened, (band,), part), *opened.messages, *said, *_empty(values)]
         text = opened.crs.to_wkt()
         value = Raster(values, part.to_map(opened.to_map), text, bool(is_classes))
-        return Imported(value, tuple(messages))
+        return Imported(value, messages)
 
 
 def _band(opened: OpenRaster, wanted: str | None) -> int:

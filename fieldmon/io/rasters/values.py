@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
-import numba as nb
 import numpy as np
 
+from fieldmon.compute.jit import routine
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.options import ReadOptions
 from fieldmon.io.parse.crs import Transformation, system, transformation_from
@@ -208,7 +208,7 @@ def projected(through: Transformation, lonlat: Float) -> Float:
     return np.stack([x, y], axis=1)
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _points(
     values: NDArray[np.floating],
     places: Float,
@@ -235,7 +235,7 @@ def _points(
     return out
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _bilinear(values: NDArray[np.floating], places: Float) -> Float:
     rows, columns = values.shape
     out = np.full(len(places), np.nan)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, NamedTuple
 
-import numba as nb
 import numpy as np
 import pyproj
 
+from fieldmon.compute.jit import routine
 from fieldmon.errors import PlotError
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.rasters.smooth import smoothly
@@ -84,7 +84,7 @@ def chance_raster(grid: PlantGrid, chance: Float) -> ChanceRaster:
     return ChanceRaster(values, float(west_m), float(north_m), pixel_m, crs)
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _paint(
     values: NDArray[np.float32],
     places: Float,

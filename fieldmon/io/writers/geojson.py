@@ -10,12 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.io.atomic_write import write_whole
 from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from numpy.typing import NDArray
 
     from fieldmon.io.writers.day_file import DrivenRoute, HandoffPlan
@@ -88,11 +85,6 @@ def route_geojson(route: DrivenRoute, notes: RouteNotes) -> str:
 def handed_geojson(plan: HandoffPlan) -> bytes:
     """Return a day to hand off as GeoJSON; see `route_geojson`."""
     return route_geojson(plan.route, plan.notes).encode()
-
-
-def write_route(path: str | Path, route: DrivenRoute, notes: RouteNotes) -> None:
-    """Write a route's GeoJSON file, whole or not at all; raise `FileProblem` if it cannot be."""
-    write_whole(path, route_geojson(route, notes).encode())
 
 
 def _line_feature(

@@ -1,1 +1,1 @@
-"""Samplers and beliefs side by side: the same insects, the same luck, the same hours."""
+"""Samplers and beliefs side by side: the same insects, the same draws, the same hours."""

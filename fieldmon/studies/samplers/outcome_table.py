@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from types import TracebackType
     from typing import Self
 
+# the first and third column are a scenario and a contender, named as in the tables made first
 _COLUMNS = ["cell", "seed", "who", *MEASURES]
 _SAVED_EVERY_S = 15.0
 

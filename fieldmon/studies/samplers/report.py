@@ -34,14 +34,14 @@ def report_html(outcomes: Sequence[SeasonOutcome]) -> str:
         sentences=sentences(outcomes),
         charts=[_chart(outcomes, other) for other in (WORDED, TUNED)],
         names=NAMES,
-        tables=[(_WORDS[measure], cells) for measure, cells in means(outcomes).items()],
+        tables=[(_WORDS[measure], by_name) for measure, by_name in means(outcomes).items()],
     )
 
 
 def _chart(outcomes: Sequence[SeasonOutcome], other: str) -> Markup:
     rows = []
-    for cell, who in by_scenario(outcomes, "infested_plant_days").items():
+    for scenario, who in by_scenario(outcomes, "infested_plant_days").items():
         r = ratio(who[ADAPTIVE], who[other])
-        rows.append(Range(cell, r.low, r.value, r.high))
+        rows.append(Range(scenario, r.low, r.value, r.high))
     title = f"Infested plant-days: {ADAPTIVE} over {other} (mean and 95 % interval)"
     return range_chart(title, rows, "ratio; left of 1 the adaptive sampler is ahead")

@@ -1,4 +1,4 @@
-"""The situations in which samplers are compared: plot, insects, start, and what is known."""
+"""The scenarios in which samplers are compared: plot, insects, start, and what is known."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _BELIEVED_RATE = {0.3: 0.8, 0.5: 0.1, 0.8: 0.3}
 
 @dataclass(frozen=True)
 class Scenario:
-    """One situation.
+    """A plot, its insects, the start and what is known of it.
 
     Parameters
     ----------

@@ -66,8 +66,8 @@ def sentences(outcomes: Sequence[SeasonOutcome]) -> list[str]:
         below = sum(value < 1.0 for value in ratios.values())
         worst = max(ratios, key=ratios.__getitem__)
         said.append(
-            f"Infested plant-days against {other}: at most half in {half} of {len(ratios)} cells, "
-            f"fewer in {below}; geometric mean {_mean(ratios):.2f} x, "
+            f"Infested plant-days against {other}: at most half in {half} of {len(ratios)} "
+            f"scenarios, fewer in {below}; geometric mean {_mean(ratios):.2f} x, "
             f"worst {ratios[worst]:.2f} x ({worst})."
         )
         worse = [name for name, value in ratios.items() if value > _NEVER_WORSE]
@@ -80,7 +80,7 @@ def sentences(outcomes: Sequence[SeasonOutcome]) -> list[str]:
         ]
         said.append(
             f"Days until {words} of all infestations so far were found: no later than {TUNED} in "
-            f"{len(days) - len(later)} of {len(days)} cells" + _but(later)
+            f"{len(days) - len(later)} of {len(days)} scenarios" + _but(later)
         )
     return [*said, _looks(outcomes)]
 
@@ -93,7 +93,7 @@ def _looks(outcomes: Sequence[SeasonOutcome]) -> str:
         fewer += own <= other
     return (
         f"Plants inspected per find over the whole season: fewer than {TUNED} in {fewer} of "
-        f"{len(inspected)} cells (who stops the spread early has less left to find)."
+        f"{len(inspected)} scenarios (who stops the spread early has less left to find)."
     )
 
 

@@ -30,7 +30,7 @@ SEEDS = range(1000, 1005)
 
 
 def tuning_scenarios() -> list[Scenario]:
-    """Return the situations in which choices are tried: unlike each other, from the study."""
+    """Return the scenarios in which choices are tried: unlike each other, from the study."""
     return [
         Scenario("B"),
         Scenario("C"),

@@ -52,7 +52,7 @@ def test_a_reload_finds_files_answers_rows_and_what_was_drawn(brought):
     plants = metric(brought, "Plants")
     again = go(reloaded(brought), "plot")
     assert not again.exception
-    assert heading(again).startswith("mine")
+    assert plot_name(again).startswith("mine")
     assert metric(again, "Plants") == plants
     assert "1 of 1 records shown" in texts_of(again)
     assert "In use" in texts_of(again)

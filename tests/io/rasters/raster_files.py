@@ -1,18 +1,23 @@
 """Rasters that people bring, awkward ones among them, made by the tests."""
 
+import re
 import struct
 import warnings
 
 import numpy as np
+import pytest
 import rasterio
 from pyproj import Transformer
 from rasterio.enums import ColorInterp
 from rasterio.transform import Affine, from_origin
 from shapely import MultiPolygon, box
 
+from fieldmon.errors import FieldmonError
+from fieldmon.io.rasters.read import read_backdrop, read_raster
 from fieldmon.plot.field import Field
 
 UTM = "EPSG:32636"
+SPOTS = np.array([[35.1503, 30.3602], [35.1510, 30.3605], [35.1519, 30.3607]])
 #: a plot of 200 m x 100 m by Paran
 PLOT = Field("home", MultiPolygon([box(35.1500, 30.3600, 35.1521, 30.3609)]))
 WEST, NORTH = 706_700.0, 3_360_800.0
@@ -97,3 +102,36 @@ def declared(width, height, block=None):
     )
     head = b"II*\x00" + struct.pack("<I", 8) + struct.pack("<H", len(tags))
     return head + fields + b"\x00" * 4 + scale + tie + keys + b"\x00" * zeros
+
+
+def expected(lonlat):
+    """Return what `ramp` says at positions, written as 400 x 400 pixels of 1 m."""
+    x, y = TO_UTM.transform(*lonlat.T)
+    west, north = corner()
+    return np.floor(x - west) + 1000 * (399 - np.floor(north - y))
+
+
+def said(imported, pattern, severity=None):
+    return [
+        f
+        for f in imported.messages
+        if re.search(pattern, f.sentence) and severity in {None, f.severity}
+    ]
+
+
+def shown(backdrop):
+    """Return the picture of a backdrop as ``(bands, h, w)``."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        with rasterio.MemoryFile(backdrop.image) as file, file.open() as picture:
+            return picture.read()
+
+
+def refused(source, options=None):
+    """Return the sentence with which both doors refuse a source."""
+    with pytest.raises(FieldmonError) as first:
+        read_raster(source, options)
+    with pytest.raises(FieldmonError) as second:
+        read_backdrop(source, options)
+    assert type(first.value) is type(second.value)
+    return str(first.value)

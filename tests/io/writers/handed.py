@@ -16,6 +16,8 @@ from fieldmon.plot.layout import Planting, lay, rectangle
 from fieldmon.samplers import sampler
 from tests.scenes import scene_on
 
+#: metres: what is read back lies as near as this
+CM = 0.01
 START = datetime(2026, 11, 18, 7, 30)
 METRES = np.array([96_200.0, 110_800.0])  # of a degree of longitude and latitude at 30 N, roughly
 

@@ -13,12 +13,12 @@ from fieldmon.studies.samplers.summary import means, sentences
 from tests.pages import HOSTILE, Page, held
 
 
-def outcomes(cells, seeds=3):
+def outcomes(scenarios, seeds=3):
     """Return outcomes of numbers that are all different."""
     values = iter(np.random.default_rng(5).uniform(1, 30_000, 10_000).round(3).tolist())
     return [
-        SeasonOutcome(cell, seed, who, *(next(values) for _ in MEASURES))
-        for cell in cells
+        SeasonOutcome(scenario, seed, who, *(next(values) for _ in MEASURES))
+        for scenario in scenarios
         for seed in range(seeds)
         for who in NAMES
     ]
@@ -29,31 +29,36 @@ def made():
     return outcomes(["A, spread 10%", "B, spread 30%"])
 
 
-def test_every_mean_stands_under_its_measure_cell_and_sampler(made):
+def test_every_mean_stands_under_its_measure_scenario_and_sampler(made):
     page = Page(report_html(made))
     assert len(page.tables) == len(MEASURES)
-    for table, (_, cells) in zip(page.tables, means(made).items(), strict=True):
+    for table, (_, scenarios) in zip(page.tables, means(made).items(), strict=True):
         heads, *rows = table
-        assert heads == ["cell", *NAMES]
-        assert [row[0] for row in rows] == list(cells)
+        assert heads == ["scenario", *NAMES]
+        assert [row[0] for row in rows] == list(scenarios)
         for name, *shown in rows:
-            assert shown == [f"{cells[name][who]:.1f}" for who in NAMES]
+            assert shown == [f"{scenarios[name][who]:.1f}" for who in NAMES]
 
 
 def test_what_was_found_is_said_in_sentences_over_two_charts(made):
     page = Page(report_html(made))
     assert page.items == sentences(made)
     assert len(page.all("svg")) == 2
-    assert len(page.all("circle")) == 4  # a dot a cell and chart
-    assert "3 seasons of 25 days a cell" in page.text
+    assert len(page.all("circle")) == 4  # a dot a scenario and chart
+    assert "3 seasons of 25 days a scenario" in page.text
     assert page.headings[0] == "Samplers compared"
     assert page.runs == page.asks_for == []
 
 
-def test_names_of_cells_in_a_table_that_is_gone_on_with_are_texts():
+def test_names_of_scenarios_in_a_table_that_is_gone_on_with_are_texts():
     head = "cell,seed,who,infested_plant_days,d50,d80,inspected,found,visited_pct"
     quoted = ['"' + text.replace('"', '""') + '"' for text in HOSTILE]
-    lines = [f'{cell},{k},"{who}",1,2,3,4,5,6' for cell in quoted for k in (0, 1) for who in NAMES]
+    lines = [
+        f'{scenario},{k},"{who}",1,2,3,4,5,6'
+        for scenario in quoted
+        for k in (0, 1)
+        for who in NAMES
+    ]
     page = held(report_html(outcomes_from("\n".join([head, *lines]), "samplers.csv")))
     assert [row[0] for row in page.tables[0][1:]] == list(HOSTILE)
 

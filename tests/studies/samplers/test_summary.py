@@ -58,18 +58,18 @@ def test_a_sampler_that_is_worse_is_called_worse():
 
 def test_a_sampler_that_is_better_is_called_better():
     said = " ".join(sentences(MADE))
-    assert f"against {TUNED}: at most half in 0 of 2 cells, fewer in 2" in said
+    assert f"against {TUNED}: at most half in 0 of 2 scenarios, fewer in 2" in said
     assert "worse than" not in said
-    assert f"no later than {TUNED} in 2 of 2 cells." in said
+    assert f"no later than {TUNED} in 2 of 2 scenarios." in said
 
 
 def test_who_finds_half_later_is_named():
     late = [replace(o, d50=9.0) if (o.scenario, o.contender) == ("one", ADAPTIVE) else o
             for o in MADE]  # fmt: skip
-    assert any(said.endswith("in 1 of 2 cells; later in one.") for said in sentences(late))
+    assert any(said.endswith("in 1 of 2 scenarios; later in one.") for said in sentences(late))
 
 
 def test_inspections_per_find_are_compared():
     idle = [replace(o, inspected=500.0) if o.contender == ADAPTIVE else o for o in MADE]
-    assert f"fewer than {TUNED} in 0 of 2 cells" in sentences(idle)[-1]
-    assert f"fewer than {TUNED} in 2 of 2 cells" in sentences(MADE)[-1]
+    assert f"fewer than {TUNED} in 0 of 2 scenarios" in sentences(idle)[-1]
+    assert f"fewer than {TUNED} in 2 of 2 scenarios" in sentences(MADE)[-1]

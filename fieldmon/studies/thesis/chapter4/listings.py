@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numba as nb
 import numpy as np
 
+from fieldmon.compute.jit import routine
 from fieldmon.compute.random_streams import coin_table
 from fieldmon.studies.thesis.chapter4.nights import ABORTED, NEIGHBOR, RANDOM_SNAKE, Night, spread
 from fieldmon.studies.thesis.chapter4.vineyard import infest
@@ -69,7 +69,7 @@ class _Curve(NamedTuple):
     known: float
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _draw(walk: ListingWalk, state: _WalkState) -> None:
     """Draw the next N."""
     u = state.steps[state.at[_DRAWN]]
@@ -77,7 +77,7 @@ def _draw(walk: ListingWalk, state: _WalkState) -> None:
     state.at[_SKIP] = 1 + int(walk.most * u)
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _face(walk: ListingWalk, q: int) -> int:
     """Return the face (from 0) that stands at number `q` of the walk."""
     side, j = divmod(q - 1, walk.plants)
@@ -87,7 +87,7 @@ def _face(walk: ListingWalk, q: int) -> int:
     return side * walk.plants + j
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _visit(walk: ListingWalk, state: _WalkState, q: int) -> None:
     """Look at number `q`; clean that face if it is infested."""
     face = _face(walk, q)
@@ -98,7 +98,7 @@ def _visit(walk: ListingWalk, state: _WalkState, q: int) -> None:
         state.at[_FOUND] += 1
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _note(walk: ListingWalk, state: _WalkState, curve: _Curve, left_s: float) -> None:
     """Append a point to the detection curve: days worked, percent of the known insects found."""
     k = state.at[_TRACED]
@@ -108,7 +108,7 @@ def _note(walk: ListingWalk, state: _WalkState, curve: _Curve, left_s: float) ->
         state.at[_TRACED] += 1
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _least_visited(visits: NDArray[np.int64], first: int, last: int, keep_first: bool) -> int:  # noqa: FBT001 - a kernel
     """Return the number in first..last with the fewest visits: the first such, or the last."""
     best = first
@@ -119,7 +119,7 @@ def _least_visited(visits: NDArray[np.int64], first: int, last: int, keep_first:
     return best
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _nearest_new(visits: NDArray[np.int64], from_end: bool) -> int:  # noqa: FBT001 - a kernel
     """Return the number nearest to one end that was never visited; 0 if there is none."""
     n = visits.size
@@ -130,7 +130,7 @@ def _nearest_new(visits: NDArray[np.int64], from_end: bool) -> int:  # noqa: FBT
     return 0
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _reenter(walk: ListingWalk, state: _WalkState, at_end: bool) -> None:  # noqa: FBT001 - a kernel
     """Turn round at one end of the field and choose where to go on."""
     at, n, last = state.at, state.at[_SKIP], state.visits.size
@@ -155,12 +155,12 @@ def _reenter(walk: ListingWalk, state: _WalkState, at_end: bool) -> None:  # noq
         at[_POSITION] = _least_visited(state.visits, 1, n, walk.listing == NEIGHBOR)
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _travel_s(walk: ListingWalk, state: _WalkState) -> float:
     return walk.travel_s if walk.travel_once else walk.travel_s * state.at[_SKIP]
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _side_change_s(walk: ListingWalk, before: int, after: int) -> float:
     """Return the seconds between two numbers for the sides and aisles that lie between."""
     side, other = (before - 1) // walk.plants, (after - 1) // walk.plants
@@ -169,7 +169,7 @@ def _side_change_s(walk: ListingWalk, before: int, after: int) -> float:
     return walk.turn_s if side // 2 == other // 2 else walk.change_s
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _snake_pass(
     walk: ListingWalk,
     state: _WalkState,
@@ -203,7 +203,7 @@ def _snake_pass(
     return left_s
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _snake_day(walk: ListingWalk, state: _WalkState, curve: _Curve) -> float:
     """Work one day of listing A.5 or A.7; return the seconds left."""
     at, last = state.at, state.visits.size
@@ -224,7 +224,7 @@ def _snake_day(walk: ListingWalk, state: _WalkState, curve: _Curve) -> float:
     return left_s
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _neighbor_step(walk: ListingWalk, state: _WalkState, forward: bool) -> bool:  # noqa: FBT001 - a kernel
     """Move N on along the aisle, or into the next; return whether the aisle was left."""
     at, plants = state.at, walk.plants
@@ -243,7 +243,7 @@ def _neighbor_step(walk: ListingWalk, state: _WalkState, forward: bool) -> bool:
     return True
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _neighbor_day(walk: ListingWalk, state: _WalkState, curve: _Curve) -> float:
     """Work one day of listing A.6; return the seconds left."""
     at, plants, last = state.at, walk.plants, state.visits.size
@@ -268,7 +268,7 @@ def _neighbor_day(walk: ListingWalk, state: _WalkState, curve: _Curve) -> float:
             _note(walk, state, curve, left_s)
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def run(
     walk: ListingWalk,
     night: Night,
@@ -350,7 +350,7 @@ def most_points(walk: ListingWalk) -> int:
     return 1 + walk.days * (int(walk.day_s / (walk.travel_s + walk.look_s)) + 2)
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def repeat(
     walk: ListingWalk, night: Night, start: float, draws: int, keys: NDArray[np.uint64]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -374,7 +374,7 @@ def repeat(
     return days, aborted
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def curve(
     trace: NDArray[np.float64], points: int, at_days: NDArray[np.float64]
 ) -> NDArray[np.float64]:

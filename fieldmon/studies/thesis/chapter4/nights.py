@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numba as nb
+from fieldmon.compute.jit import routine
 
 if TYPE_CHECKING:
     import numpy as np
@@ -32,7 +32,7 @@ class Night(NamedTuple):
     phantoms: bool
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _reach(infested: NDArray[np.bool_], q: int) -> int:
     """Infest face `q`; return 1 if it was clean, else 0."""
     new = 0 if infested[q - 1] else 1
@@ -40,7 +40,7 @@ def _reach(infested: NDArray[np.bool_], q: int) -> int:
     return new
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _along_side(night: Night, infested: NDArray[np.bool_], q: int) -> tuple[int, int]:
     """Spread from `q` as listing A.5 does; return (counted, infested)."""
     side, j = divmod(q - 1, night.plants)
@@ -59,7 +59,7 @@ def _along_side(night: Night, infested: NDArray[np.bool_], q: int) -> tuple[int,
     return new + phantom, new
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _by_number(night: Night, infested: NDArray[np.bool_], q: int) -> tuple[int, int]:
     """Spread from `q` as A.6 and A.7 do on the first row, by number; return (counted, infested)."""
     if q == 1:
@@ -70,7 +70,7 @@ def _by_number(night: Night, infested: NDArray[np.bool_], q: int) -> tuple[int, 
     return (2 if night.listing == RANDOM_SNAKE else new), new
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _inner_face(night: Night, infested: NDArray[np.bool_], q: int) -> tuple[int, int]:
     """Spread from `q` to both numbers beside it and one row back; return (counted, infested)."""
     before = _reach(infested, q - 1)
@@ -78,7 +78,7 @@ def _inner_face(night: Night, infested: NDArray[np.bool_], q: int) -> tuple[int,
     return (before if night.listing == RANDOM_SNAKE else before + after), before + after
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _stuck_row(
     night: Night, infested: NDArray[np.bool_], q: int, row_index: int
 ) -> tuple[int, int]:
@@ -92,7 +92,7 @@ def _stuck_row(
     return _inner_face(night, infested, q)
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _true_row(night: Night, infested: NDArray[np.bool_], q: int) -> tuple[int, int]:
     """Spread from `q` with the row index put right; A.6 and A.7 still count in their own way."""
     side, j = divmod(q - 1, night.plants)
@@ -104,7 +104,7 @@ def _true_row(night: Night, infested: NDArray[np.bool_], q: int) -> tuple[int, i
     return _along_side(night, infested, q)
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def spread(
     night: Night, infested: NDArray[np.bool_], coins: NDArray[np.float64]
 ) -> tuple[int, int]:

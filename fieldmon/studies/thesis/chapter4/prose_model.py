@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numba as nb
 import numpy as np
 
+from fieldmon.compute.jit import routine
 from fieldmon.compute.random_streams import coin_table
 from fieldmon.studies.thesis.chapter4.listings import (
     END,
@@ -65,7 +65,7 @@ class _FieldState(NamedTuple):
     steps: NDArray[np.float64]
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _face(walk: ProseWalk, stop: int) -> int:
     """Return the face at a stop; for neighbor strategies that on the aisle's first side."""
     block, j = divmod(stop, walk.plants)
@@ -74,7 +74,7 @@ def _face(walk: ProseWalk, stop: int) -> int:
     return (2 * block if walk.neighbor else block) * walk.plants + j
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _look(field: _FieldState, face: int) -> int:
     """Look at a face and clean it; return 1 if it was infested, else 0."""
     found = 1 if field.infested[face] else 0
@@ -84,7 +84,7 @@ def _look(field: _FieldState, face: int) -> int:
     return found
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _drive_s(walk: ProseWalk, here: int, there: int) -> float:
     """Return the seconds from stop to stop: every vine passed, every side or aisle left."""
     low, high = min(here, there), max(here, there)
@@ -95,7 +95,7 @@ def _drive_s(walk: ProseWalk, here: int, there: int) -> float:
     return seconds
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _reentry(walk: ProseWalk, field: _FieldState, here: int, n: int) -> int:
     """Return where to go on at an end of the field: the least visited stop, then the nearest."""
     stops = field.visits.size
@@ -110,7 +110,7 @@ def _reentry(walk: ProseWalk, field: _FieldState, here: int, n: int) -> int:
     return best
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _next_stop(walk: ProseWalk, field: _FieldState, here: int) -> int:
     """Return the stop N further on, or where to turn round to."""
     at = field.at
@@ -125,7 +125,7 @@ def _next_stop(walk: ProseWalk, field: _FieldState, here: int) -> int:
     return _reentry(walk, field, here, n)
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _sweep_day(walk: ProseWalk, field: _FieldState) -> tuple[float, int]:
     """Go on along the field for one day; return the seconds left and how many faces were found."""
     at, left_s, found = field.at, walk.day_s, 0
@@ -145,7 +145,7 @@ def _sweep_day(walk: ProseWalk, field: _FieldState) -> tuple[float, int]:
         at[_STOP] = _next_stop(walk, field, here)
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _scattered_day(walk: ProseWalk, field: _FieldState) -> tuple[float, int]:
     """Look at 1/N of the field, drawn anew, in the snake's order from its first face."""
     stops = field.visits.size
@@ -168,7 +168,7 @@ def _scattered_day(walk: ProseWalk, field: _FieldState) -> tuple[float, int]:
     return left_s, found
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def spread(walk: ProseWalk, infested: NDArray[np.bool_], coins: NDArray[np.float64]) -> int:
     """Let every infested face infect its row mates and its vine's other face, in place.
 
@@ -193,7 +193,7 @@ def spread(walk: ProseWalk, infested: NDArray[np.bool_], coins: NDArray[np.float
     return int(infested.sum() - before.sum())
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def run(
     walk: ProseWalk,
     infested: NDArray[np.bool_],
@@ -237,7 +237,7 @@ def most_draws(walk: ProseWalk) -> int:
     return walk.days * (int(walk.day_s / walk.stop_s) + 1) if walk.online else 0
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def repeat(
     walk: ProseWalk, start: float, draws: int, keys: NDArray[np.uint64]
 ) -> NDArray[np.float64]:

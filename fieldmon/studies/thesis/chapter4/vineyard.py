@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numba as nb
 import numpy as np
 
+from fieldmon.compute.jit import routine
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -143,7 +143,7 @@ class Hours:
 CHAPTER_4 = Hours()
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def infest(plants: int, sides: int, coins: NDArray[np.float64], start: float) -> NDArray[np.bool_]:
     """Return which faces are infested at the start, ``(T,)``, side by side.
 

@@ -88,7 +88,7 @@ def run_maps(
     seed: int = 1,
     progress: Progress | None = None,
 ) -> list[MapMeasure]:
-    """Inspect each map on one working day a date; all samplers meet the same luck in looking.
+    """Inspect each map on one working day a date; all samplers meet the same draws.
 
     What is found is taken out: later dates hold the map's infested plants without it.
     """

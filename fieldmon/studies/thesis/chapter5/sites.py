@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
-import numba as nb
 import numpy as np
 
+from fieldmon.compute.jit import routine
 from fieldmon.compute.random_streams import coin, coin_table
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.independent import learn
@@ -111,7 +111,7 @@ def first_morning(site: Site, start: StartUp, streams: RandomStreams) -> Start:
     return Start(infested, heard)
 
 
-@nb.njit(cache=True, nogil=True)
+@routine
 def _grow(
     infested: NDArray[np.bool_],
     margin: Floats,

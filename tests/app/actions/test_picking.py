@@ -1,0 +1,71 @@
+"""Plants selected on the map are inspected too, or not, and it is said what cannot be."""
+
+import numpy as np
+import pytest
+import streamlit as st
+
+from app.actions import picking
+from app.state import wishes
+from fieldmon.planning.wishes import Wishes
+from tests.app.chosen import a_plot, chosen
+from tests.app.driving import map_of, press, texts_of
+
+
+def select(app, plants):
+    """Select plants as the map's lasso does, which has no browser here."""
+    place = map_of(app)["place"]
+    app.session_state["plants picked"] = (place, tuple(plants))
+    return app.run()
+
+
+def stops(app):
+    return app.dataframe[0].value
+
+
+def test_selected_plants_are_ringed_and_inspected_too_then_dropped(app):
+    before = stops(app)
+    rows = {(row, plant) for row, plant in zip(before["row"], before["plant"], strict=True)}
+    assert (40, 1) not in rows
+    grid_row_40 = 39 * 85
+    select(app, [grid_row_40, grid_row_40 + 1])
+    assert "2 plants selected" in texts_of(app)
+    assert any(layer["id"] == "picked" for layer in map_of(app)["layers"])
+    press(app, "Inspect these too")
+    assert not app.exception
+    after = stops(app)
+    assert {(40, 1), (40, 2)} <= set(zip(after["row"], after["plant"], strict=True))
+    assert "2 plants to be inspected besides" in texts_of(app)
+    press(app, "As planned before")
+    assert stops(app).equals(before)
+
+
+def test_plants_left_out_are_not_on_the_route(app):
+    first = stops(app).iloc[0]
+    plant = (int(first["row"]) - 1) * 85 + int(first["plant"]) - 1
+    select(app, [plant])
+    press(app, "Not these")
+    left = set(zip(stops(app)["row"], stops(app)["plant"], strict=True))
+    assert (first["row"], first["plant"]) not in left
+    assert "1 plant left out" in texts_of(app)
+
+
+def test_wishes_are_of_one_day_and_one_plot(session):
+    wishes.want("here", "2026-11-16", Wishes((1,)))
+    assert wishes.of("here", "2026-11-16") == Wishes((1,))
+    assert not wishes.of("here", "2026-11-17")
+    assert not wishes.of("there", "2026-11-16")
+    wishes.pick("here", (1, 2))
+    assert wishes.picked("here") == (1, 2)
+    assert wishes.picked("there") == ()
+
+
+@pytest.mark.usefixtures("session")
+def test_a_plant_that_is_not_there_is_not_selected():
+    choices = chosen(a_plot(0.001))
+    picking.take(choices, [0, len(choices.plot.grid)])
+    assert wishes.picked(choices.place) == (0,)
+    (ring,) = picking.layers(choices)
+    assert ring.data == [{"p": np.round(choices.plot.grid.lonlat(np.array([0])), 7)[0].tolist()}]
+    picking.take(choices, [])
+    assert picking.layers(choices) == []
+    assert st.session_state["plants picked"] == (choices.place, ())

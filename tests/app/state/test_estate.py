@@ -1,0 +1,82 @@
+"""All plots with their state: of the seasons, else of the files at hand, else the sample's."""
+
+from datetime import timedelta
+
+import numpy as np
+import pytest
+import streamlit as st
+
+from app.show import estate_map
+from app.state import estate, rooms
+from app.state.estate import PlotState
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.plot.local_clock import local_clock
+from tests.app.driving import go, map_of
+
+
+def areas(app):
+    (layer,) = map_of(app)["layers"]
+    return layer["data"]
+
+
+def test_without_seasons_the_sample_estate_is_shown(app):
+    go(app, "plots")
+    assert not app.exception
+    assert len(areas(app)) >= 9
+    assert all("no season yet" in area["t"] for area in areas(app))
+
+
+def test_a_season_says_when_it_was_seen_and_what_is_expected(season_app, season):
+    today = local_clock(season().plot.field).today()
+    go(season_app, "plots")
+    (area,) = areas(season_app)
+    assert "never seen" in area["t"]
+    seen = np.datetime64(max(today - timedelta(days=4), season().settings.begins))
+    season().record(Inspections.of(np.array([5]), np.array([0]), seen), "test")
+    go(season_app, "plots")
+    (area,) = areas(season_app)
+    days = (today - seen.item()).days
+    assert (f"seen {days} days ago" if days else "seen today") in area["t"]
+    left, _ = estate.plots()
+    assert left[0].expected > 0
+
+
+def test_a_file_that_is_no_season_is_named_and_hides_no_other(season_app, seasons_folder):
+    whole = (seasons_folder / "Gate 2026.gpkg").read_bytes()
+    (seasons_folder / "Broken.gpkg").write_bytes(whole[:20_000])
+    go(season_app, "plots")
+    assert not season_app.exception
+    assert len(areas(season_app)) == 1
+
+
+def test_a_plot_is_opened_by_a_tap(app):
+    plots, _ = estate.plots()
+    pond = next(plot for plot in plots if plot.name == "Pond")
+    told = {}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(st, "session_state", told)
+        estate.open_plot(pond)
+    for key, value in told.items():
+        app.session_state[key] = value
+    app.run()
+    assert not app.exception
+    assert map_of(app)["alt"].startswith("Map of plot Pond")
+
+
+def test_states_tell_how_long_ago_a_plot_was_seen():
+    made = {
+        days: estate_map.state_of(PlotState("x", "x", None, None, days, 3.0))
+        for days in (0, 2, 3, 6, 7, None)
+    }
+    assert made == {0: "fresh", 2: "fresh", 3: "due", 6: "due", 7: "late", None: "late"}
+    assert estate_map.state_of(PlotState("x", "x", None)) == "new"
+
+
+def test_every_part_of_a_plot_opens_it():
+    plots, _ = estate.plots()
+    assert rooms.ROOMS["plots"].parts == ("plots",)
+    content = estate_map.content(plots)
+    (layer,) = content.layers
+    for index, row in enumerate(layer.data):
+        assert estate_map.plot_tapped(plots, index) is plots[row["n"]]
+    assert estate_map.plot_tapped(plots, len(layer.data)) is None

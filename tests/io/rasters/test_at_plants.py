@@ -1,0 +1,93 @@
+"""What a raster says of each plant: its risk, and whether it is there."""
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import FileProblem, ObservationError
+from fieldmon.infestation.raster_risk import RiskSettings, risk_chance
+from fieldmon.io.import_report import Severity
+from fieldmon.io.options import Upload
+from fieldmon.io.rasters.at_plants import read_missing, read_risk
+from fieldmon.io.rasters.read import RasterOptions
+from fieldmon.plot.plot import Plot
+from tests.io.rasters.raster_files import PLOT, TO_UTM, corner, expected, ramp, write
+
+ANY = RasterOptions()
+HOME = Plot.of(PLOT)
+
+
+def columns_of(plot):
+    """Return the column of the raster in which each plant stands, of 400 of 1 m."""
+    x, _ = TO_UTM.transform(*plot.grid.lonlat().T)
+    return np.floor(x - corner()[0]).astype(int)
+
+
+def test_the_risk_of_a_plant_is_that_of_its_own_ground(tmp_path):
+    values = (ramp() / 1e6).astype("float32")
+    path = write(tmp_path / "risk.tif", values)
+    exact = read_risk(path, ANY, HOME, RiskSettings(), "nearest").value
+    np.testing.assert_allclose(exact, expected(HOME.grid.lonlat()) / 1e6, rtol=1e-5)
+    # on a tilted plane the mean of the ground about a plant is that of its middle
+    mean = read_risk(path, ANY, HOME, RiskSettings()).value
+    np.testing.assert_allclose(mean, exact, atol=0.0011)
+
+
+def test_what_the_numbers_mean_is_as_said(tmp_path):
+    path = write(tmp_path / "ndvi.tif", ramp())
+    settings = RiskSettings("rank", mean_share=0.04, low_is_risky=True)
+    imported = read_risk(path, ANY, HOME, settings)
+    assert imported.value.mean() == pytest.approx(0.04)
+    assert np.argmax(imported.value) == np.argmin(expected(HOME.grid.lonlat()))
+    assert "Risk by rank" in imported.messages[-1].sentence
+    with pytest.raises(ObservationError):
+        risk_chance(expected(HOME.grid.lonlat()), RiskSettings())
+    with pytest.raises(ObservationError):
+        read_risk(path, ANY, HOME, RiskSettings())
+
+
+def half_without_value():
+    values = np.full((400, 400), 0.25, "float32")
+    values[:, 200:] = -1.0
+    return values
+
+
+def test_plants_that_the_raster_does_not_show_have_no_risk_by_it_and_are_counted(tmp_path):
+    path = write(tmp_path / "risk.tif", half_without_value(), nodata=-1.0)
+    imported = read_risk(path, ANY, HOME, RiskSettings(), "nearest")
+    unseen = columns_of(HOME) >= 200
+    np.testing.assert_array_equal(np.isnan(imported.value), unseen)
+    assert 0 < unseen.sum() < len(unseen)
+    assert imported.messages[-1].severity is Severity.SEEN
+    wanted = f"{unseen.sum()} have no value on the raster and have no risk by it."
+    assert imported.messages[-1].sentence.endswith(wanted)
+
+
+def test_plants_without_canopy_are_missing_and_unseen_ones_count_as_there(tmp_path):
+    values = half_without_value()
+    values[:, :150] = 0.0
+    path = write(tmp_path / "canopy.tif", values, nodata=-1.0)
+    imported = read_missing(path, ANY, HOME, 0.2, "nearest")
+    column = columns_of(HOME)
+    np.testing.assert_array_equal(imported.value, column < 150)
+    assert f"{(column < 150).sum()} of {HOME.n_plants} plants are missing" in (
+        imported.messages[-1].sentence
+    )
+
+
+def test_one_leaf_on_its_ground_shows_that_a_plant_is_there(tmp_path):
+    values = np.zeros((400, 400), "float32")
+    x, y = TO_UTM.transform(*HOME.grid.lonlat(np.array([5]))[0])
+    west, north = corner()
+    values[int(north - y), int(x - west)] = 1.0
+    path = write(tmp_path / "canopy.tif", values)
+    missing = read_missing(path, ANY, HOME, 0.5).value
+    assert not missing[5]
+    assert missing.sum() > 0.9 * len(missing)
+
+
+def test_a_raster_of_other_ground_is_refused(tmp_path):
+    with pytest.raises(FileProblem):
+        read_missing(Upload("r.tif", b"II*\x00"), ANY, HOME, 0.5)
+    far = write(tmp_path / "far.tif", ramp(), crs="EPSG:32635")
+    with pytest.raises(FileProblem):
+        read_risk(far, ANY, HOME, RiskSettings("rank", mean_share=0.04))

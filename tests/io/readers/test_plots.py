@@ -1,0 +1,154 @@
+"""Plots out of a layer: which features, how they are called, and what is said of the rest."""
+
+import pytest
+import shapely
+from shapely import LinearRing, LineString, MultiPolygon, Point, Polygon, box
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.formats.layer import Layer
+from fieldmon.io.import_report import Severity
+from fieldmon.io.options import PlotOptions
+from fieldmon.io.readers.plots import named_areas, plot_names, plots_of
+from tests.io.tables_of_cells import column, sentences, table
+
+ANY = PlotOptions()
+ONE, TWO, THREE = (box(5 + k, 45, 5.001 + k, 45.001) for k in range(3))
+
+
+def layer_of(shapes, **columns):
+    return Layer("estate", {k: column(v) for k, v in columns.items()}, column(shapes), "OGC:CRS84")
+
+
+def names_of(imported):
+    return [field.name for field in imported.value]
+
+
+def test_plots_are_called_as_their_column_says_and_told_apart_where_it_repeats():
+    layer = layer_of([ONE, TWO, THREE], name=["Gate", "Gate", "Pond"])
+    assert names_of(plots_of(layer, ANY)) == ["Gate (1)", "Gate (2)", "Pond"]
+    assert plot_names(layer, None)[0] == named_areas(layer, ANY)[1]
+
+
+def test_plots_without_names_are_numbered_and_that_is_a_guess():
+    imported = plots_of(layer_of([ONE, TWO]), ANY)
+    assert names_of(imported) == ["estate (1)", "estate (2)"]
+    assert "they are numbered" in imported.of(Severity.GUESSED)[0].sentence
+    assert names_of(plots_of(layer_of([ONE]), ANY)) == ["estate"]
+
+
+def test_a_column_of_names_can_be_chosen():
+    layer = layer_of([ONE, TWO], name=["a", "b"], code=["X1", "X2"])
+    assert names_of(plots_of(layer, PlotOptions(name_column="code"))) == ["X1", "X2"]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "name"),
+    [("Gate", "Gate"), ("gat", "Gate"), (2, "Pond"), ("2", "Pond"), ("POND", "Pond")],
+)
+def test_one_plot_is_chosen_by_its_name_a_part_of_it_or_its_number(wanted, name):
+    layer = layer_of([ONE, TWO], name=["Gate", "Pond"])
+    (field,) = plots_of(layer, PlotOptions(feature=wanted)).value
+    assert field.name == name
+    assert field.boundary.equals({"Gate": ONE, "Pond": TWO}[name])
+
+
+@pytest.mark.parametrize(
+    ("wanted", "offered"),
+    [
+        ("Moon", ("Gate 1", "Gate 2", "Pond")),
+        ("gate", ("Gate 1", "Gate 2")),
+        ("4", None),
+        ("0", None),
+    ],
+)
+def test_a_name_that_fits_none_or_several_is_asked_back(wanted, offered):
+    layer = layer_of([ONE, TWO, THREE], name=["Gate 1", "Gate 2", "Pond"])
+    with pytest.raises(ChoiceNeeded) as asked:
+        plots_of(layer, PlotOptions(feature=wanted))
+    assert asked.value.option == "feature"
+    assert asked.value.choices == (offered or ("Gate 1", "Gate 2", "Pond"))
+
+
+def test_a_plot_called_by_a_number_goes_before_the_number():
+    layer = layer_of([ONE, TWO], name=["2", "1"])
+    assert names_of(plots_of(layer, PlotOptions(feature=2))) == ["2"]
+
+
+def test_what_is_no_area_is_left_out_and_counted():
+    shapes = [ONE, LineString([(5, 45), (6, 45)]), Point(5, 45), Point(5, 46), None, TWO]
+    imported = plots_of(layer_of(shapes, name=list("abcdef")), ANY)
+    assert names_of(imported) == ["a", "f"]
+    said = [message.sentence for message in imported.of(Severity.DROPPED)]
+    assert [sentence.partition(" ")[0] for sentence in said] == ["1", "1", "2"]
+
+
+def test_lines_that_close_are_the_outlines_of_plots_and_that_is_a_guess():
+    ring = LineString(LinearRing([(5, 45), (5.001, 45), (5.001, 45.001)]))
+    imported = plots_of(layer_of([ring]), ANY)
+    assert imported.value[0].boundary.equals(MultiPolygon([Polygon(ring.coords)]))
+    assert "taken as the outlines" in sentences(imported.of(Severity.GUESSED))
+
+
+def test_lines_and_points_alone_are_offered_as_what_they_can_be():
+    with pytest.raises(ChoiceNeeded) as asked:
+        plots_of(layer_of([LineString([(5, 45), (6, 45)]), Point(5, 45)]), ANY)
+    assert (asked.value.option, asked.value.choices) == ("kind", ("lines", "plants"))
+    with pytest.raises(FileProblem, match="without any geometry"):
+        plots_of(layer_of([None, None]), ANY)
+
+
+def test_parts_and_holes_are_kept_and_said():
+    parts = MultiPolygon([ONE, TWO])
+    holed = Polygon(box(5, 46, 5.01, 46.01).exterior, [box(5.004, 46.004, 5.006, 46.006).exterior])
+    imported = plots_of(layer_of([parts, holed], name=["two", "ring"]), ANY)
+    assert [len(field.boundary.geoms) for field in imported.value] == [2, 1]
+    assert shapely.area(imported.value[1].boundary) == pytest.approx(shapely.area(holed))
+    assert "several parts, which were kept: two." in sentences(imported)
+    assert "holes, kept as places without plants: ring." in sentences(imported)
+
+
+def test_the_same_outline_twice_is_doubted_however_it_is_drawn():
+    backwards = Polygon(list(ONE.exterior.coords)[::-1])
+    imported = plots_of(layer_of([ONE, backwards, TWO], name=["a", "b", "c"]), ANY)
+    (doubt,) = imported.of(Severity.DOUBTFUL)
+    assert (doubt.feature, doubt.sentence) == ("b", "It has the same outline as a.")
+
+
+def test_rows_that_the_file_knows_come_with_the_plot_that_is_chosen():
+    layer = layer_of([ONE, TWO], name=["a", "b"], row_spacing=[3, 4])
+    (field,) = plots_of(layer, PlotOptions(feature="b")).value
+    assert field.row_spacing_m == 4.0
+
+
+def corners(*lonlat, **more):
+    lon, lat = zip(*lonlat, strict=True)
+    return table(lon=list(lon), lat=list(lat), **more)
+
+
+def test_a_table_of_corners_in_their_order_is_one_plot_and_that_is_a_guess():
+    imported = plots_of(corners(*list(ONE.exterior.coords)[:-1]), ANY)
+    (field,) = imported.value
+    assert field.boundary.equals(MultiPolygon([ONE]))
+    assert "4 positions were taken as the corners" in sentences(imported.of(Severity.GUESSED))
+
+
+def test_a_table_of_two_plots_asks_which_are_the_corners():
+    both = [*list(ONE.exterior.coords)[:-1], *list(TWO.exterior.coords)[:-1]]
+    # joined in this order the outlines cross
+    both[4], both[5] = both[5], both[4]
+    with pytest.raises(ChoiceNeeded) as asked:
+        plots_of(corners(*both, part=["a"] * 4 + ["b"] * 4), ANY)
+    assert asked.value.option == "where"
+    assert set(asked.value.choices) >= {"part=a", "part=b"}
+
+
+def test_corners_that_enclose_nothing_are_refused():
+    with pytest.raises((ChoiceNeeded, FileProblem)):
+        plots_of(corners((5, 45), (5.001, 45), (5.002, 45)), ANY)
+    with pytest.raises(ChoiceNeeded, match="3 to 1000 positions"):
+        plots_of(corners((5, 45), (5.001, 45)), ANY)
+
+
+def test_a_table_has_no_areas_to_name():
+    layer, names = named_areas(table(a=["x"]), ANY)
+    assert (len(layer), names) == (0, [])

@@ -1,0 +1,94 @@
+"""Plants out of points and tables, rows and paths out of lines."""
+
+import numpy as np
+import pytest
+from pyproj import Transformer
+from shapely import LineString, MultiLineString, MultiPoint, Point, box
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.formats.layer import Layer
+from fieldmon.io.import_report import Severity
+from fieldmon.io.options import ReadOptions
+from fieldmon.io.readers.points_and_lines import lines_of, plants_of
+from tests.io.tables_of_cells import column, sentences, table
+
+ANY = ReadOptions()
+WGS84 = "OGC:CRS84"
+
+
+def layer_of(shapes, crs=WGS84, **columns):
+    return Layer("shapes", {k: column(v) for k, v in columns.items()}, column(shapes), crs)
+
+
+def test_plants_keep_their_places_and_what_their_file_calls_them():
+    shapes = [Point(5.0, 45.0), Point(5.00001, 45.0)]
+    imported = plants_of(layer_of(shapes, row=["1", "1"], vine=["7", "8"]), ANY)
+    np.testing.assert_array_equal(imported.value.lonlat, [[5.0, 45.0], [5.00001, 45.0]])
+    assert imported.value.row.tolist() == ["1", "1"]
+    assert imported.value.plant.tolist() == ["7", "8"]
+    assert "'vine' names the plants" in sentences(imported)
+
+
+def test_what_is_not_called_anything_has_no_label():
+    plants = plants_of(table(lat=[45.0, 45.1], lon=[5.0, 5.1]), ANY).value
+    assert plants.row.tolist() == plants.plant.tolist() == ["", ""]
+    assert len(plants) == 2
+
+
+def test_several_points_in_one_feature_are_a_plant_each():
+    shapes = [MultiPoint([(5.0, 45.0), (5.1, 45.0)]), Point(5.2, 45.0)]
+    plants = plants_of(layer_of(shapes, row=["1", "2"]), ANY).value
+    assert plants.lonlat[:, 0].tolist() == [5.0, 5.1, 5.2]
+    assert plants.row.tolist() == ["1", "1", "2"]
+
+
+def test_two_plants_at_one_place_are_doubted_by_name():
+    imported = plants_of(layer_of([Point(5, 45)] * 3 + [Point(5.1, 45)], vine=list("abcd")), ANY)
+    doubts = [message.sentence for message in imported.of(Severity.DOUBTFUL)]
+    assert "2 plant(s) stand at the very place of another, first 'a'." in doubts
+
+
+def test_plants_can_be_named_by_hand():
+    options = ANY.naming(row="b", plant="a")
+    shapes = [Point(5.0, 45.0)]
+    plants = plants_of(layer_of(shapes, a=["7"], b=["3"], row=["9"]), options).value
+    assert (plants.row[0], plants.plant[0]) == ("3", "7")
+
+
+def test_lines_come_in_whole_and_what_leads_nowhere_is_left_out_and_said():
+    whole, nowhere = LineString([(5, 45), (5.1, 45)]), LineString([(5, 45), (5, 45)])
+    several = MultiLineString([[(5, 45), (5, 45.1)], [(6, 45), (6, 45.1)]])
+    imported = lines_of(layer_of([whole, several, nowhere, Point(5, 45), None]), ANY)
+    wanted = [whole, *several.geoms]
+    assert len(imported.value.geoms) == len(wanted)
+    assert all(line.equals(other) for line, other in zip(imported.value.geoms, wanted, strict=True))
+    said = sentences(imported)
+    assert "2 feature(s) that are no lines" in said
+    assert "1 line(s) that do not lead anywhere" in said
+
+
+def test_lines_are_read_in_the_system_they_are_in():
+    metres = LineString([(706_700, 3_360_800), (706_800, 3_360_800)])
+    (line,) = lines_of(layer_of([metres], "EPSG:32636"), ANY).value.geoms
+    there = Transformer.from_crs(32636, "OGC:CRS84", always_xy=True).transform(706_700, 3_360_800)
+    assert line.coords[0] == pytest.approx(there, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("layer", "words"),
+    [
+        (table(lat=[45.0], lon=[5.0]), "but it is a plain table"),
+        (layer_of([box(5, 45, 6, 46), Point(5, 45)]), r"it holds 1 area\(s\) and 1 point\(s\)"),
+    ],
+)
+def test_what_holds_no_line_is_refused_with_what_it_holds(layer, words):
+    with pytest.raises(FileProblem, match=words):
+        lines_of(layer, ANY)
+
+
+def test_areas_are_no_plants_and_a_table_without_places_asks():
+    with pytest.raises(FileProblem, match=r"must hold points, but it holds 1 area\(s\)"):
+        plants_of(layer_of([box(5, 45, 6, 46)]), ANY)
+    with pytest.raises(ChoiceNeeded) as asked:
+        plants_of(table(a=["x"], b=["y"]), ANY)
+    assert asked.value.option == "columns"

@@ -1,0 +1,164 @@
+"""Records out of a table: where, when, how many, whether at all, and what is doubted."""
+
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+import pytest
+from shapely import MultiPolygon, box
+
+from fieldmon.errors import ObservationError
+from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.io.import_report import Severity
+from fieldmon.io.options import RecordOptions
+from fieldmon.io.readers.places import NamedPlaces, Plants
+from fieldmon.io.readers.records import records_by_plot, records_of
+from fieldmon.plot.field import Field
+from tests.io.tables_of_cells import sentences, table
+
+ANY = RecordOptions()
+
+
+def at(n, **columns):
+    """Return a table of so many records, each at a place of its own."""
+    return table(lon=[35.150123 + k / 1e4 for k in range(n)], lat=[30.360789] * n, **columns)
+
+
+def read(options=ANY, **columns):
+    n = len(next(iter(columns.values())))
+    return records_of(at(n, **columns), options)
+
+
+def vines(lon):
+    """Return two plants, 1 and 2, of row 1."""
+    return Plants(
+        np.array([[lon, 45.0], [lon, 45.001]]), np.array(["1", "1"]), np.array(["1", "2"])
+    )
+
+
+def said(imported, severity):
+    return "\n".join(message.sentence for message in imported.of(severity))
+
+
+def test_zero_is_absent_and_nothing_is_not_known():
+    records = read(count=[3, 0, None, "0", "n/a", ""]).value
+    assert records.present.tolist() == [PRESENT, ABSENT, UNKNOWN, ABSENT, UNKNOWN, UNKNOWN]
+    np.testing.assert_array_equal(records.count, [3, 0, np.nan, 0, np.nan, np.nan])
+
+
+def test_a_word_says_whether_where_no_count_does():
+    records = read(present=["yes", "no", "", "maybe"])
+    assert records.value.present.tolist() == [PRESENT, ABSENT, UNKNOWN, UNKNOWN]
+    assert "neither yes nor no: 'maybe'" in said(records, Severity.DOUBTFUL)
+
+
+def test_a_word_that_contradicts_its_count_is_doubted_and_believed():
+    records = read(count=[3, 0, 2], present=["yes", "yes", None])
+    assert records.value.present.tolist() == [PRESENT, PRESENT, PRESENT]
+    assert "1 record(s) say another thing than their count" in said(records, Severity.DOUBTFUL)
+
+
+def test_a_file_that_only_lists_places_is_taken_for_finds_and_offers_what_could_be_a_count():
+    records = read(zz=[1, 2, 3], crop=["a", "b", "c"])
+    assert (records.value.present == PRESENT).all()
+    (guess,) = records.of(Severity.GUESSED)
+    assert guess.remedy.choices == ("count=zz",)
+    again = records_of(at(3, zz=[1, 0, 3]), ANY.choose("columns", guess.remedy.value))
+    assert again.value.present.tolist() == [PRESENT, ABSENT, PRESENT]
+
+
+def test_a_count_that_is_no_plain_number_is_read_roughly_and_shown():
+    records = read(count=["3", "~10", ">5", "many"])
+    assert "no plain number" in said(records, Severity.DOUBTFUL)
+    assert (records.value.present[:3] == PRESENT).all()
+
+
+def test_a_comma_is_what_the_rest_of_the_table_says_it_is_and_else_a_guess():
+    np.testing.assert_allclose(read(count=["1,5", "1,234"]).value.count, [1.5, 1.234])
+    assert read(count=["1,234", "7"]).value.count.tolist() == [1234.0, 7.0]  # as in 35.150123
+    layer, places = table(plant=["1", "2"], count=["1,234", "7"]), NamedPlaces(plants=vines(5.0))
+    alone = records_of(layer, ANY, places)
+    assert alone.value.count.tolist() == [1234.0, 7.0]
+    (guess,) = [m for m in alone.of(Severity.GUESSED) if "thousands" in m.sentence]
+    options = ANY.choose(guess.remedy.option, guess.remedy.value)
+    assert records_of(layer, options, places).value.count.tolist() == [1.234, 7.0]
+
+
+def test_days_that_could_be_either_are_read_day_first_with_a_way_out():
+    cells = ["03/04/2026", "05/06/2026"]
+    records = read(count=[1, 1], date=cells)
+    assert records.value.day.astype(str).tolist() == ["2026-04-03", "2026-06-05"]
+    (guess,) = records.of(Severity.GUESSED)
+    options = ANY.choose(guess.remedy.option, guess.remedy.value)
+    assert read(options, count=[1, 1], date=cells).value.day.astype(str).tolist() == [
+        "2026-03-04", "2026-05-06",
+    ]  # fmt: skip
+
+
+def test_a_day_in_three_columns_is_put_together():
+    records = read(count=[1, 1], year=[2026, 2026], month=[4, 13], day=[7, 7]).value
+    assert records.day[0] == np.datetime64("2026-04-07")
+    assert np.isnat(records.day[1])
+
+
+def test_days_that_are_none_stay_open_and_those_to_come_are_doubted():
+    ahead = (datetime.now(UTC) + timedelta(days=40)).date().isoformat()
+    records = read(count=[1, 1, 1], date=["2026-04-01", "soon", ahead])
+    assert np.isnat(records.value.day).tolist() == [False, True, False]
+    doubts = said(records, Severity.DOUBTFUL)
+    assert "1 record(s) have a date that is none ('soon')" in doubts
+    assert f"1 record(s) lie in the future, the last on {ahead}" in doubts
+
+
+def test_a_file_without_days_says_so_and_offers_a_column_that_holds_some():
+    records = read(count=[1, 2], when_seen=["2026-04-01", "2026-04-02"])
+    (doubt,) = [m for m in records.messages if "No column was recognised" in m.sentence]
+    assert np.isnat(records.value.day).all()
+    assert doubt.remedy.choices == ("date=when_seen",)
+
+
+def test_records_that_repeat_another_in_every_column_are_left_out():
+    layer = table(lon=[35.150123] * 3, lat=[30.360789] * 3, count=[1, 1, 2])
+    records = records_of(layer, ANY)
+    assert records.value.count.tolist() == [1.0, 2.0]
+    assert "1 record(s) repeat another" in said(records, Severity.DROPPED)
+    assert "another count for a place and day" in said(records, Severity.DOUBTFUL)
+
+
+def test_several_species_are_doubted_and_each_can_be_chosen_alone():
+    records = read(count=[1, 2, 3], species=["mite", "aphid", "mite"])
+    (doubt,) = [m for m in records.messages if "species are mixed" in m.sentence]
+    assert doubt.remedy.choices == ("species=aphid", "species=mite")
+    assert "mixed" not in sentences(read(count=[1, 2], species=["mite", ""]))
+
+
+def test_what_else_a_record_knows_comes_with_it():
+    columns = {
+        "count": [1, 2],
+        "accuracy": [4, -1],
+        "stage": ["adult", "n/a"],
+        "leaves": [10, None],
+    }
+    records = read(**columns).value
+    np.testing.assert_array_equal(records.accuracy_m, [4, np.nan])
+    assert records.stage.tolist() == ["adult", ""]
+    np.testing.assert_array_equal(records.leaves_sampled, [10, np.nan])
+
+
+def test_an_empty_table_is_refused():
+    with pytest.raises(ObservationError, match="must hold records, but it holds none"):
+        records_of(table(lon=[], lat=[], count=[]), ANY)
+
+
+def test_records_that_name_their_plots_are_told_apart_by_plot():
+    fields = tuple(
+        Field(name, MultiPolygon([box(lon - 0.01, 44.99, lon + 0.01, 45.01)]))
+        for name, lon in (("North", 5.0), ("South", 5.1))
+    )
+    places = NamedPlaces(fields, plants_of={"North": vines(5.0), "South": vines(5.1)})
+    layer = table(plot=["South", "North", "South"], row=[1, 1, 1], plant=[1, 1, 1], count=[1, 2, 3])
+    by_plot = records_by_plot(layer, ANY, places).value
+    assert {name: part.count.tolist() for name, part in by_plot.items()} == {
+        "North": [2.0], "South": [1.0, 3.0],
+    }  # fmt: skip
+    assert set(by_plot["South"].lonlat[:, 0]) == {5.1}
+    assert records_by_plot(at(1, count=[1]), ANY, places).value == {}

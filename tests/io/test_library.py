@@ -1,0 +1,102 @@
+"""Reading in one call: what the doors of the app read, with doubts as warnings."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import ChoiceNeeded, ImportDoubt, SettingError
+from fieldmon.io import library, read
+from fieldmon.io.options import PlotOptions, Upload
+from fieldmon.io.sources import PlantingChoices
+from tests.paths import SAMPLE_DATA
+
+ESTATE = SAMPLE_DATA / "paran_estate.zip"
+ROWS = PlantingChoices(row_bearing_deg=20.0, row_spacing_m=4.0, plant_spacing_m=3.0)
+
+
+@pytest.fixture(scope="module")
+def gate():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return library.read_plot(ESTATE, feature="Gate")
+
+
+def heard(call, *arguments, **options):
+    """Return what a call gives, and the sentences of the doubts that it warns of."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        given = call(*arguments, **options)
+    assert {warning.category for warning in said} <= {ImportDoubt}
+    assert {warning.filename for warning in said} <= {__file__}, "not where it was asked"
+    return given, [str(warning.message) for warning in said]
+
+
+def test_a_plot_is_the_one_that_the_doors_of_the_app_read(gate):
+    (wanted,) = read.read_plots(ESTATE, PlotOptions(feature="Gate")).value
+    assert gate.field.boundary.equals(wanted.boundary)
+    assert library.read_plot(ESTATE, feature=1, planting=ROWS).field.name == "Gate"
+
+
+def test_what_is_assumed_of_the_rows_is_a_warning_and_what_is_said_is_none():
+    square = "5,45 5.002,45 5.002,45.001 5,45.001"
+    rows = "\n".join(square.split())
+    file = Upload("square.csv", f"lon,lat\n{rows}\n".encode())
+    _, assumed = heard(library.read_plot, file)
+    assert any("planting=" in sentence for sentence in assumed)
+    _, quiet = heard(library.read_plot, file, planting=ROWS)
+    assert len(quiet) < len(assumed)
+    assert not [sentence for sentence in quiet if "planting=" in sentence]
+
+
+def test_several_plots_are_asked_apart_and_the_answer_is_an_argument():
+    with pytest.raises(ChoiceNeeded) as asked:
+        library.read_plot(ESTATE)
+    assert asked.value.option == "feature"
+    for choice in asked.value.choices[:2]:
+        assert library.read_plot(ESTATE, feature=choice, planting=ROWS).field.name == choice
+
+
+def test_a_gate_of_ones_own_is_where_the_day_begins(gate):
+    there = tuple(gate.grid.lonlat(np.array([40]))[0] + [0.0, -0.0001])
+    plot = library.read_plot(ESTATE, feature="Gate", planting=ROWS, gate=there)
+    assert plot.field.gate == there
+
+
+def test_outlines_of_all_plots_come_without_plants():
+    fields = library.read_plots(ESTATE)
+    assert len(fields) > 3
+    assert [field.plants for field in fields] == [None] * len(fields)
+
+
+def test_records_are_those_near_the_plot_and_options_are_taken_as_text(gate):
+    table = "lon,lat,date,count\n{0},{1},03/04/2026,2\n{2},{3},05/06/2026,1\n"
+    (lon, lat), far = gate.grid.lonlat(np.array([7]))[0], 0.3
+    file = Upload("r.csv", table.format(lon, lat, lon + far, lat).encode())
+    records, doubts = heard(library.read_records, file, gate)
+    assert records.day.astype(str).tolist() == ["2026-04-03"]
+    assert any("day first" in sentence for sentence in doubts)
+    told, doubts = heard(library.read_records, file, gate, date_order="mdy")
+    assert told.day.astype(str).tolist() == ["2026-03-04"]
+    assert not [sentence for sentence in doubts if "day first" in sentence]
+
+
+def test_inspections_take_their_day_and_who_from_arguments(gate):
+    file = Upload("d.csv", b"plant,found\n17,yes\n18,no\n19,\n")
+    done, _ = heard(library.read_inspections, file, gate, day="2026-11-18", who="Ann")
+    assert done.plant.tolist() == [17, 18]
+    assert done.date.astype(str).tolist() == ["2026-11-18"] * 2
+    assert set(done.who.tolist()) == {"Ann"}
+
+
+@pytest.mark.parametrize(
+    ("call", "more"),
+    [
+        (library.read_plots, ()),
+        (library.read_records, ("gate",)),
+        (library.read_inspections, ("gate",)),
+    ],
+)
+def test_an_option_that_there_is_none_of_is_refused(call, more, gate):
+    with pytest.raises(SettingError, match="no option 'colour'"):
+        call(ESTATE, *(gate for _ in more), colour="red")

@@ -1,0 +1,68 @@
+"""Drives that fill the hours: what they hold is what their ways hold, at several budgets."""
+
+import numpy as np
+import pytest
+
+from fieldmon.planning.routes.binned import proposals
+from fieldmon.planning.routes.priced import Priced
+from fieldmon.planning.routes.relaxation import ladder_below
+from fieldmon.planning.routes.stops import stops_of
+from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
+from tests.planning.routes.test_improve import used_s
+
+AISLES = Aisles.of(rectangle(10, 9))
+REWARD = np.random.default_rng(3).random(90) ** 2
+
+
+def priced_by(robot, aisles=AISLES, reward=REWARD):
+    return Priced(ladder_below(aisles), reward, robot)
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("seconds", [1200.0, 2400.0, 3600.0])
+def test_a_proposal_holds_what_its_stops_hold_and_takes_about_the_hours(returns, seconds):
+    robot = Robot(returns=returns)
+    priced = priced_by(robot)
+    made = [*proposals(priced, 0.006, seconds)]
+    assert made
+    for drawn, prices in made:
+        stops = stops_of(priced, drawn, prices, robot)
+        assert len(set(stops.tolist())) == len(stops)
+        assert REWARD[stops].sum() == pytest.approx(drawn.reward)
+        assert used_s(AISLES, robot, stops) <= 1.15 * seconds
+
+
+def test_more_hours_hold_more():
+    priced = priced_by(Robot())
+    held = [max(drawn.reward for drawn, _ in proposals(priced, 0.006, seconds))
+            for seconds in (900.0, 1800.0, 2700.0, 3600.0)]  # fmt: skip
+    assert (np.diff(held) > 0).all()
+
+
+def test_between_two_prices_it_fills_hours_that_neither_price_does():
+    """At one price the best drive may be too short, and at the next lower one too long."""
+    robot, seconds = Robot(), 2400.0
+    priced = priced_by(robot)
+    fitting = []
+    for price in np.geomspace(1e-4, 0.02, 60):
+        drawn = priced.best(price)
+        if priced.seconds(drawn, price) <= seconds:
+            fitting.append(drawn.reward)
+    proposed = []
+    for drawn, prices in proposals(priced, 0.006, seconds):
+        if used_s(AISLES, robot, stops_of(priced, drawn, prices, robot)) <= 1.02 * seconds:
+            proposed.append(drawn.reward)
+    assert max(proposed, default=0.0) >= 0.97 * max(fitting)
+
+
+def test_prices_in_aisles_are_about_the_one_it_was_told():
+    for _, prices in proposals(priced_by(Robot()), 0.006, 2000.0):
+        assert ((prices >= 0.6 * 0.006 - 1e-12) & (prices <= 1.6 * 0.006 + 1e-12)).all()
+
+
+def test_where_nothing_is_to_be_gained_nothing_is_proposed():
+    aisles = Aisles.of(rectangle(4, 4, Planting(faces=2)))
+    nothing = np.zeros(len(aisles.grid))
+    assert [*proposals(priced_by(Robot(), aisles, nothing), 0.006, 2000.0)] == []

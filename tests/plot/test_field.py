@@ -1,0 +1,74 @@
+"""What people know about a plot: a valid area, and what is left of it to drive on."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from shapely import MultiPolygon, Polygon, box
+
+from fieldmon.errors import PlotError
+from fieldmon.plot.field import Field
+from tests.crooked import crooked_fields
+
+SQUARE = box(35.15, 30.36, 35.152, 30.362)
+EAST = box(35.151, 30.3, 35.16, 30.4)
+
+
+def test_an_area_that_is_none_is_refused_with_what_is_wrong():
+    bow_tie = MultiPolygon([Polygon([(0, 0), (1, 1), (1, 0), (0, 1)])])
+    for area, words in ((MultiPolygon(), "it is empty"), (bow_tie, "Self-intersection")):
+        with pytest.raises(PlotError, match=f"'Gate' must be a valid.*{words}"):
+            Field("Gate", area)
+
+
+def test_measured_plants_cannot_be_changed_behind_its_back():
+    field = Field("Gate", MultiPolygon([SQUARE]), plants=np.array([[35.151, 30.361]]))
+    with pytest.raises(ValueError, match="read-only"):
+        field.plants[0] = 0.0
+
+
+def test_no_go_areas_are_not_driven_on():
+    field = Field("Gate", MultiPolygon([SQUARE]), no_go=MultiPolygon([EAST]))
+    west = box(35.15, 30.36, 35.151, 30.362)
+    assert field.drivable().equals(west)
+    assert Field("Gate", MultiPolygon([SQUARE])).drivable().equals(SQUARE)
+
+
+def test_an_edge_that_is_only_touched_leaves_no_slivers_behind():
+    touching = box(35.152, 30.36, 35.153, 30.362)
+    field = Field("Gate", MultiPolygon([SQUARE]), no_go=MultiPolygon([touching]))
+    assert {part.geom_type for part in field.drivable().geoms} == {"Polygon"}
+    assert field.drivable().equals(SQUARE)
+
+
+def test_a_plot_that_may_nowhere_be_entered_is_refused():
+    field = Field("Gate", MultiPolygon([SQUARE]), no_go=MultiPolygon([SQUARE.buffer(0.001)]))
+    with pytest.raises(PlotError, match=r"nothing does\. Remove or shrink a no-go area"):
+        field.drivable()
+
+
+@given(field=crooked_fields())
+def test_what_is_driven_on_is_the_plot_without_what_is_not_to_the_last_part(field):
+    left = field.drivable()
+    assert left.is_valid
+    total = shapely.area(field.boundary)
+    shared = shapely.area(shapely.intersection(field.boundary, field.no_go))
+    assert shapely.area(left) == pytest.approx(total - shared, abs=1e-9 * total)
+    assert shapely.area(shapely.intersection(left, field.no_go)) <= 1e-9 * total
+
+
+@given(field=crooked_fields())
+def test_its_plane_is_centred_on_it_and_leads_back(field):
+    corners = shapely.get_coordinates(field.boundary)
+    frame = field.frame(20.0)
+    xy_m = frame.xy_m(corners)
+    np.testing.assert_allclose(frame.lonlat(xy_m), corners, atol=1e-9)
+    size_m = np.hypot(*np.ptp(xy_m, axis=0))
+    assert np.abs(xy_m).max() <= size_m
+
+
+def test_it_says_itself_with_its_parts_and_measured_plants():
+    two = MultiPolygon([SQUARE, box(35.16, 30.36, 35.161, 30.361)])
+    assert repr(Field("Gate", two)) == "<Field Gate: 2 parts>"
+    measured = Field("ענבים", MultiPolygon([SQUARE]), plants=np.zeros((1, 2)))
+    assert repr(measured) == "<Field ענבים: 1 part, 1 measured plant>"

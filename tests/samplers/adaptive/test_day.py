@@ -1,0 +1,92 @@
+"""Adaptive's day as it goes: it stops where nothing more fits, and learns on the way."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.planning.workday import plan_work, work_day
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import GATE, travel_s
+from fieldmon.samplers.adaptive import Adaptive
+from tests.scenes import scene_on
+
+GRID = rectangle(12, 15)
+N = len(GRID)
+
+
+def scene_of(seed, hours, at=GATE, *, returns=True):
+    chance = np.clip(np.random.default_rng(seed).beta(0.4, 3.0, N), 1e-5, 1 - 1e-5)
+    robot, belief = Robot(hours=hours, returns=returns), PairApproximation.of(GRID, chance, 0.5)
+    return replace(
+        scene_on(GRID), robot=robot, chance=belief.chance, pair_chance=belief.pair_chance,
+        seconds_left=robot.day_s, at=at,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("hours", [0.1, 0.4, 1.3])
+@pytest.mark.parametrize(("returns", "at"), [(True, GATE), (False, 100)])
+@pytest.mark.parametrize("chooses", [False, True])
+def test_the_day_ends_only_where_no_other_plant_would_fit(seed, hours, returns, at, chooses):
+    scene = scene_of(seed, hours, at, returns=returns)
+    found = np.random.default_rng(seed).random(N) < 0.1
+    sampler = Adaptive(chooses_time=chooses)
+    work = work_day(scene, sampler, found.astype(np.uint8))
+    quickest_s = sampler.inspection_times(scene.robot).stop_s[0]
+    place = int(work.plant[-1]) if len(work) else scene.at
+    now_s = float(work.arrive_s[-1] + work.stop_s[-1]) if len(work) else 0.0
+    travel, clock = scene.aisles.travel, scene.clock
+    for plant in np.setdiff1d(np.arange(N), work.plant).tolist():
+        end_s = now_s + travel_s(travel, clock, place, plant) + quickest_s
+        end_s += travel_s(travel, clock, plant, GATE) if returns else 0.0
+        assert end_s > scene.seconds_left
+
+
+def test_until_the_first_find_the_day_is_that_on_which_nothing_is_found():
+    scene = scene_of(1, 1.0)
+    calm = plan_work(scene, Adaptive())
+    found = np.zeros(N, np.bool_)
+    found[calm.plant[20]] = True
+    work = work_day(scene, Adaptive(), found)
+    assert work.plant[:21].tolist() == calm.plant[:21].tolist()
+    assert work.plant.tolist() != calm.plant.tolist()
+
+
+def test_a_find_draws_the_robot_to_its_neighbours_and_a_clean_plant_does_not():
+    scene = replace(scene_of(1, 0.8), chance=np.full(N, 0.03))
+    scene = replace(scene, pair_chance=PairApproximation.of(GRID, scene.chance, 0.8).pair_chance)
+    calm = plan_work(scene, Adaptive())
+    k = len(calm) // 2
+    found = np.zeros(N, np.bool_)
+    found[calm.plant[k]] = True
+    work = work_day(scene, Adaptive(), found)
+    start, other = GRID.adjacent
+    beside = set(other[start[calm.plant[k]] : start[calm.plant[k] + 1]].tolist())
+    seen = set(work.plant[k + 1 :].tolist()) & beside
+    assert len(seen) > len(set(calm.plant[k + 1 :].tolist()) & beside)
+
+
+def test_plants_that_were_inspected_today_are_worth_nothing_more():
+    scene = scene_of(2, 24.0)
+    last = scene.last_inspected.copy()
+    last[::3] = scene.day
+    work = plan_work(replace(scene, last_inspected=last), Adaptive())
+    assert set(work.plant.tolist()) == set(range(N)) - set(range(0, N, 3))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_longer_day_is_expected_to_find_more(seed):
+    found = [scene_of(seed, hours).chance[plan_work(scene_of(seed, hours), Adaptive()).plant].sum()
+             for hours in (0.2, 0.5, 1.0, 1.8)]  # fmt: skip
+    assert (np.diff(found) > 0).all()
+
+
+def test_the_scene_is_left_as_it_was():
+    scene = scene_of(3, 1.0)
+    chance, pair_chance = scene.chance.copy(), scene.pair_chance.copy()
+    work_day(scene, Adaptive(), np.ones(N, np.bool_))
+    np.testing.assert_array_equal(scene.chance, chance)
+    np.testing.assert_array_equal(scene.pair_chance, pair_chance)

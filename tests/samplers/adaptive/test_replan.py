@@ -1,0 +1,112 @@
+"""The price that fills the day, and the plan at it."""
+
+import numpy as np
+import pytest
+
+from fieldmon.compute.jit import loop
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.travel import GATE
+from fieldmon.samplers.adaptive import replan
+from fieldmon.samplers.adaptive.replan import first_price, plan_on, row_of
+from tests.samplers.adaptive.working import scene_with, times_of, workspace
+
+GRID = rectangle(8, 12)
+ONE_TIME = times_of((40.0, 0.84))
+_plan_at = replan._plan_at
+
+
+@loop
+def price_of(travel, clock, work, at):
+    return first_price(travel, clock, work, at)
+
+
+@loop
+def plan_at(travel, clock, work, state):
+    return _plan_at(travel, clock, work, state)
+
+
+@loop
+def planned_on(travel, clock, work, state):
+    return plan_on(travel, clock, work, state)
+
+
+@loop
+def rows_of(travel, at):
+    return row_of(travel, at)
+
+
+def scene_of(seed, hours):
+    chance = np.random.default_rng(seed).beta(0.4, 3.0, len(GRID))
+    return scene_with(GRID, np.clip(chance, 1e-6, 1 - 1e-6), hours, returns=bool(seed % 2))
+
+
+def seconds_at(scene, price, at=GATE):
+    work = workspace(scene, ONE_TIME)
+    return plan_at(scene.aisles.travel, scene.clock, work, (at, price)).seconds
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("hours", [0.2, 0.6, 1.0])
+def test_at_the_first_price_the_day_is_just_filled(seed, hours):
+    scene = scene_of(seed, hours)
+    work = workspace(scene, ONE_TIME)
+    price = price_of(scene.aisles.travel, scene.clock, work, GATE)
+    assert seconds_at(scene, price) <= scene.seconds_left
+    assert seconds_at(scene, price / 1.05) > scene.seconds_left, "a lower price would fit too"
+
+
+def test_with_time_for_all_a_second_costs_next_to_nothing():
+    scene = scene_of(1, 24.0)
+    price = price_of(scene.aisles.travel, scene.clock, workspace(scene, ONE_TIME), GATE)
+    assert price < 1e-6 * scene.chance.max()
+    assert seconds_at(scene, price) > len(GRID) * 40.0
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("at", [GATE, 0, 53])
+def test_the_dearer_a_second_the_shorter_the_plan(seed, at):
+    scene = scene_of(seed, 1.0)
+    prices = np.geomspace(1e-6, 0.02, 30)
+    seconds = [seconds_at(scene, price, at) for price in prices]
+    assert (np.diff(seconds) <= 1e-6).all()
+    assert seconds[0] > seconds[-1]
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("at", [GATE, 0, 53, 95])
+def test_the_price_follows_the_hours_left_in_steps_of_a_tenth(seed, at):
+    scene = scene_of(seed, 1.0)
+    travel, clock, work = scene.aisles.travel, scene.clock, workspace(scene, ONE_TIME)
+    usual = price_of(travel, clock, work, GATE)
+    for left_s in (300.0, 1800.0, 3600.0, 20_000.0):
+        work[1].stale[:] = True
+        price, stretch = planned_on(travel, clock, work, (at, usual, left_s))
+        steps = round(np.log(price / usual) / np.log(1.1))
+        assert price == pytest.approx(usual * 1.1**steps)
+        assert abs(steps) <= 2
+        before = seconds_at(scene, usual, at)
+        if 0.9 * left_s <= before <= left_s:
+            assert steps == 0
+        elif before > left_s:
+            assert steps > 0
+        else:
+            assert steps < 0
+        assert stretch.seconds == pytest.approx(seconds_at(scene, price, at))
+
+
+@pytest.mark.parametrize("at", range(0, len(GRID), 7))
+def test_a_stretch_ends_at_a_plant_of_its_row_that_pays(at):
+    scene = scene_of(3, 1.0)
+    work = workspace(scene, ONE_TIME)
+    price = 0.002
+    stretch = plan_at(scene.aisles.travel, scene.clock, work, (at, price))
+    assert GRID.row[stretch.last] == stretch.row
+    assert 0.84 * scene.chance[stretch.last] > price * 40.0
+    if stretch.row == GRID.row[at]:
+        ahead = stretch.last > at if stretch.first_end == 0 else stretch.last < at
+        assert ahead or stretch.last == at
+
+
+def test_a_plant_stands_in_its_row_and_the_gate_in_none():
+    travel = scene_of(1, 1.0).aisles.travel
+    assert [rows_of(travel, at) for at in (GATE, 0, 12, 95)] == [-1, 0, 1, 7]

@@ -1,0 +1,126 @@
+"""What each way of driving a row comes to, against all choices of plants there are."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from fieldmon.compute.jit import loop
+from fieldmon.plot.layout import rectangle
+from fieldmon.samplers.adaptive.arrays import BLOCK
+from fieldmon.samplers.adaptive.rows import best_time, most_in, value_row
+from tests.samplers.adaptive.working import belief_on, scene_with, times_of, workspace
+
+ROWS, PLANTS = 3, 8
+GRID = rectangle(ROWS, PLANTS)
+ONE_TIME = times_of((40.0, 0.84))
+TIMES = times_of((20.0, 0.5), (30.0, 0.7), (40.0, 0.84))
+
+
+@loop
+def value(travel, clock, work, state):
+    value_row(travel, clock, work, state)
+
+
+@loop
+def chosen_time(times, worth, chance, price):
+    return best_time(times, worth, chance, price)
+
+
+@loop
+def most(belief, rows, block):
+    return most_in(belief, rows, block)
+
+
+def valued(chance, price, times=ONE_TIME, together=0.0, row=1):
+    scene = scene_with(GRID, chance)
+    belief, rows, _, _, _ = workspace(scene, times, together)
+    value(scene.aisles.travel, scene.clock, (belief, rows, times), (row, price))
+    return scene, rows
+
+
+def gains_of(chance, price, times):
+    """Return the best gain of each plant, over the inspection times there are."""
+    each = times.detects[:, None] * chance - price * times.stop_s[:, None]
+    return each.max(axis=0), times.stop_s[each.argmax(axis=0)]
+
+
+def subsets(paying):
+    return (s for k in range(1, len(paying) + 1) for s in combinations(paying, k))
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("times", [ONE_TIME, TIMES], ids=["one time", "three times"])
+def test_each_way_has_the_best_of_all_choices_of_plants(seed, times):
+    rng = np.random.default_rng(seed)
+    chance, price = rng.beta(0.5, 3.0, len(GRID)), 0.84 / 40 * rng.uniform(0.02, 0.5)
+    scene, rows = valued(chance, price, times)
+    gain, stop_s = gains_of(chance, price, times)
+    first, end = GRID.row_start[1], GRID.row_start[2]
+    paying = [i for i in range(first, end) if gain[i] > 0]
+    low_m, high_m = GRID.lane_x_m[1]
+    speed = scene.robot.speed_m_s
+
+    def drive_s(way, inspected):
+        x = GRID.along_m[list(inspected)]
+        if way < 2:
+            return (high_m - low_m) / speed
+        return 2 * (x.max() - low_m if way == 2 else high_m - x.min()) / speed
+
+    if not paying:
+        assert (rows.last[1] == -1).all()
+        return
+    for way in range(4):
+        worth = {s: gain[list(s)].sum() - price * drive_s(way, s) for s in subsets(paying)}
+        best = max(worth, key=worth.get)
+        assert rows.net[1, way] == pytest.approx(worth[best])
+        seconds = drive_s(way, best) + stop_s[list(best)].sum()
+        assert rows.seconds[1, way] == pytest.approx(seconds)
+        assert rows.last[1, way] == (max(best) if way in {0, 2} else min(best))
+
+
+def test_a_row_where_nothing_pays_is_not_driven():
+    _, rows = valued(np.full(len(GRID), 0.01), price=0.02)
+    assert rows.n_pays[1] == 0
+    assert (rows.last[1] == -1).all()
+
+
+def test_the_second_of_two_neighbours_counts_as_after_a_clean_first():
+    """By Bayes' rule on the four states of a pair."""
+    chance = np.full(len(GRID), 1e-6)
+    first = GRID.row_start[1]
+    chance[first : first + 2] = 0.4, 0.3
+    price, d = 0.001, 0.84
+    belief = belief_on(GRID, chance, together=0.8)
+    both = belief.pair_chance[belief.pair_before[first + 1]]
+    assert both > 0.4 * 0.3
+    clean = {(1, 1): both * (1 - d), (0, 1): 0.3 - both}  # first clean, second infested
+    nobody = {(1, 0): (0.4 - both) * (1 - d), (0, 0): 1 - 0.4 - 0.3 + both}
+    after = sum(clean.values()) / (sum(clean.values()) + sum(nobody.values()))
+    _, rows = valued(chance, price, together=0.8)
+    assert rows.n_pays[1] == 2
+    gains = rows.gain[first : first + 2]
+    assert gains[0] == pytest.approx(d * 0.4 - price * 40.0)
+    assert gains[1] == pytest.approx(d * after - price * 40.0)
+
+
+@pytest.mark.parametrize("price", [1e-4, 0.003, 0.01, 0.03])
+def test_a_plant_gets_the_time_that_is_worth_most_beyond_what_it_costs(price):
+    for chance in (0.01, 0.2, 0.9):
+        gain, time = chosen_time(TIMES, 1.0, chance, price)
+        each = TIMES.detects * chance - price * TIMES.stop_s
+        assert gain == pytest.approx(each.max())
+        assert time == each.argmax()
+
+
+def test_the_most_in_a_block_is_remembered_until_it_is_marked_as_changed():
+    grid = rectangle(3, BLOCK)
+    chance = np.random.default_rng(1).random(3 * BLOCK)
+    scene = scene_with(grid, chance)
+    belief, rows, *_ = workspace(scene, ONE_TIME)
+    for block in range(3):
+        assert most(belief, rows, block) == chance[block * BLOCK : (block + 1) * BLOCK].max()
+    belief.chance[BLOCK] = 2.0
+    assert most(belief, rows, 1) < 2.0
+    rows.most[1] = -1.0
+    assert most(belief, rows, 1) == 2.0

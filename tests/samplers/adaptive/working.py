@@ -1,0 +1,51 @@
+"""Adaptive's arrays on small plots, as `Adaptive.walk` makes them."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from fieldmon.infestation.clustering import ClusterEstimate
+from fieldmon.infestation.pairs import Neighbourhood, pair_chances
+from fieldmon.plot.robot import Robot
+from fieldmon.samplers.adaptive.arrays import NOWHERE, BeliefArrays, BestTours, OwnRow, RowTours
+from fieldmon.samplers.adaptive.tours import measure_ways
+from fieldmon.samplers.base import InspectionTimes
+from tests.scenes import scene_on
+
+
+def scene_with(grid, chance, hours=1.0, *, returns=True):
+    robot = Robot(hours=hours, returns=returns)
+    return replace(scene_on(grid), robot=robot, chance=chance, seconds_left=robot.day_s)
+
+
+def times_of(*pairs):
+    """Return inspection times from pairs of seconds and detection."""
+    stop_s, detects = np.array(pairs).T
+    return InspectionTimes(stop_s.copy(), detects.copy())
+
+
+def belief_on(grid, chance, together=0.0):
+    """Return what is believed of a plot, a find worth 1; `together`: how much pairs go together."""
+    pair_chance = pair_chances(chance, grid, together)
+    if together == 0.0:
+        start, other = grid.adjacent
+        pair_chance = np.repeat(chance, np.diff(start)) * chance[other]
+    n, (start, other) = len(grid), grid.adjacent
+    before = np.full(n, NOWHERE)
+    for i in range(n):
+        for e in range(start[i], start[i + 1]):
+            if other[e] == i - 1 and grid.row[i - 1] == grid.row[i]:
+                before[i] = e
+    return BeliefArrays(
+        chance.copy(), pair_chance.copy(), np.ones(n), Neighbourhood.of(n), before,
+        chance.copy(), pair_chance.copy(), ClusterEstimate.none(n), np.ones(1),
+    )  # fmt: skip
+
+
+def workspace(scene, times, together=0.0):
+    """Return what planning works in."""
+    n, n_rows = len(scene.grid), scene.grid.n_rows
+    tours = BestTours.of(n_rows)
+    measure_ways(scene.aisles.travel, scene.clock, tours.next_s, tours.home_s)
+    belief = belief_on(scene.grid, scene.chance, together)
+    return belief, RowTours.of(n, n_rows), tours, times, OwnRow.blank()

@@ -45,7 +45,9 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
             texts.COLUMN_STRATEGY: [name(o.strategy) for o in ranked],
             texts.COLUMN_LOSS: [_interval(o.loss, ",.0f") for o in ranked],
             texts.COLUMN_FOUND: [_interval(_share(o.detection_pct), ".3g", " %") for o in ranked],
-            texts.COLUMN_VISITED: [f"{number(o.visited_pct, '.1f')} %" for o in ranked],
+            texts.COLUMN_VISITED: [
+                texts.IN_PERCENT.format(value=number(o.visited_pct, ".1f")) for o in ranked
+            ],
             texts.COLUMN_HALF: [
                 "-" if o.half_day is None else number(o.half_day, "g") for o in ranked
             ],

@@ -58,7 +58,15 @@ def _names(choices: Choices) -> list[str]:
 
 def _figures(day: SimulatedDay) -> None:
     with st.container(horizontal=True):
-        st.metric(texts.FOUND_SO_FAR, f"{number(day.detection_pct, '.0f')} %", width="content")
+        st.metric(
+            texts.FOUND_SO_FAR,
+            texts.IN_PERCENT.format(value=number(day.detection_pct, ".0f")),
+            width="content",
+        )
         st.metric(texts.FOUND_TODAY, day.found, width="content")
         st.metric(texts.LEFT, day.left, width="content")
-        st.metric(texts.VISITED_TODAY, f"{number(day.visited_pct, '.0f')} %", width="content")
+        st.metric(
+            texts.VISITED_TODAY,
+            texts.IN_PERCENT.format(value=number(day.visited_pct, ".0f")),
+            width="content",
+        )

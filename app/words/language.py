@@ -109,7 +109,7 @@ class Plural(Text):
         if self.language == ENGLISH:
             return self.one if number == 1 else str(self)
         found = _catalogue(self.language)
-        return found.npgettext(self.context, self.one, str(self), number)
+        return found.npgettext(self.context, self.one, str(self), number) or str(self)
 
 
 class Late(str):  # noqa: SLOT000
@@ -154,7 +154,7 @@ def _in_language(language: str, context: str, value: Any) -> Any:  # noqa: ANN40
         made = Plural(value.one, str(value), value.by, language)
         made.context = context
         return made
-    return Text(_catalogue(language).pgettext(context, value), language)
+    return Text(_catalogue(language).pgettext(context, value) or value, language)
 
 
 @cache
@@ -167,7 +167,19 @@ def _catalogue(language: str) -> gettext.GNUTranslations:
     with (FOLDER / f"{language}.po").open("rb") as file:
         write_mo(written, read_po(file, locale=language))
     written.seek(0)
-    return gettext.GNUTranslations(written)
+    found = gettext.GNUTranslations(written)
+    found.add_fallback(_Unknown())
+    return found
+
+
+class _Unknown(gettext.NullTranslations):
+    """Says nothing of what a catalogue has no words for."""
+
+    def pgettext(self, context: str, message: str) -> str:  # noqa: ARG002 - as gettext asks
+        return ""
+
+    def npgettext(self, context: str, msgid1: str, msgid2: str, n: int) -> str:  # noqa: ARG002
+        return ""
 
 
 # -- the library's sentences
@@ -207,13 +219,10 @@ def _said(sentence: object, language: str) -> str | None:
         said = [parts[p] or marked_as_english(p) for p in sentence.parts]
         return sentence.between.join(said)
     if sentence.one:
-        n = sentence.count
-        form = found.npgettext(LIBRARY, sentence.one, sentence.words, n)
-        known = form not in (sentence.one, sentence.words)
+        form = found.npgettext(LIBRARY, sentence.one, sentence.words, sentence.count)
     else:
         form = found.pgettext(LIBRARY, sentence.words)
-        known = form != sentence.words
-    if not known:
+    if not form:
         return None
     values = {
         name: value if (made := _said(value, language)) is None else made

@@ -8,7 +8,6 @@ import sys
 from types import ModuleType
 from typing import Any
 
-from fieldmon.io.writers.handoff import FORMATS
 from fieldmon.samplers import of_equal_times
 
 from . import language
@@ -33,10 +32,6 @@ PARTS = {
 }  # fmt: skip
 RESEARCH, REPORT, STUDY = "Research", "Report", "The thesis, without records"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
-SAMPLE_NOTE = (
-    "A made-up estate near Paran, to try things out. Nothing of it exists, and time stands still "
-    "there on the last day of its records."
-)
 PLOT_FROM = "Plot or season"
 PLOT_FROM_HELP = (
     "The sample estate and your own files are only looked at. A season is kept on this machine, "
@@ -184,6 +179,7 @@ UNITS = {"m": "m", "km": "km", "ft": "ft", "mi": "mi", "ha": "ha", "dunam": "dun
          "acre": "acre"}  # fmt: skip
 IN_UNIT, IN_HOURS = "{value} {unit}", "{hours} h"
 IN_SPEED = "{value} km/h"
+IN_PERCENT = "{value} %"
 STOP_NUMBER = "stop"
 
 SEASON_NAMED = (
@@ -256,7 +252,14 @@ TODAY_DONE = Plural(
     by="inspected",
 )
 OTHER_FORMATS, FORMAT, DOWNLOAD_AS = "Robot, phone, paper", "Format", "Download for {reader}"
-READERS = {name: one.reader for name, one in FORMATS.items()}
+#: as `fieldmon.io.writers.handoff` says them, which takes long to load
+READERS = {
+    "nav2": "robots with Nav2 (ROS 2)", "waypoints": "robots of any kind",
+    "geojson": "QGIS, phones, web maps", "gpkg": "QGIS, QField, ArcGIS",
+    "shapefile": "older map programs and consoles", "csv": "spreadsheets",
+    "kml": "Google Earth, map apps on phones", "gpx": "GPS handhelds and hiking apps",
+    "sheet": "a printer: a scout without a phone",
+}  # fmt: skip
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
 
@@ -316,7 +319,6 @@ SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspe
           "age": "days since inspected"}  # fmt: skip
 MAP_LAYERS = {"route": "route", "numbers": "stop numbers", "hot": "hot spots",
               "records": "records", "rows": "row numbers", "backdrop": "picture"}  # fmt: skip
-MAP_DAY = "Day"
 BACKDROP_TITLE, HOT_TITLE = "Picture of the ground", "Hot spots"
 BACKDROP = "Picture of the ground (GeoTIFF)"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."

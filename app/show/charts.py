@@ -174,7 +174,10 @@ def season_days(days: list[DayFigures], axes: tuple[str, str, str]) -> alt.Layer
         alt.Chart(table)
         .mark_line(color=_COLOURS[1], point={"color": _COLOURS[1], "size": 60}, strokeWidth=2.5,
                    invalid="break-paths-filter-domains")
-        .encode(x=x, y=alt.Y("found:Q", title=axes[2], axis=alt.Axis(orient=_sides()[1])), tooltip=tip)
+        .encode(
+            x=x, tooltip=tip,
+            y=alt.Y("found:Q", title=axes[2], axis=alt.Axis(orient=_sides()[1])),
+        )
     )  # fmt: skip
     return alt.layer(bars, found_).resolve_scale(y="independent").properties(height=220)
 

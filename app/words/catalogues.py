@@ -28,7 +28,7 @@ _WORDING = frozenset({"worded"})
 
 @dataclass(frozen=True)
 class Entry:
-    """A text to translate: where it stands, its English words, and those for one where it counts."""
+    """A text to translate: where it stands, its English words, and those for one thing."""
 
     context: str
     words: str
@@ -101,7 +101,7 @@ def update(language: str) -> list[Entry]:
         language, header_comment=before.header_comment, project="fieldmon",
         revision_date=before.revision_date, creation_date=before.creation_date,
         last_translator=before.last_translator, language_team=before.language_team,
-        fuzzy=False,
+        msgid_bugs_address=before.msgid_bugs_address, fuzzy=False,
     )  # fmt: skip
     missing = []
     for entry in entries():

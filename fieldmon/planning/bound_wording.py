@@ -17,7 +17,11 @@ def share_above(held: float, bound: float) -> float:
     return bound / held - 1.0 if held > 0.0 else math.inf
 
 
-def told(held: float, bound: float, what: str = "finds") -> str:
+#: what a route may hold
+FINDS, REWARD = worded("finds"), worded("reward")
+
+
+def told(held: float, bound: float, what: str = FINDS) -> str:
     """Return what a route is expected to hold and what no other can exceed.
 
     The bound and the share are rounded up: no route exceeds what is said.

@@ -13,9 +13,9 @@ import sys
 import tempfile
 import time
 import urllib.request
-from urllib.parse import quote
 from contextlib import contextmanager
 from pathlib import Path
+from urllib.parse import quote
 
 from playwright.sync_api import sync_playwright
 
@@ -49,7 +49,7 @@ def wait_for(url):
     """Return the address once the app answers there."""
     for _ in range(300):
         try:
-            urllib.request.urlopen(f"{url}/_stcore/health", timeout=2)
+            urllib.request.urlopen(f"{url}/_stcore/health", timeout=2)  # noqa: S310
         except OSError:
             time.sleep(0.2)
         else:
@@ -92,13 +92,13 @@ def main():
         else:
             with served() as url:
                 pictures(browsers, url, said)
-    print(said.to)
+    print(said.to)  # noqa: T201
 
 
 def pictures(browsers, url, said):
     """Take all pictures that are asked for."""
-    browser = browsers.chromium.launch(executable_path=os.environ.get("CHROMIUM", "/usr/bin/chromium"),
-                                       args=["--no-sandbox"])  # fmt: skip
+    chromium = os.environ.get("CHROMIUM", "/usr/bin/chromium")
+    browser = browsers.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
     for size in said.sizes.split(","):
         width, height, agent = SIZES[size]
         for language in said.languages.split(","):

@@ -43,7 +43,7 @@ def rows(plot_key: str) -> None:
         spacings(plot_key)
         now, usual_m = units(), Planting().headland_m
         widget_memory.show(
-            st.number_input, texts.HEADLAND.format(unit=now.length), *now.limits(0.1, 50.0),
+            st.number_input, texts.HEADLAND.format(unit=texts.UNITS[now.length]), *now.limits(0.1, 50.0),
             step=0.1, key=f"headland {plot_key}", default=now.shown(usual_m),
         )  # fmt: skip
         widget_memory.show(st.toggle, texts.BOTH_FACES, key=f"both_faces {plot_key}", default=False)
@@ -56,7 +56,7 @@ def spacings(plot_key: str) -> None:
     help_ = texts.SPACING_HELP.format(rows=now.metres(rows_m), plants=now.metres(plants_m))
     for name, label in (("row_spacing", texts.ROW_SPACING), ("plant_spacing", texts.PLANT_SPACING)):
         widget_memory.show(
-            st.number_input, label.format(unit=now.length), *now.limits(0.1, 50.0), step=0.1,
+            st.number_input, label.format(unit=texts.UNITS[now.length]), *now.limits(0.1, 50.0), step=0.1,
             help=help_, key=f"{name} {plot_key}",
         )  # fmt: skip
 

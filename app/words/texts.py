@@ -33,10 +33,6 @@ PARTS = {
 RESEARCH, REPORT, STUDY = "Research", "Report", "The thesis, without records"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
 PLOT_FROM = "Plot or season"
-PLOT_FROM_HELP = (
-    "The sample estate and your own files are only looked at. A season is kept on this machine, "
-    "step by step: begin one on the Today page."
-)
 PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
 RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
 PLANT_FILE = "Measured plant positions (optional)"
@@ -70,10 +66,6 @@ OTHER_DAY = (
 )
 BACK_TO_TODAY = "Back to today"
 PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
-FINDS_HELP = (
-    "Infested plants on the route, by the chance map, times the chance that an inspection finds "
-    "them."
-)
 ASSUMED = "\\* assumed: {what}."
 ASSUMED_WHAT = {
     "row_spacing_m": "rows {value} apart",
@@ -201,7 +193,6 @@ WISHES_DROP = "As planned before"
 PLOTS_TITLE = Plural("{n} plot", "{n} plots")
 PLOTS_ALT = Plural("Map of {n} plot: {names}.", "Map of {n} plots: {names}.")
 PLOTS_COLUMNS = {"name": "plot", "days_since": "days since seen", "expected": "expected infested"}
-PLOTS_NONE = "not begun"
 PLOTS_STATES = {"fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
                 "late": "a week ago or never", "new": "no season yet"}  # fmt: skip
 PLOTS_TIP = "{name}: {expected:.0f} infested expected, {seen}"
@@ -268,7 +259,7 @@ TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start a
 TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
 TIP_HOT = "hot spot: {found} found of {inspected} inspected"
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
-TIP_INFESTED, TIP_HERE, TIP_CORNER = "infested", "here", "corner"
+TIP_INFESTED, TIP_CORNER = "infested", "corner"
 
 # -- plot and records
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"

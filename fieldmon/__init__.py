@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from fieldmon.errors import (
         ChoiceNeeded,
+        ContradictionError,
         FieldmonError,
         FileProblem,
         ImportDoubt,
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
 _MODULES = {
     "errors": (
         "ChoiceNeeded",
+        "ContradictionError",
         "FieldmonError",
         "FileProblem",
         "ImportDoubt",
@@ -88,6 +90,7 @@ __all__ = [
     "SAMPLERS",
     "BeliefSettings",
     "ChoiceNeeded",
+    "ContradictionError",
     "DayPlan",
     "Field",
     "FieldmonError",

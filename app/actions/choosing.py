@@ -124,6 +124,7 @@ def _message(kept: KeptMessage) -> ImportMessage:
 def _from_files(source: str, wait: Wait, foot: DeltaGenerator) -> Choices | None:
     kept_files.sync()
     if source == plot_source.SAMPLE:
+        st.caption(texts.SAMPLE_NOTE)
         files = plot_files.of_sample()
     elif (files := plot_files.of_session()) is None:
         return None

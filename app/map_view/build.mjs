@@ -1,7 +1,16 @@
 // Bundle the map into one file that any browser of the last two years runs.
 
-import { readFile, writeFile } from "node:fs/promises";
+import { createHash } from "node:crypto";
+import { readdir, readFile, writeFile } from "node:fs/promises";
 import { build } from "esbuild";
+
+// what it is built from, so that a test without npm sees that it is up to date
+const sources = (await readdir("src")).map((name) => `src/${name}`);
+const digest = createHash("sha256");
+for (const name of [...sources, "build.mjs", "package-lock.json"].sort()) {
+  const text = Buffer.from((await readFile(name, "latin1")).replaceAll("\r\n", "\n"), "latin1");
+  digest.update(`${name} ${text.length}\n`).update(text);
+}
 
 const made = await build({
   entryPoints: ["src/index.js"],
@@ -14,6 +23,7 @@ const made = await build({
   loader: { ".css": "text" },
   define: { "process.env.NODE_ENV": '"production"' },
   metafile: true,
+  banner: { js: `// built from ${digest.digest("hex")}` },
 });
 
 // the licence of every package whose code is in the bundle, packages of the same text together

@@ -237,13 +237,13 @@ def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64],
         "y": alt.Y("high:Q", title=axes[1], axis=alt.Axis(tickMinStep=1, format="d")),
         "tooltip": [alt.Tooltip("row", title=axes[0]), alt.Tooltip("said", title=axes[1])],
     }
-    seen = alt.Chart(table[~never]).mark_bar(color=_COLOURS[2]).encode(**encoding)
+    seen = alt.Chart(table[~never]).mark_bar(color=_COLOURS[2])
     today = alt.Chart(table[table["days"] == 0]).mark_tick(
         color=_COLOURS[2], thickness=4, orient="horizontal"
     )
     unseen = alt.Chart(table[never]).mark_bar(
         filled=False, stroke=_GREY, strokeWidth=1.5, strokeDash=[3, 2]
     )
-    return alt.layer(seen, today.encode(**encoding), unseen.encode(**encoding)).properties(
-        height=180
-    )
+    # a layer of nothing is a picture without a name to those who cannot see it
+    drawn = [part.encode(**encoding) for part in (seen, today, unseen) if len(part.data)]
+    return alt.layer(*drawn).properties(height=180)

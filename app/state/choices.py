@@ -104,8 +104,9 @@ class Choices:
 
     @property
     def place(self) -> str:
-        """Return what names the plot, however its plants were laid last."""
-        return self.plot_key or self.key
+        """Return what a plot and the season that begins on it have in common."""
+        edges = self.plot.field.boundary.bounds
+        return " ".join([self.plot.field.name, *(f"{edge:.5f}" for edge in edges)])
 
     @property
     def wishes(self) -> Wishes:

@@ -31,7 +31,8 @@ def show(choices: Choices) -> None:
         return
     st.html(_STYLE)
     scouting.give_out(choices)
-    scouting.ask_start(choices)
+    with st.container():  # empty or not: buttons that move are there twice for a moment
+        scouting.ask_start(choices)
     plan, progress = choices.plan(), chosen_day.progress(choices)
     if not len(plan.route):
         st.markdown(texts.SCOUT_DONE.format(inspected=progress.inspected_today,

@@ -32,6 +32,10 @@ PARTS = {
 }  # fmt: skip
 RESEARCH, REPORT, STUDY = "Research", "Report", "The thesis, without records"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
+SAMPLE_NOTE = (
+    "A made-up estate near Paran, to try things out. Nothing of it exists, and time stands still "
+    "there on the last day of its records."
+)
 PLOT_FROM = "Plot or season"
 PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
 RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"

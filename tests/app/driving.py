@@ -1,8 +1,10 @@
 """Driving the app without a browser."""
 
 import json
+import sqlite3
 import time
 import zipfile
+from contextlib import closing
 from io import BytesIO
 
 import geopandas as gpd
@@ -15,6 +17,7 @@ from streamlit.util import calc_hash
 from app.state import rooms
 from app.state.map_store import STORE
 from tests.app.shown_plants import shown_plants
+from tests.monitoring.seasons import a_season
 from tests.paths import ROOT
 
 ESTATE = ROOT / "sample_data"
@@ -100,11 +103,16 @@ def plot_name(app):
     return map_of(app)["alt"].removeprefix("Map of plot ").split(": ")[0]
 
 
+def heading(app):
+    """Return which plot and which day the page is about."""
+    day = next(box.value for box in app.date_input if box.key.startswith("day "))
+    return f"{plot_name(app)} · {day}"
+
+
 def headline(app):
     """Return the sentence at the top of Today: what there is to do."""
-    (said,) = (
-        text.value for text in app.markdown if text.value.startswith(("Inspect ", "Nothing"))
-    )
+    leads = ("Inspect ", "Nothing to inspect")
+    (said,) = (text.value for text in app.markdown if text.value.startswith(leads))
     return said
 
 
@@ -150,6 +158,14 @@ def geotiff(values, edges=(35.1, 30.3, 35.2, 30.4)):
         with memory.open(**shape, driver="GTiff", crs="EPSG:4326", transform=place) as raster:
             raster.write(values[None])
         return memory.read()
+
+
+def broken(path):
+    """Leave a season that a later fieldmon wrote, as far as its file says."""
+    a_season(path)
+    with closing(sqlite3.connect(path)) as file:
+        file.execute("UPDATE fieldmon SET value = '99' WHERE key = 'version'")
+        file.commit()
 
 
 def square(size=0.001, name="square"):

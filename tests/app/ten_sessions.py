@@ -24,7 +24,7 @@ from streamlit.util import calc_hash
 
 # people look at a page before they click again; mean seconds
 PAUSE_S = 2.0
-PAGES = ["", "map", "season", "compare", "plot", "report", "simulate", "scout"]
+PAGES = ["", "plots", "season", "ahead", "plot"]
 
 
 async def click(line, page):

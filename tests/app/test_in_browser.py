@@ -1,9 +1,7 @@
 """The app in a real browser without internet: what is on the screen is where it should be."""
 
-import io
 import json
 import re
-from contextlib import suppress
 from dataclasses import replace
 from datetime import date
 
@@ -11,10 +9,10 @@ import geopandas as gpd
 import numpy as np
 import pytest
 import shapely
-from PIL import Image
-from playwright.sync_api import TimeoutError as PlaywrightTimeout
+from shapely import box
 
-from app.show.maps import colours, deck
+from app.show.maps import colours
+from app.state import rooms
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import Observations
@@ -22,86 +20,46 @@ from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.read import read_lines, read_plots, read_records
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, first_day
+from fieldmon.plot.grid import row_label
 from fieldmon.plot.plot import Plot
 from tests.app.driving import zipped
+from tests.app.on_screen import (
+    DRAWN,
+    IDLE,
+    MAP,
+    becomes,
+    click,
+    free,
+    is_near,
+    look,
+    opacity,
+    open_part,
+    open_room,
+    pixels,
+    rest,
+    scale_px_of_m,
+    shade,
+    share_near,
+    still,
+    switch,
+    view,
+    zoomed,
+)
 from tests.paths import SAMPLE_DATA
 
 PHONE = ((390, 844), "Mozilla/5.0 (Linux; Android 14) Chrome/150.0 Mobile Safari/537.36")
-MAP = "[data-testid=stDeckGlJsonChart]"
-IDLE = "[data-testid=stApp][data-test-script-state=notRunning]"
-# what only one page says
-OWN_WORDS = {
-    **{name: f": {name}" for name in ("Map", "Season", "Compare", "Plot & records", "Report")},
-    "Scout": texts.SCOUT_NEEDS.splitlines()[0].strip("# "),
-    "Simulate": f": {texts.SIMULATE}",
-    "Study": texts.STUDY_TITLE,
-    "Today": "Keep this season",
-}
-# settled when the browser has drawn so many frames
-FRAMES = """n => new Promise(done => {
-    const draw = () => n-- > 0 ? requestAnimationFrame(draw) : done()
-    draw()
-})"""
+LAPTOP = ((1440, 900), None)
+ROUTE, HOT = texts.MAP_LAYERS["route"], texts.MAP_LAYERS["hot"]
+BY_STATE = texts.SHADES["state"]
+# the dark ring round a find
+RING = (20, 0, 0)
 
 
 def shown(page, address):
     """Open the app and wait until its first screen is there."""
     page.goto(address)
     page.get_by_text("Keep this season").wait_for(timeout=240_000)  # compiled first
-
-
-def still(page):
-    """Return the map's pixels once the server has answered and two looks at it are the same."""
-    chart = page.locator(MAP).first
-    before = None
-    for _ in range(100):
-        page.evaluate(FRAMES, 12)  # as many on a busy machine, where they take longer
-        page.wait_for_selector(IDLE, timeout=60_000)
-        now = np.array(Image.open(io.BytesIO(chart.screenshot())).convert("RGB")).astype(int)
-        if before is not None and np.array_equal(now, before) and np.ptp(now) > 0:
-            return now
-        before = now
-    pytest.fail("the map did not come to rest")
-
-
-def becomes(page, as_wanted, what):
-    """Wait until the map at rest is as wanted: the server may not have begun to answer."""
-    for _ in range(60):
-        if as_wanted(still(page)):
-            return
-    pytest.fail(f"{what} did not show as it should: the zoom is lost, or nothing changed")
-
-
-def zoomed(page):
-    """Turn the wheel over the map; return its pixels."""
-    box = page.locator(MAP).first.bounding_box()
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    for _ in range(2):
-        before = still(page)
-        page.mouse.wheel(0, -300)
-        becomes(page, lambda now, old=before: not np.array_equal(now, old), "a turn of the wheel")
-    page.mouse.move(box["x"], box["y"] - 25)
-    return still(page)
-
-
-def click(page, across, down, says=None):
-    """Click on the map, at a share of its width and height; wait for what the page then says.
-
-    The map takes no press for a click where the machine is so busy that a quarter of a second
-    passes until the release is heard of: then, as a person would, click again.
-    """
-    chart = page.locator(MAP).first
-    box = chart.bounding_box()
-    for _ in range(3):
-        chart.click(position={"x": across * box["width"], "y": down * box["height"]})
-        if says is None:
-            break
-        with suppress(PlaywrightTimeout):
-            page.get_by_text(says).wait_for(timeout=20_000)
-            break
-    else:
-        pytest.fail(f"three clicks, and the page does not say {says!r}")
-    still(page)
+    rest(page)
 
 
 def sample():
@@ -113,63 +71,96 @@ def sample():
     return plot, first_day(plot, records, np.datetime64("2026-11-16"), PlanSettings())
 
 
-def pixels(grid, lonlat, shape, room_px=deck.PAGE_PX):
-    """Return where lon/lat positions are on the map's picture, by Web Mercator."""
-    view = deck.deck(grid, [], room_px).initial_view_state
-    world = 512 * 2.0**view.zoom
-
-    def project(lon, lat):
-        y = np.log(np.tan(np.pi / 4 + np.deg2rad(lat) / 2))
-        return world * (lon + 180) / 360, world * (0.5 - y / (2 * np.pi))
-
-    x0, y0 = project(view.longitude, view.latitude)
-    x, y = project(*np.asarray(lonlat, float).T)
-    return np.stack([x - x0 + shape[1] / 2, y - y0 + shape[0] / 2], axis=1)
-
-
-def is_near(image, place, colour, reach=2, tolerance=40):
-    """Tell whether a colour is within some pixels of a place."""
-    x, y = np.round(place).astype(int)
-    window = image[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1]
-    return bool((np.abs(window - np.array(colour)).max(axis=2) < tolerance).any())
+def season(path, plot):
+    return Season.create(path, plot, Observations.none(), MonitoringSettings(date(2026, 11, 16)))
 
 
 def test_plants_and_route_are_drawn_where_they_are(page, address):
     shown(page, address)
-    page.get_by_role("button", name="stop numbers").click()
-    page.get_by_role("button", name="hot spots").click()
-    page.get_by_role("button", name="route", exact=True).click()
+    for name in (ROUTE, HOT):
+        switch(page, name, on=False)
     image = still(page)
     plot, today = sample()
-    shade = colours.by_chance(today.chance)
-    place = pixels(plot.grid, plot.grid.lonlat(), image.shape)
-    for rank in np.unique(shade.rank):
-        own = np.flatnonzero(shade.rank == rank)[::7]
-        right = [is_near(image, place[k], colours.CHANCE_COLOURS[rank], reach=1) for k in own]
-        assert np.mean(right) > 0.8, f"class {rank} is not in its colour"
+    shade_of = colours.by_chance(today.chance)
+    place = pixels(view(page), plot.grid.lonlat())
+    classes = colours.of_chance()
+    for rank in np.unique(shade_of.rank):
+        own = place[np.flatnonzero(shade_of.rank == rank)[::7]]
+        assert share_near(image, own, classes[rank], reach=1) > 0.8, f"class {rank}"
     likely, unlikely = np.argmax(today.chance), np.argmin(today.chance)
-    assert is_near(image, place[likely], colours.CHANCE_COLOURS[shade.rank[likely]])
-    assert not is_near(image, place[unlikely], colours.CHANCE_COLOURS[shade.rank[likely]])
-    page.get_by_role("button", name="route", exact=True).click()
-    page.get_by_role("button", name="plants", exact=True).click()
-    image = still(page)
+    assert is_near(image, place[likely], classes[shade_of.rank[likely]])
+    assert not is_near(image, place[unlikely], classes[shade_of.rank[likely]])
+    switch(page, ROUTE, on=True)
+    opacity(page, 0.1)
+    image = becomes(page, lambda now: (now != image).any(), "the route")
     line = today.route.line_m
     middle = (line[1:] + line[:-1])[np.hypot(*np.diff(line, axis=0).T) > 6][::9] / 2
-    on_line = pixels(plot.grid, plot.grid.frame.lonlat(middle), image.shape)
-    assert np.mean([is_near(image, at, colours.ROUTE, tolerance=110) for at in on_line]) > 0.95
-    mirrored = image[:, ::-1]
-    assert np.mean([is_near(mirrored, at, colours.ROUTE, tolerance=110) for at in on_line]) < 0.8
+    on_line = pixels(view(page), plot.grid.frame.lonlat(middle))
+    assert share_near(image, on_line, colours.ROUTE, tolerance=110) > 0.95
+    assert share_near(image[:, ::-1], on_line, colours.ROUTE, tolerance=110) < 0.8, "mirrored"
+    assert share_near(image[::-1], on_line, colours.ROUTE, tolerance=110) < 0.8, "upside down"
+
+
+@pytest.mark.parametrize("page", [LAPTOP], indirect=True)
+def test_the_map_takes_most_of_the_window_and_the_whole_plot_is_in_its_free_part(page, address):
+    shown(page, address)
+    still(page)
+    box, panel = page.locator(MAP).bounding_box(), page.locator(".st-key-panel").bounding_box()
+    left = panel["x"] + panel["width"]
+    free_px = (box["x"] + box["width"] - left) * box["height"]
+    assert free_px >= 0.6 * 1440 * 900
+    assert (box["x"] + box["width"], box["y"] + box["height"]) == (1440, 900)
+    plot, _ = sample()
+    place = pixels(view(page), plot.grid.lonlat())
+    low, high = place.min(axis=0), place.max(axis=0)
+    assert (low > [left - box["x"], 0]).all()
+    assert (high < [box["width"], box["height"]]).all()
+    assert ((high - low) / [1440 - left, box["height"]]).max() > 0.7
+    page.get_by_role("button", name=texts.MAP_WORDS["fold"]).click()
+    page.locator(".st-key-panel").wait_for(state="hidden")
+    page.get_by_role("button", name=texts.MAP_WORDS["unfold"]).click()
+    page.locator(".st-key-panel").wait_for(state="visible")
+
+
+def test_a_switch_on_the_map_changes_pixels_and_asks_nothing_of_the_server(page, address):
+    shown(page, address)
+    before = still(page)
+    lines, asked = [], len(page.requests)
+    page.on("websocket", lines.append)
+    sent = page.evaluate(_COUNT_SENT)
+    for name in (ROUTE, HOT):
+        switch(page, name, on=False)
+        without = becomes(page, lambda now: (now != before).any(axis=2).mean() > 0.002, name)
+        switch(page, name, on=True)
+        becomes(page, lambda now: (now == before).all(), name)
+        assert without.shape == before.shape
+    shade(page, BY_STATE)
+    becomes(page, lambda now: (now != before).any(axis=2).mean() > 0.02, "another shade")
+    assert page.requests[asked:] == []
+    assert lines == []
+    assert page.evaluate("window.sentToServer") == sent == 0
+
+
+# counts what goes over the line to the server
+_COUNT_SENT = """() => {
+  window.sentToServer = 0;
+  const send = WebSocket.prototype.send;
+  WebSocket.prototype.send = function (...all) {
+    window.sentToServer++;
+    return send.apply(this, all);
+  };
+  return window.sentToServer;
+}"""
 
 
 def test_nothing_is_asked_of_the_world(page, address):
     shown(page, address)
-    for name, says in OWN_WORDS.items():
-        page.get_by_role("link", name=name, exact=True).click()
-        page.get_by_role("link", name=name, exact=True).and_(
-            page.locator("[aria-current=page]")
-        ).wait_for()
-        page.get_by_text(says).first.wait_for(timeout=60_000)
-        page.wait_for_selector(IDLE, timeout=60_000)
+    for name, room in rooms.ROOMS.items():
+        open_room(page, texts.ROOMS[name])
+        for part in room.parts[1:]:
+            open_part(page, texts.PARTS[part])
+            page.wait_for_selector(IDLE, timeout=60_000)
+    open_room(page, texts.ROOMS["today"])
     still(page)
     assert len(page.requests) > 30
     own = (address, address.replace("http", "ws"), "data:", "blob:", "about:")
@@ -186,52 +177,66 @@ def test_the_route_is_downloaded_and_read(page, address):
     assert line == pytest.approx(today.route.line_lonlat(), abs=1e-8)
 
 
-def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address, served_seasons):
+def states_season(folder, name):
+    """Keep a season of two days with known finds; return its plot, and found, clean, never."""
     plot, _ = sample()
-    project = season(served_seasons / "States.gpkg", plot)
+    project = season(folder / f"{name}.gpkg", plot)
     found, clean, never = (np.arange(k, len(plot.grid), 97) for k in (0, 31, 62))
     plants, result = np.concatenate([found, clean]), np.repeat([1, 0], [len(found), len(clean)])
     project.record(Inspections.of(plants, result, np.datetime64("2026-11-16")), "test")
     later = found[:30] + 80
     project.record(Inspections.of(later, np.ones(30, int), np.datetime64("2026-11-17")), "test")
-    page.goto(f"{address}/map?season=States")
-    page.wait_for_selector(f"{MAP} canvas", timeout=120_000)
-    page.get_by_text("found, clean, never inspected", exact=True).click()
-    page.get_by_role("button", name="route", exact=True).click()
-    page.get_by_role("button", name="hot spots", exact=True).click()
+    return (
+        plot,
+        np.concatenate([found, later]),
+        np.setdiff1d(clean, later),
+        np.setdiff1d(never, later),
+    )
+
+
+def only_states(page):
+    """Show plants by their states, and nothing else."""
+    shade(page, BY_STATE)
+    for name in (ROUTE, HOT):
+        box = page.locator(f"{MAP} .card").get_by_role("checkbox", name=name, exact=True)
+        if box.count():
+            box.set_checked(False)
+
+
+def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address, served_seasons):
+    plot, found, clean, never = states_season(served_seasons, "States")
+    page.goto(f"{address}/season?season=States")
+    rest(page)
+    only_states(page)
     image = still(page)
-    place = pixels(plot.grid, plot.grid.lonlat(), image.shape, deck.MOST_PX)
-    ring = (20, 0, 0)
+    place = pixels(view(page), plot.grid.lonlat())
     for own, colour, others in (
         (found, colours.FOUND, (colours.CLEAN,)),
-        (clean, colours.CLEAN, (colours.FOUND, ring)),
-        (never, None, (colours.FOUND, colours.CLEAN, ring)),
+        (clean, colours.CLEAN, (colours.FOUND, RING)),
+        (never, None, (colours.FOUND, colours.CLEAN, RING)),
     ):
         if colour is not None:
-            assert np.mean([is_near(image, place[k], colour, reach=1) for k in own]) > 0.9
+            assert share_near(image, place[own], colour, reach=1) > 0.9
         for other in others:
-            assert np.mean([is_near(image, place[k], other, reach=1) for k in own]) < 0.1
-    assert np.mean([is_near(image, place[k], ring, reach=6) for k in found]) > 0.9
-    flipped = image[::-1]
-    assert np.mean([is_near(flipped, place[k], colours.FOUND, reach=1) for k in found]) < 0.3
-    px_of_m = np.hypot(*np.ptp(place, axis=0)) / np.hypot(*np.ptp(east_north(plot.grid), axis=0))
-    far_px_of_m = scale_px_of_m(page)
-    assert far_px_of_m == pytest.approx(px_of_m, rel=0.02)
-    near = zoomed(page)
-    assert (near != image).any(axis=2).mean() > 0.1
-    assert scale_px_of_m(page) > 2 * far_px_of_m
-    day = page.get_by_role("slider", name="Day")
-    for key, changed in (("ArrowLeft", True), ("ArrowRight", False)):
-        day.press(key)
-        becomes(page, lambda now, new=changed: (now != near).any() == new, f"the day's {key}")
-    for changed in (True, False):
-        page.get_by_role("button", name="route", exact=True).click()
-        becomes(page, lambda now, new=changed: (now != near).any() == new, "the layer")
-    for place in (0.5, 0.51, 0.52, 0.53):  # one of them meets a plant
-        click(page, place, place)
-    assert page.get_by_role("spinbutton", name="Row").input_value() != "1"
-    ring = (255, 190, 0)
-    becomes(page, lambda now: (np.abs(now - ring).max(axis=2) < 30).sum() > 50, "the ring")
+            assert share_near(image, place[own], other, reach=1) < 0.1
+    assert share_near(image, place[found], RING, reach=6) > 0.9
+    assert share_near(image[::-1], place[found], colours.FOUND, reach=1) < 0.3
+
+
+def test_the_scale_bar_is_as_long_as_it_says_near_and_far(page, address):
+    shown(page, address)
+    plot, _ = sample()
+    far = None
+    for _ in range(2):
+        still(page)
+        place = pixels(view(page), plot.grid.lonlat())
+        px_of_m = np.hypot(*np.ptp(place, axis=0)) / np.hypot(
+            *np.ptp(east_north(plot.grid), axis=0)
+        )
+        assert scale_px_of_m(page) == pytest.approx(px_of_m, rel=0.02)
+        assert far is None or px_of_m > 1.9 * far
+        far = px_of_m
+        zoomed(page)
 
 
 def east_north(grid):
@@ -240,15 +245,67 @@ def east_north(grid):
     return lonlat * 111_320.0 * [np.cos(np.deg2rad(lonlat[:, 1].mean())), 1.0]
 
 
-def scale_px_of_m(page):
-    """Return how many pixels a metre has by the scale bar beside the map."""
-    scale = page.get_by_role("img", name="The scale bar is")
-    metres = re.fullmatch(r"(\d+) m", scale.inner_text().strip()).group(1)
-    return scale.locator(".bar").bounding_box()["width"] / float(metres)
+def test_the_zoom_stays_over_layers_days_and_rooms(page, address, served_seasons):
+    states_season(served_seasons, "Zoom")
+    page.goto(f"{address}/season?season=Zoom")
+    rest(page)
+    only_states(page)
+    far = still(page)
+    near = zoomed(page)
+    seen = view(page)
+    assert (near != far).any(axis=2).mean() > 0.1
+    day = page.get_by_role("slider", name=texts.MAP_WORDS["day"], exact=True)
+    for key, changed in (("ArrowLeft", True), ("ArrowRight", False)):
+        day.press(key)
+        becomes(page, lambda now, new=changed: (now != near).any() == new, f"the day's {key}")
+    switch(page, ROUTE, on=True)
+    becomes(page, lambda now: (now != near).any(), "the route")
+    switch(page, ROUTE, on=False)
+    becomes(page, lambda now: (now == near).all(), "the map without it")
+    for name in ("today", "ahead", "plot", "season"):
+        open_room(page, texts.ROOMS[name])
+        still(page)
+        assert view(page) == seen, f"the zoom is lost in {name}"
 
 
-def season(path, plot):
-    return Season.create(path, plot, Observations.none(), MonitoringSettings(date(2026, 11, 16)))
+def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(page, address):
+    shown(page, address)
+    for name in (ROUTE, HOT):
+        switch(page, name, on=False)
+    still(page)
+    zoomed(page)
+    plot, _ = sample()
+    place = pixels(view(page), plot.grid.lonlat())
+    x, y = free(page)
+    box = page.locator(MAP).bounding_box()
+    plant = int(np.argmin(np.hypot(*(place - [x - box["x"], y - box["y"]]).T)))
+    click(page, place[plant], says=texts.HISTORY)
+    label = row_label(plot.grid, np.array([plant]))
+    for name, number in ((texts.HISTORY_ROW, label.line), (texts.HISTORY_PLANT, label.number)):
+        value = page.get_by_role("spinbutton", name=name, exact=True)
+        assert value.input_value() == str(number[0])
+    image = becomes(
+        page, lambda now: share_near(now, place[[plant]], (255, 190, 0), reach=45) == 1, "the ring"
+    )
+    yellow = np.argwhere(np.abs(image - (255, 190, 0)).max(axis=2) < 30)
+    assert yellow.mean(axis=0)[::-1] == pytest.approx(place[plant], abs=2)
+
+
+def test_pointing_at_a_plant_says_which_it_is_and_its_chance(page, address):
+    shown(page, address)
+    switch(page, HOT, on=False)
+    still(page)
+    plot, today = sample()
+    place, box = pixels(view(page), plot.grid.lonlat()), page.locator(MAP).bounding_box()
+    x, y = free(page)
+    plant = int(np.argmin(np.hypot(*(place - [x - box["x"], y - box["y"]]).T)))
+    page.mouse.move(box["x"] + place[plant][0], box["y"] + place[plant][1])
+    label = row_label(plot.grid, np.array([plant]))
+    tip = page.locator(f"{MAP} .tip")
+    tip.wait_for()
+    said = f"row {label.line[0]}, plant {label.number[0]}"
+    assert tip.inner_text().startswith(said)
+    assert f"{100 * today.chance[plant]:.1f} %" in tip.inner_text()
 
 
 def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
@@ -266,110 +323,141 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     boxes.nth(0).set_input_files([plot])
     page.get_by_text("The file leaves this open").wait_for(timeout=60_000)
     ask = page.get_by_role("combobox", name="The file leaves this open: crs")
+    ask.click()
     ask.fill("EPSG:25831")
-    ask.press("Enter")
+    page.get_by_role("option", name="EPSG:25831").click()
     page.get_by_role("button", name="Use this").click()
-    page.get_by_role("heading", name="מטע הדרים").wait_for(timeout=60_000)
+    page.get_by_role("img", name="Map of plot מטע הדרים").wait_for(timeout=60_000)
+    west, _, east, _ = own.to_crs(4326).total_bounds
+    assert view(page)["longitude"] == pytest.approx((west + east) / 2, abs=2 * (east - west))
     box = {"name": "mites.csv", "mimeType": "", "buffer": mites.encode()}
     boxes.nth(1).set_input_files([box])
     page.get_by_text("1 of 1 records shown").wait_for(timeout=60_000)
-    title = page.get_by_role("heading", name="מטע הדרים").bounding_box()
-    assert title["width"] > 50
-    gate, size = a_gate_and_an_area_are_drawn_by_clicks(page)
-    page.get_by_role("link", name="Today").click()
+    clicked, drawn_in = drawn_by_clicks(page), view(page)
+    open_room(page, texts.ROOMS["today"])
     far = still(page)
     first = stops(page)
     assert len(first) > 10
-    near = zoomed(page)
+    assert gate_of(page) == pytest.approx(clicked[0], abs=1e-6)
+    assert (zoomed(page) != far).any()
+    seen = view(page)
     page.get_by_label("Name of the season").fill("עונה 2026")
     page.get_by_role("button", name="Begin the season").click()
     page.get_by_text("has begun").wait_for(timeout=60_000)
-    after = still(page)
-    moved = [np.mean(np.abs(after - other).max(axis=2) > 30) for other in (near, far)]
-    assert moved[0] < 0.2 * moved[1], f"what is said above the map lost its zoom: {moved}"
+    still(page)
+    assert view(page) == seen, "a season of the same plot is seen from where the plot was"
     assert stops(page) == first
     project = Season(served_seasons / "עונה 2026.gpkg")
-    what_was_drawn_is_where_the_clicks_were(project.plot, gate, size)
-    page.get_by_role("link", name="Season").click()
-    box = page.get_by_role("spinbutton", name="Stops done")
+    assert project.plot.field.gate == pytest.approx(clicked[0], abs=1e-6)
+    path_is_where_it_was_clicked(project.plot.field, clicked[1:], drawn_in)
+    record_eight(page)
+    page.reload()
+    rest(page)
+    open_room(page, texts.ROOMS["today"])
+    open_part(page, texts.PARTS["today"])
+    page.get_by_text("8 plants inspected today so far").wait_for(timeout=60_000)
+    remaining = stops(page)
+    assert len(first) - 20 < len(remaining) < len(first)
+    assert not set(remaining) & set(first[:8])
+
+
+def record_eight(page):
+    """Record the first eight stops of the route as clean."""
+    open_part(page, texts.PARTS["record"])
+    box = page.get_by_role("spinbutton", name=texts.RECORD_STOPS)
     box.wait_for(timeout=60_000)
     box.fill("8")
     box.press("Enter")
     page.get_by_role("tabpanel").get_by_role("button", name="Record", exact=True).first.click()
     page.get_by_text("8 recorded").wait_for(timeout=60_000)
-    page.reload()
-    page.get_by_role("link", name="Today").click()
-    page.get_by_text("8 plants inspected today so far").wait_for(timeout=60_000)
-    rest = stops(page)
-    assert len(first) - 20 < len(rest) < len(first)
-    assert not set(rest) & set(first[:8])
 
 
-def a_gate_and_an_area_are_drawn_by_clicks(page):
-    """Draw both, take the area back; return the gate and the map's size in pixels."""
+def drawn_by_clicks(page):
+    """Draw an area and take it back, then a path and the gate; return the clicks, gate first."""
     plants = page.get_by_test_id("stMetric").filter(has_text="Plants").first
     before = plants.inner_text()
     page.get_by_text("Gate, paths, no-go areas").click()
     draw_by_click(page, "corners of a no-go area")
     for number, corner in enumerate([(0.4, 0.4), (0.6, 0.4), (0.5, 0.65)], start=1):
-        click(page, *corner, says=f"{number} point(s) so far")
+        at_share(page, corner, says=f"{number} point(s)")
     page.get_by_role("button", name="Finish").click()
     page.get_by_text("corners of a no-go area: 3").wait_for(timeout=60_000)
+    rest(page)
     assert plants.inner_text() != before
     page.get_by_role("button", name="Undo the last one").click()
     page.get_by_text("corners of a no-go area: 3").wait_for(state="detached", timeout=60_000)
-    a_path_is_drawn_by_clicks_that_do_not_wait(page)
-    draw_by_click(page, "the gate")
-    click(page, 0.3, 0.3, says="the gate: 1")
-    assert plants.inner_text() == before
-    size = still(page).shape
-    with page.expect_download() as download:
-        page.get_by_role("link", name="Today").click()
-        page.get_by_role("button", name="Download the route").click()
-    route = json.loads(download.value.path().read_text(encoding="utf-8"))
-    return tuple(route["features"][0]["geometry"]["coordinates"][0]), size
-
-
-def what_was_drawn_is_where_the_clicks_were(plot, gate, size):
-    assert plot.field.gate == pytest.approx(gate, abs=1e-6)
-    drawn = [gate, *shapely.get_coordinates(plot.field.paths)]
-    clicked = [(0.3, 0.3), (0.2, 0.2), (0.5, 0.25), (0.8, 0.2)]
-    on_map = pixels(plot.grid, drawn, size, deck.HALF_PX)
-    assert on_map == pytest.approx(np.array(clicked) * [size[1], size[0]], abs=1.5)
-
-
-def a_path_is_drawn_by_clicks_that_do_not_wait(page):
-    """Click thrice, although the server has not answered yet."""
     draw_by_click(page, "points of a path")
-    chart = page.locator(MAP).first
-    chart.scroll_into_view_if_needed()
-    box = chart.bounding_box()
-    for across, down in ((0.2, 0.2), (0.5, 0.25), (0.8, 0.2)):
-        page.mouse.click(box["x"] + across * box["width"], box["y"] + down * box["height"])
-    page.get_by_text("3 point(s) so far").wait_for(timeout=60_000)
+    path = [at_share(page, share) for share in ((0.2, 0.2), (0.5, 0.25), (0.8, 0.2))]
+    page.get_by_text("3 point(s)").wait_for()
     page.get_by_role("button", name="Finish").click()
     page.get_by_text("points of a path: 3").wait_for(timeout=60_000)
+    rest(page)
+    draw_by_click(page, "the gate")
+    gate = at_share(page, (0.3, 0.3), says="the gate: 1")
+    rest(page)
+    assert plants.inner_text() == before
+    draw_by_click(page, "nothing")
+    return gate, *path
+
+
+def path_is_where_it_was_clicked(field, clicked, seen):
+    corners = shapely.get_coordinates(field.boundary)
+    wanted = np.array([snapped(one, corners, seen) for one in clicked])
+    assert shapely.get_coordinates(field.paths) == pytest.approx(wanted, abs=1e-6)
+
+
+def snapped(lonlat, corners, seen):
+    """Return the corner of the outline within ten pixels of a place, or the place itself."""
+    far = np.hypot(*(pixels(seen, corners) - pixels(seen, [lonlat])).T)
+    return tuple(corners[far.argmin()]) if far.min() <= 10 else lonlat
+
+
+def at_share(page, share, says=None):
+    """Click at a share of the free part of the map; return where that is, lon/lat."""
+    box, panel = page.locator(MAP).bounding_box(), page.locator(".st-key-panel").bounding_box()
+    left = panel["width"]
+    place = np.array([left + share[0] * (box["width"] - left), share[1] * box["height"]]).round()
+    lonlat = at_pixel(view(page), place)
+    click(page, place, says)
+    return lonlat
+
+
+def at_pixel(seen, place):
+    """Return where a pixel of the map is, lon/lat: the way back from `pixels`."""
+    world = 512 * 2.0 ** seen["zoom"]
+    lon = seen["longitude"] + (place[0] - seen["width"] / 2) * 360 / world
+    y = np.log(np.tan(np.pi / 4 + np.deg2rad(seen["latitude"]) / 2))
+    y -= (place[1] - seen["height"] / 2) * 2 * np.pi / world
+    return lon, float(np.rad2deg(2 * np.arctan(np.exp(y)) - np.pi / 2))
 
 
 def draw_by_click(page, what):
-    still(page)
     page.get_by_role("combobox", name="A click on the map sets").click()
     page.get_by_role("option", name=what).click()
+    if what != "nothing":
+        page.locator(f"{MAP}.drawing").wait_for(timeout=60_000)
     still(page)
+
+
+def route_of(page):
+    """Download the route."""
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Download the route").click()
+    return json.loads(download.value.path().read_text(encoding="utf-8"))["features"]
+
+
+def gate_of(page):
+    """Return where the route begins."""
+    return tuple(route_of(page)[0]["geometry"]["coordinates"][0])
 
 
 def stops(page):
-    """Download the route and return its plants in order."""
-    with page.expect_download() as download:
-        page.get_by_role("button", name="Download the route").click()
-    route = json.loads(download.value.path().read_text(encoding="utf-8"))
-    return [
-        f["properties"]["plant"] for f in route["features"] if f["properties"]["kind"] == "stop"
-    ]
+    """Return the route's plants in order."""
+    return [f["properties"]["plant"] for f in route_of(page) if f["properties"]["kind"] == "stop"]
 
 
 def test_three_samplers_are_compared_while_the_page_stays_usable(page, address):
-    page.goto(f"{address}/compare")
+    page.goto(f"{address}/ahead")
     seeds = page.get_by_role("spinbutton", name="Seasons each")
     seeds.wait_for(timeout=240_000)
     seeds.fill("60")
@@ -383,25 +471,92 @@ def test_three_samplers_are_compared_while_the_page_stays_usable(page, address):
     assert 3 <= int(done.split(" ")[0]) < 180
 
 
+def contrast(button):
+    """Return the contrast of a button's words with its ground (WCAG's formula)."""
+    shades = button.evaluate(
+        """b => { const words = b.querySelector("p") || b; let ground = b, shade;
+        do { shade = getComputedStyle(ground).backgroundColor; ground = ground.parentElement; }
+        while (ground && /, 0\\)$/.test(shade));
+        return [getComputedStyle(words).color, shade]; }"""
+    )
+    light = []
+    for one in shades:
+        parts = np.array([float(n) for n in re.findall(r"[\d.]+", one)[:3]]) / 255
+        linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+        light.append(float(linear @ [0.2126, 0.7152, 0.0722]) + 0.05)
+    return max(light) / min(light)
+
+
+def test_no_page_has_an_error_on_its_console(page, address):
+    said = []
+    page.on("console", lambda one: said.append(one.text) if one.type == "error" else None)
+    for name in ("", *rooms.ROOMS, "study", "prior"):
+        page.goto(f"{address}/{name}")
+        page.wait_for_selector(IDLE, timeout=240_000)
+    assert said == []
+
+
+def test_plants_are_there_after_a_plot_that_is_drawn_as_a_picture(page, address, tmp_path):
+    large = box(35.15, 30.36, 35.158, 30.366)
+    small = box(35.17, 30.36, 35.1708, 30.3607)
+    both = gpd.GeoDataFrame({"name": ["large", "small"]}, geometry=[large, small], crs=4326)
+    file = {"name": "two.zip", "mimeType": "", "buffer": zipped(tmp_path, both)}
+    page.goto(f"{address}/plot?season=My+own+files")
+    boxes = page.locator("[data-testid=stFileUploaderDropzoneInput]")
+    boxes.nth(0).wait_for(state="attached", timeout=60_000)
+    boxes.nth(0).set_input_files([file])
+    of_plot(page, "large")
+    open_room(page, texts.ROOMS["today"])
+    plants_show(page)
+    page.get_by_role("combobox", name="Which plot").click()
+    page.get_by_role("option", name="small").click()
+    of_plot(page, "small")
+    plants_show(page)
+
+
+def of_plot(page, name):
+    """Wait until the map is of a plot."""
+    page.get_by_role("img", name=f"Map of plot {name}").wait_for(timeout=60_000)
+
+
+def plants_show(page):
+    """Wait until a good part of the map has the colours of chances."""
+    shades = np.array(colours.of_chance())
+
+    def coloured(image):
+        near = [(np.abs(image - one).max(axis=2) < 12).mean() for one in shades[1:4]]
+        return sum(near) > 0.02
+
+    becomes(page, coloured, "the plants")
+
+
 @pytest.mark.parametrize("page", [PHONE], indirect=True)
 def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, served_seasons):
     plot, _ = sample()
     project = season(served_seasons / "Phone.gpkg", plot)
-    page.goto(f"{address}/scout?season=Phone")
+    page.goto(f"{address}/?season=Phone")
+    rest(page)
+    open_part(page, texts.PARTS["scout"])
     place = page.locator("h2")
     place.wait_for(timeout=240_000)
     for name in ("Clean", "Found", "Could not inspect"):
         button = page.get_by_role("button", name=name, exact=True)
+        button.scroll_into_view_if_needed()
         size = button.bounding_box()
         assert size["height"] >= 48
         assert size["x"] + size["width"] <= 390
         before = place.inner_text()
+        button.hover()
+        assert contrast(button) > 4.5, f"{name} cannot be read while it is pointed at"
         button.click()
         page.wait_for_function("t => document.querySelector('h2')?.innerText !== t", arg=before,
                                timeout=60_000)  # fmt: skip
+        assert contrast(button) > 4.5, f"{name} cannot be read after it was tapped"
     assert project.history.inspections.result.tolist() == [0, 1, 2]
     here = place.inner_text()
     page.reload()
+    rest(page)
+    open_part(page, texts.PARTS["scout"])
     place.wait_for(timeout=60_000)
     assert place.inner_text() == here
     page.get_by_role("button", name="Undo").click()
@@ -412,11 +567,33 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
 
 
 @pytest.mark.parametrize("page", [PHONE], indirect=True)
-def test_a_phone_shows_the_figures_and_the_whole_plot(page, address):
+def test_a_phone_shows_the_whole_plot_above_the_days_work(page, address):
     shown(page, address)
     image = still(page)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    assert page.get_by_text("Plants to inspect").is_visible()
-    edge = np.concatenate([image[:, :3].reshape(-1, 3), image[:, -3:].reshape(-1, 3)])
-    assert (edge > 235).all(), "the plot runs over the phone's edge"
-    assert (image < 200).any()
+    sheet = page.locator(".st-key-panel").bounding_box()
+    assert sheet["y"] >= 0.5 * 844, "the map is half of the screen"
+    assert page.locator(MAP).bounding_box()["y"] == 0
+    said = page.get_by_text(re.compile("^Inspect .* plants")).first
+    assert said.bounding_box()["y"] < 844
+    plot, _ = sample()
+    place = pixels(view(page), plot.grid.lonlat())
+    assert (place > 0).all()
+    assert (place < [390, sheet["y"]]).all(), "the plot runs under the sheet, or over the edge"
+    assert share_near(image, place[::7], colours.of_chance()[3], tolerance=130) > 0.8
+
+
+@pytest.mark.parametrize("page", [PHONE], indirect=True)
+def test_the_sheet_is_pulled_up_and_let_down_again(page, address):
+    shown(page, address)
+    sheet, grip = page.locator(".st-key-panel"), page.get_by_role("button", name="Pull the day")
+    half = sheet.bounding_box()["y"]
+    for up in (True, False):
+        grip.click()
+        page.wait_for_function(
+            "([half, up]) => (document.querySelector('.st-key-panel').getBoundingClientRect().y"
+            " < half / 2) === up", arg=[half, up],
+        )  # fmt: skip
+    assert sheet.bounding_box()["y"] == half
+    assert look(page).shape[1] == 390
+    assert page.locator(DRAWN).count() == 1

@@ -12,6 +12,7 @@ import pytest
 from rasterio.io import MemoryFile
 from rasterio.transform import from_bounds
 
+from app.state import rooms
 from app.words import texts
 from tests.app.driving import PAGES, begun, go, opened
 
@@ -55,13 +56,11 @@ FILES = {
 
 # what can be chosen, by key; other boxes are chosen from by place
 CHOICES = {
-    "shade": list(texts.SHADES),
     "who": [texts.ROBOT, texts.SCOUT],
     "one_result": [0, 1, 2],
-    "layers": list(texts.LAYER_NAMES),
-    "map_layers": list(texts.MAP_LAYERS),
     "strategy_samplers": list(texts.SAMPLERS),
     "compared": list(texts.SAMPLERS),
+    **{rooms.key(name): list(room.parts) for name, room in rooms.ROOMS.items()},
 }
 DAYS = [date(2026, 11, 16), date(2026, 11, 17), date(2026, 12, 24), date(2026, 11, 20)]
 NUMBERS = ("slider", "number_input")

@@ -1,10 +1,11 @@
 """How long a click in the app takes: ``python -m tests.benchmarks.clicks [plants ...]``.
 
-Uploads two crooked plots with records, turns pages, changes layers, day, hours, sampler and plot,
+Uploads two crooked plots with records, turns rooms and parts, changes day, hours, sampler and plot,
 begins a season and records in it, in the system's Chromium, which draws without a graphics card
 here. For each click: seconds of the server, from the browser's question to the end of its answer,
 and of the whole, from the press until the page is at rest and the frame after that is drawn.
-Clicks are made twice, one round after the other: "anew" may compute, "again" need not.
+Clicks are made twice, one round after the other: "anew" may compute, "again" need not. Switches of
+layers are not among them: they are the browser's own and ask nothing of the server.
 """
 
 from __future__ import annotations
@@ -24,13 +25,17 @@ from playwright.sync_api import sync_playwright
 from streamlit.proto.ForwardMsg_pb2 import ForwardMsg
 
 from fieldmon.plot.layout import Planting, lay
-from tests.benchmarks.first_screen import IDLE, MAP, ROOT, answers, served
+from tests.benchmarks.first_screen import DRAWN, IDLE, ROOT, answers, served
 from tests.benchmarks.test_bench_grid import crooked_plot
 from tests.conftest import CHROMIUM, FLAGS
 
 SIZES = (8_281, 100_000)
 N_RECORDS = 2_000
-PAGES = ("Today", "Map", "Season", "Compare", "Plot & records", "Report")
+ROOMS = ("Today", "Season", "Plan ahead", "Plot & data")
+PARTS = {
+    "Today": ("Scout", "Record", "Plan"),
+    "Season": ("Plants & hot spots", "Report", "How it goes"),
+}
 # when the last press was, when the last question was sent, and when the page was at rest after it
 WATCH = """
 const send = WebSocket.prototype.send;
@@ -112,7 +117,7 @@ def bring(page, address: str, plots: Path, records: Path) -> None:
     boxes = page.locator("[data-testid=stFileUploaderDropzoneInput]")
     boxes.nth(0).wait_for(state="attached", timeout=240_000)
     boxes.nth(0).set_input_files(plots)
-    page.locator(MAP).first.wait_for(timeout=240_000)
+    page.locator(DRAWN).wait_for(timeout=240_000)
     boxes.nth(1).set_input_files(records)
     page.get_by_text("records shown").wait_for(timeout=120_000)
     page.wait_for_selector(IDLE, timeout=120_000)
@@ -120,39 +125,50 @@ def bring(page, address: str, plots: Path, records: Path) -> None:
 
 def turning(page, name: str) -> Click:
     link = page.get_by_role("link", name=name, exact=True)
-    return Click(f"page: {name}", link.click, link.hover)
+    return Click(f"room: {name}", link.click, link.hover)
+
+
+def parts(page, room: str) -> list[Click]:
+    """Return turning to a room, then to each of its parts, the first one last."""
+    shown = [page.get_by_role("radio", name=name, exact=True) for name in PARTS[room]]
+    turned = [Click(f"{room}: {name}", part.click, part.hover)
+              for name, part in zip(PARTS[room], shown, strict=True)]  # fmt: skip
+    return [turning(page, room), *turned]
+
+
+def opened(page) -> None:
+    """Open the box of who inspects, if it is shut."""
+    if not page.get_by_role("slider", name="Working hours").first.is_visible():
+        page.get_by_text("Who inspects", exact=True).click()
 
 
 def picking(page, box: str, option: str, what: str) -> Click:
     options = page.get_by_role("option", name=option)
-    return Click(what, options.first.click, page.get_by_role("combobox", name=box).click)
 
+    def before() -> None:
+        if box == "Who chooses the plants":
+            opened(page)
+        page.get_by_role("combobox", name=box).click()
 
-def pressing(page, name: str, what: str) -> Click:
-    button = page.get_by_role("button", name=name, exact=True).first
-    return Click(what, button.click, button.hover)
+    return Click(what, options.first.click, before)
 
 
 def unsaved(page):
     """Return the clicks on a plot that was brought."""
-    today, field = turning(page, "Today"), turning(page, "Map")
     month = page.get_by_role("spinbutton", name="month").first
     slider = page.get_by_role("slider", name="Working hours").first
     return [
-        *(turning(page, name) for name in PAGES),
-        today,
-        pressing(page, "plants", "Today: a layer off"),
-        pressing(page, "plants", "Today: a layer on"),
+        *(turning(page, name) for name in ROOMS),
+        *(click for room in PARTS for click in parts(page, room)),
+        turning(page, "Today"),
         Click("Today: another day", partial(page.keyboard.press, "Escape"),
               lambda: (month.click(), page.keyboard.press("ArrowDown"))),
-        Click("Today: other hours", partial(slider.press, "ArrowRight")),
+        Click("Today: other hours", partial(slider.press, "ArrowRight"),
+              partial(opened, page)),
         picking(page, "Who chooses the plants", "Naive", "Today: another sampler (Naive)"),
         picking(page, "Who chooses the plants", "Adaptive", "Today: back to Adaptive"),
         picking(page, "Which plot", "Second", "Today: another plot"),
         picking(page, "Which plot", "First", "Today: back to the plot"),
-        field,
-        pressing(page, "route", "Map: a layer off"),
-        pressing(page, "route", "Map: a layer on"),
     ]  # fmt: skip
 
 
@@ -160,10 +176,11 @@ def kept(page):
     """Return the clicks in a season: a record, and each page after it."""
     record = page.get_by_role("tabpanel").get_by_role("button", name="Record", exact=True)
     return [
-        turning(page, "Season"),
-        Click("Season: record a plant", record.locator("visible=true").first.click,
+        *parts(page, "Today")[:3],
+        Click("Record: one plant", record.locator("visible=true").first.click,
               page.get_by_role("tab", name="One plant").click),
-        *(turning(page, name) for name in PAGES),
+        *(turning(page, name) for name in ROOMS),
+        *(click for room in PARTS for click in parts(page, room)),
     ]  # fmt: skip
 
 

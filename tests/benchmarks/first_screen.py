@@ -37,7 +37,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 IDLE = "[data-testid=stApp][data-test-script-state=notRunning]"
-MAP = "[data-testid=stDeckGlJsonChart]"
+MAP = ".map"
+DRAWN = f"{MAP}[data-shown]"
 # when the browser draws on a canvas for the first time, and when the frame after that begins
 _WATCH = """
 for (const name of ['drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced']) {
@@ -111,6 +112,7 @@ def opened(browser, url: str, times: Times) -> None:
     times.of |= {f"(processor time: {who})": spent for who, spent in processor_s().items()}
     times.note("first drawing", page.evaluate("window.drawn") / 1000)
     times.note("map seen", page.evaluate("window.seen") / 1000)
+    page.wait_for_selector(DRAWN, timeout=240_000)
     page.wait_for_selector(IDLE, timeout=240_000)
     times.note("page at rest")
     shot = Image.open(io.BytesIO(page.locator(MAP).first.screenshot())).convert("RGB")
@@ -139,8 +141,10 @@ def processor_s() -> dict[str, float]:
 
 
 def _loaded(url: str, times: Times) -> None:
-    if "DeckGlJsonChart" in url:
-        times.note("map's script asked for")
+    if "/map_view/" in url:
+        times.note("map's script is there")
+    elif "/map_data/" in url:
+        times.note("first of the map's content is there")
 
 
 def _listen(line, times: Times) -> None:
@@ -156,7 +160,7 @@ def _received(data: bytes | str, times: Times) -> None:
         times.note("first run begins")
     elif kind == "script_finished":
         times.note("first run ended")
-    elif kind == "delta" and message.delta.new_element.WhichOneof("type") == "deck_gl_json_chart":
+    elif kind == "delta" and message.delta.new_element.WhichOneof("type") == "bidi_component":
         times.note("map is sent")
 
 

@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from app.show.maps import colours, deck, plant_layers, route_layers
+from app.show.maps.plant_layers import PlantNotes
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.independent import IndependentPlants, overnight
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
@@ -124,9 +125,9 @@ def files_and_map(plot, chance, observations):
         took["opening a season's file"], _ = best_of(lambda: Season(to / "season.gpkg"))
 
     def first_map():
-        plants = plant_layers.plants(plot.grid, colours.by_chance(chance), plant_layers.unsaid)
+        plants = plant_layers.plants(plot.grid, colours.by_chance(chance), PlantNotes(chance))
         layers = [plants, *route_layers.route(today.route)]
-        return deck.deck(plot.grid, layers).to_json()
+        return [deck.published(layer) for layer in layers]
 
     took["the first map, as sent to the browser"], _ = best_of(first_map)
     return took

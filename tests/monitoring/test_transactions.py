@@ -126,7 +126,7 @@ def test_a_file_that_cannot_be_written_is_a_sentence(path):
         | {"second": np.arange(5000.0)}
     )
     with pytest.raises(FileProblem, match="full"):
-        season.record(big, "x")
+        season.record(big, "x", confirmed=True)
     season.store.writing = original
     assert state(path) == 12
 

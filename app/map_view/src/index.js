@@ -44,7 +44,7 @@ class MapPage {
     this.jsons = [];
     this.hidden = new Set();
     this.opacity = 1;
-    this.stopShape = keepShape(() => this.data?.words);
+    this.shape = keepShape(() => this.data?.words);
     this.listen();
   }
 
@@ -56,6 +56,7 @@ class MapPage {
     const turn = (this.turn = (this.turn ?? 0) + 1);
     this.speak(data);
     this.restore();
+    this.shape.again(); // another room's panel may be wider, and now there are words
     this.root.classList.toggle("dark", data.dark);
     this.canvasPlace.setAttribute("aria-label", data.alt);
     this.furnish();
@@ -443,7 +444,7 @@ class MapPage {
     this.playback.stop();
     this.frames.stop();
     this.watch?.disconnect();
-    this.stopShape();
+    this.shape.end();
     this.deck?.finalize();
     this.root.remove();
   }

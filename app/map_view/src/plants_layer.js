@@ -108,5 +108,6 @@ export function pictureOf({ places, ranks, table }) {
   }
   const data = new Uint8ClampedArray(4 * width * height);
   for (let at = 0; at < top.length; at++) if (top[at]) data.set(table[top[at] - 1], 4 * at);
-  return { image: { width, height, data }, bounds: [west, south, east, north] };
+  // whole pixels: stretched over the plot alone, plants would stand up to a pixel beside their places
+  return { image: { width, height, data }, bounds: [west, north - height * step, west + (width * step) / flat, north] };
 }

@@ -40,7 +40,7 @@ function measure() {
   page.style.setProperty("--covers-bottom", `${bottom}px`);
 }
 
-// Set the panel's handle up; return what takes it away.
+// Set the panel's handle up; return what fits it to the page again, and what takes it away.
 export function keepShape(words) {
   const shape = shapeOf();
   const host = document.body.appendChild(element("div", { class: "fieldmon-shape" }));
@@ -66,10 +66,11 @@ export function keepShape(words) {
   set({});
   const again = () => set({});
   window.addEventListener("resize", again);
-  return () => {
+  const end = () => {
     window.removeEventListener("resize", again);
     host.remove();
   };
+  return { again, end };
 }
 
 function pull(grip, shape, set) {

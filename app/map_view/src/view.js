@@ -18,9 +18,15 @@ export function fitted([west, south, east, north], { width, height }, padding) {
     top: padding.top * (tall / (padding.top + padding.bottom || 1)),
     bottom: padding.bottom * (tall / (padding.top + padding.bottom || 1)),
   };
-  const port = new WebMercatorViewport({ width, height, longitude: west, latitude: south, zoom: 1 });
+  const port = new WebMercatorViewport({ width, height, longitude: west, latitude: south, zoom: 0 });
   const least = 1e-6; // a single plant has no extent of its own
-  const corners = [[west - least, south - least], [east + least, north + least]];
-  const { longitude, latitude, zoom } = port.fitBounds(corners, { padding: used, maxZoom: MOST_ZOOM });
+  const [x0, y0] = port.projectFlat([west - least, south - least]), [x1, y1] = port.projectFlat([east + least, north + least]);
+  const free = [width - used.left - used.right, height - used.top - used.bottom];
+  const zoom = Math.min(MOST_ZOOM, Math.log2(Math.min(free[0] / (x1 - x0), free[1] / (y1 - y0))));
+  // what is left free has its middle elsewhere than the window (deck.gl's own fit takes it as if the
+  // plot filled both ways)
+  const half = 2 * 2 ** zoom;
+  const middle = [(x0 + x1) / 2 + (used.right - used.left) / half, (y0 + y1) / 2 + (used.top - used.bottom) / half];
+  const [longitude, latitude] = port.unprojectFlat(middle);
   return { longitude, latitude, zoom, bearing: 0, pitch: 0 };
 }

@@ -74,9 +74,14 @@ def playback(the_route: Route, begins: datetime) -> dict[str, Any] | None:
     if not len(the_route):
         return None
     midnight = begins.replace(hour=0, minute=0, second=0, microsecond=0)
+    # each stop twice, on arrival and on leaving: nobody creeps on while a plant is inspected
+    after, at_stop = the_route.line_stop + 1, the_route.line_stop
+    line, line_s = the_route.line_lonlat(), the_route.line_s
+    line = np.insert(line, after, line[at_stop], axis=0)
+    line_s = np.insert(line_s, after, the_route.leave_s)
     return {
-        "line": np.round(the_route.line_lonlat(), 7).tolist(),
-        "at_s": np.round(the_route.line_s, 1).tolist(),
+        "line": np.round(line, 7).tolist(),
+        "at_s": np.round(line_s, 1).tolist(),
         "stops": np.round(the_route.stops_lonlat(), 7).tolist(),
         "leave_s": np.round(the_route.leave_s, 1).tolist(),
         "starts_s": (begins - midnight).total_seconds(),

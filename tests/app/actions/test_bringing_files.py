@@ -74,7 +74,7 @@ def test_records_of_one_block_do_not_lock_the_others_out(app, tmp_path):
     which.set_value(1).run()
     assert not app.exception
     assert plot_name(app).startswith("west")
-    for page in ("today", "plot", "map"):
+    for page in ("today", "plot", "field"):
         go(app, page)
         assert not app.exception
         assert "mites.csv" in texts_of(app)

@@ -95,10 +95,10 @@ def test_an_area_over_the_whole_plot_is_refused_in_a_sentence_and_nothing_is_kep
     assert drawn_on("no_go", whole) == ()
     kind, said = st.session_state["notice"]
     assert kind == "error"
-    assert "no-go areas cover all" in said
+    assert "must lie outside its no-go areas" in said
 
 
-def test_what_another_tool_drew_is_not_taken_for_this_one(drawn_on, session):
+def test_what_another_tool_drew_is_not_taken_for_this_one(session):
     session["draw_kind"] = "gate"
     choices = chosen(a_plot(0.001))
     _, answers = drawing.content(choices, choices.records)

@@ -6,7 +6,6 @@ import streamlit as st
 
 from app.actions import picking
 from app.state import wishes
-from fieldmon.planning.wishes import Wishes
 from tests.app.chosen import a_plot, chosen
 from tests.app.driving import map_of, press, texts_of
 
@@ -47,16 +46,6 @@ def test_plants_left_out_are_not_on_the_route(app):
     left = set(zip(stops(app)["row"], stops(app)["plant"], strict=True))
     assert (first["row"], first["plant"]) not in left
     assert "1 plant left out" in texts_of(app)
-
-
-def test_wishes_are_of_one_day_and_one_plot(session):
-    wishes.want("here", "2026-11-16", Wishes((1,)))
-    assert wishes.of("here", "2026-11-16") == Wishes((1,))
-    assert not wishes.of("here", "2026-11-17")
-    assert not wishes.of("there", "2026-11-16")
-    wishes.pick("here", (1, 2))
-    assert wishes.picked("here") == (1, 2)
-    assert wishes.picked("there") == ()
 
 
 @pytest.mark.usefixtures("session")

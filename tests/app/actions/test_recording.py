@@ -37,6 +37,7 @@ def expected(app):
 
 def treated(app):
     go(app, "record")
+    app.number_input(key="efficacy").set_value(90)
     next(b for b in app.button if b.label == "Note the treatment").click()
     app.run()
     assert not app.error
@@ -113,7 +114,7 @@ def send(app, form):
 
 @pytest.mark.parametrize("form", ["route", "one_plant", "treatment"])
 def test_a_click_on_an_untouched_form_records_nothing(season_app, season, form):
-    go(season_app, "season")
+    go(season_app, "record")
     before = season().revision
     send(season_app, form)
     assert "must be said" in season_app.error[0].value
@@ -121,7 +122,7 @@ def test_a_click_on_an_untouched_form_records_nothing(season_app, season, form):
 
 
 def test_only_marked_stops_are_recorded_where_no_number_is_said(season_app, season):
-    go(season_app, "season")
+    go(season_app, "record")
     route = season().plan(date(2026, 11, 16), keep=False).route.plant
     season_app.session_state[f"marks 2026-11-16 {len(route)}"] = {
         "edited_rows": {4: {"found": True}}, "added_rows": [], "deleted_rows": []
@@ -137,7 +138,7 @@ def contradicted(app, season, n=4):
     season().plan(date(2026, 11, 16))
     plants = season().kept_route(date(2026, 11, 16))[:n]
     season().record(Inspections.of(plants, np.ones(n, int), np.datetime64("2026-11-16")), "file")
-    go(app, "season")
+    go(app, "record")
     app.number_input(key="stops_done").set_value(n + 1)
     send(app, "route")
     assert f"{n} results from route table contradict" in app.warning[0].value
@@ -161,5 +162,5 @@ def test_another_season_is_not_asked_about_what_waits_in_this_one(season_app, se
     contradicted(season_app, season)
     season_app.selectbox(key="season").set_value("Sample estate").run()
     begun(season_app, "Other")
-    go(season_app, "season")
+    go(season_app, "record")
     assert not season_app.warning

@@ -1,51 +1,61 @@
-"""The map on a page: named for those who cannot see it, and each tap heard once."""
+"""One map for all pages: named for those who cannot see it, drawn when the page is done."""
+
+import re
 
 import pytest
-import streamlit as st
 
 from app.show import field_map
-from app.show.maps import deck
-from tests.app.driving import go, layer
+from fieldmon.infestation.observations import Observations
+from fieldmon.monitoring import MonitoringSettings, Season
+from fieldmon.plot.robot import Robot
+from tests.app.chosen import DAY, a_plot, chosen, in_season, records_at
+from tests.app.driving import PAGES, go, layer, map_of, plants
 
 
 def test_the_map_says_what_is_on_it(app):
-    (chart,) = app.get("deck_gl_json_chart")
-    n, stops = len(layer(app, "plants")["data"]), len(layer(app, "numbers")["data"])
-    assert stops > 3
-    assert f"Map of plot Gate: {n} plants, " in chart.proto.alt
+    said = re.fullmatch(
+        r"Map of plot Gate: (\d+) plants, (\d+) stops on the route, (\d+) plants found\.",
+        map_of(app)["alt"].replace("\u2068", "").replace("\u2069", ""),
+    )
+    n, stops, finds = map(int, said.groups())
+    assert n == len(plants(app))
+    assert stops == len(map_of(app)["play"]["stops"]) > 3
+    assert finds == len(layer(app, "found")["data"])
     go(app, "plot")
-    assert "0 stops on the route" in app.get("deck_gl_json_chart")[0].proto.alt
+    assert "0 stops on the route" in map_of(app)["alt"]
 
 
-def test_what_is_tapped_is_told_by_its_layer_and_can_be_tapped_again(session):
-    heard = []
-    session["map"] = st.empty  # stands for the chart's state
-    for name in ("plants", f"plants{deck.RENAMED}", "plants"):
-        session["map"] = Tapped({name: [{"i": 7}]})
-        field_map._tapped("map", heard.append)
-        # the layer has another name from now on: Streamlit selects nothing on it any more
-        assert session["renamed map"] == ({"plants"} if len(heard) % 2 else frozenset())
-    assert heard == [{"plants": [{"i": 7}]}] * 3
+@pytest.mark.usefixtures("session")
+def test_a_map_is_wanted_until_the_next_run_begins(monkeypatch):
+    drawn = []
+    monkeypatch.setattr(field_map.map_view, "show", lambda *what: drawn.append(what))
+    field_map.draw()
+    field_map.want("map", "answers")
+    assert field_map.wanted() == "map"
+    field_map.draw()
+    field_map.clear()
+    field_map.draw()
+    assert drawn == [("map", "answers")]
+    assert field_map.wanted() is None
 
 
-class Tapped:
-    def __init__(self, objects):
-        self.selection = self
-        self.objects = objects
+def test_the_view_belongs_to_the_plot_and_holds_all_of_it(tmp_path):
+    plot = a_plot()
+    first = field_map.of_plot(chosen(plot, records_at(plot, [3], [1])))
+    later = field_map.of_plot(chosen(plot, day="2026-11-18", robot=Robot(hours=3.0)))
+    begun = Season.create(tmp_path / "s.gpkg", plot, Observations.none(), MonitoringSettings(DAY))
+    in_one = field_map.of_plot(in_season(begun))
+    assert first["place"] == later["place"] == in_one["place"]
+    assert first["bounds"] == later["bounds"]
+    assert field_map.of_plot(chosen(a_plot(0.001)))["place"] != first["place"]
+    west, south, east, north = first["bounds"]
+    lonlat = plot.grid.lonlat()
+    assert ((lonlat > [west, south]) & (lonlat < [east, north])).all()
 
 
-def test_a_legend_is_shown_for_each_layer_that_has_one(monkeypatch):
-    said = []
-    monkeypatch.setattr(st, "caption", said.append)
-    field_map.signs(["plants", "hot", "route"])
-    (caption,) = said
-    assert caption.count(" · ") == 1
-    assert "hot spots" in caption
-    assert "green ring" in caption
-
-
-@pytest.mark.parametrize("page", ["today", "map", "plot", "simulate"])
-def test_every_map_has_an_outline_below_all_else(app, page):
+@pytest.mark.parametrize("page", [page for page in PAGES if page != "plots"])
+def test_the_map_shows_the_same_plot_on_every_page_with_an_outline_below_all_else(app, page):
+    place = map_of(app)["place"]
     go(app, page)
-    first = layer(app, "boundary")
-    assert first is not None
+    assert map_of(app)["place"] == place
+    assert next(one["id"] for one in map_of(app)["layers"]) == "boundary"

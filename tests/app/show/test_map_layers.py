@@ -1,11 +1,14 @@
-"""A day's layers are made once for what they show, and anew once something is recorded."""
+"""What a day's map shows: made once for what it shows, and anew once something is recorded."""
 
+import numpy as np
 import pytest
 
 from app.show import map_layers
 from app.show.maps import colours
 from app.state import chosen_day
+from fieldmon.infestation.hotspots import hot_spots
 from tests.app.chosen import a_plot, chosen, in_season, records_at
+from tests.app.shown_plants import plants_in
 from tests.monitoring.seasons import BEGINS, Insects, a_season
 
 
@@ -15,54 +18,115 @@ def choices():
     return chosen(plot, records_at(plot, [7, 9], [1, 0]))
 
 
-def points(layers):
-    return next(layer for layer in layers if layer.id == "plants").data
+@pytest.fixture(scope="module")
+def season(tmp_path_factory):
+    season = a_season(tmp_path_factory.mktemp("layers") / "s.gpkg")
+    season.record(Insects(season).look(0, in_season(season, BEGINS).plan().route.plant[:9]), "test")
+    return season
 
 
-def test_plants_by_chance_say_their_chance(choices):
-    shown = points(map_layers.plants(choices, "chance"))
+def of_name(layers, name):
+    return next(layer for layer in layers if layer.id == name)
+
+
+def test_plants_by_chance_have_the_colours_of_their_chances_and_say_them(choices):
+    shown = plants_in(of_name(map_layers.plants(choices), "plants-chance"))
     chance = chosen_day.chance(choices)
-    assert [row["t"].split(": ")[1] for row in shown] == [f"{c:.1%} chance" for c in chance]
+    shade = colours.by_chance(chance)
+    assert shown.colour.tolist() == shade.table[shade.rank].tolist()
+    assert shown.chance == pytest.approx(chance, abs=1e-7)
 
 
 def test_plants_by_state_say_it_and_finds_have_rings(choices):
-    layers = map_layers.plants(choices, "state")
-    shown = points(layers)
-    assert shown[7]["t"].endswith(": found")
-    assert shown[9]["t"].endswith(": looked clean")
-    assert shown[8]["t"].endswith(": never inspected")
+    layers = map_layers.plants(choices)
+    by_state = of_name(layers, "plants-state")
+    shown = plants_in(by_state)
+    said = [by_state.tips["ranks"][rank] for rank in shown.rank[[7, 9, 8]]]
+    said = [words.removeprefix(": ") for words in said]
+    assert said == ["found", "looked clean", "never inspected"]
+    assert shown.of_colour(colours.FOUND).tolist() == [7]
+    assert shown.of_colour(colours.CLEAN).tolist() == [9]
     assert [len(layer.data) for layer in layers if layer.id.startswith("finds")] == [1, 1]
 
 
-def test_plants_by_age_have_the_colours_of_ages(choices):
-    assert {tuple(row["c"][:3]) for row in points(map_layers.plants(choices, "age"))} == {
-        colours.NEVER,
-        colours.AGE_COLOURS[2],  # records of six days ago
+def test_plants_by_age_have_the_colours_of_the_days_since(season):
+    shown = {}
+    for day in (0, 3):
+        on = BEGINS.replace(day=BEGINS.day + day)
+        made = plants_in(of_name(map_layers.plants(in_season(season, on)), "plants-age"))
+        shown[day] = set(made.of_colour(colours.AGE_COLOURS[0 if day == 0 else 2]).tolist())
+        never = np.flatnonzero(chosen_day.ages(in_season(season, on)) == -1)
+        assert made.of_colour(colours.NEVER).tolist() == never.tolist()
+    # seen on the first day, and three days ago on the fourth
+    assert set(season.history.inspections.plant.tolist()) <= shown[0] & shown[3]
+
+
+def test_without_a_season_nobody_asks_how_long_ago(choices, season):
+    assert [one.key for one in map_layers.shaded(choices)] == ["chance", "state"]
+    in_one = in_season(season, BEGINS)
+    assert [one.key for one in map_layers.shaded(in_one, "state")] == ["state", "chance", "age"]
+
+
+def test_every_layer_of_plants_is_of_one_shade_so_that_one_of_them_shows(season):
+    content = map_layers.day_map(in_season(season, BEGINS))
+    of_shades = [name for shade in content.shades for name in shade.layers]
+    assert len(of_shades) == len(set(of_shades))
+    drawn = {layer.id for layer in content.layers}
+    assert {name for name in drawn if name.startswith(("plants", "find", "found"))} == {*of_shades}
+
+
+def test_every_layer_but_the_ground_of_all_can_be_switched(season):
+    choices = in_season(season, BEGINS)
+    content = map_layers.day_map(choices)
+    switched = {name for one in (*content.switches, *content.shades) for name in one.layers}
+    drawn = {layer.id for layer in content.layers}
+    assert drawn - switched == {"boundary"}
+    assert {part["of"].removeprefix("shade:") for part in content.legend} >= {
+        one.key for one in content.switches if set(one.layers) & drawn
     }
 
 
+def test_what_is_off_at_first_is_off_and_the_rest_is_on(choices):
+    content = map_layers.day_map(choices, off=("records", "route"))
+    assert {one.key for one in content.switches if not one.on} == {"records", "route"}
+
+
 def test_layers_are_made_once(choices):
-    assert map_layers.plants(choices, "chance") is map_layers.plants(choices, "chance")
+    assert map_layers.plants(choices) is map_layers.plants(choices)
     route = choices.plan().route
-    once = map_layers.route(choices, route, numbers=True)
-    assert once is map_layers.route(choices, route, numbers=True)
-    assert once is not map_layers.route(choices, route, numbers=False)
+    assert map_layers.route_of(choices, route) is map_layers.route_of(choices, route)
 
 
 def test_what_is_recorded_shows_at_once(tmp_path):
     season = a_season(tmp_path / "s.gpkg")
     choices = in_season(season, BEGINS)
-    before = map_layers.plants(choices, "state")
+    before = plants_in(of_name(map_layers.plants(choices), "plants-state"))
     season.record(Insects(season).look(0, choices.plan().route.plant[:3]), "test")
-    after = map_layers.plants(choices, "state")
-    changed = [
-        a["i"] for a, b in zip(points(after), points(before), strict=True) if a["c"] != b["c"]
-    ]
-    assert sorted(changed) == sorted(season.history.inspections.plant.tolist())
+    after = plants_in(of_name(map_layers.plants(choices), "plants-state"))
+    changed = np.flatnonzero(before.rank != after.rank)
+    assert changed.tolist() == sorted(season.history.inspections.plant.tolist())
 
 
-def test_marks_are_shown_where_they_are_asked_for(choices):
-    plants = map_layers.plants(choices, "chance")
-    assert [layer.id for layer in map_layers.with_marks(choices, plants, [])] == ["plants"]
-    with_records = map_layers.with_marks(choices, plants, ["records"])
-    assert [layer.id for layer in with_records] == ["plants", "records"]
+def test_hot_spots_lie_under_the_plants_that_are_tapped_with_their_edges_above():
+    plot = a_plot(0.001)
+    near = np.flatnonzero(np.hypot(*(plot.grid.xy_m - plot.grid.xy_m[40]).T) < 12)
+    every = np.arange(len(plot.grid))
+    choices = chosen(plot, records_at(plot, every, np.isin(every, near)))
+    assert len(hot_spots(plot.grid, chosen_day.states(choices)))
+    ids = [layer.id for layer in map_layers.day_map(choices).layers]
+    assert ids.index("hot") < ids.index("plants-chance") < ids.index("hot-edge")
+
+
+def test_below_is_below_and_above_is_above_all_else(choices):
+    below, above = map_layers.plants(choices)[:1], map_layers.plants(choices)[1:2]
+    layers = map_layers.day_map(choices, below=below, above=above).layers
+    assert (layers[0], layers[-1]) == (below[0], above[0])
+
+
+def test_a_day_is_played_anew_where_its_route_is_another_one(choices):
+    first = map_layers.day_map(choices).play
+    assert map_layers.day_map(choices).play["key"] == first["key"]
+    route = choices.plan().route
+    assert len(first["stops"]) == len(route)
+    longer = chosen(choices.plot, choices.records, robot=choices.robot, day="2026-11-18")
+    assert map_layers.day_map(longer).play["key"] != first["key"]

@@ -7,6 +7,7 @@ import pytest
 import streamlit as st
 
 from app.show import plant_history
+from app.show.map_view import MapContent
 from app.state import chosen_day
 from app.words import texts
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
@@ -41,7 +42,32 @@ def season(tmp_path_factory):
 
 
 def tap(choices, plant):
-    plant_history.take_plant(choices, {"plants": [{"i": plant}]})
+    plant_history.take_plant(choices, "plants-chance", plant)
+
+
+@pytest.mark.usefixtures("said")
+def test_the_map_that_is_wanted_hears_taps_and_rings_the_plant(monkeypatch):
+    wanted = []
+    monkeypatch.setattr(plant_history.field_map, "want", lambda *what: wanted.append(what))
+    choices = chosen(a_plot())
+    content = MapContent("here", [0, 0, 1, 1], "a map", [])
+    plant_history.want(choices, content)
+    assert wanted[-1][0].layers == []
+    wanted[-1][1].tapped("plants-state", PLANT)
+    plant_history.want(choices, content)
+    ring = wanted[-1][0].layers[-1].data[0]["p"]
+    assert ring == pytest.approx(choices.plot.grid.lonlat()[PLANT].tolist(), abs=1e-6)
+    assert content.layers == [], "what is kept for all is not changed"
+
+
+@pytest.mark.usefixtures("said")
+def test_nothing_is_told_before_a_plant_is_tapped(said):
+    choices = chosen(a_plot())
+    plant_history.show_chosen(choices)
+    assert said == []
+    tap(choices, PLANT)
+    plant_history.show_chosen(choices)
+    assert said
 
 
 def test_every_inspection_of_the_plant_is_told_in_order_with_its_time_if_it_has_one(said, season):
@@ -90,7 +116,7 @@ def test_the_plant_tapped_is_ringed_and_what_is_no_plant_changes_nothing():
     plot = a_plot()
     choices = chosen(plot)
     tap(choices, PLANT)
-    plant_history.take_plant(choices, {"hot": [{"t": "hot spot"}]})
+    plant_history.take_plant(choices, "hot", 3)
     rings = plant_history.layers(choices)
     assert rings[0].data[0]["p"] == pytest.approx(plot.grid.lonlat()[PLANT].tolist(), abs=1e-6)
     label = row_label(plot.grid, np.array([PLANT]))

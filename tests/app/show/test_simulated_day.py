@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from app.show import simulated_day
+from app.show import field_map, simulated_day
+from app.show.maps import deck
 from app.state import cached
 from tests.app.chosen import a_plot, chosen
+from tests.app.shown_plants import plants_in
 
 
 @pytest.fixture(scope="module")
@@ -31,9 +33,23 @@ def test_states_are_what_the_days_so_far_found(played):
 
 def test_the_truth_is_shown_only_when_asked_for_and_without_what_was_found_that_day(played):
     choices, days = played
-    ids = [layer.id for layer in simulated_day.layers(choices, days, 2, truth=False)]
+    bare = simulated_day.content(choices, days, 2, truth=False)
+    ids = [layer.id for layer in bare.layers]
     assert "truth" not in ids
-    assert {"plants", "found", "route"} <= set(ids)
-    layers = simulated_day.layers(choices, days, 2, truth=True)
-    (truth,) = (layer for layer in layers if layer.id == "truth")
+    assert {"boundary", "plants-state", "found", "route"} <= set(ids)
+    told = simulated_day.content(choices, days, 2, truth=True)
+    (truth,) = (layer for layer in told.layers if layer.id == "truth")
     assert len(truth.data) == days[2].left
+    assert len(told.legend) == len(bare.legend) + 1
+
+
+def test_the_map_shows_what_is_known_after_the_day_and_the_route_of_it(played):
+    choices, days = played
+    content = simulated_day.content(choices, days, 1, truth=False)
+    layers = {layer.id: layer for layer in content.layers}
+    shown = plants_in(layers["plants-state"])
+    assert shown.rank.tolist() == (simulated_day.states(days, 1) + 1).tolist()
+    stops = [one for one in content.labels if one["k"] == "stop"]
+    assert len(stops) == len(days[1].work)
+    assert content.bounds == deck.of_grid(choices.plot.grid)
+    assert content.place == field_map.of_plot(choices)["place"], "the view stays"

@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from app.startup.serve import Server, page_files
+from app.state import map_file, map_store
 
 
 def asked(server, path, method="GET", within_s=5.0):
@@ -51,10 +52,30 @@ def test_the_page_says_which_script_draws_maps_so_that_it_comes_early():
     _, headers, _ = asked(Server(), "/")
     hint = headers[b"link"].decode()
     assert hint.endswith("; rel=modulepreload")
-    _, headers, body = asked(Server(), hint.split(">")[0].removeprefix("<."))
+    path = hint.split(">")[0].removeprefix("<")
+    assert path == map_file.ADDRESS
+    status, headers, body = asked(Server(), path)
+    assert status == 200
     assert headers[b"content-type"].endswith(b"/javascript")
     assert b"immutable" in headers[b"cache-control"]
-    assert len(body) > 1_000_000
+    assert body == map_file.FILE.read_bytes()
+
+
+def test_what_maps_are_made_of_is_handed_out_as_what_it_is_to_one_browser_only():
+    for kind, data in (("application/json", b'{"id":1}'), ("application/octet-stream", b"\0\1")):
+        status, headers, body = asked(Server(), map_store.STORE.publish(data, kind))
+        assert (status, body) == (200, data)
+        assert headers[b"content-type"] == kind.encode()
+        assert headers[b"x-content-type-options"] == b"nosniff"
+        assert headers[b"cache-control"].startswith(b"private, immutable")
+        assert int(headers[b"content-length"]) == len(data)
+
+
+@pytest.mark.parametrize("name", ["", "0" * 40, "../config.py", "%2e%2e/x"])
+def test_addresses_that_nobody_published_are_not_found_and_not_kept(name):
+    status, headers, body = asked(Server(), f"{map_store.PATH}{name}")
+    assert (status, body) == (404, b"")
+    assert headers[b"cache-control"] == b"no-store"
 
 
 @pytest.mark.parametrize(

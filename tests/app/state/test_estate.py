@@ -7,11 +7,11 @@ import pytest
 import streamlit as st
 
 from app.show import estate_map
-from app.state import estate, rooms
+from app.state import estate, rooms, seasons_folder
 from app.state.estate import PlotState
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.plot.local_clock import local_clock
-from tests.app.driving import go, map_of
+from tests.app.driving import broken, go, map_of
 
 
 def areas(app):
@@ -41,12 +41,14 @@ def test_a_season_says_when_it_was_seen_and_what_is_expected(season_app, season)
     assert left[0].expected > 0
 
 
-def test_a_file_that_is_no_season_is_named_and_hides_no_other(season_app, seasons_folder):
-    whole = (seasons_folder / "Gate 2026.gpkg").read_bytes()
-    (seasons_folder / "Broken.gpkg").write_bytes(whole[:20_000])
+def test_a_season_that_cannot_be_opened_is_said_and_hides_no_other(season_app):
+    broken(seasons_folder.path_of("Broken"))
     go(season_app, "plots")
     assert not season_app.exception
     assert len(areas(season_app)) == 1
+    (said,) = season_app.warning
+    assert said.value.startswith("Broken: ")
+    assert "newer" in said.value
 
 
 def test_a_plot_is_opened_by_a_tap(app):

@@ -52,6 +52,8 @@ def test_a_season_opens_today_not_on_its_last_day(begun_file, seasons_folder):
 def test_another_day_is_marked_on_every_page_and_one_click_from_today(season_app):
     season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 20)).run()
     for page in PAGES:
+        if page == "plots":
+            continue  # each plot has a today of its own there
         go(season_app, page)
         assert not season_app.exception
         assert "2026-11-20" in season_app.warning[0].value, page

@@ -1,18 +1,21 @@
-"""The map of the field: what is known of plants, and of very many of them."""
+"""Plants and hot spots: what is known of plants, and of very many of them."""
 
 import json
 
-from tests.app.driving import go, layer, map_of, square, texts_of, upload, zipped
+import numpy as np
+
+from app.show.maps import colours
+from tests.app.driving import go, layer, map_of, plants, square, texts_of, upload, zipped
 
 
 def test_the_map_tells_three_states_apart_by_shape_and_the_history_of_a_plant(app):
-    go(app, "map")
-    app.radio(key="shade").set_value("state").run()
-    colours = {tuple(p["c"]) for p in layer(app, "plants")["data"]}
-    assert {c[3] for c in colours} == {30, 255}
-    finds = len(layer(app, "finds0")["data"])
-    assert finds == sum(p["c"][:3] == [213, 30, 30] for p in layer(app, "plants")["data"])
-    assert finds > 20
+    go(app, "field")
+    shown = plants(app, "plants-state")
+    found = shown.of_colour(colours.FOUND)
+    assert set(shown.colour[:, 3].tolist()) == {30, 255}
+    assert len(found) > 20
+    rings = np.array([row["p"] for row in layer(app, "finds0")["data"]])
+    assert np.abs(rings - shown.lonlat[found]).max() < 2e-7
     app.number_input(key="history row").set_value(20).run()
     assert "Chance of infestation now" in texts_of(app)
     app.number_input(key="history row").set_value(99_999).run()
@@ -20,16 +23,19 @@ def test_the_map_tells_three_states_apart_by_shape_and_the_history_of_a_plant(ap
     assert "must be one of 1 to" in app.error[0].value
 
 
-def test_a_plot_of_many_plants_travels_as_one_picture(app, tmp_path):
+def test_hot_spots_are_told_in_words(app):
+    go(app, "field")
+    outlined = len(layer(app, "hot")["data"])
+    said = [line for line in texts_of(app).splitlines() if line.startswith("- ")]
+    assert outlined == len(said) > 0
+
+
+def test_a_plot_of_many_plants_is_sent_as_a_few_bytes_a_plant(app, tmp_path):
     upload(app, plot=("plot.zip", zipped(tmp_path, square(size=0.006))))
-    go(app, "today")
+    go(app, "field")
     assert not app.exception
-    assert layer(app, "plants-picture")["@@type"] == "BitmapLayer"
-    assert layer(app, "plants") is None, "another plot's points must not be taken for this picture"
-    assert len(json.dumps(map_of(app))) < 1_000_000
-    go(app, "map")
-    first, last = app.slider(key="rows_close").value
-    assert 0 < len(layer(app, "part")["data"]) < 20_000
-    assert all(
-        first <= int(p["t"].split(",")[0][4:]) <= last for p in layer(app, "part")["data"][::50]
-    )
+    n = len(plants(app))
+    assert n > 20_000
+    sent = {name: len(layer(app, "plants-chance")[name]) for name in ("places", "ranks", "values")}
+    assert all(length < 80 for length in sent.values()), "addresses, not content"
+    assert len(json.dumps({**map_of(app), "labels": []})) < 300_000

@@ -6,11 +6,12 @@ from streamlit.testing.v1 import AppTest
 
 def page():
     """Stand for the app's frame: AppTest cannot turn pages made of functions."""
+    import streamlit as st
+
     from app.actions.choosing import choose
-    from app.startup import first_screen
     from app.views import prior_study
 
-    prior_study.show(choose(first_screen.waiting()).choices)
+    prior_study.show(choose(st.container(), st.container(), lambda _: None).choices)
 
 
 @pytest.fixture

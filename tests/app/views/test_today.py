@@ -1,12 +1,13 @@
-"""Today: the chance map, the route and the figures of the sample estate."""
+"""Today: the sentence, the chance map, the route and the figures of the sample estate."""
 
-from tests.app.driving import heading, layer, map_of, metric
+import re
+
+from tests.app.driving import headline, layer, map_of, metric, plants, texts_of
 
 
 def test_the_first_screen_shows_the_sample_estate_with_a_route(app):
     assert not app.exception
-    assert heading(app) == "Gate · 2026-11-16"
-    n = len(layer(app, "plants")["data"])
+    n = len(plants(app))
     assert n > 3000
     assert len(layer(app, "route")["data"][0]["path"]) > 100
     assert "hot" in {one["id"] for one in map_of(app)["layers"]}
@@ -15,9 +16,28 @@ def test_the_first_screen_shows_the_sample_estate_with_a_route(app):
     assert any("finds expected; no route of these hours" in said.value for said in app.caption)
 
 
-def test_layers_are_switched_off_and_on_while_the_view_stays(app):
-    view = map_of(app)["initialViewState"]
-    app.pills(key="layers").set_value(["plants", "records"]).run()
-    assert layer(app, "route") is None
+def test_the_first_sentence_says_what_to_do_in_the_route_s_own_figures(app):
+    said = re.fullmatch(
+        r"Inspect ([\d,]+) plants in rows (\d+)–(\d+) on 2026-11-16, ([\d.]+) h: "
+        r"about (\d+) finds expected\.",
+        headline(app),
+    )
+    stops = len(map_of(app)["play"]["stops"])
+    assert said[1].replace(",", "") == str(stops)
+    assert metric(app, "Plants to inspect").startswith(f"{stops} /")
+    (table,) = (frame.value for frame in app.dataframe if "row" in frame.value)
+    assert [int(said[2]), int(said[3])] == [table["row"].min(), table["row"].max()]
+    assert metric(app, "Hours") == f"{float(said[4])} h"
+    assert int(said[5]) == round(float(metric(app, "Expected finds")))
+
+
+def test_layers_can_be_switched_and_records_are_there_but_off_at_first(app):
+    off = {one["key"]: one["off"] for one in map_of(app)["switches"]}
+    assert set(off) == {"route", "hot", "records", "numbers", "rows"}
+    assert [name for name in off if off[name]] == ["records"]
     assert len(layer(app, "records")["data"]) > 100
-    assert map_of(app)["initialViewState"] == view
+
+
+def test_a_first_day_of_a_season_says_so(season_app):
+    assert "first day of the season" in texts_of(season_app)
+    assert [one["key"] for one in map_of(season_app)["shades"]] == ["chance", "state", "age"]

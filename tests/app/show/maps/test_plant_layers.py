@@ -51,9 +51,8 @@ def test_chances_are_said_of_each_plant_or_a_sentence_of_each_rank_but_nothing_u
     told = plant_layers.plants(GRID, colours.by_chance(chance), PlantNotes(chance))
     assert plants_in(told).chance == pytest.approx(chance, abs=1e-7)
     assert "{chance}" in told.tips["values"]
-    by_rank = plant_layers.plants(
-        GRID, colours.by_state(STATE), PlantNotes(by_rank=("a", "b", "c"))
-    )
+    sentences = PlantNotes(by_rank=("a", "b", "c"))
+    by_rank = plant_layers.plants(GRID, colours.by_state(STATE), sentences)
     assert by_rank.tips["ranks"] == ["a", "b", "c"]
     assert "values" not in by_rank.arrays
     assert set(plant_layers.plants(GRID, colours.plain(48)).tips) == {"text"}

@@ -51,9 +51,8 @@ def test_only_the_gate_says_what_it_is_so_that_no_arrow_hides_a_plant(route):
 
 @pytest.mark.parametrize("dark", [False, True])
 def test_the_line_stands_out_from_its_casing(route, dark):
-    casing, line, *_ = (
-        np.array(one.get_color[:3]) for one in route_layers.route(route, dark=dark)[:2]
-    )
+    layers = route_layers.route(route, dark=dark)[:2]
+    casing, line = (np.array(layer.get_color[:3]) for layer in layers)
     assert np.abs(casing - line).max() > 90
 
 
@@ -66,19 +65,24 @@ def test_no_stop_is_no_layer_and_nothing_to_play(plot):
 
 def test_what_is_played_is_where_who_drives_is_at_which_second(route):
     play = route_layers.playback(route, SIX)
-    assert np.array(play["line"]) == pytest.approx(route.line_lonlat(), abs=1e-7)
-    assert np.array(play["at_s"]) == pytest.approx(route.line_s, abs=0.05)
+    line, at_s = np.array(play["line"]), np.array(play["at_s"])
+    assert len(line) == len(at_s) == len(route.line_s) + len(route)
+    assert (np.diff(at_s) >= 0).all()
+    for second in np.linspace(0.0, route.end_s, 97):
+        here = [np.interp(second, at_s, line[:, axis]) for axis in (0, 1)]
+        stop = np.flatnonzero((route.arrive_s <= second) & (second <= route.leave_s))
+        if stop.size:
+            # who inspects stands still
+            there = route.line_lonlat()[route.line_stop[stop[0]]]
+            assert here == pytest.approx(there, abs=2e-7)
     assert np.array(play["stops"]) == pytest.approx(route.stops_lonlat(), abs=1e-7)
     assert np.array(play["leave_s"]) == pytest.approx(route.leave_s, abs=0.05)
     assert play["starts_s"] == 6.5 * 3600
-    assert len(play["line"]) == len(play["at_s"])
-    assert (np.diff(play["at_s"]) >= 0).all()
 
 
 def test_while_played_each_stop_is_reached_and_left_when_it_is(route):
     play = route_layers.playback(route, SIX)
-    at_s = np.array(play["at_s"])
-    assert at_s[route.line_stop] == pytest.approx(route.arrive_s, abs=0.05)
-    assert (np.array(play["leave_s"]) > at_s[route.line_stop]).all()
-    after = at_s[route.line_stop[:-1] + 1]
-    assert (after > np.array(play["leave_s"])[:-1]).all()
+    at_s, k = np.array(play["at_s"]), np.arange(len(route))
+    reached = route.line_stop + k  # one place more for each stop before
+    assert at_s[reached] == pytest.approx(route.arrive_s, abs=0.05)
+    assert at_s[reached + 1] == pytest.approx(route.leave_s, abs=0.05)

@@ -1,0 +1,87 @@
+// Drawing by clicks: exact, snapping near corners only, taken back, finished with enough of them.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { Drawing } from "../src/draw.js";
+import { flatView } from "./plots.mjs";
+
+const view = flatView(); // a pixel is a thousandth of a degree
+const AREA = { kind: "area", id: "no_go", snap: [[0.1, -0.1]] };
+
+function begun(mode) {
+  const told = [], drawing = new Drawing(() => { drawing.times = (drawing.times ?? 0) + 1; }, (...what) => told.push(what));
+  drawing.begin(mode);
+  return { drawing, told };
+}
+
+test("an area of clicks is told corner by corner, once there are three", () => {
+  const { drawing, told } = begun(AREA), corners = [[0.3, -0.3], [0.5, -0.3], [0.4, -0.5]];
+  for (const [k, corner] of corners.entries()) {
+    assert.equal(drawing.ready, false);
+    drawing.finish();
+    assert.deepEqual(told, [], `finished with ${k} corners`);
+    drawing.click(corner, view);
+  }
+  drawing.finish();
+  assert.deepEqual(told, [[AREA, corners]]);
+  assert.deepEqual(drawing.points, [], "the next one begins anew");
+});
+
+test("a gate is one click, a path at least two", () => {
+  const gate = begun({ kind: "point", id: "gate" });
+  gate.drawing.click([0.2, -0.2], view);
+  assert.deepEqual(gate.told[0][1], [[0.2, -0.2]]);
+  const path = begun({ kind: "line", id: "path" });
+  path.drawing.click([0, 0], view);
+  path.drawing.finish();
+  assert.equal(path.told.length, 0);
+  path.drawing.click([0.1, 0], view);
+  path.drawing.finish();
+  assert.equal(path.told[0][1].length, 2);
+});
+
+test("a click within ten pixels of a corner is that corner, the nearest of them; others are exact", () => {
+  const { drawing } = begun({ ...AREA, snap: [[0.1, -0.1], [0.104, -0.1]] });
+  drawing.click([0.103, -0.101], view);
+  drawing.click([0.1, -0.0901], view);
+  drawing.click([0.1, -0.0899], view);
+  assert.deepEqual(drawing.points, [[0.104, -0.1], [0.1, -0.1], [0.1, -0.0899]]);
+});
+
+test("corners are dragged, taken back one by one, and dropped", () => {
+  const { drawing } = begun(AREA);
+  for (const x of [0.3, 0.5, 0.7]) drawing.click([x, -0.5], view);
+  assert.equal(drawing.grabbed([0.509, -0.505], view), 1);
+  assert.equal(drawing.grabbed([0.52, -0.5], view), -1);
+  drawing.move(1, [0.1005, -0.1], view);
+  assert.deepEqual(drawing.points[1], [0.1, -0.1], "a corner that is dragged snaps too");
+  drawing.undo();
+  assert.equal(drawing.points.length, 2);
+  drawing.drop();
+  drawing.undo();
+  assert.deepEqual(drawing.points, []);
+});
+
+test("another thing to draw begins anew, the same goes on though the page was sent again", () => {
+  const { drawing } = begun(AREA);
+  drawing.click([0.3, -0.3], view);
+  drawing.begin({ ...AREA });
+  assert.equal(drawing.points.length, 1);
+  drawing.begin({ kind: "line", id: "path" });
+  assert.equal(drawing.points.length, 0);
+  drawing.begin(null);
+  assert.equal(drawing.mode, null);
+});
+
+test("what is drawn so far is shown: closed from the third corner on, with a handle for each", () => {
+  const { drawing } = begun(AREA);
+  assert.deepEqual(drawing.layers([1, 2, 3]), []);
+  for (const [k, corner] of [[0.3, -0.3], [0.5, -0.3], [0.4, -0.5]].entries()) {
+    drawing.click(corner, view);
+    const [line, corners] = drawing.layers([1, 2, 3]);
+    assert.equal(line.data[0].p.length, k === 2 ? 4 : k + 1);
+    assert.equal(corners.data.length, k + 1);
+  }
+  assert.deepEqual(drawing.layers([1, 2, 3])[0].data[0].p.at(-1), [0.3, -0.3]);
+});

@@ -1,0 +1,63 @@
+// Words on the map never cover each other, and the most important ones win.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { Labels } from "../src/labels.js";
+import { flatView, random } from "./plots.mjs";
+
+// stands for the page: what is shown, and where
+globalThis.document = { createElement: () => ({ style: {}, textContent: "", hidden: true }) };
+
+function shown(labels, view, hidden = new Set()) {
+  const place = { made: [], appendChild(one) { this.made.push(one); return one; } };
+  const drawn = new Labels(place);
+  drawn.draw(labels, view, hidden);
+  return place.made.filter((one) => !one.hidden).map((one) => {
+    const [, x, y] = one.style.transform.match(/^translate\((-?[\d.]+)px, (-?[\d.]+)px\)/);
+    return { t: one.textContent, k: one.className.split(" ")[1], x: Number(x), y: Number(y) };
+  });
+}
+
+const view = flatView();
+
+test("no two of a thousand labels cover each other, and none that has room is missing", () => {
+  const next = random(11);
+  const labels = Array.from({ length: 1000 }, (_, k) => ({ p: [next() * 0.8, -next() * 0.6], t: `${k}`, k: "stop" }));
+  const made = shown(labels, view), half = (t) => 4 * t.length + 7;
+  // places are written to a tenth of a pixel
+  const apart = (a, b, by) => Math.abs(a.x - b.x) > half(a.t) + half(b.t) + by || Math.abs(a.y - b.y) > 20 + by;
+  made.forEach((a, i) => made.slice(i + 1).forEach((b) => assert.ok(apart(a, b, -0.2), `${a.t} covers ${b.t}`)));
+  assert.ok(made.length > 100);
+  const names = new Set(made.map((one) => one.t));
+  for (const { t, p } of labels) {
+    const [x, y] = view.project(p);
+    if (!names.has(t)) assert.ok(made.some((one) => !apart({ t, x, y }, one, 0.2)), `${t} had room`);
+  }
+});
+
+test("the first of two that are too close is shown, where it is", () => {
+  const [one, ...more] = shown([{ p: [0.1, -0.1], t: "1", k: "leg" }, { p: [0.101, -0.1], t: "2", k: "leg" }], view);
+  assert.deepEqual([one.t, one.x, one.y, more.length], ["1", 100, 100, 0]);
+});
+
+test("legs give way to stops at their zoom, and neither shows where it is switched off", () => {
+  const labels = [{ p: [0.1, -0.1], t: "1", k: "leg", to: 18 }, { p: [0.1, -0.1], t: "7", k: "stop", from: 18 },
+                  { p: [0.4, -0.4], t: "3", k: "row" }];
+  const of = (zoom, hidden) => shown(labels, flatView({ zoom }), new Set(hidden)).map((one) => one.t);
+  assert.deepEqual(of(17.9), ["1", "3"]);
+  assert.deepEqual(of(18), ["7", "3"]);
+  assert.deepEqual(of(18, ["numbers"]), ["3"]);
+  assert.deepEqual(of(17, ["rows"]), ["1"]);
+});
+
+test("what is out of view is not shown, and what was shown goes when the view moves", () => {
+  const place = { made: [], appendChild(one) { this.made.push(one); return one; } }, drawn = new Labels(place);
+  const labels = [{ p: [0.1, -0.1], t: "1", k: "stop" }];
+  drawn.draw(labels, view, new Set());
+  assert.equal(place.made[0].hidden, false);
+  drawn.draw(labels, flatView({ west: 5 }), new Set());
+  assert.equal(place.made[0].hidden, true);
+  drawn.draw(labels, view, new Set());
+  assert.equal(place.made.length, 1, "labels are used again");
+});

@@ -1,0 +1,76 @@
+// What lies under the pointer is what brute force says lies there.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { nearestPlant, plantsWithin, rowUnder, within } from "../src/pick.js";
+import { random, scattered } from "./plots.mjs";
+
+const METRES = 111320;
+
+function byBruteForce({ n, lon, lat }, [x, y], reachM) {
+  const flat = Math.cos((y * Math.PI) / 180);
+  let best = -1, least = reachM;
+  for (let k = 0; k < n; k++) {
+    const far = Math.hypot((lon[k] - x) * flat, lat[k] - y) * METRES;
+    if (far <= least) { least = far; best = k; }
+  }
+  return [best, least];
+}
+
+for (const lat of [-41, 0, 30.3, 59]) {
+  test(`the nearest plant is found at ${lat} degrees, and none beyond the reach`, () => {
+    const places = scattered(4000, 35.1, lat), next = random(7);
+    const [west, south, east, north] = places.bounds;
+    let found = 0;
+    for (let k = 0; k < 600; k++) {
+      const here = [west + (1.4 * next() - 0.2) * (east - west), south + (1.4 * next() - 0.2) * (north - south)];
+      const reachM = 0.5 + 12 * next();
+      const mine = nearestPlant(places, here, reachM), [best, least] = byBruteForce(places, here, reachM);
+      if (mine !== best) {
+        // two plants as far as each other, or one at the very reach: only that may differ
+        const other = mine < 0 ? reachM : byBruteForce({ n: 1, lon: [places.lon[mine]], lat: [places.lat[mine]] }, here, 1e9)[1];
+        assert.ok(Math.abs(other - least) < 1e-3 * reachM, `${mine} is ${other} m off, ${best} ${least} m`);
+      }
+      found += mine >= 0;
+    }
+    assert.ok(found > 100 && found < 600);
+  });
+}
+
+test("a single plant and a row of plants have an index too", () => {
+  for (const n of [1, 2, 9]) {
+    const lon = Float64Array.from({ length: n }, (_, k) => 35 + k * 3e-5), lat = new Float64Array(n).fill(30);
+    const places = { n, lon, lat, step: 3e-5, bounds: [35 - 2e-5, 30 - 2e-5, 35 + n * 3e-5, 30 + 2e-5] };
+    for (let k = 0; k < n; k++) assert.equal(nearestPlant(places, [lon[k] + 1e-6, 30], 1), k);
+    assert.equal(nearestPlant(places, [34, 30], 5), -1);
+  }
+});
+
+test("plants within a ring are those that the even-odd rule says, of any shape", () => {
+  const places = scattered(2000, 35.1, 30.3), [west, south, east, north] = places.bounds;
+  const at = (x, y) => [west + x * (east - west), south + y * (north - south)];
+  const box = [at(0.2, 0.3), at(0.7, 0.3), at(0.7, 0.9), at(0.2, 0.9)];
+  const inBox = plantsWithin(places, box);
+  const wanted = [];
+  for (let k = 0; k < places.n; k++) {
+    const [x, y] = [places.lon[k], places.lat[k]];
+    if (x > box[0][0] && x < box[1][0] && y > box[0][1] && y < box[2][1]) wanted.push(k);
+  }
+  assert.deepEqual(inBox, wanted);
+  assert.deepEqual(plantsWithin(places, [...box].reverse()), wanted);
+  // the notch of an L is outside
+  const l = [at(0, 0), at(1, 0), at(1, 0.5), at(0.5, 0.5), at(0.5, 1), at(0, 1)];
+  assert.ok(within(at(0.25, 0.75), l) && within(at(0.75, 0.25), l) && !within(at(0.75, 0.75), l));
+  assert.deepEqual(plantsWithin(places, []), []);
+});
+
+test("of what lies on each other, the last drawn is under the pointer; areas hold, points reach", () => {
+  const area = [[0, 0], [1e-3, 0], [1e-3, 1e-3], [0, 1e-3]];
+  const rows = [{ p: area, t: "area" }, { p: [5e-4, 5e-4], t: "point" }, { p: area }, { p: null, t: "nowhere" }];
+  assert.equal(rowUnder(rows, [5e-4, 5e-4], 3), 1);
+  assert.equal(rowUnder(rows, [2e-4, 2e-4], 3), 0);
+  assert.equal(rowUnder(rows, [5e-4 + 2.9 / METRES, 5e-4], 3), 1);
+  assert.equal(rowUnder(rows, [5e-4 + 3.1 / METRES, 5e-4], 3), 0);
+  assert.equal(rowUnder(rows, [2e-3, 2e-3], 3), -1, "what says nothing is not pointed at");
+});

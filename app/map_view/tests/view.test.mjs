@@ -1,0 +1,49 @@
+// The first view holds the whole plot in what panels leave free; the scale is Web Mercator's.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { WebMercatorViewport } from "@deck.gl/core";
+
+import { fitted, metresPerPixel } from "../src/view.js";
+
+const ROOMS = [
+  [{ width: 1440, height: 840 }, { left: 430, right: 64, top: 24, bottom: 56 }],
+  [{ width: 390, height: 784 }, { left: 30, right: 64, top: 24, bottom: 420 }],
+  [{ width: 1024, height: 700 }, { left: 30, right: 480, top: 24, bottom: 56 }],
+];
+const PLOTS = [[35, 0.004, 0.001], [35, 0.001, 0.004], [35, 0.002, 0.002]];
+
+for (const lat of [-34, 0, 30.3, 52]) {
+  test(`a whole plot at ${lat} degrees is in the free part of the window, and fills it`, () => {
+    for (const [size, padding] of ROOMS) {
+      for (const [lon, wide, tall] of PLOTS) {
+        const view = fitted([lon, lat, lon + wide, lat + tall], size, padding);
+        const port = new WebMercatorViewport({ ...size, ...view });
+        const [x0, y1] = port.project([lon, lat]), [x1, y0] = port.project([lon + wide, lat + tall]);
+        const free = [padding.left, padding.top, size.width - padding.right, size.height - padding.bottom];
+        assert.ok(x0 > free[0] - 1 && x1 < free[2] + 1 && y0 > free[1] - 1 && y1 < free[3] + 1, `${[x0, y0, x1, y1]} not in ${free}`);
+        const share = Math.max((x1 - x0) / (free[2] - free[0]), (y1 - y0) / (free[3] - free[1]));
+        assert.ok(share > 0.98, `fills only ${share}`);
+        assert.equal(view.pitch, 0);
+        assert.equal(view.bearing, 0);
+      }
+    }
+  });
+}
+
+test("a plot of one plant and a window all covered by panels have a view too", () => {
+  const one = fitted([35, 30, 35, 30], { width: 800, height: 600 }, { left: 30, right: 30, top: 30, bottom: 30 });
+  assert.ok(one.zoom <= 21 && Number.isFinite(one.longitude));
+  const covered = fitted([35, 30, 35.001, 30.001], { width: 300, height: 200 }, { left: 900, right: 64, top: 24, bottom: 700 });
+  assert.ok(Object.values(covered).every(Number.isFinite));
+});
+
+test("a pixel is as many metres as on the map", () => {
+  for (const latitude of [0, 30.3, -52]) {
+    const port = new WebMercatorViewport({ width: 800, height: 600, longitude: 35, latitude, zoom: 17 });
+    const [x0] = port.project([35, latitude]), [x1] = port.project([35.001, latitude]);
+    const metres = 0.001 * (40075016.686 / 360) * Math.cos((latitude * Math.PI) / 180);
+    assert.ok(Math.abs(metresPerPixel({ latitude, zoom: 17 }) * (x1 - x0) / metres - 1) < 1e-6);
+  }
+});

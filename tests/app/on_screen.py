@@ -1,0 +1,177 @@
+"""What a browser shows of the map: its pixels, where plants are in them, and its switches."""
+
+import io
+import json
+from contextlib import suppress
+
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import TimeoutError as PlaywrightTimeout
+
+MAP = ".map"
+#: the map with all that is wanted on it, while the server has nothing more to say
+IDLE = "[data-testid=stApp][data-test-script-state=notRunning]"
+DRAWN = f"{MAP}[data-shown]"
+# what lies on the map is not the map
+_BARE = (
+    ".tools,.card,.legend,.foot,.labels,.tip,.drawbar{visibility:hidden!important}"
+    ".st-key-panel,.fieldmon-shape,[data-testid=stToastContainer]{opacity:0!important}"
+)
+_REST_MS = 60_000
+
+
+def rest(page):
+    """Wait until the server has answered and a map is drawn."""
+    page.wait_for_selector(DRAWN, timeout=240_000)  # compiled first
+    page.wait_for_selector(IDLE, timeout=_REST_MS)
+
+
+def look(page):
+    """Return the map's pixels ``(h, w, 3)``, without what lies on it."""
+    box = page.locator(MAP).bounding_box()
+    shot = page.screenshot(clip=box, style=_BARE, animations="disabled")
+    return np.array(Image.open(io.BytesIO(shot)).convert("RGB")).astype(int)
+
+
+def still(page):
+    """Return the map's pixels once two looks at the same view are the same."""
+    before = None
+    for _ in range(100):
+        rest(page)
+        now = view(page), look(page)
+        same = before is not None and before[0] == now[0] and np.array_equal(before[1], now[1])
+        if same and np.ptp(now[1]) > 0:
+            return now[1]
+        before = now
+    pytest.fail("the map did not come to rest")
+
+
+def becomes(page, as_wanted, what):
+    """Return the map's pixels once they are as wanted."""
+    for _ in range(30):
+        now = still(page)
+        if as_wanted(now):
+            return now
+    pytest.fail(f"{what} did not show as it should")
+
+
+def view(page):
+    """Return what the map shows: longitude and latitude of its middle, zoom, width and height."""
+    return json.loads(page.locator(MAP).get_attribute("data-view"))
+
+
+def pixels(seen, lonlat):
+    """Return where lon/lat positions ``(n, 2)`` are on the map's picture, by Web Mercator."""
+    world = 512 * 2.0 ** seen["zoom"]
+
+    def project(lon, lat):
+        y = np.log(np.tan(np.pi / 4 + np.deg2rad(lat) / 2))
+        return world * (lon + 180) / 360, world * (0.5 - y / (2 * np.pi))
+
+    x0, y0 = project(seen["longitude"], seen["latitude"])
+    x, y = project(*np.atleast_2d(np.asarray(lonlat, float)).T)
+    return np.stack([x - x0 + seen["width"] / 2, y - y0 + seen["height"] / 2], axis=1)
+
+
+def is_near(image, place, colour, reach=2, tolerance=40):
+    """Tell whether a colour is within some pixels of a place."""
+    x, y = np.round(place).astype(int)
+    window = image[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1]
+    if not window.size:
+        return False
+    return bool((np.abs(window - np.array(colour)).max(axis=2) < tolerance).any())
+
+
+def share_near(image, places, colour, **more):
+    """Return the share of places that have a colour near."""
+    return float(np.mean([is_near(image, place, colour, **more) for place in places]))
+
+
+# -- what lies on the map
+
+
+def card(page):
+    """Open the card of the layers, if it is not open."""
+    tool = page.get_by_role("button", name="Layers", exact=True)
+    if tool.get_attribute("aria-expanded") != "true":
+        tool.click()
+    return page.locator(f"{MAP} .card")
+
+
+def switch(page, name, *, on):
+    """Switch a layer on or off."""
+    card(page).get_by_role("checkbox", name=name, exact=True).set_checked(on)
+
+
+def shade(page, name):
+    """Shade plants by what is named so."""
+    card(page).get_by_role("radio", name=name, exact=True).check()
+
+
+def opacity(page, share):
+    """Let plants be so opaque."""
+    card(page).get_by_role("slider", name="Opacity").fill(f"{share}")
+
+
+def zoomed(page):
+    """Turn the wheel over the middle of the free map; return its pixels."""
+    seen, far = view(page), view(page)["zoom"]
+    x, y = free(page)
+    for _ in range(50):
+        page.mouse.move(x, y)
+        page.mouse.wheel(0, -300)
+        still(page)
+        if view(page)["zoom"] > far + 1.0:
+            return still(page)
+    pytest.fail(f"the wheel does not zoom: {seen}")
+
+
+def free(page):
+    """Return the middle of what the panel leaves free of the map, in the window's pixels."""
+    box, panel = page.locator(MAP).bounding_box(), page.locator(".st-key-panel").bounding_box()
+    if panel["width"] > 0.9 * box["width"]:
+        return box["width"] / 2, (box["y"] + panel["y"]) / 2
+    return (panel["width"] + box["width"]) / 2, box["y"] + box["height"] / 2
+
+
+def click(page, place, says=None):
+    """Click on the map at a place in its own pixels; wait for what the page then says.
+
+    The browser may be so busy that a press and its release are far apart: then, as a person would,
+    click again.
+    """
+    box = page.locator(MAP).bounding_box()
+    for _ in range(3):
+        page.mouse.click(box["x"] + place[0], box["y"] + place[1])
+        if says is None:
+            return
+        with suppress(PlaywrightTimeout):
+            page.get_by_text(says).first.wait_for(timeout=20_000)
+            return
+    pytest.fail(f"three clicks, and the page does not say {says!r}")
+
+
+def scale_px_of_m(page):
+    """Return how many pixels a metre has by the scale bar on the map."""
+    scale = page.get_by_role("img", name="The scale bar is")
+    text = scale.locator(".text").inner_text().strip()
+    metres = float(text.removesuffix(" m"))
+    return scale.locator(".bar").bounding_box()["width"] / metres
+
+
+# -- rooms
+
+
+def open_room(page, name):
+    """Turn to a room by its link."""
+    page.get_by_role("link", name=name).first.click()
+    rest(page)
+
+
+def open_part(page, name):
+    """Show a part of the room."""
+    part = page.get_by_role("radio", name=name, exact=True)
+    part.click()
+    part.and_(page.locator("[aria-checked=true]")).wait_for()
+    rest(page)

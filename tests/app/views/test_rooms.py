@@ -1,0 +1,51 @@
+"""A room in the panel: its parts side by side, the chosen one below."""
+
+import pytest
+from streamlit.util import calc_hash
+
+from app.state import rooms
+from app.words import texts
+from tests.app.driving import go, texts_of
+
+SEVERAL = [name for name, room in rooms.ROOMS.items() if len(room.parts) > 1]
+
+
+@pytest.mark.parametrize("name", SEVERAL)
+def test_a_room_shows_its_first_part_first_and_another_by_a_click(app, name):
+    first, second = rooms.ROOMS[name].parts[:2]
+    go(app, first)
+    box = app.segmented_control(key=rooms.key(name))
+    assert box.value == first
+    assert [texts.PARTS[part] for part in rooms.ROOMS[name].parts] == box.options
+    before = texts_of(app)
+    box.set_value(second).run()
+    assert not app.exception
+    assert app.segmented_control(key=rooms.key(name)).value == second
+    assert texts_of(app) != before
+
+
+def test_the_part_that_was_shown_is_shown_again_after_another_room(app):
+    go(app, "field")
+    go(app, "today")
+    app.segmented_control(key=rooms.key("today")).set_value("scout").run()
+    go_to_room(app, "season")
+    assert app.segmented_control(key=rooms.key("season")).value == "field"
+    go_to_room(app, "today")
+    assert app.segmented_control(key=rooms.key("today")).value == "scout"
+
+
+def go_to_room(app, name):
+    """Turn to a room as its link does, which says nothing of parts."""
+    app._page_hash = calc_hash("" if name == "today" else name)
+    app.run()
+
+
+def test_a_box_that_two_parts_have_keeps_what_was_chosen(app):
+    go(app, "compare")
+    app.number_input(key="n_days").set_value(7).run()
+    box = app.segmented_control(key=rooms.key("ahead"))
+    box.set_value("simulate").run()
+    assert app.number_input(key="n_days").value == 7
+    app.number_input(key="n_days").set_value(9).run()
+    app.segmented_control(key=rooms.key("ahead")).set_value("compare").run()
+    assert app.number_input(key="n_days").value == 9

@@ -43,8 +43,9 @@ def rows(plot_key: str) -> None:
         spacings(plot_key)
         now, usual_m = units(), Planting().headland_m
         widget_memory.show(
-            st.number_input, texts.HEADLAND.format(unit=texts.UNITS[now.length]), *now.limits(0.1, 50.0),
-            step=0.1, key=f"headland {plot_key}", default=now.shown(usual_m),
+            st.number_input, texts.HEADLAND.format(unit=texts.UNITS[now.length]),
+            *now.limits(0.1, 50.0), step=0.1, key=f"headland {plot_key}",
+            default=now.shown(usual_m),
         )  # fmt: skip
         widget_memory.show(st.toggle, texts.BOTH_FACES, key=f"both_faces {plot_key}", default=False)
 
@@ -52,11 +53,12 @@ def rows(plot_key: str) -> None:
 def spacings(plot_key: str) -> None:
     """Show how far rows and plants are apart, to be set by hand."""
     now, usual = units(), Planting()
+    unit = texts.UNITS[now.length]
     rows_m, plants_m = usual.row_spacing_m, usual.plant_spacing_m
     help_ = texts.SPACING_HELP.format(rows=now.metres(rows_m), plants=now.metres(plants_m))
     for name, label in (("row_spacing", texts.ROW_SPACING), ("plant_spacing", texts.PLANT_SPACING)):
         widget_memory.show(
-            st.number_input, label.format(unit=texts.UNITS[now.length]), *now.limits(0.1, 50.0), step=0.1,
+            st.number_input, label.format(unit=unit), *now.limits(0.1, 50.0), step=0.1,
             help=help_, key=f"{name} {plot_key}",
         )  # fmt: skip
 

@@ -12,7 +12,6 @@ from . import map_view
 from .maps import deck
 
 if TYPE_CHECKING:
-
     from ..state.choices import Choices
     from .map_view import MapAnswers, MapContent
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, seen
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.values import numbers
@@ -52,7 +53,12 @@ def with_known_rows(
                 known[name][setting] = float(value)
     if not used:
         return fields, []
-    said = seen(f"Direction and spacings of rows and plants are taken from {', '.join(used)}.")
+    said = seen(
+        worded(
+            "Direction and spacings of rows and plants are taken from {names}.",
+            names=", ".join(used),
+        )
+    )
     return tuple(
         replace(
             field,

@@ -219,7 +219,7 @@ def _said(sentence: object, language: str) -> str | None:
         said = [parts[p] or marked_as_english(p) for p in sentence.parts]
         return sentence.between.join(said)
     if sentence.one:
-        form = found.npgettext(LIBRARY, sentence.one, sentence.words, sentence.count)
+        form = found.npgettext(LIBRARY, sentence.one, sentence.words, sentence.number)
     else:
         form = found.pgettext(LIBRARY, sentence.words)
     if not form:

@@ -21,7 +21,7 @@ class Worded(str):  # noqa: SLOT000 - it holds what it was made of
     values
         What stands in the blanks: numbers, names, other `Worded`.
     one
-        The words for one thing, where they differ; ``count`` decides.
+        The words for one thing, where they differ; ``number`` decides.
     parts, between
         Sentences that it joins, and by what.
     """
@@ -29,14 +29,14 @@ class Worded(str):  # noqa: SLOT000 - it holds what it was made of
     words: str
     values: dict[str, Any]
     one: str
-    count: int
+    number: int
     parts: tuple[str, ...]
     between: str
 
     def __new__(cls, sentence: str) -> Self:
         """Return a sentence, which does not remember anything yet."""
         made = super().__new__(cls, sentence)
-        made.words, made.values, made.one, made.count = sentence, {}, "", 0
+        made.words, made.values, made.one, made.number = sentence, {}, "", 0
         made.parts, made.between = (), ""
         return made
 
@@ -66,5 +66,5 @@ def counted(number: int, thing: str) -> Worded:
     """Return so many things in words: "1 plant", "12 plants"."""
     one, many = f"{{n}} {thing}", f"{{n}} {thing}s"
     made = worded(one if number == 1 else many, n=number)
-    made.words, made.one, made.count = many, one, int(number)
+    made.words, made.one, made.number = many, one, int(number)
     return made

@@ -61,7 +61,7 @@ def _told_finds(
     which, count = np.unique(near[near >= 0], return_counts=True)
     order = np.argsort(-count, kind="stable")
     few = order if len(order) <= _FINDS + 1 else order[:_FINDS]
-    said = []
+    said: list[str] = []
     for find, around in zip(which[few].tolist(), count[few].tolist(), strict=True):
         line, number = (int(part[0]) for part in row_label(scene.grid, finds[[find]]))
         words: dict[str, Any] = {

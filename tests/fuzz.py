@@ -35,7 +35,7 @@ from tests import awkward
 
 #: what the clock of the reading process allows on a busy machine, and what ending it may take
 SECONDS = limits.PATIENCE * limits.READ_SECONDS + 3.0
-_LARGEST_SEED = 200_000
+_LARGEST_SEED = 400_000
 _NASTY_NUMBERS = (0, -1, 1, 0x7F, 0x80, 0xFF, 0x7FFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF)
 _NASTY_VALUES = (
     *(None, True, -1, 0, 1e308, -1e308, 1e-320, 10**400, "", "NaN", "\x00", "א" * 300, [], {}),
@@ -55,6 +55,7 @@ class Seed(NamedTuple):
     name: str
     door: str
     parts: tuple[Upload, ...]
+    options: Any = None
 
 
 @dataclass
@@ -91,7 +92,7 @@ def seeds(folder: Path) -> list[Seed]:
         room.mkdir()
         parts = _uploads(case.source(room))
         if sum(len(part.data) for part in parts) <= _LARGEST_SEED:
-            made.append(Seed(case.name, case.door, parts))
+            made.append(Seed(case.name, case.door, parts, case.options))
             if case.door == "records":
                 made.append(Seed(case.name, "reported", parts))
     return [*made, *(Seed("raster", door, (_raster(folder),)) for door in ("plots", "layers"))]
@@ -104,7 +105,11 @@ def _uploads(source: Any) -> tuple[Upload, ...]:
     if path.is_dir():
         parts = {f"{path.name}/{p.name}": p.read_bytes() for p in awkward.files(path)}
         return (awkward.zipped(parts),)
-    beside = path.parent.glob(f"{path.stem}.*") if path.suffix == ".shp" else [path]
+    beside = [path]
+    if path.suffix in {".shp", ".tab", ".mif", ".csv"}:
+        beside = list(path.parent.glob(f"{path.stem}.*"))
+    elif path.name == "TASKDATA.XML":
+        beside = list(path.parent.iterdir())
     return tuple(Upload(p.name, p.read_bytes()) for p in sorted(beside))
 
 
@@ -278,9 +283,30 @@ def _table(data: bytes, rng: np.random.Generator) -> bytes:
     return b"\n".join(mark.join(row) for row in rows)
 
 
+def _lines(data: bytes, rng: np.random.Generator) -> bytes:
+    """Drop, double or exchange lines of a text in lines, or write another number or word."""
+    lines = data.split(b"\n")
+    i, j = (int(k) for k in rng.integers(0, len(lines), 2))
+    how = rng.integers(5)
+    if how == 0:
+        lines.pop(i)
+    elif how == 1:
+        lines[i:i] = lines[min(i, j) : max(i, j)][:50] * int(rng.integers(1, 10))
+    elif how == 2:
+        lines[i], lines[j] = lines[j], lines[i]
+    else:
+        numbers = [m.span() for m in re.finditer(rb"[-+\d.]+", lines[i])] or [(0, len(lines[i]))]
+        start, end = numbers[rng.integers(len(numbers))]
+        cell = str(rng.choice(_NASTY_CELLS)).encode()
+        lines[i] = lines[i][:start] + cell + lines[i][end:]
+    return b"\n".join(lines)
+
+
+_BINARY = (".shp", ".shx", ".dbf", ".tif", ".fgb", ".parquet", ".xls", ".dat", ".map", ".id")
 _BY_ENDING = {
-    **dict.fromkeys((".shp", ".shx", ".dbf", ".tif", ".fgb", ".parquet"), _integers),
-    ".gpkg": _pages,
+    **dict.fromkeys(_BINARY, _integers),
+    **dict.fromkeys((".gpkg", ".sqlite"), _pages),
+    **dict.fromkeys((".tab", ".mif", ".mid", ".dxf", ".prj"), _lines),
     ".csv": _table,
 }
 
@@ -288,29 +314,61 @@ _BY_ENDING = {
 # --- one input ---------------------------------------------------------------------------------
 
 
+#: everything that reads a file of plots, plants, lines, records or inspections
+DOORS = ("plots", "crews", "plants", "lines", "records", "reported", "layers")
+
+
+def door_of(seed: Seed, rng: np.random.Generator) -> Seed:
+    """Return the seed at its own door, with what its case chose or without, or at any other."""
+    if rng.random() < 0.25:
+        return seed._replace(door=str(rng.choice(DOORS)), options=None)
+    return seed if rng.random() < 0.7 else seed._replace(options=None)
+
+
 def read(seed: Seed, parts: tuple[Upload, ...]) -> str:
     """Return what became of an input; raise whatever is no answer for a person."""
     source = parts[0] if len(parts) == 1 else parts
     try:
-        if seed.door == "layers":
-            reading.list_layers(source)
-        elif seed.door == "reported":
-            reading.read_inspection_rows(source, InspectionOptions())
-        elif seed.door == "records":
-            places = awkward.NamedPlaces((awkward.HOME,), awkward.ROWS)
-            _check_places(reading.read_records(source, RecordOptions(), None, places).value.lonlat)
-        else:
-            options = PlotOptions() if seed.door == "plots" else None
-            _check_shapes(getattr(reading, f"read_{seed.door}")(source, options).value)
-    except ChoiceNeeded:
+        _through(seed, source)
+    except ChoiceNeeded as asked:
+        _check_question(seed, asked)
         return "asked about"
     except FileProblem as refused:
         if "reader crash" in str(refused):
             return "refused with the reader gone"
-        return "refused by the clock" if "seconds" in str(refused) else "refused"
+        return "refused by the clock" if "seconds of work" in str(refused) else "refused"
     except FieldmonError:
         return "refused"
     return "came in"
+
+
+def _through(seed: Seed, source: Any) -> None:
+    """Read through the seed's door, and look at what comes out."""
+    if seed.door == "layers":
+        reading.list_layers(source)
+    elif seed.door == "reported":
+        rows = reading.read_inspection_rows(source, seed.options or InspectionOptions()).value
+        assert np.isfinite(rows.lonlat[~np.isnan(rows.lonlat).any(axis=1)]).all()
+    elif seed.door == "records":
+        places = awkward.NamedPlaces((awkward.HOME,), awkward.ROWS)
+        options = seed.options or RecordOptions()
+        _check_places(reading.read_records(source, options, None, places).value.lonlat)
+    elif seed.door == "crews":
+        _check_shapes(reading.read_crews(source)[0].value)
+    else:
+        options = seed.options or (PlotOptions() if seed.door == "plots" else None)
+        _check_shapes(getattr(reading, f"read_{seed.door}")(source, options).value)
+
+
+def _check_question(seed: Seed, asked: ChoiceNeeded) -> None:
+    """Hold that what a question offers can be chosen."""
+    if asked.option in {"kind", "plots", "plants"}:
+        return  # another file answers
+    options = {"plots": PlotOptions, "crews": PlotOptions, "records": RecordOptions}.get(
+        seed.door, InspectionOptions
+    )()
+    for choice in asked.choices[:5]:
+        options.choose(asked.option, choice)
 
 
 def _check_shapes(value: Any) -> None:
@@ -362,10 +420,11 @@ def fuzz(n_inputs: int, first: int = 0, seconds: float = np.inf) -> Tally:
             if time.perf_counter() - began > seconds:
                 break
             rng = np.random.default_rng(number)
-            seed = corpus[number % len(corpus)]
+            seed = door_of(corpus[number % len(corpus)], rng)
             _one(number, seed, mutated(seed, rng), tally)
             if (number - first) % 500 == 499:
-                sys.stderr.write(f"{number - first + 1} of {n_inputs}\n")
+                so_far = f"{number - first + 1} of {n_inputs}, {len(tally.failures)} failure(s)\n"
+                sys.stderr.write(so_far)
         process.stop()
         left = [p for room in ("tmp", "home", "here") for p in (world / room).rglob("*")]
         tally.failures += [f"a file was left: {path.name}" for path in left]
@@ -391,6 +450,8 @@ def _one(number: int, seed: Seed, parts: tuple[Upload, ...], tally: Tally) -> No
         tally.slowest_s, tally.slowest = took_s, f"input {number}"
     spent = [now_s - worked_s.get(pid, 0.0) for pid, now_s in _worked_s().items()]
     tally.hardest_s = max(tally.hardest_s, *spent, 0.0)
+    if max(spent, default=0.0) > limits.READ_SECONDS + 3.0:
+        tally.failures.append(f"input {number} ({seed.name}) worked {max(spent):.1f} s")
     if took_s > SECONDS:
         tally.failures.append(f"input {number} ({seed.name}) took {took_s:.1f} s")
 

@@ -18,7 +18,7 @@ FLOORS = [
     {"samplers"},
     {"planning"},
     {"simulation", "monitoring"},
-    {"studies"},
+    {"studies", "reports"},
     {"__init__"},
     {"cli"},
     {"app"},
@@ -35,14 +35,16 @@ ALONE = {
     "pyarrow": {"io", "simulation", "cli"},
     "distributed": {"simulation"},
     "jinja2": {"io"},
-    "markupsafe": {"io", "studies", "app"},
+    "markupsafe": {"io", "studies", "reports", "app"},
     "typer": {"cli"},
     "tzfpy": {"plot"},
     "rich": {"cli"},
     "pydeck": {"planning", "app"},
     "streamlit": {"app"},
     "altair": {"app"},
-    "PIL": {"app"},
+    "PIL": {"reports", "app"},
+    "fpdf": {"reports"},
+    "fontTools": {"reports"},
 }
 FILES = sorted((*(ROOT / "fieldmon").rglob("*.py"), *(ROOT / "app").rglob("*.py")))
 

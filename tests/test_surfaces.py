@@ -118,7 +118,10 @@ def opened_in_app(records):
 def shown_in_app(records):
     """Return the chances and the route that the app's first page shows."""
     session = opened_in_app(records)
-    return [driving.layer(session, name)["data"] for name in ("plants", "route", "numbers")]
+    # addresses name their content
+    plants = driving.layer(session, "plants-chance")
+    route, numbers = driving.layer(session, "route")["data"], driving.map_of(session)["labels"]
+    return [plants["places"], plants["values"], route, numbers]
 
 
 def begun_in_app(records):

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
 
 _ICONS = {"seen": "👁", "repaired": "🔧", "guessed": "💡", "dropped": "🗑", "doubtful": "⚠️"}
+# questions that another file answers, in a box of its own
+_OTHER_FILES = frozenset({"kind", "plots", "plants"})
 
 
 # -- boxes
@@ -28,13 +30,11 @@ _ICONS = {"seen": "👁", "repaired": "🔧", "guessed": "💡", "dropped": "�
 def show() -> None:
     """Show the boxes for a plot's files; what was dropped is kept while the session lasts."""
     labels = {PLOT: texts.PLOT_FILE, RECORDS: texts.RECORD_FILE, PLANTS: texts.PLANT_FILE}
-    columns = st.columns(3)
-    for column, (kind, label) in zip(columns, labels.items(), strict=True):
-        with column:
-            dropped = st.file_uploader(label, key=_box(kind), accept_multiple_files=True,
-                                       on_change=_take, args=(kind,))  # fmt: skip
-            if not dropped:
-                _kept(kind)
+    for kind, label in labels.items():
+        dropped = st.file_uploader(label, key=_box(kind), accept_multiple_files=True,
+                                   on_change=_take, args=(kind,))  # fmt: skip
+        if not dropped:
+            _kept(kind)
 
 
 def show_raster(label: str, kind: str) -> None:
@@ -95,9 +95,11 @@ def say(error: FieldmonError, asked: str | None = None) -> None:
 
 
 def _ask(error: ChoiceNeeded, asking: str) -> None:
+    if error.option in _OTHER_FILES:
+        return
     label = f"{texts.CHOOSE}: {error.option}"
     widget = f"ask {asking} {error.option}"
-    if error.choices and error.option != "columns":
+    if error.choices:
         st.markdown(texts.CHOOSE_QUICK)
         with st.container(horizontal=True):
             for choice in error.choices[:4]:
@@ -106,8 +108,7 @@ def _ask(error: ChoiceNeeded, asking: str) -> None:
                           args=(asking, error.option, str(choice)))  # fmt: skip
         st.selectbox(label, error.choices, key=widget, accept_new_options=True)
     else:
-        hint = ", ".join(error.choices)
-        st.text_input(label, placeholder="date=Datum", help=hint or None, key=widget)
+        st.text_input(label, key=widget)
     st.button(texts.CHOOSE_BUTTON, key=f"use {asking} {error.option}", type="primary",
               on_click=_answer_from, args=(asking, error.option, widget))  # fmt: skip
 

@@ -12,6 +12,7 @@ import streamlit as st
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.planning.explain import explain
 from fieldmon.plot.grid import row_label
+from fieldmon.reports import sentences
 
 from ..state import assumptions, chosen_day
 from ..words import texts
@@ -47,16 +48,7 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
 
 def headline(choices: Choices, plan: DayPlan) -> str:
     """Return what there is to do on the day, in one sentence."""
-    route, on = plan.route, choices.units.day(choices.day)
-    if not len(route):
-        return texts.HEADLINE_NONE.format(day=on)
-    line = row_label(choices.plot.grid, route.plant).line
-    low, high = int(line.min()), int(line.max())
-    return texts.HEADLINE.format(
-        plants=texts.PLANTS_COUNTED.format(n=len(route)),
-        rows=f"{low}–{high}" if low < high else low, day=on,
-        hours=route.end_s / 3600, finds=route.expected_found,
-    )  # fmt: skip
+    return in_words(sentences.headline(plan.route, choices.units.day(choices.day)))
 
 
 def route_figures(choices: Choices, plan: DayPlan) -> None:
@@ -125,15 +117,6 @@ def _risen(choices: Choices, yesterday: str) -> str:
     rise = (total[1] - total[0]) / np.maximum(np.bincount(line), 1)
     top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]
     return ", ".join(f"{k + 1} (+{number(rise[k], '.1%')})" for k in top)
-
-
-def found_by_row(choices: Choices) -> dict[str, str]:
-    """Return the numbers of the plants found on the day, by row."""
-    label = row_label(choices.plot.grid, chosen_day.found(choices))
-    rows: dict[str, list[str]] = {}
-    for line, plant in zip(label.line.tolist(), label.number.tolist(), strict=True):
-        rows.setdefault(texts.REPORT_IN_ROW.format(row=line), []).append(str(plant))
-    return {row: ", ".join(numbers) for row, numbers in rows.items()}
 
 
 def reasons(choices: Choices, plan: DayPlan) -> list[str]:

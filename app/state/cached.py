@@ -23,6 +23,7 @@ from fieldmon.io.rasters.read import read_backdrop
 from fieldmon.monitoring import Season, worked_route
 from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from
+from fieldmon.reports import season as reports
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
 from fieldmon.simulation.season import SeasonSettings, SimulatedDay, simulated_days
@@ -58,7 +59,9 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
+    from fieldmon.reports.content import Report
 
+    from ..words.units import Units
     from .comparison import ComparisonSettings
 
     Array = NDArray[np.float64]
@@ -245,6 +248,18 @@ def evening(path: str, revision: str, day: str, _season: Season) -> Array:  # no
 def morning(path: str, revision: str, day: str, _season: Season) -> Array:  # noqa: ARG001
     """Return the chance map of a morning."""
     return _season.morning(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
+def season_report(
+    path: str,  # noqa: ARG001
+    revision: str,  # noqa: ARG001
+    day: str,
+    units: Units,
+    _season: Season,
+) -> Report:
+    """Return the report of a season up to a day."""
+    return reports.season_report(_season, np.datetime64(day).item(), units)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)

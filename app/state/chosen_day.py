@@ -10,6 +10,7 @@ import numpy as np
 
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import usable
+from fieldmon.monitoring import day_was_worked
 
 from . import cached
 
@@ -46,11 +47,10 @@ def starts(choices: Choices, plan: DayPlan) -> datetime:
 def route(choices: Choices) -> DayRoute:
     """Return the route as it was driven on a day that was worked, or as it is planned."""
     plan, season = choices.plan(), choices.season
-    if season is not None and (not len(plan.route) or choices.on < season.last_date()):
+    if season is not None and day_was_worked(season, choices.on, plan.route):
         done = cached.worked(choices.key, choices.revision, choices.day, season)
-        if len(done):
-            begins = datetime.combine(choices.on, season.settings.starts)
-            return DayRoute(done, begins, worked=True)
+        begins = datetime.combine(choices.on, season.settings.starts)
+        return DayRoute(done, begins, worked=True)
     return DayRoute(plan.route, starts(choices, plan))
 
 

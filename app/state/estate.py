@@ -11,7 +11,6 @@ from fieldmon.errors import FieldmonError
 from fieldmon.io.options import PlotOptions
 from fieldmon.plot.local_clock import local_clock
 
-from ..words import texts
 from ..words.language import of_error
 from . import cached, plot_files, plot_source, sample_estate, seasons_folder
 from .brought_files import settled
@@ -57,7 +56,7 @@ def plots() -> tuple[list[PlotState], list[str]]:
         try:
             found.append(_of_season(name, cached.season(seasons_folder.path_of(name))))
         except FieldmonError as error:
-            problems.append(f"{texts.isolated(name)}: {of_error(error)}")
+            problems.append(f"{name}: {of_error(error)}")
     files = plot_files.of_session()
     if files is not None and files.plot is not None:
         try:

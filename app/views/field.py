@@ -6,10 +6,13 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.reports.sentences import hot_spot_meanings
+
 from ..actions import rasters
-from ..show import hot_spots, map_layers, plant_history
+from ..show import map_layers, plant_history
 from ..state import chosen_day
 from ..words import texts
+from ..words.language import in_words
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
@@ -22,6 +25,6 @@ def show(choices: Choices) -> None:
     below = rasters.backdrop_layers(choices)
     plant_history.want(choices, map_layers.day_map(choices, below=below))
     st.markdown(f"### {texts.HOT_TITLE}")
-    said = hot_spots.meanings(choices.plot.grid, chosen_day.hot_spots(choices))
-    st.markdown("\n".join(f"- {meaning}" for meaning in said))
+    said = hot_spot_meanings(choices.plot.grid, chosen_day.hot_spots(choices))
+    st.markdown("\n".join(f"- {in_words(meaning)}" for meaning in said))
     plant_history.show(choices)

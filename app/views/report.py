@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import base64
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..show import day, map_layers, plant_history, report
-from ..show.assumed import sentence
-from ..state import assumptions, chosen_day
+from fieldmon.reports.html import html_text
+from fieldmon.reports.pdf import PAPERS, pdf_bytes
+
+from ..show import map_layers, plant_history, report
+from ..state import widget_memory
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -19,21 +22,30 @@ if TYPE_CHECKING:
 def show(choices: Choices) -> None:
     """Show the report, and hand it out."""
     plant_history.want(choices, map_layers.day_map(choices))
-    st.caption(texts.REPORT_INTRO)
-    shown = chosen_day.route(choices)
-    days = [] if choices.season is None else chosen_day.figures_so_far(choices)
-    facts = report.Facts(
-        choices.plot.field.name, choices.units.day(choices.day), choices.units,
-        chosen_day.chance(choices), chosen_day.states(choices), choices.robot,
-        texts.SAMPLERS[choices.sampler], shown, day.found_by_row(choices),
-        sentence(assumptions.of(choices), choices.units),
+    whole = choices.season is not None and _about() == "season"
+    made = report.of_season(choices) if whole else report.of_day(choices)
+    paper = widget_memory.show(
+        st.selectbox, texts.REPORT_PAPER, [*PAPERS], key="report paper", default="a4",
+        format_func=texts.REPORT_PAPERS.__getitem__,
     )  # fmt: skip
-    page = report.html(facts, day.stops(choices, shown), days)
-    st.download_button(
-        texts.REPORT_DOWNLOAD, page, f"report_{choices.day}.html", "text/html", type="primary",
-        on_click="ignore",
-    )  # fmt: skip
+    name, page = f"{'season' if whole else 'day'}_{choices.day}", html_text(made)
+    with st.container(horizontal=True):
+        # made when it is asked for: fonts are cut and plants are drawn, in a second or two
+        st.download_button(
+            texts.REPORT_PDF, partial(pdf_bytes, made, paper), f"{name}.pdf", "application/pdf",
+            type="primary", on_click="ignore",
+        )  # fmt: skip
+        st.download_button(texts.REPORT_HTML, page, f"{name}.html", "text/html", on_click="ignore")
     st.markdown(f"**{texts.REPORT_PREVIEW}**")
     # as data it has no way into this page, whatever a plot is called
     data = base64.b64encode(page.encode()).decode()
     st.iframe(f"data:text/html;charset=utf-8;base64,{data}", height=900, alt=texts.REPORT)
+
+
+def _about() -> str:
+    """Return what the report is to be about: a day or the season."""
+    chosen: str = widget_memory.show(
+        st.radio, texts.REPORT_ABOUT, [*texts.REPORT_KINDS], key="report about", default="day",
+        format_func=texts.REPORT_KINDS.__getitem__, horizontal=True,
+    )  # fmt: skip
+    return chosen

@@ -15,6 +15,7 @@ from babel.messages.catalog import Catalog
 from babel.messages.pofile import read_po, write_po
 
 import fieldmon
+from fieldmon.reports import words as report_words
 
 from . import texts
 from .language import ENGLISH, FOLDER, LANGUAGES, LIBRARY, SAME, Plural
@@ -75,12 +76,20 @@ def of_library() -> list[Entry]:
 
 
 def _worded(function: str, arguments: list[ast.expr]) -> Entry | None:
-    said = [one.value for one in arguments if isinstance(one, ast.Constant)]
+    said = [_value(one) for one in arguments if isinstance(one, ast.Constant | ast.Attribute)]
     if function in _WORDING and said and isinstance(said[0], str):
         return Entry(LIBRARY, said[0])
     if function == "counted" and said and isinstance(said[-1], str):
         return Entry(LIBRARY, f"{{n}} {said[-1]}s", f"{{n}} {said[-1]}")
     return None
+
+
+def _value(said: ast.Constant | ast.Attribute) -> object:
+    """Return a text that stands in the source, or the one of the reports' words that it names."""
+    if isinstance(said, ast.Constant):
+        return said.value
+    named = isinstance(said.value, ast.Name) and said.value.id == "words"
+    return getattr(report_words, said.attr, None) if named else None
 
 
 def path_of(language: str) -> Path:

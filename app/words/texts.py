@@ -207,12 +207,7 @@ PLOTS_PICK = "Click a plot on the map, or a row here."
 WAYS_IN = {"sample": "Try the sample estate", "file": "Bring a plot of mine"}
 
 # -- today
-#: what there is to inspect, in the sentence below
 PLANTS_COUNTED = Plural("{n} plant", "{n} plants")
-HEADLINE = (
-    "Inspect {plants} in rows {rows} on {day}, {hours:.1f} h: about {finds:.0f} finds expected."
-)
-HEADLINE_NONE = "Nothing to inspect on {day}."
 BEGIN_TITLE = "Keep this season"
 BEGIN_NOTE = (
     "Begin a season, and everything is kept from here on: routes, what was found, and what that "
@@ -326,16 +321,6 @@ HISTORY_TREATED = (
 HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
 HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}
-HOT_MEANS = (
-    "{rows}: {found} found among {inspected} inspected of its {plants} plants, where "
-    "{expected:.1f} would be if finds were strewn evenly. So many by chance alone: {p}."
-)
-HOT_ROWS, HOT_ROW = (
-    "Rows {first} to {last}, plants {low} to {high}",
-    "Row {first}, plants {low} to {high}",
-)
-HOT_NONE = "No hot spots: finds cluster no more than chance allows."
-CHANCE_P_SMALL, CHANCE_P = "less than 1 in 10,000", "about 1 in {n:,}"
 
 # -- the season
 NEEDS_SEASON = (
@@ -464,15 +449,10 @@ NOW_USED = "{name} is in use now."
 STRATEGY_NAME = "{sampler} · {hours:g} h · {seconds:g} s"
 
 # -- the report
-REPORT_INTRO = "A page to print, or to keep as PDF (Print, then Save as PDF)."
-REPORT_DOWNLOAD, REPORT_PREVIEW = "Download the report (HTML)", "Preview"
-REPORT_TITLE = "Plot {name}, {day}"
-REPORT_SETTINGS, REPORT_ROUTE, REPORT_SEASON = "Settings", "Route", "Season so far"
-REPORT_FOUND, REPORT_IN_ROW = "Found that day", "Row {row}"
-REPORT_TICK, REPORT_WAS = "found?", "result"
-REPORT_WORKED = "Route as it was worked"
-PLANTS_INSPECTED = "Plants inspected"
-SPEED, DETECTS = "Speed", "Finds what is there with a chance of"
+REPORT_ABOUT, REPORT_KINDS = "About", {"day": "the day", "season": "the season"}
+REPORT_PAPER, REPORT_PAPERS = "Paper", {"a4": "A4", "letter": "Letter"}
+REPORT_WAS = "result"
+REPORT_PDF, REPORT_HTML, REPORT_PREVIEW = "Download as PDF", "Download as HTML", "Preview"
 
 PRIOR = "The thesis, with records"
 PRIOR_TITLE = "The thesis's samplers with prior information"

@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.option_groups import with_options
-from fieldmon.cli.options import Hours, Look, SeasonFile, Speed, WorkerOptions
+from fieldmon.cli.options import MOST_EVERY, Hours, Look, SeasonFile, Speed, WorkerOptions
 from fieldmon.cli.times import clock
+from fieldmon.errors import SettingError
+from fieldmon.samplers import kind_of
+from fieldmon.samplers.registry import SAMPLERS
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import MonitoringSettings
@@ -21,7 +24,9 @@ class ChangeOptions:
 
     season: SeasonFile
     sampler: Annotated[str | None, typer.Option(help="Who chooses.")] = None
-    every: Annotated[int | None, typer.Option(help="Its every N-th, as in plan.")] = None
+    every: Annotated[
+        int | None, typer.Option(max=MOST_EVERY, help="Its every N-th, as in plan.")
+    ] = None
     hours: Hours = None
     look: Look = None
     speed: Speed = None
@@ -39,13 +44,24 @@ class ChangeOptions:
         if self.sampler is not None:
             new = replace(new, sampler=self.sampler, sampler_settings={})
         if self.every is not None:
-            new = replace(new, sampler_settings={"every": self.every})
+            new = replace(new, sampler_settings=_every(new.sampler, self.every))
         if self.start is not None:
             new = replace(new, starts=clock(self.start))
         if self.spread is not None:
             rate = replace(settings.belief.spread, rate_per_day=self.spread)
             new = replace(new, belief=replace(settings.belief, spread=rate))
         return new
+
+
+def _every(name: str, every: int) -> dict[str, float]:
+    """Return the setting of a sampler that inspects every N-th; refuse it where it does not."""
+    if kind_of(name).every is None:
+        having = ", ".join(own for own, kind in SAMPLERS.items() if kind.every is not None)
+        raise SettingError(
+            f"--every goes with a sampler that inspects every N-th ({having}), but this season's "
+            f"is {name}. Leave it out, or choose another one with --sampler."
+        )
+    return kind_of(name).settings_for(every)
 
 
 @with_options

@@ -11,6 +11,7 @@ from fieldmon.cli.init import init
 from fieldmon.cli.plan import plan
 from fieldmon.cli.plots import plots
 from fieldmon.cli.record import record
+from fieldmon.cli.report import report
 from fieldmon.cli.salvage import salvage
 from fieldmon.cli.simulate import simulate
 from fieldmon.cli.status import status
@@ -32,6 +33,7 @@ app = typer.Typer(
 app.add_typer(study.app, name="study")
 app.command()(record)
 app.command()(status)
+app.command()(report)
 app.command()(undo)
 app.command()(treat)
 app.command()(change)

@@ -28,6 +28,13 @@ FLAGS = {
     "records": "--record-option",
     "canopy": "--canopy-option",
     "risk": "--risk-option",
+    "findings": "--finding-option",
+}
+#: questions that another file answers, not a value
+_OTHER_FILES = {
+    "kind": "Give points with --plants FILE and lines with --paths FILE (fieldmon plan).",
+    "plots": "Give the file of the plots as the first argument.",
+    "plants": "Give the plants with --plants FILE.",
 }
 #: what commands that have `FLAGS` also take by an option of its own
 _BY_NAME = frozenset({"crs", "layer", "feature"})
@@ -72,6 +79,8 @@ class Terminal:
             ) from None
 
     def _with_answer(self, question: ChoiceNeeded) -> str:
+        if question.option in _OTHER_FILES:
+            return f"{question} {_OTHER_FILES[question.option]}" if self.flags else str(question)
         answer = question.choices[0] if question.choices else "..."
         if question.option == "feature" and not question.role:
             sentence = str(question).removesuffix(".")

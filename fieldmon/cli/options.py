@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler
 
+#: no plot has more plants than that
+MOST_EVERY = 10_000_000
 PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
 
 PlotFile = Annotated[Path, typer.Argument(help=PLOT_HELP, show_default=False)]
@@ -53,7 +55,7 @@ RecordChoices = Annotated[
     typer.Option(
         "--record-option",
         help="What the records leave open, as NAME=VALUE: crs=EPSG:2039, date_order=dmy, "
-        "columns=date=Datum, columns=count=Milben.",
+        "columns=date=Datum, columns=count=Milben, found=WORD,WORD, clean=WORD, degrees=dms.",
     ),
 ]
 Plants = Annotated[
@@ -64,7 +66,9 @@ Paths = Annotated[
 ]
 PlantsChoices = Annotated[
     list[str] | None,
-    typer.Option("--plants-option", help="What the file of plants leaves open, as NAME=VALUE."),
+    typer.Option(
+        "--plants-option", help="What the file of plants leaves open, as NAME=VALUE: doubles=one."
+    ),
 ]
 PathsChoices = Annotated[
     list[str] | None,
@@ -93,7 +97,8 @@ OneSampler = Annotated[SamplerName, typer.Option(help="Who chooses.")]
 Every = Annotated[
     int | None,
     typer.Option(
-        help="Every N-th plant or stop (bouncy 2, snake 1, neighbor 1) or 1/N (random 3)."
+        max=MOST_EVERY,
+        help="Every N-th plant or stop (bouncy 2, snake 1, neighbor 1) or 1/N (random 3).",
     ),
 ]
 Outputs = Annotated[

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import re
 import signal
 import time
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
@@ -44,6 +45,8 @@ _EVERY_S = 2.0
 _AHEAD = 32
 # a name of a file may be 255 bytes long; Hebrew and Arabic take two a letter
 _NAME_BYTES = 120
+# plots refused for one reason that are told one by one; of more there is one line
+_NAMED = 3
 
 Row = dict[str, Any]
 
@@ -231,14 +234,27 @@ def _write(folder: Path, order: Iterable[str], rows: dict[str, Row]) -> None:
 
 def _tell(rows: dict[str, Row], folder: Path) -> None:
     planned = [row for row in rows.values() if row["state"] == "planned"]
-    for row in rows.values():
-        if row["state"] == "refused":
-            typer.echo(f"refused: {row['plot']}: {row['sentence']}", err=True)
+    for line in _refusals([row for row in rows.values() if row["state"] == "refused"]):
+        typer.echo(line, err=True)
     stops = sum(int(row["stops"]) for row in planned)
     typer.echo(
         f"{len(planned)} of {len(rows)} plots planned, {stops} plants in "
         f"{sum(float(row['hours']) for row in planned):.0f} h. Routes and {SUMMARY} in {folder}"
     )
+
+
+def _refusals(refused: list[Row]) -> Iterator[str]:
+    """Yield a line for each reason: those that differ in numbers and names only are one."""
+    by_reason: dict[str, list[Row]] = {}
+    for row in refused:
+        bare = re.sub(r"'[^']*'|[\d.,]+", "", row["sentence"].replace(row["plot"], ""))
+        by_reason.setdefault(bare, []).append(row)
+    for same in by_reason.values():
+        if len(same) <= _NAMED:
+            yield from (f"refused: {row['plot']}: {row['sentence']}" for row in same)
+            continue
+        some = ", ".join(row["plot"] for row in same[:_NAMED])
+        yield f"refused: {len(same)} plots ({some}, ...): {same[0]['sentence']}"
 
 
 def _cores() -> int:

@@ -29,6 +29,8 @@ def run(command: Callable[..., object]) -> None:
         _end("Stopped; nothing was written that is not complete.", 130)
     except BrokenPipeError:
         sys.exit(0)
+    except OverflowError as error:
+        _end(f"A number is too large to work with ({error}). Give a smaller one.", 2)
     except Exception as error:  # noqa: BLE001 - no traceback ever reaches a person
         _unexpected(error)
 

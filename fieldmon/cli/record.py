@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import tempfile
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.messages import FLAGS, Terminal
 from fieldmon.cli.named_values import chosen
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.status import lines
 from fieldmon.cli.times import day
+from fieldmon.errors import ChoiceNeeded
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.monitoring import Season
@@ -42,7 +47,7 @@ FindingChoices = Annotated[
     typer.Option(
         "--finding-option",
         help="What the files leave open, as NAME=VALUE: zone=Asia/Jerusalem, accuracy_m=3, "
-        "columns=count=Milben.",
+        "columns=count=Milben, found=WORD,WORD, clean=WORD.",
     ),
 ]
 
@@ -112,8 +117,21 @@ def _read(season: Season, files: list[Path], options: InspectionOptions) -> list
 
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
         sources = [counting_copy(f, Path(folder)) if is_season(f) else f for f in files]
-        read = [read_inspections(source, season.plot.grid, options) for source in sources]
+        read = []
+        for file, source in zip(files, sources, strict=True):
+            with Terminal().answering(), _naming(file):
+                read.append(read_inspections(source, season.plot.grid, options))
     for file, found in zip(files, read, strict=True):
         for message in found.messages:
-            typer.echo(f"{file.name}: {message}", err=True)
+            typer.echo(f"{file.name}: {message.line(FLAGS['findings'])}", err=True)
     return [found.value for found in read]
+
+
+@contextmanager
+def _naming(file: Path) -> Iterator[None]:
+    """Say with a question which of several files asks it."""
+    try:
+        yield
+    except ChoiceNeeded as asked:
+        said = f"{file.name}: {asked}"
+        raise ChoiceNeeded(said, asked.option, asked.choices, "findings") from None

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
@@ -247,6 +248,17 @@ def hot_spots(
         centre_m=_centre_m(finds_m, of_find, found),
         radius_m=radius_m,
     )
+
+
+def outlines_m(grid: PlantGrid, spots: HotSpots) -> list[shapely.Polygon]:
+    """Return the outline of each hot spot on a map, metres of the grid's frame."""
+    margin_m = 0.75 * max(grid.row_spacing_m, grid.plant_spacing_m)
+    inside = np.flatnonzero(spots.of_plant >= 0)
+    outlines = []
+    for k in range(len(spots)):
+        own = shapely.multipoints(grid.xy_m[inside[spots.of_plant[inside] == k]])
+        outlines.append(shapely.buffer(shapely.convex_hull(own), margin_m))
+    return outlines
 
 
 def _learned_radius_m(inspected_m: Floats, at_least_m: float) -> float:

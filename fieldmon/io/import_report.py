@@ -11,7 +11,7 @@ values that can be chosen for it, the likeliest first:
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Generic, TypeVar
 
@@ -84,12 +84,15 @@ class ImportMessage:
         The plot, record or column it is about; None where it is about the whole file.
     remedy
         What to choose if the import got it wrong; None where there is nothing to choose.
+    many
+        What to say where the same holds for ``{n}`` features; empty where it holds for one only.
     """
 
     severity: Severity
     sentence: str
     feature: str | None = None
     remedy: Remedy | None = None
+    many: str = ""
 
     def __str__(self) -> str:
         return self.line()
@@ -101,6 +104,23 @@ class ImportMessage:
         if self.remedy is not None:
             way_out = f" ({self.remedy.label}: {f'{flag} {self.remedy.setting}'.strip()})"
         return f"{self.severity}: {place}{self.sentence}{way_out}"
+
+
+def gathered(messages: Iterable[ImportMessage]) -> tuple[ImportMessage, ...]:
+    """Return messages with those of one kind, about many features, as one with their number."""
+    kinds: dict[object, list[ImportMessage]] = {}
+    for number, one in enumerate(messages):
+        kinds.setdefault((one.severity, one.many, one.remedy) if one.many else number, []).append(
+            one
+        )
+    return tuple(same[0] if len(same) == 1 else _as_one(same) for same in kinds.values())
+
+
+def _as_one(same: list[ImportMessage]) -> ImportMessage:
+    first = same[0]
+    told = first.many.format(n=len(same))
+    about = f"{first.feature}: " if first.feature else ""
+    return replace(first, sentence=f"{told}; the first is {about}{first.sentence}", feature=None)
 
 
 @dataclass(frozen=True)
@@ -138,10 +158,10 @@ def seen(sentence: str, feature: str | None = None, remedy: Remedy | None = None
 
 
 def repaired(
-    sentence: str, feature: str | None = None, remedy: Remedy | None = None
+    sentence: str, feature: str | None = None, remedy: Remedy | None = None, many: str = ""
 ) -> ImportMessage:
     """Return a message about something put right."""
-    return ImportMessage(Severity.REPAIRED, sentence, feature, remedy)
+    return ImportMessage(Severity.REPAIRED, sentence, feature, remedy, many)
 
 
 def guessed(
@@ -152,14 +172,14 @@ def guessed(
 
 
 def dropped(
-    sentence: str, feature: str | None = None, remedy: Remedy | None = None
+    sentence: str, feature: str | None = None, remedy: Remedy | None = None, many: str = ""
 ) -> ImportMessage:
     """Return a message about something left out."""
-    return ImportMessage(Severity.DROPPED, sentence, feature, remedy)
+    return ImportMessage(Severity.DROPPED, sentence, feature, remedy, many)
 
 
 def doubtful(
-    sentence: str, feature: str | None = None, remedy: Remedy | None = None
+    sentence: str, feature: str | None = None, remedy: Remedy | None = None, many: str = ""
 ) -> ImportMessage:
     """Return a message about something to look at before the data are used."""
-    return ImportMessage(Severity.DOUBTFUL, sentence, feature, remedy)
+    return ImportMessage(Severity.DOUBTFUL, sentence, feature, remedy, many)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.errors import ImportDoubt
 from fieldmon.io.import_report import Severity
-from fieldmon.io.options import PlotOptions, RecordOptions
+from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.io.prepare import prepare, records_on
 from fieldmon.io.read import read_plots as read_fields
 from fieldmon.io.readers.inspection_options import InspectionOptions
@@ -54,7 +54,8 @@ def read_plot(
     gate
         ``(lon, lat)`` where days start and end; None: the nearest row end.
     **options
-        What else the file leaves open, as the messages name it: ``crs="EPSG:2039"``.
+        What else the file leaves open, as the messages name it: ``crs="EPSG:2039"``; and
+        ``doubles="one"`` of plants measured twice.
 
     Returns
     -------
@@ -85,7 +86,8 @@ def read_plot(
     chosen = _chosen(PlotOptions(), options)
     if feature is not None:
         chosen = chosen.choose("feature", str(feature))
-    sources = PlotSources(source, chosen, plants=plants, gate=gate)
+    measured = ReadOptions(doubles=chosen.doubles)
+    sources = PlotSources(source, chosen, plants, measured, gate=gate)
     ready = prepare(PlotRequest(sources, planting or PlantingChoices()))
     _warn(said.message for said in ready.messages)
     for assumed in ready.assumed:

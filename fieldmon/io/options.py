@@ -92,6 +92,13 @@ class ReadOptions:
         ``"."`` or ``","`` in a text table.
     delimiter
         What separates the cells of a text table.
+    header
+        Whether the first line of a table names its columns: ``"yes"`` or ``"no"``.
+    degrees
+        What 35.26.33 means: ``"dms"``, degrees, minutes and seconds; ``"dm"``, degrees and minutes
+        with decimals. None: nothing.
+    doubles
+        ``"one"``: of plants closer than 5 cm to each other, one is kept.
     """
 
     member: str | None = None
@@ -105,6 +112,9 @@ class ReadOptions:
     columns: tuple[tuple[str, str], ...] = ()
     decimal: str | None = None
     delimiter: str | None = None
+    header: str | None = None
+    degrees: str | None = None
+    doubles: str | None = None
 
     def __post_init__(self) -> None:
         for role, _ in self.columns:
@@ -116,8 +126,7 @@ class ReadOptions:
             raise SettingError(
                 f"The choice of features must read column=value, but it is {self.where!r}."
             )
-        if self.decimal not in {None, ".", ","}:
-            raise SettingError(f"The decimal mark must be . or , but it is {self.decimal!r}.")
+        self._check_words()
         if self.delimiter is not None and len(self.delimiter) != 1:
             raise SettingError(f"A delimiter must be one character, but it is {self.delimiter!r}.")
         if self.near is not None:
@@ -127,6 +136,19 @@ class ReadOptions:
                     "A place nearby must be a longitude in -180..180 and a latitude in -90..90, "
                     f"but it is ({lon}, {lat})."
                 )
+
+    def _check_words(self) -> None:
+        """Refuse words that options do not have."""
+        for what, told, words in (
+            ("The decimal mark", self.decimal, (".", ",")),
+            ("Whether a line names the columns", self.header, ("yes", "no")),
+            ("What 35.26.33 means", self.degrees, ("dms", "dm")),
+            ("What is done with doubles", self.doubles, ("one",)),
+        ):
+            if told is not None and told not in words:
+                may_be = " or ".join(words)
+                comma = "" if may_be.endswith(",") else ","
+                raise SettingError(f"{what} must be {may_be}{comma} but it is {told!r}.")
 
     def column(self, role: str) -> str | None:
         """Return the column named by hand for a role, or None."""
@@ -177,10 +199,14 @@ class RecordOptions(ReadOptions):
         ``"dmy"``, ``"mdy"`` or ``"ymd"``: what 03/04/2026 means.
     plot
         The plot whose rows and plants the records name, where no column says which.
+    found, clean
+        Words of one's own for a plant with pests and for one without, set apart by commas.
     """
 
     date_order: DateOrder | None = None
     plot: str | None = None
+    found: str | None = None
+    clean: str | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -12,8 +12,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
+import shapely
+
 from fieldmon.errors import ChoiceNeeded, PlotError, SettingError
 from fieldmon.infestation.observations import Observations
+from fieldmon.io.import_report import ImportMessage, doubtful
 from fieldmon.io.options import source_name
 from fieldmon.io.read import (
     read_crews,
@@ -24,7 +27,7 @@ from fieldmon.io.read import (
     read_records_by_plot,
 )
 from fieldmon.io.readers.crews import Crew
-from fieldmon.io.readers.nearby import near_plot, on_plants
+from fieldmon.io.readers.nearby import on_plants, records_on_plot
 from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.assumed import Assumed
@@ -37,7 +40,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.io.import_report import Imported, ImportMessage
+    from fieldmon.io.import_report import Imported
     from fieldmon.io.options import Source
     from fieldmon.io.readers.places import Plants
     from fieldmon.io.sources import (
@@ -53,6 +56,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _MOST_NAMED = 12
+#: some kilometres: records further from all plots than that belong to none
+_NEARBY_DEG = 0.05
 _SPACINGS = ("row_spacing_m", "plant_spacing_m")
 
 
@@ -133,7 +138,7 @@ class EstateRecords:
 
     def on(self, plot: Field) -> Observations:
         """Return the records on a plot or near it; there may be none."""
-        return near_plot(self.candidates(plot.name), plot).inside
+        return records_on_plot(self.candidates(plot.name), plot)
 
 
 @dataclass(frozen=True, eq=False)
@@ -307,7 +312,24 @@ def records_of(
         if question.option != "plants":
             raise
         return _by_plant(fields, source, lay, question.choices)
-    return read.having(EstateRecords(read.value))
+    return read.having(EstateRecords(read.value), _far_from_all(fields, source, read.value))
+
+
+def _far_from_all(
+    fields: tuple[Field, ...], source: RecordSource, records: Observations
+) -> list[ImportMessage]:
+    """Return a doubt where no record lies near any plot; ask where all are on another continent."""
+    west, south, east, north = shapely.total_bounds([field.boundary for field in fields])
+    lon, lat = records.lonlat.T
+    margin = _NEARBY_DEG
+    near = (lon > west - margin) & (lon < east + margin)
+    near &= (lat > south - margin) & (lat < north + margin)
+    if near.any():
+        return []
+    middle = ((west + east) / 2, (south + north) / 2)
+    if source.options.near is None:
+        read_records(source.file, replace(source.options, near=middle))
+    return [doubtful("Not one record lies near any of the plots; they say nothing about them.")]
 
 
 def without_missing(plot: Plot, source: CanopySource) -> Imported[Plot]:
@@ -378,7 +400,8 @@ def _with_paths(
     file = sources.paths
     if file is None:
         return fields
-    lines = hearing.read("paths", file, partial(read_lines, file, sources.paths_options))
+    read = partial(read_lines, file, sources.paths_options, fields[0])
+    lines = hearing.read("paths", file, read)
     return tuple(replace(field, paths=lines) for field in fields)
 
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.errors import ChoiceNeeded
+from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
 from fieldmon.io.readers.nearby import of_plot
 from fieldmon.io.sandbox import process
@@ -88,13 +88,22 @@ def read_records(
         if question.option != "crs" or near is None or options.near is not None:
             raise
         # the plot tells which coordinate systems are likely: ask again with those
-        west, south, east, north = near.boundary.bounds
-        nearby = replace(options, near=((west + east) / 2, (south + north) / 2))
-        records = _read("records", source, nearby, places)
+        records = _read("records", source, replace(options, near=_middle(near)), places)
     if near is None:
         return records
-    kept, more = of_plot(records.value, near)
+    try:
+        kept, more = of_plot(records.value, near)
+    except ObservationError:
+        if options.near is None:
+            # where they lie on another part of the earth, their coordinate system is asked for
+            _read("records", source, replace(options, near=_middle(near)), places)
+        raise
     return records.having(kept, more)
+
+
+def _middle(field: Field) -> tuple[float, float]:
+    west, south, east, north = field.boundary.bounds
+    return (west + east) / 2, (south + north) / 2
 
 
 def read_records_by_plot(
@@ -111,9 +120,14 @@ def read_plants(source: Source, options: ReadOptions | None = None) -> Imported[
     return plants
 
 
-def read_lines(source: Source, options: ReadOptions | None = None) -> Imported[MultiLineString]:
-    """Return lines (rows, paths, roads) in degrees WGS84."""
-    lines: Imported[MultiLineString] = _read("lines", source, options or ReadOptions())
+def read_lines(
+    source: Source, options: ReadOptions | None = None, near: Field | None = None
+) -> Imported[MultiLineString]:
+    """Return lines (rows, paths, roads) in degrees WGS84; ask where they lie far from a plot."""
+    options = options or ReadOptions()
+    if near is not None and options.near is None:
+        options = replace(options, near=_middle(near))
+    lines: Imported[MultiLineString] = _read("lines", source, options)
     return lines
 
 

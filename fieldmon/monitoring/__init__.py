@@ -11,7 +11,7 @@ from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.tables import KeptMessage
 from fieldmon.monitoring.transactions import Store, is_season
-from fieldmon.monitoring.worked_route import worked_route
+from fieldmon.monitoring.worked_route import day_was_worked, worked_route
 
 __all__ = [
     "Batch",
@@ -25,6 +25,7 @@ __all__ = [
     "Status",
     "Store",
     "counting_copy",
+    "day_was_worked",
     "is_season",
     "worked_route",
 ]

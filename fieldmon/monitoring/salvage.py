@@ -91,8 +91,15 @@ def _padded_copy(source: Path, folder: Path) -> Path:
     Its header holds the page size at byte 16 and the number of pages at byte 28.
     """
     copy = folder / "copy.gpkg"
-    shutil.copyfile(source, copy)
-    with source.open("rb") as file:
+    try:
+        shutil.copyfile(source, copy)
+    except OSError as error:
+        raise FileProblem(
+            f"{source} must be readable to the disk's own means, but it is not "
+            f"({error.strerror}), or there is no room for a copy of it in {folder.parent}. "
+            "Take the last copy you have of it."
+        ) from error
+    with copy.open("rb") as file:
         head = file.read(32)
     pages, size = int.from_bytes(head[28:32]), int.from_bytes(head[16:18])
     whole = min(pages * (size if size > 1 else 65536), _MOST_BYTES)

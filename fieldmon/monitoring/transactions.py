@@ -9,7 +9,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fieldmon.errors import FileProblem
+from fieldmon.errors import FileProblem, SettingError
 from fieldmon.monitoring.geopackage import APPLICATION_ID
 from fieldmon.monitoring.schema import MIGRATIONS, VERSION, lay_out
 
@@ -25,6 +25,8 @@ _MAGIC, _APPLICATION_AT = b"SQLite format 3\x00", 68
 def is_season(path: str | Path) -> bool:
     """Tell whether a file is a season of fieldmon, by its content; never raises."""
     try:
+        if not Path(path).is_file():  # opening a pipe waits until somebody writes into it
+            return False
         with Path(path).open("rb") as file:
             head = file.read(100)
     except OSError:
@@ -88,7 +90,7 @@ class Store:
                 f"The folder {target.parent} must exist before {target.name} can be made in it. "
                 "Make it, or choose another one."
             )
-        with tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as folder:
+        with _beside(target) as folder:
             draft = Path(folder) / "season.gpkg"
             with _sentences(target), closing(_connect(draft)) as db:
                 db.execute("BEGIN")
@@ -128,6 +130,20 @@ class Store:
             raise _damaged(self.path, said[0])
 
 
+@contextmanager
+def _beside(target: Path) -> Iterator[str]:
+    """Make a folder for a draft beside a file, so that it can take its place at once."""
+    try:
+        draft = tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent)
+    except OSError as error:
+        raise FileProblem(
+            f"{target.parent} must be a folder that can be written to, but it is not "
+            f"({error.strerror}). Choose another one."
+        ) from error
+    with draft as folder:
+        yield folder
+
+
 def set_meta(db: sqlite3.Connection, key: str, value: str) -> None:
     """Note something about the file."""
     db.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES (?, ?)", (key, value))
@@ -142,6 +158,8 @@ def get_meta(db: sqlite3.Connection, key: str) -> str | None:
 def _begins_as_database(path: Path) -> bool:
     """Tell whether SQLite would open a file; it takes an empty one for an empty database."""
     try:
+        if path.stat().st_size == 0:  # also what only pretends to be a file, and never ends
+            return True
         with path.open("rb") as file:
             head = file.read(len(_MAGIC))
     except OSError as error:
@@ -176,6 +194,11 @@ def _migrate(db: sqlite3.Connection) -> None:
 def _sentences(path: Path) -> Iterator[None]:
     try:
         yield
+    except OverflowError as error:
+        raise SettingError(
+            f"A number must be small enough for {path}, but one is too large ({error}). "
+            "Nothing was changed: give a smaller one."
+        ) from error
     except sqlite3.Error as error:
         text = str(error)
         if "locked" in text:

@@ -23,6 +23,13 @@ if TYPE_CHECKING:
     from fieldmon.planning.route import Route
 
 
+def day_was_worked(season: Season, on: date, ahead: Route) -> bool:
+    """Tell whether a day is over, given what is left of its route: it is shown as it was worked."""
+    return (not len(ahead) or on < season.last_date()) and bool(
+        len(season.history.on(season.settings.day(on)))
+    )
+
+
 def worked_route(season: Season, on: date) -> Route:
     """Return the way from plant to plant as a day was worked, at the times noted.
 

@@ -47,6 +47,20 @@ def test_bench_1_000_polygons(benchmark, tmp_path, ending):
     np.testing.assert_allclose(read[999].boundary.bounds[:2], corners[999], atol=1e-6)
 
 
+@pytest.mark.parametrize("ending", ["shp", "gpkg", "geojson"])
+def test_bench_11_157_polygons(benchmark, tmp_path, ending):
+    rng = np.random.default_rng(0)
+    rings = []
+    for lon, lat in rng.uniform((3, 44), (4, 45), (11_157, 2)):
+        angle = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(5, 60)))
+        far = rng.uniform(0.0005, 0.001, len(angle))
+        rings.append(Polygon(np.stack([lon + far * np.cos(angle), lat + far * np.sin(angle)], 1)))
+    gpd.GeoDataFrame(geometry=rings, crs=4326).to_file(tmp_path / f"plots.{ending}")
+    read = benchmark.pedantic(read_plots, (tmp_path / f"plots.{ending}",), **ONCE)
+    assert len(read.value) == 11_157
+    assert len(read.messages) < 12
+
+
 @pytest.mark.parametrize("ending", ["gpkg", "geojson"])
 @pytest.mark.parametrize("crosses", [False, True], ids=["valid", "a bow-tie"])
 def test_bench_a_polygon_of_two_million_corners(benchmark, tmp_path, ending, crosses):

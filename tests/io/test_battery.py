@@ -1,10 +1,12 @@
 """Awkward files come in right, or repaired and said so, or are refused with a sentence."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
 
-from fieldmon.errors import ChoiceNeeded, FieldmonError
+from fieldmon.errors import ChoiceNeeded, FieldmonError, SettingError
 from fieldmon.io import read
 from fieldmon.io.import_report import Severity
 from tests import awkward
@@ -74,6 +76,46 @@ def test_it_is_asked_about_or_refused_with_a_sentence(case, tmp_path):
             assert refused.value.choices[0] == choices[0]
     else:
         assert not isinstance(refused.value, ChoiceNeeded), said
+
+
+#: what another file answers, not a value
+OTHER_FILES = {"kind", "plots", "plants"}
+
+
+def suggested(case, folder):
+    """Return what an import suggests: the sentence, the option, and the values it can take."""
+    try:
+        imported = come_in(case, folder)
+    except ChoiceNeeded as asked:
+        if asked.option not in OTHER_FILES:
+            yield str(asked), asked.option, asked.choices
+    except FieldmonError:
+        return
+    else:
+        for message in imported.messages:
+            if message.remedy is not None:
+                yield message.sentence, message.remedy.option, message.remedy.choices
+
+
+@pytest.mark.parametrize("case", awkward.CASES, ids=lambda case: case.name)
+def test_every_answer_that_is_suggested_is_taken_and_is_not_asked_for_again(case, tmp_path):
+    for k, (said, option, choices) in enumerate(suggested(case, tmp_path / "made")):
+        for i, choice in enumerate(choices[:10]):
+            answered = replace(case, options=case.options.choose(option, choice))
+            try:
+                told = [str(m) for m in come_in(answered, tmp_path / f"{k}-{i}").messages]
+            except SettingError as refused:
+                pytest.fail(f"{option}={choice} was suggested, but: {refused}")
+            except FieldmonError as other:
+                told = [str(other)]
+            keeps = option == "crs" and i == len(choices) - 1
+            assert keeps or not any(said in one for one in told), f"{option}={choice}: {said}"
+
+
+def test_a_number_of_the_record_is_never_offered_as_its_count():
+    with pytest.raises(ChoiceNeeded) as asked:
+        read.read_records(awkward.more_awkward.a_number_of_the_record_is_no_count())
+    assert asked.value.choices == ("count=eggs", "present=")
 
 
 def test_the_battery_is_as_large_as_it_claims():

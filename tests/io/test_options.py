@@ -40,6 +40,9 @@ TEXT_OF = {
     "decimal": (",", ","),
     "delimiter": (";", ";"),
     "date_order": ("mdy", "mdy"),
+    "header": ("no", "no"),
+    "degrees": ("dms", "dms"),
+    "doubles": ("one", "one"),
 }
 
 

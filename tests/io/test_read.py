@@ -203,7 +203,7 @@ def test_a_bow_tie_is_repaired_and_said(tmp_path):
         ("empty.csv", b"", "is empty"),
         ("cut.geojson", b'{"type":"FeatureCollection","features":[', "breaks off"),
         ("page.kml", b"<!DOCTYPE html><html></html>", "web page"),
-        ("old.xls", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "old Excel"),
+        ("old.xls", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "workbook of Excel or LibreOffice"),
         ("noise.gpkg", b"SQLite format 3\x00" + b"\x01" * 4000, "cannot be read"),
     ],
 )

@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.reports import colours as on_paper
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Colour = tuple[int, int, int]
-CHANCE_FROM = (0.0, 0.01, 0.02, 0.05, 0.10, 0.25, 0.50)
-# magma (M. Bostock after S. van der Walt and N. Smith, 2015), cut to what stands out from the
-# ground: even steps of lightness, so that grey prints and colour-blind readers see them too
-_MAGMA: tuple[Colour, ...] = (
-    *((254, 194, 135), (251, 150, 104), (241, 102, 92), (205, 64, 113), (158, 47, 127)),
-    *((106, 28, 129), (45, 17, 96)),
-)
+# on paper and on a light ground the same
+_LIGHT: tuple[Colour, ...] = on_paper.CHANCE
+CHANCE_FROM = on_paper.CHANCE_FROM
 _MAGMA_IN_DARK: tuple[Colour, ...] = (
     *((104, 42, 132), (148, 50, 131), (196, 62, 118), (236, 95, 96), (251, 146, 102)),
     *((254, 200, 140), (252, 250, 200)),
@@ -66,7 +64,7 @@ class Shade:
 
 def of_chance(*, dark: bool = False) -> tuple[Colour, ...]:
     """Return the colours of the chance classes: on either ground the highest stands out most."""
-    return _MAGMA_IN_DARK if dark else _MAGMA
+    return _MAGMA_IN_DARK if dark else _LIGHT
 
 
 def by_chance(chance: NDArray[np.float64], *, dark: bool = False) -> Shade:

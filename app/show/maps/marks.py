@@ -9,6 +9,8 @@ import pydeck as pdk
 import shapely
 from pydeck import Layer
 
+from fieldmon.infestation.hotspots import outlines_m
+
 from ...words import texts
 from .colours import GATE, HOT, HOT_IN_DARK, TRUTH, TRUTH_IN_DARK
 
@@ -28,11 +30,8 @@ def hot(grid: PlantGrid, spots: HotSpots, *, dark: bool = False) -> list[Layer]:
     if not len(spots):
         return []
     rows = []
-    margin_m = 0.75 * max(grid.row_spacing_m, grid.plant_spacing_m)
-    inside = np.flatnonzero(spots.of_plant >= 0)
-    for k in range(len(spots)):
-        own = shapely.multipoints(grid.xy_m[inside[spots.of_plant[inside] == k]])
-        shape = grid.frame.geometry_lonlat(shapely.buffer(shapely.convex_hull(own), margin_m))
+    for k, outline_m in enumerate(outlines_m(grid, spots)):
+        shape = grid.frame.geometry_lonlat(outline_m)
         corners = np.round(shapely.get_coordinates(shape.exterior), 7).tolist()
         text = texts.TIP_HOT.format(found=spots.found[k], inspected=spots.inspected[k])
         rows.append({"p": corners, "t": text})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -10,7 +11,8 @@ import shapely
 from pyogrio.errors import DataLayerError, DataSourceError
 
 from fieldmon.errors import FileProblem
-from fieldmon.io.formats.layer import Layer
+from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.formats.wkb import shapes
 from fieldmon.io.import_report import ImportMessage, doubtful, repaired, seen
 from fieldmon.io.parse.text import Decoder
 from fieldmon.io.sandbox import limits
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _UNREADABLE = (DataSourceError, DataLayerError, RuntimeError, ValueError, OSError)
+_OWN_TABLE = re.compile(rb'\btype\s+"?(native|dbf)\b')
 _BYTE_FOR_BYTE = "ISO-8859-1"
 
 
@@ -60,11 +63,12 @@ def read_layer(path: Path, name: str, layer: str | None, encoding: str | None = 
         str(field): _objects(column) for field, column in zip(meta["fields"], values, strict=True)
     }
     limits.check("columns", len(columns), limits.COLUMNS, name)
-    geometry = None if wkb is None else shapely.from_wkb(wkb, on_invalid="ignore")
-    if geometry is not None:
-        n_vertices = int(shapely.get_num_coordinates(geometry).sum())
-        limits.check("vertices", n_vertices, limits.VERTICES, name)
-    return Layer(layer or name, columns, geometry, meta["crs"])
+    if wkb is None:
+        return Layer(layer or name, columns, None, meta["crs"])
+    geometry, messages = shapes(wkb)
+    n_vertices = int(shapely.get_num_coordinates(geometry).sum())
+    limits.check("vertices", n_vertices, limits.VERTICES, name)
+    return Layer(layer or name, columns, geometry, meta["crs"], tuple(messages))
 
 
 def read_shapefile(path: Path, name: str, encoding: str | None) -> Layer:
@@ -86,7 +90,20 @@ def read_shapefile(path: Path, name: str, encoding: str | None) -> Layer:
     columns = {
         decoder(_bytes(column)): _decoded(values, decoder) for column, values in raw.columns.items()
     }
-    return Layer(name, columns, raw.geometry, raw.crs, (*messages, *decoder.messages))
+    said = (*messages, *raw.messages, *decoder.messages)
+    return Layer(name, columns, raw.geometry, raw.crs, said)
+
+
+def read_mapinfo(path: Path, name: str) -> Layer:
+    """Return the one table of a staged MapInfo file; refuse one that only leads to others."""
+    if path.suffix == ".tab":
+        said = path.read_bytes()[: limits.CELL_CHARACTERS].lower()
+        if b"isseamless" in said or b"create view" in said or not _OWN_TABLE.search(said):
+            raise FileProblem(
+                f"{name} must be a MapInfo table of its own, but it only leads to other files. "
+                "Choose those."
+            )
+    return read_layer(path, name, None)
 
 
 def _stated_encoding(path: Path) -> str | None:
@@ -111,8 +128,15 @@ def _bytes(text: str) -> bytes:
 
 def _objects(column: NDArray[Any]) -> NDArray[np.object_]:
     values = np.empty(len(column), dtype=object)
-    values[:] = column.tolist()
+    values[:] = [_in_words(value) for value in column.tolist()]
     return values
+
+
+def _in_words(value: object) -> object:
+    """Return a cell; a list of names, as GML has them, as people would write it."""
+    if isinstance(value, list | np.ndarray):
+        return ", ".join(dict.fromkeys(text(one) for one in value))
+    return value
 
 
 def _unreadable(name: str, bad: Exception) -> FileProblem:

@@ -13,6 +13,7 @@ from shapely.errors import ShapelyError
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer
+from fieldmon.io.formats.wkb import closed
 from fieldmon.io.import_report import ImportMessage, dropped, seen
 from fieldmon.io.parse.text import decode
 from fieldmon.io.sandbox import limits
@@ -163,25 +164,63 @@ def _cell(value: object) -> object:
 def _geometries(
     features: list[dict[str, Any]], name: str
 ) -> tuple[NDArray[np.object_], list[ImportMessage]]:
+    stated = [feature.get("geometry") for feature in features]
     geometry = np.full(len(features), None, dtype=object)
     broken = []
     n_vertices = 0
-    for i, feature in enumerate(features):
-        stated = feature.get("geometry")
-        if stated is None:
+    together = _whole_polygons(stated)
+    for i, one in enumerate(stated):
+        if one is None:
             continue
         try:
-            geometry[i] = _geometry(stated)
+            geometry[i] = _geometry(one) if together is None else together[i]
         except _NOT_GEOMETRY:
             broken.append(i)
             continue
-        n_vertices += int(shapely.get_num_coordinates(geometry[i]))
-        limits.check("vertices", n_vertices, limits.VERTICES, name)
+        if together is None:
+            n_vertices += int(shapely.get_num_coordinates(geometry[i]))
+            limits.check("vertices", n_vertices, limits.VERTICES, name)
+    n_vertices = int(shapely.get_num_coordinates(geometry).sum())
+    limits.check("vertices", n_vertices, limits.VERTICES, name)
+    there = ~shapely.is_missing(geometry)
+    n_open = sum(_is_open(one) for one, kept in zip(stated, there, strict=True) if one and kept)
     messages = [
-        dropped("The geometry cannot be understood and is left out.", f"feature {i + 1}")
+        dropped(
+            "The geometry cannot be understood and is left out.",
+            f"feature {i + 1}",
+            many="{n} geometries cannot be understood and are left out",
+        )
         for i in broken
     ]
-    return geometry, messages
+    return geometry, [*messages, *([closed(n_open)] if n_open else [])]
+
+
+def _whole_polygons(stated: list[Any]) -> NDArray[np.object_] | None:
+    """Return the geometries of a file of nothing but good polygons, all at once; else None."""
+    try:
+        if not stated or any(one["type"] != "Polygon" for one in stated):
+            return None
+        rings = [ring for one in stated for ring in one["coordinates"]]
+        if any(not one["coordinates"] for one in stated) or any(len(r) < 3 for r in rings):
+            return None
+        xy = np.array([point for ring in rings for point in ring], dtype=np.float64)
+        if xy.ndim != 2 or xy.shape[1] < 2:
+            return None
+        ring_of = np.repeat(np.arange(len(rings)), [len(ring) for ring in rings])
+        polygon_of = np.repeat(np.arange(len(stated)), [len(one["coordinates"]) for one in stated])
+        closed_rings = np.asarray(shapely.linearrings(xy[:, :3], indices=ring_of))
+        return np.asarray(shapely.polygons(closed_rings, indices=polygon_of))
+    except _NOT_GEOMETRY:
+        return None
+
+
+def _is_open(stated: dict[str, Any]) -> bool:
+    """Return whether a ring of an area does not end where it begins."""
+    kind = stated["type"]
+    if kind not in {"Polygon", "MultiPolygon"}:
+        return False
+    areas = [stated["coordinates"]] if kind == "Polygon" else stated["coordinates"]
+    return any(len(ring) > 2 and ring[0][:2] != ring[-1][:2] for area in areas for ring in area)
 
 
 def _geometry(stated: dict[str, Any]) -> shapely.Geometry:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-import shapely
 
 from fieldmon.errors import FileProblem
 from fieldmon.io.formats.layer import Layer
+from fieldmon.io.formats.wkb import shapes
 from fieldmon.io.sandbox import limits
 
 if TYPE_CHECKING:
@@ -43,15 +43,15 @@ def read_parquet(path: Path, name: str) -> Layer:
             f"The geometry in {name} must be written as WKB, but it is {stated.get('encoding')}. "
             "Export it as GeoPackage."
         )
-    geometry = shapely.from_wkb(
-        np.array(table.column(primary).to_pylist(), dtype=object), on_invalid="ignore"
-    )
+    wkb = np.empty(table.num_rows, dtype=object)
+    wkb[:] = table.column(primary).to_pylist()
+    geometry, messages = shapes(wkb)
     columns = {
         str(column): _objects(table.column(column).to_pylist())
         for column in table.column_names
         if column != primary
     }
-    return Layer(name, columns, geometry, _crs(stated))
+    return Layer(name, columns, geometry, _crs(stated), tuple(messages))
 
 
 def _crs(stated: dict[str, Any]) -> str | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 import shapely
@@ -82,7 +82,12 @@ class Layer:
         if condition is None:
             return self
         column, _, value = condition.partition("=")
-        named = self.column(column.strip())
+        try:
+            named = self.column(column.strip())
+        except ChoiceNeeded as asked:
+            like = self._with_value(value.strip())
+            offers = tuple(f"{name}={value.strip()}" for name in like or asked.choices)
+            raise ChoiceNeeded(str(asked), "where", offers) from None
         kept = np.array([text(v) == value.strip() for v in named], dtype=bool)
         if not kept.any():
             offers = tuple(f"{column}={v}" for v in sorted({text(v) for v in named})[:50])
@@ -93,6 +98,21 @@ class Layer:
                 offers,
             )
         return self.take(kept)
+
+    def _with_value(self, value: str) -> list[str]:
+        """Return the columns that hold a value."""
+        return [n for n, values in self.columns.items() if any(text(v) == value for v in values)]
+
+    def with_roles(self, columns: tuple[tuple[str, str], ...]) -> Self:
+        """Return the same layer; ask where a column that was named by hand is not there."""
+        for role, name in columns:
+            try:
+                if name:
+                    self.column(name)
+            except ChoiceNeeded as asked:
+                offers = tuple(f"{role}={own}" for own in asked.choices)
+                raise ChoiceNeeded(str(asked), "columns", offers) from None
+        return self
 
     def column(self, name: str) -> NDArray[np.object_]:
         """Return a column by its name, capitals aside; raise `ChoiceNeeded` where there is none."""

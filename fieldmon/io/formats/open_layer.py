@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.gdal import list_layers as gdal_layers
-from fieldmon.io.formats.gdal import read_layer, read_shapefile
+from fieldmon.io.formats.gdal import read_layer, read_mapinfo, read_shapefile
 from fieldmon.io.formats.geojson import read_geojson
 from fieldmon.io.formats.geoparquet import read_parquet
+from fieldmon.io.formats.isoxml import read_isoxml
 from fieldmon.io.formats.layer import Layer, LayerInfo
-from fieldmon.io.formats.signatures import TABULAR, VECTOR, FileKind
-from fieldmon.io.formats.tables import read_sheet, read_text_table, sheet_names
+from fieldmon.io.formats.signatures import TABULAR, VECTOR, WORKBOOKS, FileKind
+from fieldmon.io.formats.tables import read_sheet, read_text_table
+from fieldmon.io.formats.workbooks import sheet_names
 from fieldmon.io.import_report import seen
 from fieldmon.io.options import ReadOptions, Source, source_name
 from fieldmon.io.sandbox.unpack import Member, Workroom, choose_member, members
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
+_MAPINFO = frozenset({FileKind.MAPINFO_TAB, FileKind.MAPINFO_MIF})
 _NOTES = (".txt", ".md", ".html", ".xml", ".json.txt")
 
 
@@ -44,7 +49,8 @@ def open_layer(source: Source, options: ReadOptions, workroom: Workroom) -> Laye
     found = _data_sets(members(source, workroom))
     member = choose_member(found, options.member, source_name(source))
     staged = StagedMember(member, workroom.stage(member), member.name)
-    return _read(staged, options).where(options.where).checked()
+    layer = _read(staged, options).with_roles(options.columns)
+    return layer.where(options.where).checked()
 
 
 def _data_sets(found: tuple[Member, ...]) -> tuple[Member, ...]:
@@ -62,30 +68,24 @@ def _data_sets(found: tuple[Member, ...]) -> tuple[Member, ...]:
 
 def _listed(staged: StagedMember) -> list[LayerInfo]:
     kind = staged.member.kind
-    if kind is FileKind.WORKBOOK:
+    if kind in WORKBOOKS:
         names = sheet_names(staged.path, staged.name)
         return [LayerInfo(staged.name, sheet, None) for sheet in names]
-    if kind in {FileKind.GEOJSON, FileKind.PARQUET}:
+    if kind in {FileKind.GEOJSON, FileKind.PARQUET, FileKind.ISOXML}:
         return [LayerInfo(staged.name, staged.member.stem, "Unknown")]
     if kind is FileKind.TABLE:
         return [LayerInfo(staged.name, staged.member.stem, None)]
     listed = gdal_layers(staged.path, staged.name)
-    if kind is FileKind.SHAPEFILE:
+    if kind in {FileKind.SHAPEFILE, *_MAPINFO}:
         return [LayerInfo(staged.name, staged.member.stem, listed[0].geometry_type)]
     return [LayerInfo(staged.name, one.name, one.geometry_type) for one in listed]
 
 
 def _read(staged: StagedMember, options: ReadOptions) -> Layer:
-    kind = staged.member.kind
-    if kind is FileKind.GEOJSON:
-        return read_geojson(staged.path, staged.member.stem, options.encoding)
-    if kind is FileKind.PARQUET:
-        return read_parquet(staged.path, staged.member.stem)
-    if kind is FileKind.TABLE:
-        return read_text_table(staged.path, staged.member.stem, options)
-    if kind is FileKind.SHAPEFILE:
-        return read_shapefile(staged.path, staged.member.stem, options.encoding)
-    if kind is FileKind.WORKBOOK:
+    kind, stem = staged.member.kind, staged.member.stem
+    if kind in _READERS:
+        return _READERS[kind](staged.path, stem, options)
+    if kind in WORKBOOKS:
         return _only_layer(staged, options, sheet_names(staged.path, staged.name))
     listed = gdal_layers(staged.path, staged.name)
     names = tuple(one.name for one in listed)
@@ -94,13 +94,24 @@ def _read(staged: StagedMember, options: ReadOptions) -> Layer:
     return _only_layer(staged, options, names if options.layer in names else spatial or names)
 
 
+_READERS: dict[FileKind, Callable[[Path, str, ReadOptions], Layer]] = {
+    FileKind.GEOJSON: lambda path, name, options: read_geojson(path, name, options.encoding),
+    FileKind.PARQUET: lambda path, name, _: read_parquet(path, name),
+    FileKind.TABLE: read_text_table,
+    FileKind.SHAPEFILE: lambda path, name, options: read_shapefile(path, name, options.encoding),
+    FileKind.ISOXML: lambda path, name, _: read_isoxml(path, name),
+    FileKind.MAPINFO_TAB: lambda path, name, _: read_mapinfo(path, name),
+    FileKind.MAPINFO_MIF: lambda path, name, _: read_mapinfo(path, name),
+}
+
+
 def _only_layer(staged: StagedMember, options: ReadOptions, names: tuple[str, ...]) -> Layer:
     """Return the layer named, or the only one that holds anything."""
     if options.layer is not None:
         if options.layer in names:
-            return _layer(staged, options.layer)
+            return _layer(staged, options.layer, options)
         raise _which_layer(staged, names, f", but none is called {options.layer!r}")
-    full = _full_layers(staged, names)
+    full = _full_layers(staged, options, names)
     if len(full) > 1:
         raise _which_layer(staged, tuple(full), " with something in them")
     if not full:
@@ -108,29 +119,39 @@ def _only_layer(staged: StagedMember, options: ReadOptions, names: tuple[str, ..
             f"{staged.name} must hold at least one layer with something in it, but holds none."
         )
     ((called, layer),) = full.items()
+    if isinstance(layer, ChoiceNeeded):
+        raise layer
     if len(names) == 1:
         return layer
     return layer.saying(seen(f"Layer {called} was read; {len(names) - 1} other(s) hold nothing."))
 
 
-def _full_layers(staged: StagedMember, names: tuple[str, ...]) -> dict[str, Layer]:
-    full = {}
+def _full_layers(
+    staged: StagedMember, options: ReadOptions, names: tuple[str, ...]
+) -> dict[str, Layer | ChoiceNeeded]:
+    """Return the layers that hold anything, or what one of them asks."""
+    full: dict[str, Layer | ChoiceNeeded] = {}
     for name in names:
         try:
-            layer = _layer(staged, name)
+            layer = _layer(staged, name, options)
         except FileProblem:
             if len(names) == 1:
                 raise
+            continue
+        except ChoiceNeeded as question:
+            full[name] = question
             continue
         if len(layer):
             full[name] = layer
     return full
 
 
-def _layer(staged: StagedMember, layer: str) -> Layer:
-    if staged.member.kind is FileKind.WORKBOOK:
-        return read_sheet(staged.path, staged.name, layer)
-    return read_layer(staged.path, staged.name, layer)
+def _layer(staged: StagedMember, layer: str, options: ReadOptions) -> Layer:
+    if staged.member.kind in WORKBOOKS:
+        return read_sheet(staged.path, staged.name, layer, options)
+    read = read_layer(staged.path, staged.name, layer)
+    # a file whose only layer has no name is given that of the copy
+    return replace(read, name=staged.member.stem) if read.name == staged.path.stem else read
 
 
 def _which_layer(staged: StagedMember, names: tuple[str, ...], more: str) -> ChoiceNeeded:

@@ -24,7 +24,13 @@ class FileKind(StrEnum):
     KML = ".kml"
     GML = ".gml"
     GPX = ".gpx"
+    MAPINFO_TAB = ".tab"
+    MAPINFO_MIF = ".mif"
+    DXF = ".dxf"
+    ISOXML = ".xml"
     WORKBOOK = ".xlsx"
+    OLD_WORKBOOK = ".xls"
+    OPEN_WORKBOOK = ".ods"
     TABLE = ".csv"
     RASTER = ".tif"
     ARCHIVE = ".zip"
@@ -41,34 +47,44 @@ VECTOR = frozenset(
         FileKind.KML,
         FileKind.GML,
         FileKind.GPX,
+        FileKind.MAPINFO_TAB,
+        FileKind.MAPINFO_MIF,
+        FileKind.DXF,
+        FileKind.ISOXML,
     }
 )
-TABULAR = frozenset({FileKind.WORKBOOK, FileKind.TABLE})
+WORKBOOKS = frozenset({FileKind.WORKBOOK, FileKind.OLD_WORKBOOK, FileKind.OPEN_WORKBOOK})
+TABULAR = WORKBOOKS | {FileKind.TABLE}
 READABLE = (
-    "a shapefile (zipped or with its .dbf, .shx and .prj), GeoPackage, GeoJSON, KML or KMZ, GML, "
-    "GPX, FlatGeobuf, GeoParquet, a zipped file geodatabase, CSV or an Excel workbook (.xlsx)"
+    "a shapefile (zipped or with its .dbf, .shx and .prj), GeoPackage, SpatiaLite, GeoJSON, KML or "
+    "KMZ, GML, GPX, FlatGeobuf, GeoParquet, a zipped file geodatabase, MapInfo (.tab, .mif), DXF, "
+    "ISOXML (TASKDATA.XML), CSV or a workbook (.xlsx, .xls, .ods)"
 )
 
+_SHAPEFILE = b"\x00\x00\x27\x0a"
 _MAGIC = (
     (b"SQLite format 3\x00", FileKind.GEOPACKAGE),
     (b"PK\x03\x04", FileKind.ARCHIVE),
     (b"PK\x05\x06", FileKind.ARCHIVE),
     (b"fgb", FileKind.FLATGEOBUF),
     (b"PAR1", FileKind.PARQUET),
-    (b"\x00\x00\x27\x0a", FileKind.SHAPEFILE),
+    (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", FileKind.OLD_WORKBOOK),
+    (_SHAPEFILE, FileKind.SHAPEFILE),
     (b"II*\x00", FileKind.RASTER),
     (b"MM\x00*", FileKind.RASTER),
     (b"II+\x00", FileKind.RASTER),
     (b"MM\x00+", FileKind.RASTER),
 )
+_INDEX = "only an index of a shapefile. Choose the .shp with it, or all of them zipped"
 _REFUSED_MAGIC = (
     (b"\x1f\x8b", "is packed with gzip. Unpack it and choose the file inside"),
     (b"7z\xbc\xaf", "is a 7z archive. Unpack it, or pack it as .zip"),
     (b"Rar!", "is a RAR archive. Unpack it, or pack it as .zip"),
-    (b"\xd0\xcf\x11\xe0", "is an old Excel workbook (.xls). Save it as .xlsx or CSV"),
     (b"%PDF", "is a PDF, which holds no positions. Ask for the map as GeoPackage or shapefile"),
     (b"\x89PNG", "is a picture without a position on the earth. Choose a GeoTIFF"),
     (b"\xff\xd8\xff", "is a picture without a position on the earth. Choose a GeoTIFF"),
+    (b"\x00\x00\x27\x0a\xff\xff\xfe\x70", f"is {_INDEX}"),  # .sbn, .sbx of ArcGIS
+    (b"AutoCAD Binary DXF", "is a binary CAD drawing. Save it as an ASCII DXF"),
     (b"AC10", "is a CAD drawing (DWG). Export it as GeoPackage, shapefile or GeoJSON"),
 )
 _BOMS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
@@ -77,23 +93,54 @@ _XML_ROOTS = {
     b"kml": FileKind.KML,
     b"gpx": FileKind.GPX,
     b"featurecollection": FileKind.GML,
+    b"iso11783_taskdata": FileKind.ISOXML,
 }
+#: how text begins that is no table: MapInfo's tables and its exchange files, drawings
+_TEXTS = (
+    (re.compile(rb"\s*!table", re.IGNORECASE), FileKind.MAPINFO_TAB),
+    (
+        re.compile(
+            rb"\s*version\s+\d+\s*[\r\n]+\s*(charset|delimiter|unique|index|coordsys|transform|"
+            rb"columns)\b",
+            re.IGNORECASE,
+        ),
+        FileKind.MAPINFO_MIF,
+    ),
+    (re.compile(rb"(\s*999\s*[\r\n]+[^\r\n]*[\r\n]+)*\s*0\s*[\r\n]+\s*SECTION\b"), FileKind.DXF),
+)
 _REFUSED_ROOTS = {
     b"ogrvrtdatasource": "only points at other files (VRT). Choose the files themselves",
     b"vrtdataset": "only points at other files (VRT). Choose the files themselves",
     b"html": "is a web page, perhaps a log-in page saved instead of the file. Download it again",
     b"wfs_capabilities": "describes a web service. Download the data themselves",
     b"ogcwfsdatasource": "only points at a web service. Download the data themselves",
+    b"xfc": "is a part of an ISOXML. Choose the folder or zip that holds TASKDATA.XML with it",
     b"gdal_wms": "only points at a web service. Download the data themselves",
     b"svg": "is a drawing without positions on the earth. Export it as GeoPackage or GeoJSON",
 }
 _REFUSED_ENDINGS = {
     ".dbf": "holds only the table of a shapefile. Choose the .shp with it, or all of them zipped",
-    ".shx": "is only the index of a shapefile. Choose the .shp with it, or all of them zipped",
+    **dict.fromkeys(
+        (".shx", ".sbn", ".sbx", ".qix", ".fbn", ".fbx", ".ain", ".aih"), f"is {_INDEX}"
+    ),
     ".prj": "holds only a coordinate system. Choose the .shp with it, or all of them zipped",
     ".vrt": "only points at other files (VRT). Choose the files themselves",
-    ".dxf": "is a CAD drawing (DXF). Export it as GeoPackage, shapefile or GeoJSON",
+    ".mid": "holds only the table of a MapInfo file. Choose the .mif with it, or both zipped",
 }
+
+
+#: how the zip of an OpenDocument spreadsheet begins: its first file, stored as it is, says so
+_OPEN_WORKBOOK = b"mimetypeapplication/vnd.oasis.opendocument.spreadsheet"
+
+
+def workbook_kind(head: bytes) -> FileKind:
+    """Return which workbook a zip is that holds no files of its own to look at."""
+    return FileKind.OPEN_WORKBOOK if is_open_workbook(head) else FileKind.WORKBOOK
+
+
+def is_open_workbook(head: bytes) -> bool:
+    """Return whether a zip is an OpenDocument spreadsheet."""
+    return _OPEN_WORKBOOK in head[:120]
 
 
 def kind_of(head: bytes, name: str) -> FileKind:
@@ -105,13 +152,15 @@ def kind_of(head: bytes, name: str) -> FileKind:
         raise FileProblem(
             f"{name} must hold something, but it is empty. Save or download it again."
         )
-    for magic, kind in _MAGIC:
-        if head.startswith(magic):
-            return kind
     for magic, why in _REFUSED_MAGIC:
         if head.startswith(magic):
             raise FileProblem(f"{name} {why}.")
     ending = PurePosixPath(name.lower()).suffix
+    if ending == ".shx" and head.startswith(_SHAPEFILE):  # it begins as the .shp does
+        raise FileProblem(f"{name} {_REFUSED_ENDINGS[ending]}.")
+    for magic, kind in _MAGIC:
+        if head.startswith(magic):
+            return kind
     if ending in _REFUSED_ENDINGS:
         raise FileProblem(f"{name} {_REFUSED_ENDINGS[ending]}.")
     return _text_kind(head, name)
@@ -128,6 +177,9 @@ def _text_kind(head: bytes, name: str) -> FileKind:
         return FileKind.GEOJSON
     if start.startswith(b"<"):
         return _xml_kind(start, name)
+    for pattern, kind in _TEXTS:
+        if pattern.match(text):
+            return kind
     if b"\x00" in text:
         raise FileProblem(f"{name} must be {READABLE}, but it is none of them.")
     return FileKind.TABLE

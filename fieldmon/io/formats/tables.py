@@ -1,20 +1,24 @@
-"""Text tables and workbooks, in the dialects in which people save them."""
+"""Tables of text and of workbooks, in the dialects in which people save them."""
 
 from __future__ import annotations
 
 import csv
 import io
 from collections import Counter
+from dataclasses import replace
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
+from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.formats.wkt import with_shapes
+from fieldmon.io.formats.workbooks import sheet_rows
 from fieldmon.io.import_report import ImportMessage, dropped, seen
 from fieldmon.io.parse.columns import recognised
 from fieldmon.io.parse.text import decode
+from fieldmon.io.parse.values import dates, degrees, number
 from fieldmon.io.sandbox import limits
 
 if TYPE_CHECKING:
@@ -30,7 +34,7 @@ _LOOKED_AT = 50
 
 
 def read_text_table(path: Path, name: str, options: ReadOptions) -> Layer:
-    """Return a CSV or TSV file as a layer without geometry."""
+    """Return a CSV or TSV file as a layer; its shapes where a column holds such (WKT)."""
     content, messages = decode(path.read_bytes(), options.encoding)
     if "\x00" in content:
         raise FileProblem(f"{name} must be a text table, but it holds bytes that are no text.")
@@ -41,66 +45,20 @@ def read_text_table(path: Path, name: str, options: ReadOptions) -> Layer:
         rows = list(csv.reader(io.StringIO(content, newline=""), delimiter=delimiter))
     except csv.Error as bad:
         raise FileProblem(f"{name} must be a text table, but it cannot be read: {bad}.") from bad
-    layer = _table(rows, name)
-    return Layer(name, layer.columns, messages=(*messages, *layer.messages))
+    layer = _table(rows, name, options.header)
+    return with_shapes(replace(layer, messages=(*messages, *layer.messages)), _system_beside(path))
 
 
-def sheet_names(path: Path, name: str) -> tuple[str, ...]:
-    """Return the sheets of a workbook that can hold a table."""
-    with _Workbook(path, name) as book:
-        return tuple(str(sheet) for sheet in book.sheetnames)
+def _system_beside(path: Path) -> str | None:
+    """Return the coordinate system in the .prj that some programs write beside a table."""
+    beside = path.with_suffix(".prj")
+    return beside.read_bytes()[:10_000].decode("utf-8", "ignore") if beside.exists() else None
 
 
-def read_sheet(path: Path, name: str, sheet: str) -> Layer:
-    """Return one sheet of an Excel workbook as a layer without geometry."""
-    with _Workbook(path, name) as book:
-        if sheet not in book.sheetnames:
-            raise ChoiceNeeded(
-                f"{name} has no sheet {sheet!r}. Choose one of: {', '.join(book.sheetnames)}.",
-                "layer",
-                tuple(book.sheetnames),
-            )
-        rows: list[list[Any]] = []
-        for row in book[sheet].iter_rows(values_only=True, max_col=limits.COLUMNS + 1):
-            cells = list(row)
-            while cells and cells[-1] is None:
-                cells.pop()
-            rows.append(cells)
-            if len(rows) > limits.RECORDS:
-                break
-    while rows and not any(text(v) for v in rows[-1]):
-        rows.pop()
-    return _table(rows, f"{name}, sheet {sheet}")
-
-
-class _Workbook:
-    """A workbook opened to read values; whatever openpyxl raises becomes a `FileProblem`."""
-
-    def __init__(self, path: Path, name: str) -> None:
-        self.path, self.name = path, name
-        self.book: Any = None
-
-    def __enter__(self) -> Any:  # noqa: ANN401 - an untyped library
-        import openpyxl  # noqa: PLC0415 - a tenth of a second to import
-
-        try:
-            self.book = openpyxl.load_workbook(self.path, read_only=True, data_only=True)
-        except Exception as bad:
-            raise self._problem(bad) from bad
-        return self.book
-
-    def __exit__(self, kind: object, bad: BaseException | None, trace: object) -> None:
-        if self.book is not None:
-            self.book.close()
-        # openpyxl reads as it goes, and lets through whatever its parsers of zip and XML raise
-        if isinstance(bad, Exception) and not isinstance(bad, FieldmonError | MemoryError):
-            raise self._problem(bad) from bad
-
-    def _problem(self, bad: BaseException) -> FileProblem:
-        return FileProblem(
-            f"{self.name} must be an Excel workbook, but it cannot be read ({bad}). "
-            "Save it again as .xlsx or CSV."
-        )
+def read_sheet(path: Path, name: str, sheet: str, options: ReadOptions) -> Layer:
+    """Return one sheet of a workbook as a layer; its shapes where a column holds such."""
+    layer = _table(sheet_rows(path, name, sheet), f"{name}, sheet {sheet}", options.header)
+    return with_shapes(layer, None)
 
 
 def _told_delimiter(content: str) -> tuple[str, str | None]:
@@ -131,13 +89,14 @@ def _delimiter(content: str) -> str:
     return best
 
 
-def _table(rows: list[list[Any]], name: str) -> Layer:
+def _table(rows: list[list[Any]], name: str, header: str | None = None) -> Layer:
     limits.check("records", len(rows), limits.RECORDS, name)
-    head = _head_row(rows)
-    if head is None:
-        raise FileProblem(f"{name} must hold a table with a line of column names, but holds none.")
+    rows, head = _headed(rows, name, header)
     messages: list[ImportMessage] = []
-    if head:
+    if header == "no":
+        said = f"{name} has no line of names: its columns are called column 1 to {len(rows[0])}."
+        messages.append(seen(said))
+    elif head:
         messages.append(seen(f"{head} line(s) above the column names were passed over."))
     limits.check("columns", len(rows[head]), limits.COLUMNS, name)
     names = _names(rows[head])
@@ -152,6 +111,59 @@ def _table(rows: list[list[Any]], name: str) -> Layer:
             )
         )
     return Layer(name, _columns(names, body), messages=tuple(messages))
+
+
+def _headed(rows: list[list[Any]], name: str, header: str | None) -> tuple[list[list[Any]], int]:
+    """Return rows, and which of them names the columns; ask where the first looks like data."""
+    if header == "no":
+        widest = max((len(row) for row in rows), default=0)
+        rows, head = [[f"column {i + 1}" for i in range(widest)], *rows], 0
+    else:
+        found = _head_row(rows)
+        if found is None:
+            raise FileProblem(
+                f"{name} must hold a table with a line of column names, but holds none."
+            )
+        head = found
+        if header is None and looks_like_data(rows[head], rows[head + 1 :]):
+            shown = ", ".join(text(v) for v in rows[head][:5] if text(v))
+            raise ChoiceNeeded(
+                f"{name} must have a line of column names, but its first line looks like data "
+                f"({shown}). Say header=no if it has no names; its columns are called column 1, "
+                "column 2 and so on then. Or write names above it.",
+                "header",
+                ("no", "yes"),
+            )
+    return rows, head
+
+
+def looks_like_data(first: list[Any], below: list[list[Any]]) -> bool:
+    """Return whether a row that should name the columns holds what the rows below it hold."""
+    if recognised(text(v) for v in first):
+        return False
+    alike = filled = 0
+    for i, value in enumerate(first):
+        kind = _kind(value)
+        filled += kind != "nothing"
+        others = [_kind(row[i]) for row in below[:_COMPARED] if i < len(row)]
+        others = [other for other in others if other != "nothing"]
+        alike += kind in _DATA and (not others or others.count(kind) * 2 > len(others))
+    return alike > 0 and alike * 3 >= filled
+
+
+_COMPARED = 20
+_DATA = frozenset({"number", "date", "position"})
+
+
+def _kind(value: object) -> str:
+    cell = text(value)
+    if not cell:
+        return "nothing"
+    if np.isfinite(number(cell)) or np.isfinite(number(cell, ",")):
+        return "number"
+    if not np.isnat(dates(np.array([cell], dtype=object)).day[0]):
+        return "date"
+    return "position" if np.isfinite(degrees(cell)) else "word"
 
 
 def _columns(names: list[str], body: list[list[Any]]) -> dict[str, NDArray[np.object_]]:

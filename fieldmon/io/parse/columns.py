@@ -44,6 +44,7 @@ _NAMES = {
     "present": "occurrencestatus presence present presenceabsence pa detected detection infested "
     "infected positive severity befall result found status infestation presencia presente "
     "presenza présence vorhanden befallen nachweis presença "
+    "resultado résultat risultato ergebnis uitslag wynik sonuç результат 结果 結果 نتيجة תוצאה "
     "נוכחות נגוע נמצא ממצא disease diseased symptom symptoms",
     "species": "scientificname species taxon taxonname pest pestname art schädling schaedling "
     "especie espécie espèce specie plaga praga ravageur parassita מין מזיק vernacularname organism",
@@ -94,3 +95,19 @@ def recognised(names: Iterable[str]) -> frozenset[str]:
 
 
 _ALL = frozenset(name for names in _PLAIN.values() for name in names)
+
+
+_IDS = frozenset(
+    {"id", "fid", "gid", "oid", "objectid", "ogcfid", "nr", "no", "num", "number", "nummer"}
+    | {"numero", "index", "idx", "key", "code", "uuid", "guid", "serial", "lfdnr", "feature", "pk"}
+)
+_FEW = 4
+
+
+def is_id(name: str, cells: Iterable[str]) -> bool:
+    """Return whether a column numbers its records: by its name, or by counting them through."""
+    own = plain(name)
+    if own in _IDS or own.endswith("id") or own.startswith("id"):
+        return True
+    whole = [int(cell) for cell in cells if re.fullmatch(r"\d{1,15}", cell)]
+    return len(whole) > _FEW and whole == list(range(whole[0], whole[0] + len(whole)))

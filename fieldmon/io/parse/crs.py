@@ -281,6 +281,22 @@ def km_between(one: tuple[float, float], other: tuple[float, float]) -> float:
     return float(_GEOD.inv(*one, *other)[2]) / 1000
 
 
+def km_outside(crs: pyproj.CRS, lon: float, lat: float) -> float:
+    """Return how far a place is from where a projected system is used; 0 in it, NaN if unknown."""
+    if not crs.is_projected:
+        return 0.0
+    area = crs.area_of_use
+    if area is None:
+        authority = crs.to_authority(min_confidence=70)
+        area = None if authority is None else pyproj.CRS(":".join(authority)).area_of_use
+    if area is None:
+        return float("nan")
+    width = (area.east - area.west) % 360 or 360.0
+    east = (lon - area.west) % 360
+    nearest = lon if east <= width else area.east if east - width < 360 - east else area.west
+    return km_between((lon, lat), (nearest, min(max(lat, area.south), area.north)))
+
+
 def utm_zone(crs: pyproj.CRS) -> int | None:
     """Return the number of the UTM zone of a system, or None."""
     zone = re.match(r"\d+", crs.utm_zone or "")

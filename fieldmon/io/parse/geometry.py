@@ -36,6 +36,12 @@ _REASONS = {
 }
 
 
+def areas_m2(geometry: NDArray[np.object_]) -> Floats:
+    """Return the areas of lon/lat polygons and multipolygons ``(n,)`` on the ellipsoid."""
+    parts, feature = shapely.get_parts(geometry, return_index=True)
+    return np.bincount(feature, _measured_parts(parts).area_m2, len(geometry)).astype(np.float64)
+
+
 def area_m2(geometry: shapely.Geometry) -> float:
     """Return the area of a lon/lat geometry on the ellipsoid."""
     return float(_measured(geometry).area_m2.sum())
@@ -49,14 +55,18 @@ class _Measured(NamedTuple):
 
 
 def _measured(geometry: shapely.Geometry) -> _Measured:
-    """Return the measures of a lon/lat geometry's polygons.
+    """Return the measures of a lon/lat geometry's polygons."""
+    return _measured_parts(shapely.get_parts(_polygons(geometry)))
+
+
+def _measured_parts(polygons: NDArray[np.object_]) -> _Measured:
+    """Return the measures of lon/lat polygons ``(n,)``.
 
     The area between a parallel and the equator has a closed form on the ellipsoid (Snyder 1987,
     Map Projections, eq. 3-12), so that of a ring is one sum; sides count as straight in a map that
     keeps areas, which for a side of 1 km is geodesic to some centimetres.
     """
-    polygons = _polygons(geometry).geoms
-    rings, polygon = shapely.get_rings(list(polygons), return_index=True)
+    rings, polygon = shapely.get_rings(polygons, return_index=True)
     lonlat, ring = shapely.get_coordinates(rings, return_index=True)
     lon, lat = np.deg2rad(lonlat).T
     sin = np.sin(lat)
@@ -112,6 +122,33 @@ def filled(line: shapely.Geometry) -> MultiPolygon:
     return MultiPolygon([Polygon(part.coords) for part in shapely.get_parts(line)])
 
 
+def boundaries(
+    areas: NDArray[np.object_], names: list[str]
+) -> tuple[NDArray[np.object_], list[ImportMessage]]:
+    """Return lon/lat areas ``(n,)`` as valid MultiPolygons (empty where nothing is left).
+
+    Valid areas go together, which is thirty times faster than one by one.
+    """
+    whole = np.empty(len(areas), dtype=object)
+    messages: list[ImportMessage] = []
+    is_plain = np.isin(shapely.get_type_id(areas), (3, 6)) & ~shapely.is_empty(areas)
+    is_plain &= shapely.is_valid(areas)
+    plain = np.flatnonzero(is_plain)
+    parts, feature = shapely.get_parts(areas[plain], return_index=True)
+    if len(plain):
+        whole[plain] = shapely.multipolygons(parts, indices=feature)
+        measured = _measured_parts(parts)
+        is_wide = _is_wide(measured)
+        area = np.bincount(feature, measured.area_m2, len(plain))
+        odd = np.bincount(feature, ~is_wide, len(plain)) > 0
+        odd |= (area < SMALLEST_M2) | (area > LARGEST_M2)
+        is_plain[plain[odd]] = False
+    for i in np.flatnonzero(~is_plain).tolist():
+        whole[i], more = boundary(areas[i], names[i])
+        messages += more
+    return whole, messages
+
+
 def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[ImportMessage]]:
     """Return one feature's lon/lat area as a valid MultiPolygon (empty where nothing is left)."""
     drawn = _polygons(area)
@@ -122,7 +159,8 @@ def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Impo
             whole = _polygons(shapely.make_valid(drawn, method="structure", keep_collapsed=False))
         except GEOSException as bad:
             said = f"The shape is broken ({why}) beyond repair: {bad}."
-            return MultiPolygon(), [dropped(said, name)]
+            many = "{n} shapes are broken beyond repair"
+            return MultiPolygon(), [dropped(said, name, many=many)]
     measured = _measured(whole)
     if whole is not drawn:
         messages.append(_repaired(drawn, whole, measured, name, why))
@@ -139,6 +177,7 @@ def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Impo
                     sliver_width_m=_SLIVER_WIDTH_M,
                 ),
                 name,
+                many="{n} plots have parts too small or narrow for a plant, which were left out",
             )
         )
     if not whole.is_empty:
@@ -152,7 +191,8 @@ def _repaired(
     """Return what to say of an area made valid: parts that overlap are one, holes stay holes."""
     parts = "" if len(whole.geoms) == len(drawn.geoms) else f" in {len(whole.geoms)} part(s)"
     change = f"{_amount(area_m2(drawn))} as drawn, {_amount(now.area_m2.sum())}{parts} now"
-    return repaired(f"The shape was not valid ({why}) and was repaired: {change}.", name)
+    said = f"The shape was not valid ({why}) and was repaired: {change}."
+    return repaired(said, name, many="{n} shapes were not valid and were repaired")
 
 
 def _polygons(geometry: shapely.Geometry) -> MultiPolygon:
@@ -183,6 +223,7 @@ def _questions(area: float, name: str) -> list[ImportMessage]:
                 has=_amount(area),
             ),
             name,
+            many="{n} plots are smaller or larger than is usual",
         )
     ]
 

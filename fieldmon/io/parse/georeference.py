@@ -10,7 +10,15 @@ import shapely
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, repaired, seen
-from fieldmon.io.parse.crs import ask_for_crs, km_between, system, transformation_from, utm_zone
+from fieldmon.io.parse.crs import (
+    ask_for_crs,
+    candidates,
+    code_of,
+    km_outside,
+    system,
+    transformation_from,
+    utm_zone,
+)
 
 if TYPE_CHECKING:
     import pyproj
@@ -19,7 +27,11 @@ if TYPE_CHECKING:
     from fieldmon.io.options import ReadOptions
 
 _DEGREE_M = 111_320.0
-_FAR_KM = 20.0
+_EARTH_KM = 6371.0
+#: from here a file is doubted that should lie near a place, and from here it is asked about
+_FAR_KM, _ASKED_KM = 20.0, 1000.0
+#: outside of where its system is used; countries use one UTM zone far beyond its borders
+_FAR_FROM_USE_KM, _FAR_FROM_ZONE_KM = 50.0, 600.0
 _LOOKED_AT = 5_000
 
 
@@ -73,9 +85,10 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
     through = transformation_from(crs, _middle(xy))
     lonlat = through.lonlat(xy)
     _check_landing(lonlat, crs)
+    _check_near(xy, lonlat, through.code, options)
     step_m = _step(xy) * (_DEGREE_M if crs.is_geographic else 1.0)
-    found = (*messages, *more, *through.messages(), *_distance(lonlat, options))
-    return Georeferenced(lonlat, step_m, found)
+    doubts = [*_outside(xy, lonlat, crs, options), *_distance(lonlat, options)]
+    return Georeferenced(lonlat, step_m, (*messages, *more, *through.messages(), *doubts))
 
 
 def _middle(xy: NDArray[np.float64]) -> tuple[float, float]:
@@ -126,15 +139,68 @@ def _check_landing(lonlat: NDArray[np.float64], crs: pyproj.CRS) -> None:
         )
 
 
+def _outside(
+    xy: NDArray[np.float64], lonlat: NDArray[np.float64], crs: pyproj.CRS, options: ReadOptions
+) -> list[ImportMessage]:
+    """Return a doubt where a file lies outside of where its coordinate system is used."""
+    lon, lat = _middle(lonlat)
+    away = km_outside(crs, lon, lat)
+    if not away > (_FAR_FROM_ZONE_KM if utm_zone(crs) else _FAR_FROM_USE_KM):
+        return []
+    said = (
+        f"It lies at {lon:.4f}, {lat:.4f}, which is {away:.0f} km outside of where {crs.name} is "
+        "used, so the accuracy that PROJ states does not hold. Check the coordinate system."
+    )
+    others = [
+        c for c in candidates(_middle(xy), options.country, options.near) if c.code != code_of(crs)
+    ]
+    if not others:
+        return [doubtful(said)]
+    codes = tuple(c.code for c in others)
+    return [doubtful(said, None, Remedy("crs", codes[0], f"Read as {others[0].name}", codes[1:]))]
+
+
+def _check_near(
+    xy: NDArray[np.float64], lonlat: NDArray[np.float64], code: str, options: ReadOptions
+) -> None:
+    """Ask where a file is said to lie near a place, but lies on another part of the earth."""
+    if options.near is None or options.crs is not None or options.swap_axes:
+        return
+    away = _nearest_km(lonlat, options.near)
+    if away <= _ASKED_KM:
+        return
+    if _nearest_km(lonlat[:, ::-1], options.near) < away / 10:
+        raise ChoiceNeeded(
+            f"It lies {away:.0f} km from the place nearby. Exchange longitude and latitude if they "
+            "are in the wrong order.",
+            "swap_axes",
+            ("yes",),
+        )
+    said = f"As {code} it lies {away:.0f} km from the place nearby."
+    stay = f"{code} keeps it there."
+    if (np.abs(xy) <= (180, 90)).all():  # degrees in any system
+        raise ChoiceNeeded(f"{said} Is it the right file? {stay}", "crs", (code,))
+    question = ask_for_crs(xy, options, said)
+    raise ChoiceNeeded(f"{question} {stay}", "crs", tuple(dict.fromkeys([*question.choices, code])))
+
+
+def _nearest_km(lonlat: NDArray[np.float64], place: tuple[float, float]) -> float:
+    """Return how far the nearest of many positions ``(n, 2)`` is from a place, on a sphere."""
+    lon, lat = np.deg2rad(lonlat).T
+    there_lon, there_lat = np.deg2rad(place)
+    half = np.sin((lat - there_lat) / 2) ** 2
+    half += np.cos(lat) * np.cos(there_lat) * np.sin((lon - there_lon) / 2) ** 2
+    return float(2 * _EARTH_KM * np.arcsin(np.sqrt(np.clip(half.min(), 0, 1))))
+
+
 def _distance(lonlat: NDArray[np.float64], options: ReadOptions) -> list[ImportMessage]:
     """Return a doubt where the file lies far from the place named by hand."""
     if options.near is None:
         return []
-    lon, lat = _middle(lonlat)
-    away = km_between(options.near, (lon, lat))
+    away = _nearest_km(lonlat, options.near)
     if away <= _FAR_KM:
         return []
-    swapped = km_between(options.near, (lat, lon)) if abs(lon) <= 90 else np.inf
+    swapped = _nearest_km(lonlat[:, ::-1], options.near)
     if swapped < away / 10:
         remedy = Remedy("swap_axes", "yes", "Exchange longitude and latitude")
         return [

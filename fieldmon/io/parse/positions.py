@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyproj
@@ -29,7 +30,9 @@ from fieldmon.io.parse.geometry import geometry_kinds
 from fieldmon.io.parse.georeference import place
 from fieldmon.io.parse.values import (
     all_degrees,
+    halves,
     hemispheres,
+    is_dotted,
     is_missing,
     numbers,
     plain_numbers,
@@ -139,7 +142,8 @@ def _way(layer: Layer, options: ReadOptions) -> tuple[str, tuple[str, ...]] | No
 
 def _holds_pairs(layer: Layer, name: str) -> bool:
     some = [text(v) for v in layer.column(name)[:50] if not is_missing(v)]
-    return bool(some) and bool(np.isfinite(positions_in_cells(some).values).any())
+    # what a dotted notation means is asked later
+    return bool(some) and bool(np.isfinite(positions_in_cells(some, "dm").values).any())
 
 
 def _are_numbers_of_plants(layer: Layer, names: tuple[str, ...]) -> bool:
@@ -156,18 +160,15 @@ def _by_coordinates(
     xy, crs, messages = _coordinates(layer, options, how, names)
     stated, more = _stated_crs(layer, options)
     there = _finite(xy)
+    unread = _Unread.of(layer, names, there)
+    if unread.n_dotted * 2 > len(layer) - unread.n_empty:
+        raise unread.ask()
     if not there.any():
         raise FileProblem(
             f"Column(s) {shown} of {layer.name} must hold positions, but not one record has any"
-            f"{_for_instance(layer, names, there)}. Correct them or name other columns."
+            f"{unread.shown()}. Correct them or name other columns."
         )
-    if not there.all():
-        messages.append(
-            dropped(
-                f"{int((~there).sum())} record(s) without a usable position were left out"
-                f"{_for_instance(layer, names, there)}."
-            )
-        )
+    messages += unread.messages()
     placed = place(xy[there], stated or crs, options)
     accuracy, coarse = _rounding(placed.step_m, int(there.sum()))
     found = (seen(worded("Positions are in column(s) {shown}.", shown=shown)), *messages, *more)
@@ -191,9 +192,10 @@ def _coordinates(
     if how == "metres":
         return np.stack([numbers(c, options.decimal) for c in columns], axis=1), None, []
     if how == "together":
-        read = positions_in_cells([text(v) for v in columns[0]])
-        return read.values, _WGS84, _order_of(read.is_certain, names[0])
-    xy = np.stack([all_degrees(c, options.decimal) for c in columns], axis=1)
+        read = positions_in_cells([text(v) for v in columns[0]], options.degrees)
+        return read.values, _WGS84, _order_of(read.is_certain or options.swap_axes, names[0])
+    read_as = partial(all_degrees, decimal=options.decimal, how=options.degrees)
+    xy = np.stack([read_as(c) for c in columns], axis=1)
     if _letters_are_crossed(layer, names):
         said = "Longitudes stood in the column of latitudes; exchanged."
         return xy[:, ::-1], _WGS84, [repaired(said)]
@@ -220,12 +222,53 @@ def _order_of(is_certain: bool, name: str) -> list[ImportMessage]:  # noqa: FBT0
     ]
 
 
-def _for_instance(layer: Layer, names: tuple[str, ...], there: NDArray[np.bool_]) -> str:
-    for i in np.flatnonzero(~there):
-        cells = [text(layer.column(name)[i]) for name in names]
-        if any(not is_missing(cell) for cell in cells):
-            return f", for instance {' / '.join(cells)!r} in record {i + 1}"
-    return ""
+class _Unread(NamedTuple):
+    """Records whose position cannot be read: how many, those written as 35.26.33, and some."""
+
+    n: int
+    n_empty: int
+    n_dotted: int
+    examples: tuple[str, ...]
+
+    @classmethod
+    def of(cls, layer: Layer, names: tuple[str, ...], there: NDArray[np.bool_]) -> _Unread:
+        records = np.flatnonzero(~there)
+        columns = [[text(v) for v in layer.column(name)[records]] for name in names]
+        n_empty = n_dotted = 0
+        examples: list[str] = []
+        for i, cells in zip(records.tolist(), zip(*columns, strict=True), strict=True):
+            if all(is_missing(cell) for cell in cells):
+                n_empty += 1
+                continue
+            n_dotted += any(is_dotted(c) for cell in cells for c in (cell, *(halves(cell) or ())))
+            if len(examples) < _SHOWN:
+                examples.append(f"{' / '.join(cells)!r} in record {i + 1}")
+        return cls(len(records), n_empty, n_dotted, tuple(examples))
+
+    def shown(self) -> str:
+        return f", for instance {', '.join(self.examples)}" if self.examples else ""
+
+    def ask(self) -> ChoiceNeeded:
+        return ChoiceNeeded(
+            f"{self.n_dotted} record(s) give degrees with two points{self.shown()}. 35.26.33 can "
+            "mean degrees, minutes and seconds (degrees=dms) or degrees and minutes with decimals "
+            "(degrees=dm). Choose one.",
+            "degrees",
+            ("dms", "dm"),
+        )
+
+    def messages(self) -> list[ImportMessage]:
+        if not self.n:
+            return []
+        said = f"{self.n} record(s) without a usable position were left out{self.shown()}."
+        if not self.n_dotted:
+            return [dropped(said)]
+        many = f"{said} {self.n_dotted} of them have two points, as 35.26.33."
+        label = "Read them as degrees, minutes and seconds"
+        return [dropped(many, remedy=Remedy("degrees", "dms", label, ("dm",)))]
+
+
+_SHOWN = 3
 
 
 def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[ImportMessage]]:
@@ -283,6 +326,12 @@ def _by_name(layer: Layer, options: ReadOptions, places: NamedPlaces) -> Located
         named = by_plant(None, layer.column(plot), places.plants)
     elif plot:
         named = by_plot(layer.column(plot), places)
+    elif half := [f"{name!r} ({role})" for role, name in options.columns if role in {"lon", "lat"}]:
+        raise ChoiceNeeded(
+            f"Longitudes and latitudes must both be named, but only {half[0]} is. Name the other.",
+            "columns",
+            could_be_positions(layer, options),
+        )
     else:
         raise ChoiceNeeded(
             worded(
@@ -293,9 +342,20 @@ def _by_name(layer: Layer, options: ReadOptions, places: NamedPlaces) -> Located
                 names=", ".join(layer.columns),
             ),
             "columns",
-            tuple(layer.columns),
+            could_be_positions(layer, options),
         )
     return _kept(layer, named)
+
+
+def could_be_positions(layer: Layer, options: ReadOptions) -> tuple[str, ...]:
+    """Return how columns of unknown name could be named: longitudes and latitudes, or plants."""
+    taken = {name for _, name in options.columns}
+    free = [name for name in layer.columns if name not in taken]
+    roles = [role for role in ("lon", "lat") if options.column(role) is None]
+    hold = [name for name in free if np.isfinite(all_degrees(layer.columns[name][:50])).any()]
+    if len(hold) >= len(roles):
+        return tuple(f"{role}={name}" for role in roles for name in hold)
+    return tuple(f"{role}={name}" for role in ("plant", "plot") for name in free)
 
 
 def _by_plant(

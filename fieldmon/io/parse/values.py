@@ -10,6 +10,7 @@ import numpy as np
 
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import text
+from fieldmon.io.parse.result_words import meaning
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -23,16 +24,6 @@ if TYPE_CHECKING:
 MISSING = frozenset(
     {"", "na", "n/a", "n.a.", "nan", "null", "none given", "-", "--", "?", ".", "nd", "n.d."}
     | {"unknown", "missing", "#n/a", "<na>", "-9999", "-999", "nat", "unbekannt", "לא ידוע"}
-)
-_YES = frozenset(
-    {"yes", "y", "true", "t", "present", "positive", "pos", "p", "+", "1", "x", "found", "detected"}
-    | {"infested", "infected", "diseased", "ja", "si", "sí", "oui", "sim", "כן", "נמצא", "נגוע"}
-    | {"presente", "présent", "vorhanden", "some", "few", "many", "low", "medium", "high", "v", "✓"}
-)
-_NO = frozenset(
-    {"no", "false", "f", "absent", "negative", "neg", "n", "0", "none", "nil", "zero", "clean"}
-    | {"not found", "not detected", "healthy", "nein", "non", "não", "nao", "לא", "לא נמצא", "נקי"}
-    | {"ausente", "keine", "ninguno", "aucun", "nothing", "אין"}
 )
 
 
@@ -115,10 +106,9 @@ def counted(cell: str, decimal: str = ".") -> CellCount:
         if value < 0:
             return CellCount(np.nan, UNKNOWN, is_rough=True)
         return CellCount(value, PRESENT if value > 0 else ABSENT, is_rough=False)
-    if word in _NO:
-        return CellCount(0.0, ABSENT, is_rough=False)
-    if word in _YES:
-        return CellCount(np.nan, PRESENT, is_rough=False)
+    said = meaning(word)
+    if said is not None:
+        return CellCount(np.nan if said == PRESENT else 0.0, said, is_rough=False)
     return _roughly(word, decimal)
 
 
@@ -144,11 +134,8 @@ def presence(cell: str) -> int:
     word = cell.strip().casefold()
     if word in MISSING:
         return UNKNOWN
-    if word in _NO:
-        return ABSENT
-    if word in _YES:
-        return PRESENT
-    return counted(cell).present
+    said = meaning(word)
+    return counted(cell).present if said is None else said
 
 
 # --- positions ---------------------------------------------------------------------------------
@@ -162,12 +149,41 @@ _DMS = re.compile(
 )
 
 
-def degrees(cell: str, decimal: str = ".") -> float:
+#: 35.26.33: nobody can tell by looking whether its end are seconds or decimals of minutes
+_DOTTED = re.compile(r"^([-+]?\d{1,3})\.(\d{1,2})\.(\d{1,6})$")
+
+
+def is_dotted(cell: str) -> bool:
+    """Return whether a cell holds degrees written as 35.26.33."""
+    return bool(_DOTTED.match(_signed(cell.strip())[1]))
+
+
+def dotted(cell: str, how: str) -> float:
+    """Return degrees from ``35.26.33``, NaN for none: seconds ("dms") or decimal minutes ("dm").
+
+    Of more than two digits for seconds, the others are their decimals.
+    """
+    sign, bare = _signed(cell.strip())
+    parts = _DOTTED.match(bare)
+    if not parts:
+        return np.nan
+    whole, first, rest = parts.groups()
+    minutes = float(f"{first}.{rest}") if how == "dm" else float(first)
+    seconds = 0.0 if how == "dm" else float(f"{rest[:2]}.{rest[2:] or 0}")
+    if minutes >= 60 or seconds >= 60:
+        return np.nan
+    sign = -sign if whole.startswith("-") else sign
+    return sign * (abs(int(whole)) + minutes / 60 + seconds / 3600)
+
+
+def degrees(cell: str, decimal: str = ".", how: str | None = None) -> float:
     """Return degrees from decimal degrees, degrees-minutes-seconds or ``N 31.2``; NaN for neither.
 
     Minutes and seconds must be below 60: ``07.16.5046`` is not a coordinate to guess, and neither
-    is the letter O, which is east in German and west in Spanish.
+    is the letter O, which is east in German and west in Spanish. `how` says what 35.26.33 means.
     """
+    if how is not None and is_dotted(cell):
+        return dotted(cell, how)
     sign, bare = _signed(cell.strip())
     bare = re.sub(r"\s+", " ", bare).replace(" °", "°").replace(" º", "º")
     # a blank here stands between degrees and minutes, never between thousands
@@ -194,14 +210,16 @@ def _signed(cell: str) -> tuple[float, str]:
     return (-1.0 if letter in "SW" else 1.0), rest.strip()
 
 
-def all_degrees(column: NDArray[np.object_], decimal: str | None = None) -> Float:
+def all_degrees(
+    column: NDArray[np.object_], decimal: str | None = None, how: str | None = None
+) -> Float:
     """Return a column of coordinates as degrees ``(n,)``; NaN where a cell holds none."""
     read = plain_numbers(column)
     if read is not None:
         return read
     cells = [text(v) for v in column]
     mark = decimal or decimal_mark(cells) or "."
-    return np.array([degrees(c, mark) for c in cells])
+    return np.array([degrees(c, mark, how) for c in cells])
 
 
 def hemispheres(cells: Iterable[str]) -> set[str]:
@@ -220,7 +238,7 @@ class CellPositions(NamedTuple):
 _WKT_POINT = re.compile(r"^POINT\s*Z?M?\s*\(\s*(\S+)\s+([^\s)]+).*\)$", re.IGNORECASE)
 
 
-def positions_in_cells(cells: list[str]) -> CellPositions:
+def positions_in_cells(cells: list[str], how: str | None = None) -> CellPositions:
     """Return positions from cells that hold both coordinates.
 
     WKT is longitude, latitude; letters say which is which; else latitude comes first, as people
@@ -229,7 +247,7 @@ def positions_in_cells(cells: list[str]) -> CellPositions:
     values = np.full((len(cells), 2), np.nan)
     sure = np.zeros(len(cells), dtype=bool)
     for i, cell in enumerate(cells):
-        values[i], sure[i] = _pair(cell.strip())
+        values[i], sure[i] = _pair(cell.strip(), how)
     read = np.isfinite(values).all(axis=1)
     if (np.abs(values[read & ~sure, 1]) > 90).any():
         values[~sure] = values[~sure][:, ::-1]
@@ -237,15 +255,15 @@ def positions_in_cells(cells: list[str]) -> CellPositions:
     return CellPositions(values, bool(sure[read].all()))
 
 
-def _pair(cell: str) -> tuple[tuple[float, float], bool]:
+def _pair(cell: str, how: str | None) -> tuple[tuple[float, float], bool]:
     nothing = (np.nan, np.nan)
     wkt = _WKT_POINT.match(cell)
     if wkt:
         return (number(wkt.group(1)), number(wkt.group(2))), True
-    parts = _halves(cell)
+    parts = halves(cell)
     if parts is None:
         return nothing, False
-    first, second = (degrees(part, "," if ";" in cell else ".") for part in parts)
+    first, second = (degrees(part, "," if ";" in cell else ".", how) for part in parts)
     letters = [hemispheres([part]) for part in parts]
     if letters[0] <= set("EW") and letters[1] <= set("NS") and all(letters):
         return (first, second), True
@@ -254,7 +272,8 @@ def _pair(cell: str) -> tuple[tuple[float, float], bool]:
     return nothing, False
 
 
-def _halves(cell: str) -> list[str] | None:
+def halves(cell: str) -> list[str] | None:
+    """Return both coordinates of a cell that holds two, or None."""
     for mark in (";", ",", "/"):
         parts = [part.strip() for part in cell.split(mark)]
         if len(parts) == 2 and all(parts):

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,7 +13,15 @@ from fieldmon.io.parse.values import numbers
 
 if TYPE_CHECKING:
     from fieldmon.io.formats.layer import Layer
-    from fieldmon.plot.field import Field
+
+
+class KnownRows(NamedTuple):
+    """What a file states of a plot's rows, as `Field` has it; None where it does not."""
+
+    row_bearing_deg: float | None = None
+    row_spacing_m: float | None = None
+    plant_spacing_m: float | None = None
+
 
 _COLUMNS = {
     "row_bearing_deg": ("row_bearing_deg", "row_bearing", "bearing", "row_azimuth", "azimuth"),
@@ -33,38 +40,27 @@ _COLUMNS = {
 }
 
 
-def with_known_rows(
-    fields: tuple[Field, ...], layer: Layer, names: list[str]
-) -> tuple[tuple[Field, ...], list[ImportMessage]]:
-    """Return the plots with the row bearing and spacings that the layer's columns state.
-
-    `names` are those of the layer's features, in its order; plots are told apart by them.
-    """
+def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], list[ImportMessage]]:
+    """Return what a layer's columns state of the rows of its features, by the features' names."""
     called = {plain(column): column for column in layer.columns}
-    known: dict[str, dict[str, float]] = {name: {} for name in names}
+    values: list[list[float | None]] = []
     used = []
     for setting, columns in _COLUMNS.items():
         column = next((called[plain(c)] for c in columns if plain(c) in called), None)
         if column is None:
+            values.append([None] * len(names))
             continue
         used.append(f"{column!r}")
-        for name, value in zip(names, numbers(layer.column(column)), strict=True):
-            if np.isfinite(value) and (value > 0 or setting == "row_bearing_deg"):
-                known[name][setting] = float(value)
+        stated = numbers(layer.column(column))
+        usable = np.isfinite(stated) & ((stated > 0) | (setting == "row_bearing_deg"))
+        values.append([float(v) if good else None for v, good in zip(stated, usable, strict=True)])
     if not used:
-        return fields, []
+        return {}, []
+    rows = (KnownRows(*one) for one in zip(*values, strict=True))
     said = seen(
         worded(
             "Direction and spacings of rows and plants are taken from {names}.",
             names=", ".join(used),
         )
     )
-    return tuple(
-        replace(
-            field,
-            row_bearing_deg=known[field.name].get("row_bearing_deg"),
-            row_spacing_m=known[field.name].get("row_spacing_m"),
-            plant_spacing_m=known[field.name].get("plant_spacing_m"),
-        )
-        for field in fields
-    ), [said]
+    return dict(zip(names, rows, strict=True)), [said]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 _GEOD = pyproj.Geod(ellps="WGS84")
-_FAR_M = 100_000.0
+_FAR_M, _DEGREE_M = 100_000.0, 111_000.0
 #: a record this close to a plot counts for it
 NEARBY_M = 100.0
 
@@ -71,6 +71,19 @@ def near_plot(observations: Observations, field: Field) -> RecordsNearPlot:
     reach = np.fmax(NEARBY_M, 2 * observations.accuracy_m)
     near = away <= reach
     return RecordsNearPlot(observations.take(near), observations.take(~near), away[~near])
+
+
+def records_on_plot(observations: Observations, field: Field) -> Observations:
+    """Return the records on a plot or close by; those far from it are not even measured."""
+    west, south, east, north = field.boundary.bounds
+    reach_m = np.fmax(NEARBY_M, 2 * observations.accuracy_m)
+    reach_deg = 1.2 * reach_m / _DEGREE_M
+    widest_deg = reach_deg / max(np.cos(np.deg2rad(max(abs(south), abs(north)))), 0.01)
+    lon, lat = observations.lonlat.T
+    middle, half = (west + east) / 2, (east - west) / 2
+    off_deg = np.abs((lon - middle + 180.0) % 360.0 - 180.0)
+    close = (off_deg <= half + widest_deg) & (lat >= south - reach_deg) & (lat <= north + reach_deg)
+    return near_plot(observations.take(close), field).inside
 
 
 def of_plot(observations: Observations, field: Field) -> tuple[Observations, list[ImportMessage]]:

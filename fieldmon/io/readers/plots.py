@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
-from shapely import MultiPolygon
+from shapely import MultiLineString, MultiPolygon
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.import_report import Imported, ImportMessage, doubtful, dropped, guessed, seen
-from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.geometry import boundary, closed_lines, filled, geometry_kinds
+from fieldmon.io.import_report import (
+    Imported,
+    ImportMessage,
+    doubtful,
+    dropped,
+    gathered,
+    guessed,
+    seen,
+)
+from fieldmon.io.parse.columns import find, plain
+from fieldmon.io.parse.geometry import boundaries, boundary, closed_lines, filled, geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
-from fieldmon.io.readers.known_rows import with_known_rows
+from fieldmon.io.readers.known_rows import KnownRows, known_rows
 from fieldmon.plot.field import Field
 
 if TYPE_CHECKING:
@@ -33,12 +42,32 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
         return _plot_of_corners(layer, options)
     areas, messages = _areas(layer)
     names, name_messages = plot_names(areas, options.name_column)
-    chosen = _chosen(names, options.feature)
+    number = _number(names, options.feature)
+    chosen = np.arange(len(names)) if number else _chosen(names, options.feature)
     placed, place_messages = place_geometry(_shapes(areas)[chosen], layer.crs, options)
-    fields, shape_messages = _fields(placed, [names[i] for i in chosen])
-    fields, row_messages = with_known_rows(fields, areas, names)
+    known, row_messages = known_rows(areas, names)
+    fields, shape_messages = _fields(placed, [names[i] for i in chosen], known)
+    if number:
+        fields, shape_messages = _numbered(fields, shape_messages, number)
     found = (*layer.messages, *messages, *name_messages, *place_messages, *shape_messages)
-    return Imported(fields, (*found, *row_messages))
+    return Imported(fields, gathered((*found, *row_messages)))
+
+
+def _number(names: list[str], feature: str | int | None) -> int:
+    """Return the number of the plot that is wanted, 0 where it is named or all are."""
+    wanted = "" if feature is None else str(feature).strip()
+    return int(wanted) if re.fullmatch(r"[0-9]{1,9}", wanted) and wanted not in names else 0
+
+
+def _numbered(
+    fields: tuple[Field, ...], messages: list[ImportMessage], number: int
+) -> tuple[tuple[Field, ...], list[ImportMessage]]:
+    """Return the plot with a number, as `fieldmon plots` counts those that can be used."""
+    if number > len(fields):
+        raise _which_plot([f.name for f in fields], str(number))
+    one = fields[number - 1]
+    others = {field.name for field in fields} - {one.name}
+    return (one,), [message for message in messages if message.feature not in others]
 
 
 def named_areas(layer: Layer, options: PlotOptions) -> tuple[Layer, list[str]]:
@@ -59,7 +88,7 @@ def _shapes(layer: Layer) -> NDArray[np.object_]:
 
 def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[ImportMessage]]:
     """Return a different name for every feature, and where the names come from."""
-    named = column or find("name", layer.columns)
+    named = column or _name_column(layer)
     messages: list[ImportMessage] = []
     if named is None:
         base = [layer.name] * len(layer)
@@ -68,10 +97,20 @@ def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[Import
                 guessed(worded("No column was recognised as the plots' names; they are numbered."))
             )
     else:
-        base = [text(v) or layer.name for v in layer.column(named)]
+        try:
+            cells = layer.column(named)
+        except ChoiceNeeded as asked:
+            raise ChoiceNeeded(str(asked), "name_column", asked.choices) from None
+        base = [text(v) or layer.name for v in cells]
         if len(layer) > 1 or column is None:
             messages.append(seen(worded("Plots are named by column {name!r}.", name=named)))
     return _told_apart(base), messages
+
+
+def _name_column(layer: Layer) -> str | None:
+    """Return the column that names plots: the first that says anything, by what it is called."""
+    said = [name for name in layer.columns if any(text(v) for v in layer.columns[name])]
+    return find("name", said) or next((name for name in said if "name" in plain(name)), None)
 
 
 def _told_apart(names: list[str]) -> list[str]:
@@ -142,46 +181,60 @@ def _refuse_without_areas(layer: Layer, n_lines: int, n_points: int) -> None:
 
 
 def _chosen(names: list[str], feature: str | int | None) -> NDArray[np.int64]:
-    """Return which features are wanted: by name, or by number from 1."""
+    """Return which features are wanted, by name."""
     if feature is None:
         return np.arange(len(names))
     wanted = str(feature).strip()
     if wanted in names:
         return np.array([names.index(wanted)])
-    if wanted.isdigit() and 1 <= int(wanted) <= len(names):
-        return np.array([int(wanted) - 1])
     alike = [n for n in names if wanted.casefold() in n.casefold()]
     if len(alike) == 1:
         return np.array([names.index(alike[0])])
+    raise _which_plot(names, wanted, alike)
+
+
+def _which_plot(names: list[str], wanted: str, alike: list[str] | None = None) -> ChoiceNeeded:
     offered = alike or names
-    raise ChoiceNeeded(
-        f"There are {len(names)} plots, but {'several' if alike else 'none'} called {wanted!r}. "
-        f"Choose one of: {', '.join(offered[:20])}; or a number from 1 to {len(names)}.",
+    return ChoiceNeeded(
+        f"There are {len(names)} plots, but {'several are' if alike else 'none is'} called "
+        f"{wanted!r}. Choose one of: {', '.join(offered[:20])}; or its number, as fieldmon plots "
+        "lists it.",
         "feature",
         tuple(offered),
     )
 
 
 def _fields(
-    geometry: NDArray[np.object_], names: list[str]
+    geometry: NDArray[np.object_], names: list[str], known: dict[str, KnownRows]
 ) -> tuple[tuple[Field, ...], list[ImportMessage]]:
-    fields, messages = [], []
-    for area, name in zip(geometry, names, strict=True):
-        kept, found = boundary(area, name)
-        messages += found
-        if kept.is_empty:
-            messages.append(dropped("Nothing of this plot is left to use.", name))
-            continue
-        fields.append(Field(name, kept))
+    kept, messages = boundaries(geometry, names)
+    fields = []
+    is_left = ~shapely.is_empty(kept)
+    for i in np.flatnonzero(~is_left).tolist():
+        many = "Nothing is left to use of {n} plots"
+        messages.append(dropped("Nothing of this plot is left to use.", names[i], many=many))
+    for i in np.flatnonzero(is_left).tolist():
+        rows = known.get(names[i], _UNKNOWN_ROWS)._asdict()
+        # what no plot of a file has is one object for all of them, sent and kept but once
+        fields.append(
+            Field(names[i], kept[i], no_go=_NO_AREA, paths=_NO_LINES, row_lines=_NO_LINES, **rows)
+        )
     if not fields:
         said = "; ".join(f.sentence for f in messages[:5])
         raise FileProblem(f"At least one plot must have an area, but none has. {said}")
     return tuple(fields), [*messages, *_parts(fields), *_duplicates(fields)]
 
 
+_NO_AREA, _NO_LINES, _UNKNOWN_ROWS = MultiPolygon(), MultiLineString(), KnownRows()
+
+
 def _parts(fields: list[Field]) -> list[ImportMessage]:
-    several = [f.name for f in fields if len(f.boundary.geoms) > 1]
-    holed = [f.name for f in fields if any(len(p.interiors) for p in f.boundary.geoms)]
+    shapes = [f.boundary for f in fields]
+    polygons, plot = shapely.get_parts(shapes, return_index=True)
+    n_parts = np.bincount(plot, minlength=len(fields))
+    n_holes = np.bincount(plot, shapely.get_num_interior_rings(polygons), len(fields))
+    several = [fields[i].name for i in np.flatnonzero(n_parts > 1)]
+    holed = [fields[i].name for i in np.flatnonzero(n_holes)]
     messages = []
     if several:
         messages.append(
@@ -211,15 +264,17 @@ def _some(names: list[str]) -> str:
 
 
 def _duplicates(fields: list[Field]) -> list[ImportMessage]:
+    bounds = shapely.bounds([field.boundary for field in fields])
+    _, same, times = np.unique(bounds, axis=0, return_inverse=True, return_counts=True)
     first: dict[bytes, str] = {}
     messages = []
-    bounds = Counter(field.boundary.bounds for field in fields)
-    for field in fields:
-        if bounds[field.boundary.bounds] == 1:
-            continue
+    for i in np.flatnonzero(times[same.ravel()] > 1).tolist():
+        field = fields[i]
         key = shapely.to_wkb(shapely.normalize(field.boundary))
         if key in first:
-            messages.append(doubtful(f"It has the same outline as {first[key]}.", field.name))
+            said = f"It has the same outline as {first[key]}."
+            many = "{n} plots have the same outline as another"
+            messages.append(doubtful(said, field.name, many=many))
         first.setdefault(key, field.name)
     return messages
 

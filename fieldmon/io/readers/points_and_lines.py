@@ -8,16 +8,19 @@ import numpy as np
 import shapely
 from shapely import MultiLineString
 
-from fieldmon.errors import FileProblem
+from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.import_report import Imported, doubtful, dropped, seen
+from fieldmon.io.import_report import Imported, dropped, seen
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
 from fieldmon.io.readers.places import Plants
+from fieldmon.plot.row_detection import distinct
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.io.options import ReadOptions
 
 
@@ -37,16 +40,30 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         taken.add(named)
         messages.append(seen(f"Column {named!r} names the {role}s."))
         labels.append(np.array([text(v) for v in found.layer.column(named)], dtype=np.str_))
-    _, first, times = np.unique(found.lonlat, axis=0, return_index=True, return_counts=True)
-    if (times > 1).any():
-        again = found.layer.take(first[times > 1])
-        messages.append(
-            doubtful(
-                f"{int((times - 1).sum())} plant(s) stand at the very place of another, "
-                f"first {_called(again)}."
-            )
+    kept = distinct(found.lonlat)
+    n_doubles = len(found.lonlat) - len(kept)
+    if n_doubles and options.doubles is None:
+        raise _about_doubles(found.layer, kept)
+    if n_doubles:
+        said = (
+            f"{n_doubles} of {len(found.lonlat)} plants stood within 5 cm of another one; left out."
         )
-    return Imported(Plants(found.lonlat, *labels), (*layer.messages, *messages))
+        messages.append(dropped(said))
+    row, plant = (label[kept] for label in labels)
+    return Imported(Plants(found.lonlat[kept], row, plant), (*layer.messages, *messages))
+
+
+def _about_doubles(layer: Layer, kept: NDArray[np.intp]) -> ChoiceNeeded:
+    """Return the question whether one of each is to be kept."""
+    again = np.setdiff1d(np.arange(len(layer)), kept)
+    called = _called(layer.take(again))
+    return ChoiceNeeded(
+        f"No two plants may stand in one place, but {len(again)} of {len(layer)} are within 5 cm "
+        f"of an earlier one, the first of them {called}. Keep one of each if they are doubles; "
+        "if not, mend the file.",
+        "doubles",
+        ("one",),
+    )
 
 
 def _called(layer: Layer) -> str:

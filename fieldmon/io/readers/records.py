@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ObservationError
+from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.infestation.observations import PRESENT, UNKNOWN, Observations
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import (
@@ -21,8 +21,9 @@ from fieldmon.io.import_report import (
     guessed,
     seen,
 )
-from fieldmon.io.parse.columns import find, recognised
+from fieldmon.io.parse.columns import find, is_id, recognised
 from fieldmon.io.parse.positions import located
+from fieldmon.io.parse.result_words import ResultWords, about_minus
 from fieldmon.io.parse.values import (
     could_be_thousands,
     counted,
@@ -33,6 +34,7 @@ from fieldmon.io.parse.values import (
     numbers,
     presence,
 )
+from fieldmon.io.readers.wide_tables import by_day
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -68,7 +70,7 @@ def _records_and_plots(
     """Return the records of a layer, and the plot that each names, if they do."""
     if len(layer) == 0:
         raise ObservationError(f"{layer.name} must hold records, but it holds none.")
-    layer, repeated = _once_each(layer)
+    layer, repeated = _once_each(by_day(layer, options))
     found = located(layer, options, places)
     table = _Table(found.layer, options)
     day, day_messages = _days(table)
@@ -211,32 +213,55 @@ def _counts(table: _Table) -> _Counts:
     """Return how many, whether, and what was found."""
     count_name = table.named("count")
     present_name = table.named("present", frozenset({count_name} if count_name else ()))
+    all_are_finds = table.options.column("present") == ""
     counts = _Counts(np.full(len(table), np.nan), np.full(len(table), UNKNOWN, np.int8), [])
     if count_name is not None:
         counts = _numbers_of(table, count_name)
-    if present_name is not None:
+    if present_name is not None and not all_are_finds:
         counts = _with_presence(table, present_name, counts)
-    if count_name is None and present_name is None:
+    elif all_are_finds and count_name is None:
         counts.present[:] = PRESENT
-        counts.messages.append(
-            guessed(
-                "No column says how many or whether: every record was taken as a find.",
-                remedy=_offer(table, "count", _are_numbers),
-            )
-        )
+        counts.messages.append(seen("Every record was taken as a find, as told."))
+    elif count_name is None:
+        raise _what_was_found(table)
     return counts
+
+
+def _what_was_found(table: _Table) -> ChoiceNeeded:
+    """Return the question which column says what was found, with those that could."""
+    words = _fitting(table, _are_results)
+    numbers = [name for name in _fitting(table, _are_numbers) if not is_id(name, table.cells(name))]
+    could = (*(f"present={n}" for n in words), *(f"count={n}" for n in numbers if n not in words))
+    return ChoiceNeeded(
+        f"{table.layer.name} must have a column that says what was found (count, found, result), "
+        f"but none was recognised among: {', '.join(table.layer.columns) or 'none'}. Name it: "
+        "columns=count=NAME, or columns=present=NAME for words; or say that every record is a "
+        "find: columns=present=.",
+        "columns",
+        (*could, "present="),
+    )
 
 
 def _offer(table: _Table, role: str, fits: Callable[[list[str]], bool]) -> Remedy | None:
     """Return the columns of unknown name that hold what could play a role, if there are any."""
-    unknown = [name for name in table.layer.columns if not recognised([name])]
-    some = {name: [c for c in table.cells(name)[:_LOOKED_AT] if c] for name in unknown}
-    choices = tuple(f"{role}={name}" for name, cells in some.items() if cells and fits(cells))
+    choices = tuple(f"{role}={name}" for name in _fitting(table, fits))
     if not choices:
         return None
     one = f"Take the {role} from {choices[0].partition('=')[2]}"
     label = one if len(choices) == 1 else f"Name the column of the {role}"
     return Remedy("columns", choices[0], label, choices[1:])
+
+
+def _fitting(table: _Table, fits: Callable[[list[str]], bool]) -> list[str]:
+    """Return the columns of unknown name whose cells fit."""
+    unknown = [name for name in table.layer.columns if not recognised([name])]
+    some = {name: [c for c in table.cells(name)[:_LOOKED_AT] if c] for name in unknown}
+    return [name for name, cells in some.items() if cells and fits(cells)]
+
+
+def _are_results(cells: list[str]) -> bool:
+    read = [presence(cell) for cell in cells if not is_missing(cell)]
+    return bool(read) and all(one != UNKNOWN for one in read) and not _are_numbers(cells)
 
 
 def _are_dates(cells: list[str]) -> bool:
@@ -295,7 +320,8 @@ def _mark(table: _Table, name: str, cells: list[str]) -> tuple[str, list[ImportM
 
 def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
     cells = table.cells(name)
-    known = {cell: presence(cell) for cell in set(cells)}
+    words = ResultWords(cells, table.options)
+    known = {cell: _present(cell, words) for cell in set(cells)}
     stated = np.array([known[cell] for cell in cells], dtype=np.int8)
     at_odds = (stated != UNKNOWN) & (counts.present != UNKNOWN) & (stated != counts.present)
     messages = [*counts.messages, seen(worded("Presence is in column {name!r}.", name=name))]
@@ -309,9 +335,18 @@ def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
     unread = {cell for cell in known if known[cell] == UNKNOWN and not is_missing(cell)}
     if unread:
         shown = ", ".join(repr(cell) for cell in sorted(unread)[:3])
-        messages.append(doubtful(f"These words say neither yes nor no: {shown}.", name))
+        one = min(unread)
+        remedy = Remedy("found", one, f"Take {one!r} as found; clean= takes it as clean")
+        said = f"These words say neither yes nor no: {shown}."
+        messages.append(doubtful(said, name, None if "," in one else remedy))
+    messages += about_minus(cells, words)
     present = np.where(stated == UNKNOWN, counts.present, stated).astype(np.int8)
     return _Counts(counts.number, present, messages)
+
+
+def _present(cell: str, words: ResultWords) -> int:
+    said = words[cell]
+    return presence(cell) if said is None else said
 
 
 def _species(table: _Table) -> list[ImportMessage]:

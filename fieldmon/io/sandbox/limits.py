@@ -22,9 +22,10 @@ RECORDS = 1_000_000
 COLUMNS = 1_000
 #: text in one cell or attribute
 CELL_CHARACTERS = 1_000_000
-#: what the reading process may take: working time, and how many times that where others work too
+#: what the reading process may take: working time of its own, however busy the machine is, and
+#: memory; real time is a far backstop only, so many times that
 READ_SECONDS = 10.0
-PATIENCE = 3.0
+PATIENCE = 30.0
 MEMORY_BYTES = 1_000 * MB
 #: pixels of a raster that are kept, bands it may have, one of its tiles or strips unpacked, and all
 #: that is unpacked of it (its smaller copies are used where they do)

@@ -11,6 +11,7 @@ import atexit
 import importlib
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import threading
@@ -25,6 +26,9 @@ from fieldmon.io.sandbox import limits
 if sys.platform != "win32":
     import resource
 
+#: the signal by which a system ends a process that has worked for too long
+_OUT_OF_TIME = getattr(signal, "SIGXCPU", 0) or -1
+
 #: files read before a process is replaced, so that nothing adds up in it
 _USES = 200
 # GDAL reads these when it is loaded. Drivers that lead to other files or to the network are not
@@ -33,9 +37,9 @@ _SKIPPED = (
     *("OGR_VRT", "WFS", "OAPIF", "OGCAPI", "CSW", "Elasticsearch", "Carto", "AmigoCloud", "NGW"),
     *("PLSCENES", "EEDA", "HTTP", "GDALG", "GPSBabel", "ADBC", "MBTiles", "PMTiles", "MVT", "OSM"),
     *("GTFS", "PDF", "PDS4", "VICAR", "PCIDSK", "S57", "DGN", "LVBAG", "GMLAS", "TopoJSON", "WAsP"),
-    *("ESRIJSON", "GeoJSONSeq", "OGR_GMT", "SQLite", "DXF", "GeoRSS", "VFK", "PGDUMP", "OGR_PDS"),
+    *("ESRIJSON", "GeoJSONSeq", "OGR_GMT", "GeoRSS", "VFK", "PGDUMP", "OGR_PDS"),
     *("EDIGEO", "Idrisi", "ODS", "XLSX", "SXF", "Selafin", "JML", "VDV", "MapML", "JSONFG", "CSV"),
-    *("MiraMonVector", "AVCBin", "AVCE00", "AIVector", "MapInfo File", "MEM", "KML", "GeoJSON"),
+    *("MiraMonVector", "AVCBin", "AVCE00", "AIVector", "MEM", "KML", "GeoJSON"),
 )
 _ENVIRONMENT = {
     "OGR_SKIP": ",".join(_SKIPPED),
@@ -58,8 +62,9 @@ _ENVIRONMENT = {
 class _Clock(threading.Thread):
     """Ends a process that works for longer than it may, or sleeps.
 
-    What counts is the process's own time, or a busy machine would refuse good files; real time
-    counts where it only sleeps, and where it takes `limits.PATIENCE` times as long.
+    What counts is the process's own working time, or a busy machine would refuse good files. Real
+    time counts where it only sleeps, and as a far backstop, `limits.PATIENCE` times as long. The
+    process has the same limit by itself (`_limit_work`), where the system tells no working time.
     """
 
     def __init__(self, process: subprocess.Popen[bytes], seconds: float) -> None:
@@ -140,12 +145,13 @@ class ReadingProcess:
         clock.start()
         try:
             sent, received = self._pipes()
-            pickle.dump((task, arguments), sent, protocol=5)
+            pickle.dump((task, arguments, seconds), sent, protocol=5)
             sent.flush()
             is_good, answer = pickle.load(received)  # noqa: S301 - see the module's first words
         except (EOFError, OSError, pickle.UnpicklingError) as gone:
             self.stop()
-            raise FileProblem(self._why(clock.is_late)) from gone
+            is_late = clock.is_late or self._process.returncode == -_OUT_OF_TIME
+            raise FileProblem(self._why(is_late)) from gone
         finally:
             clock.cancel()
         if is_good:
@@ -160,8 +166,8 @@ class ReadingProcess:
     def _why(self, late: bool) -> str:  # noqa: FBT001
         if late:
             return (
-                f"A file must be read within {limits.READ_SECONDS:g} seconds, but this one takes "
-                "longer: it is too big or made to be slow. Cut it to the plots that matter."
+                f"A file must be read within {limits.READ_SECONDS:g} seconds of work, but this one "
+                "takes longer: it is too big or made to be slow. Cut it to the plots that matter."
             )
         return (
             "The file made its reader crash and was given up: it is damaged, or made to do harm. "
@@ -271,9 +277,10 @@ def _serve() -> None:
         importlib.import_module(module)
     while True:
         try:
-            task, arguments = pickle.load(calls)  # noqa: S301 - from our own program
+            task, arguments, seconds = pickle.load(calls)  # noqa: S301 - from our own program
         except EOFError:
             return
+        _limit_work(seconds)
         pickle.dump(_answer(task, arguments), answers, protocol=5)
         answers.flush()
 
@@ -293,6 +300,16 @@ def _answer(task: str, arguments: tuple[Any, ...]) -> tuple[bool, Any]:
         )
     except Exception as bad:  # noqa: BLE001 - everything is for the caller to see
         return False, bad
+
+
+def _limit_work(seconds: float) -> None:
+    """Let the system end this process a second after it has worked for so long on one file."""
+    if sys.platform != "win32":
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        until = int(used.ru_utime + used.ru_stime + seconds) + 2
+        hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
+        if hard == resource.RLIM_INFINITY or until < hard:
+            resource.setrlimit(resource.RLIMIT_CPU, (until, hard))
 
 
 def _limit_memory() -> None:

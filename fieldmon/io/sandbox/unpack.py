@@ -8,26 +8,46 @@ from __future__ import annotations
 
 import io
 import lzma
+import os
 import re
+import sqlite3
 import stat
 import zipfile
 import zlib
-from contextlib import contextmanager
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import IO, TYPE_CHECKING
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.formats.signatures import HEAD_BYTES, READABLE, FileKind, kind_of
+from fieldmon.io.formats.signatures import (
+    HEAD_BYTES,
+    READABLE,
+    FileKind,
+    is_open_workbook,
+    kind_of,
+    workbook_kind,
+)
 from fieldmon.io.options import Source, Upload, source_name
 from fieldmon.io.sandbox import limits
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-_SHAPEFILE_PARTS = (".shp", ".dbf", ".shx", ".prj", ".cpg")
-_RASTER_PARTS = (".tfw", ".tifw", ".wld", ".prj")
+#: what belongs to a main file, by that one's ending and by its kind
+_PARTS = {
+    ".shp": (".dbf", ".shx", ".prj", ".cpg"),
+    ".tif": (".tfw", ".tifw", ".wld", ".prj"),
+    ".tab": (".dat", ".map", ".id", ".ind", ".dbf"),
+    ".mif": (".mid",),
+    ".csv": (".prj", ".csvt"),
+}
+_PARTS[".tiff"] = _PARTS[".tif"]
+#: the other files of an ISOXML, and those of a file geodatabase
+_TASK_FILE = re.compile(r"[A-Za-z]{3}[0-9]{5}\.(xml|bin)", re.IGNORECASE)
 _GEODATABASE_FILE = re.compile(r"[A-Za-z0-9_]{1,40}(\.[A-Za-z0-9_]{1,20}){0,3}")
+#: files, folders, pipes and devices that are looked at in a folder
+_MOST_SEEN = 20_000
 _DECOYS = frozenset({"thumbs.db", "desktop.ini", "__macosx"})
 _OFFICE_PART = "[content_types].xml"
 _DAMAGE = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, ValueError)
@@ -47,7 +67,9 @@ class FileEntry:
         return PurePosixPath(self.name)
 
     def head(self) -> bytes:
-        """Return the first bytes."""
+        """Return the first bytes; none of a file that says it has none, and may never end."""
+        if not self.n_bytes:
+            return b""
         with _opened(self) as file:
             return file.read(HEAD_BYTES)
 
@@ -86,10 +108,22 @@ class Workroom:
                 if _GEODATABASE_FILE.fullmatch(entry.path.name):
                     self._copy(entry, inside / entry.path.name)
             return inside
+        if member.kind is FileKind.ISOXML:
+            return self._stage_tasks(member, room)
         main = room / f"data{member.kind.value}"
         self._copy(member.entries[0], main)
         for entry in member.entries[1:]:
             self._copy(entry, room / f"data{entry.path.suffix.lower()}")
+        if member.kind is FileKind.GEOPACKAGE and not _is_geopackage(main):
+            return main.rename(main.with_suffix(".sqlite"))
+        return main
+
+    def _stage_tasks(self, member: Member, room: Path) -> Path:
+        """Copy the files of an ISOXML, which name each other."""
+        main = room / "TASKDATA.XML"
+        self._copy(member.entries[0], main)
+        for entry in member.entries[1:]:
+            self._copy(entry, room / entry.path.name.upper())
         return main
 
     def unpack(self, entry: FileEntry) -> Path:
@@ -109,6 +143,16 @@ class Workroom:
                         f"but {entry.name} brings it to more. Pack less into it."
                     )
                 target.write(piece)
+
+
+def _is_geopackage(path: Path) -> bool:
+    """Return whether a database keeps a GeoPackage's list of contents; SpatiaLite has its own."""
+    try:
+        with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as db:
+            known = "SELECT 1 FROM sqlite_master WHERE lower(name) = 'gpkg_contents'"
+            return db.execute(known).fetchone() is not None
+    except (sqlite3.Error, UnicodeDecodeError):  # the latter from names that are no text
+        return True  # whoever opens it says what is wrong
 
 
 @contextmanager
@@ -167,20 +211,33 @@ def _entries(source: Source) -> list[FileEntry]:
         raise FileProblem(f"{path} must be a file or a folder, but there is none. Check the name.")
     if path.is_dir():
         return _of_folder(path)
+    if not path.is_file():
+        raise FileProblem(
+            f"{path} must be a file or a folder, but it is a pipe, a device or the like. "
+            "Save what comes out of it in a file, and choose that."
+        )
     return [_of_path(p, p.name) for p in (path, *_belongings(path))]
 
 
 def _belongings(path: Path) -> list[Path]:
-    """Return the other files of a shapefile or raster that lie beside its main file."""
-    parts = {".shp": _SHAPEFILE_PARTS, ".tif": _RASTER_PARTS, ".tiff": _RASTER_PARTS}
-    wanted = parts.get(path.suffix.lower())
-    if wanted is None:
+    """Return the other files that lie beside a data set's main file and belong to it."""
+    if path.name.lower() == "taskdata.xml":
+        return [other for other in _beside(path) if _TASK_FILE.fullmatch(other.name)]
+    wanted = _PARTS.get(path.suffix.lower(), ())
+    if not wanted:
         return []
     return [
         other
-        for other in sorted(path.parent.iterdir())
-        if other.stem == path.stem and other != path and other.suffix.lower() in wanted
+        for other in _beside(path)
+        if other.stem == path.stem and other.suffix.lower() in wanted
     ]
+
+
+def _beside(path: Path) -> list[Path]:
+    try:
+        return sorted(other for other in path.parent.iterdir() if other != path)
+    except OSError:
+        return []  # a folder that one may pass through, but not look at
 
 
 def _of_upload(upload: Upload) -> FileEntry:
@@ -190,7 +247,10 @@ def _of_upload(upload: Upload) -> FileEntry:
 
 
 def _of_path(path: Path, name: str) -> FileEntry:
-    n_bytes = path.stat().st_size
+    try:
+        n_bytes = path.stat().st_size
+    except OSError as bad:
+        raise FileProblem(f"{name} cannot be read: {bad.strerror or bad}.") from bad
     _check_size(name, n_bytes)
     return FileEntry(name, n_bytes, lambda: path.open("rb"))
 
@@ -205,16 +265,25 @@ def _check_size(name: str, n_bytes: int) -> None:
 
 def _of_folder(folder: Path) -> list[FileEntry]:
     base = folder.parent if folder.suffix.lower() == ".gdb" else folder
-    entries = []
-    for path in sorted(folder.rglob("*")):
-        if path.is_file() and not path.is_symlink():
-            entries.append(_of_path(path, path.relative_to(base).as_posix()))
-        if len(entries) > limits.ARCHIVE_ENTRIES:
+    entries: list[FileEntry] = []
+    for n_seen, path in enumerate(_walked(folder)):
+        with suppress(OSError):  # gone since it was listed, or not to be looked at
+            if path.is_file() and not path.is_symlink():
+                entries.append(_of_path(path, path.relative_to(base).as_posix()))
+        if len(entries) > limits.ARCHIVE_ENTRIES or n_seen > _MOST_SEEN:
             raise FileProblem(
                 f"A folder may hold {limits.ARCHIVE_ENTRIES} files at most, but {folder} holds "
                 "more. Choose one file in it."
             )
     return entries
+
+
+def _walked(folder: Path) -> Iterator[Path]:
+    """Yield what lies in a folder and those in it, name by name, without listing all before."""
+    for root, folders, files in os.walk(folder):
+        folders.sort()
+        yield from (Path(root, name) for name in sorted(files))
+        yield Path(root)
 
 
 def _is_decoy(entry: FileEntry) -> bool:
@@ -236,7 +305,9 @@ def _expand(entries: Iterable[FileEntry], workroom: Workroom, depth: int) -> Ite
                 f"{entry.name} is one more. Unpack the outer ones."
             )
         inner = _zip_entries(entry, workroom)
-        if any(one.name.lower().endswith(_OFFICE_PART) for one in inner):
+        if is_open_workbook(entry.head()) or any(
+            one.name.lower().endswith(_OFFICE_PART) for one in inner
+        ):
             yield entry  # a workbook is an archive as well
         elif depth == 0:
             yield from _expand(inner, workroom, depth + 1)
@@ -321,8 +392,7 @@ def _group(entries: list[FileEntry]) -> tuple[list[Member], list[FileProblem]]:
     problems = []
     for entry in rest:
         beside = by_place[str(entry.path.parent), entry.path.stem.lower()]
-        is_part = entry.path.suffix.lower() in {*_SHAPEFILE_PARTS[1:], *_RASTER_PARTS}
-        if is_part and beside.keys() & {".shp", ".tif", ".tiff"}:
+        if any(entry.path.suffix.lower() in _PARTS.get(main, ()) for main in beside):
             continue
         try:
             kind = kind_of(entry.head(), entry.name)
@@ -330,11 +400,14 @@ def _group(entries: list[FileEntry]) -> tuple[list[Member], list[FileProblem]]:
             problems.append(problem)
             continue
         if kind is FileKind.ARCHIVE:
-            kind = FileKind.WORKBOOK
-        parts = {FileKind.SHAPEFILE: _SHAPEFILE_PARTS[1:], FileKind.RASTER: _RASTER_PARTS}.get(
-            kind, ()
-        )
-        belongings = tuple(beside[part] for part in parts if part in beside)
+            kind = workbook_kind(entry.head())
+        belongings = [beside[part] for part in _PARTS.get(kind.value, ()) if part in beside]
+        if kind is FileKind.ISOXML:
+            belongings = [
+                other
+                for other in rest
+                if other.path.parent == entry.path.parent and _TASK_FILE.fullmatch(other.path.name)
+            ]
         found.append(Member(entry.name, kind, (entry, *belongings)))
     return found, problems
 

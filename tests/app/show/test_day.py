@@ -95,14 +95,3 @@ def test_rows_that_rose_most_come_first(worked):
         assert f"rose most: {best + 1} (+{rise[best]:.1%})" in said
     else:
         assert "rose most" not in said
-
-
-def test_plants_found_are_named_by_row(worked):
-    done = worked.history.inspections.on(BEGINS)
-    found = np.unique(done.plant[done.result == 1])
-    label = row_label(worked.plot.grid, found)
-    said = day.found_by_row(on(worked, 0))
-    assert sum(len(plants.split(", ")) for plants in said.values()) == len(found) > 0
-    for line, number in zip(label.line, label.number, strict=True):
-        assert str(number) in said[f"Row {line}"].split(", ")
-    assert day.found_by_row(chosen(a_plot())) == {}

@@ -1,6 +1,11 @@
 """The page of a season."""
 
+from datetime import date
+
+import numpy as np
+
 from app.words import texts
+from fieldmon.infestation.inspections import Inspections
 from tests.app.driving import begun, go, metric, texts_of
 
 
@@ -19,3 +24,12 @@ def test_a_season_just_begun_has_found_nothing_and_says_what_is_expected(app):
     assert metric(app, texts.INSPECTED_EVER).startswith("0 / ")
     low, high = metric(app, texts.EXPECTED_LEFT).split("(")[1].rstrip(")").split("-")
     assert 0 <= int(low) < int(high)
+
+
+def test_the_season_says_why_days_sum_to_more_than_the_plants_found(season_app, season):
+    for day in (0, 1):
+        on = np.datetime64("2026-11-16") + day
+        season().record(Inspections.of(np.arange(3), np.ones(3, int), on), f"day {day}")
+    season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 17)).run()
+    go(season_app, "season")
+    assert "6 finds on 3 plants: 3 of them on plants that had been found" in texts_of(season_app)

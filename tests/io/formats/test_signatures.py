@@ -27,6 +27,13 @@ from fieldmon.io.formats.signatures import TABULAR, VECTOR, FileKind, kind_of
         (b"<wfs:FeatureCollection>", FileKind.GML),
         (b"<plots xmlns:gml='http://www.opengis.net/gml'>", FileKind.GML),
         (b"lon;lat\n1;2", FileKind.TABLE),
+        (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", FileKind.OLD_WORKBOOK),
+        (b"!table\n!version 300\n", FileKind.MAPINFO_TAB),
+        (b'Version 300\r\nCharset "WindowsLatin1"\r\n', FileKind.MAPINFO_MIF),
+        (b"version 300 of our list\na;b\n", FileKind.TABLE),
+        (b"  0\r\nSECTION\r\n", FileKind.DXF),
+        (b"999\nmade by a program\n  0\nSECTION\n", FileKind.DXF),
+        (b"<ISO11783_TaskData VersionMajor='4'>", FileKind.ISOXML),
     ],
 )
 @pytest.mark.parametrize("name", ["a", "a.zip", "a.pdf"])
@@ -41,11 +48,13 @@ def test_the_first_bytes_tell_the_kind_and_the_name_does_not(head, kind, name):
         (b"\x1f\x8b\x08", "gzip"),
         (b"7z\xbc\xaf\x27", "7z archive"),
         (b"Rar!\x1a", "RAR archive"),
-        (b"\xd0\xcf\x11\xe0\xa1", "old Excel"),
         (b"%PDF-1.7", "PDF"),
         (b"\x89PNG\r\n", "picture without a position"),
         (b"\xff\xd8\xff\xe0", "picture without a position"),
         (b"AC1027", "CAD drawing"),
+        (b"AutoCAD Binary DXF\r\n", "ASCII DXF"),
+        (b"\x00\x00\x27\x0a\xff\xff\xfe\x70", "only an index of a shapefile"),
+        (b"<XFC>", "holds TASKDATA.XML"),
         (b"<html>", "web page"),
         (b"<!DOCTYPE html><html>", "web page"),
         (b"<OGRVRTDataSource>", "points at other files"),
@@ -60,7 +69,7 @@ def test_what_cannot_be_read_is_refused_with_what_it_is(head, says):
         kind_of(head, "file.dat")
 
 
-@pytest.mark.parametrize("name", ["a.dbf", "a.shx", "a.PRJ", "a.vrt", "a.dxf"])
+@pytest.mark.parametrize("name", ["a.dbf", "a.shx", "a.PRJ", "a.vrt", "a.sbn", "a.mid"])
 def test_parts_of_other_files_are_refused_by_their_ending(name):
     with pytest.raises(FileProblem, match=r"Choose|Export"):
         kind_of(b"plain text", name)

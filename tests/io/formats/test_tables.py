@@ -9,7 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.formats.tables import read_sheet, read_text_table, sheet_names
+from fieldmon.io.formats.tables import read_sheet, read_text_table
+from fieldmon.io.formats.workbooks import sheet_names
 from fieldmon.io.options import ReadOptions
 from tests.io.tables_of_cells import sentences
 
@@ -104,17 +105,17 @@ def a_workbook(path):
 def test_a_sheet_is_read_with_its_numbers_as_numbers(tmp_path):
     path = a_workbook(tmp_path / "b.xlsx")
     assert sheet_names(path, "b") == ("plots", "empty")
-    layer = read_sheet(path, "b", "plots")
+    layer = read_sheet(path, "b", "plots", ReadOptions())
     assert rows_of(layer) == [["name", "column 2", "area"], ["north", None, 2.5]]
 
 
 def test_a_sheet_that_there_is_not_is_a_question(tmp_path):
     with pytest.raises(ChoiceNeeded, match="no sheet 'rows'") as asked:
-        read_sheet(a_workbook(tmp_path / "b.xlsx"), "b", "rows")
+        read_sheet(a_workbook(tmp_path / "b.xlsx"), "b", "rows", ReadOptions())
     assert (asked.value.option, asked.value.choices) == ("layer", ("plots", "empty"))
 
 
 def test_a_workbook_that_is_none_is_refused(tmp_path):
     (tmp_path / "b.xlsx").write_bytes(b"PK\x03\x04 no workbook")
-    with pytest.raises(FileProblem, match="must be an Excel workbook"):
+    with pytest.raises(FileProblem, match="must be a workbook of Excel"):
         sheet_names(tmp_path / "b.xlsx", "b")

@@ -4,11 +4,12 @@ import numpy as np
 import pyproj
 import pytest
 import shapely
+import shapely.affinity
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely import MultiPolygon, Polygon, box
 
-from fieldmon.io.parse.geometry import area_m2
+from fieldmon.io.parse.geometry import area_m2, areas_m2, boundaries, boundary
 
 GEOD = pyproj.Geod(ellps="WGS84")
 
@@ -35,3 +36,33 @@ def test_the_area_of_a_ragged_plot_with_a_hole_is_geodesic(lon, lat, size_deg, c
 def test_the_whole_earth_but_the_poles_has_the_area_that_is_published():
     halves = MultiPolygon([box(-180, -90, 0, 90).segmentize(1), box(0, -90, 180, 90).segmentize(1)])
     assert area_m2(halves) == pytest.approx(510_065_621.724e6, rel=1e-9)
+
+
+def shape_of(seed):
+    """Return a star, perhaps crossing itself, tiny, in parts, or with a hole."""
+    rng = np.random.default_rng(seed)
+    size = float(rng.choice([1e-7, 1e-5, 1e-3]))
+    ring = np.array([35.0, 30.0]) + size * rng.random((int(rng.integers(3, 9)), 2))
+    star = Polygon(ring)
+    kind = seed % 4
+    if kind == 1:
+        return MultiPolygon(
+            [star.convex_hull, shapely.affinity.translate(star.convex_hull, 2 * size)]
+        )
+    if kind == 2:
+        return star.convex_hull.difference(star.convex_hull.centroid.buffer(size / 20))
+    return star if kind else star.convex_hull
+
+
+@given(st.lists(st.integers(0, 10_000), min_size=1, max_size=12))
+def test_areas_together_are_what_they_are_one_by_one(seeds):
+    areas = np.array([shape_of(seed) for seed in seeds], dtype=object)
+    names = [f"plot {i}" for i in range(len(seeds))]
+    together, said = boundaries(areas, names)
+    alone = [boundary(area, name) for area, name in zip(areas, names, strict=True)]
+    for one, (other, _) in zip(together, alone, strict=True):
+        assert one.geom_type == "MultiPolygon"
+        assert one.normalize().equals_exact(other.normalize(), 0)
+    told = [message for _, messages in alone for message in messages]
+    assert sorted(map(str, said)) == sorted(map(str, told))
+    np.testing.assert_allclose(areas_m2(together), [area_m2(one) for one, _ in alone])

@@ -326,7 +326,10 @@ def test_waypoints_are_read_by_their_names():
 def test_a_file_that_says_nothing_of_findings_asks_for_its_columns():
     with pytest.raises(ChoiceNeeded, match="what was found") as asked:
         read("plant,height\n7,3\n")
-    assert (asked.value.option, asked.value.choices) == ("columns", ("plant", "height"))
+    assert (asked.value.option, asked.value.choices) == (
+        "columns",
+        ("present=height", "count=height"),
+    )
     named = InspectionOptions().choose("columns", "present=height")
     assert read("plant,height\n7,3\n", named).value.plant.tolist() == [7]
     with pytest.raises(ChoiceNeeded, match="which plants"):

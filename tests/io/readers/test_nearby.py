@@ -1,11 +1,15 @@
 """Which plant a record belongs to, and what is said where that cannot be told."""
 
 import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from shapely import MultiPolygon, box
 
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.io.import_report import Remedy, Severity, guessed
-from fieldmon.io.readers.nearby import on_plants
+from fieldmon.io.readers.nearby import near_plot, on_plants, records_on_plot
 from fieldmon.io.readers.places import NamedPlaces, Plants
+from fieldmon.plot.field import Field
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.layout import Planting, rectangle
 
@@ -65,3 +69,21 @@ def test_a_remedy_is_printed_as_it_is_typed_and_offers_every_choice():
     )
     assert remedy.choices == ("species=T. urticae", "species=B. tabaci")
     assert Remedy("date_order", "mdy", "Read month first").setting == "date_order=mdy"
+
+
+@given(
+    st.lists(
+        st.tuples(st.floats(-0.02, 0.02), st.floats(-0.02, 0.02), st.floats(0, 2000)),
+        min_size=1,
+        max_size=20,
+    ),
+    st.sampled_from((0.0, 60.0, -75.0)),
+    st.sampled_from((35.0, 179.999)),
+)
+def test_records_on_a_plot_are_those_that_are_measured_to_be(places, lat, lon):
+    plot = Field("x", MultiPolygon([box(lon, lat, lon + 0.0005, lat + 0.0005)]))
+    lonlat = np.array([(lon + dx, lat + dy) for dx, dy, _ in places])
+    accuracy = np.array([a for *_, a in places])
+    records = Observations.of(lonlat, np.full(len(places), PRESENT), accuracy_m=accuracy)
+    expected = near_plot(records, plot).inside
+    np.testing.assert_array_equal(records_on_plot(records, plot).lonlat, expected.lonlat)

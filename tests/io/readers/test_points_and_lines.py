@@ -42,10 +42,14 @@ def test_several_points_in_one_feature_are_a_plant_each():
     assert plants.row.tolist() == ["1", "1", "2"]
 
 
-def test_two_plants_at_one_place_are_doubted_by_name():
-    imported = plants_of(layer_of([Point(5, 45)] * 3 + [Point(5.1, 45)], vine=list("abcd")), ANY)
-    doubts = [message.sentence for message in imported.of(Severity.DOUBTFUL)]
-    assert "2 plant(s) stand at the very place of another, first 'a'." in doubts
+def test_two_plants_at_one_place_are_asked_about_by_name_and_one_of_each_can_be_kept():
+    layer = layer_of([Point(5, 45)] * 3 + [Point(5.1, 45)], vine=list("abcd"))
+    with pytest.raises(ChoiceNeeded, match=r"2 of 4 are within 5 cm of .* them 'b'") as asked:
+        plants_of(layer, ANY)
+    imported = plants_of(layer, ANY.choose(asked.value.option, asked.value.choices[0]))
+    assert imported.value.plant.tolist() == ["a", "d"]
+    (left,) = imported.of(Severity.DROPPED)
+    assert left.sentence.startswith("2 of 4 plants stood within 5 cm of another one")
 
 
 def test_plants_can_be_named_by_hand():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from shapely import MultiPolygon, box
 
-from fieldmon.errors import ObservationError
+from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import RecordOptions
@@ -57,13 +57,15 @@ def test_a_word_that_contradicts_its_count_is_doubted_and_believed():
     assert "1 record(s) say another thing than their count" in said(records, Severity.DOUBTFUL)
 
 
-def test_a_file_that_only_lists_places_is_taken_for_finds_and_offers_what_could_be_a_count():
-    records = read(zz=[1, 2, 3], crop=["a", "b", "c"])
-    assert (records.value.present == PRESENT).all()
-    (guess,) = records.of(Severity.GUESSED)
-    assert guess.remedy.choices == ("count=zz",)
-    again = records_of(at(3, zz=[1, 0, 3]), ANY.choose("columns", guess.remedy.value))
+def test_a_file_that_only_lists_places_asks_what_was_found_and_offers_what_could_be_a_count():
+    with pytest.raises(ChoiceNeeded, match="says what was found") as asked:
+        read(zz=[1, 2, 3], crop=["a", "b", "c"])
+    counted, all_finds = asked.value.choices
+    assert (counted, all_finds) == ("count=zz", "present=")
+    again = records_of(at(3, zz=[1, 0, 3]), ANY.choose("columns", counted))
     assert again.value.present.tolist() == [PRESENT, ABSENT, PRESENT]
+    again = records_of(at(3, zz=[1, 0, 3]), ANY.choose("columns", all_finds))
+    assert (again.value.present == PRESENT).all()
 
 
 def test_a_count_that_is_no_plain_number_is_read_roughly_and_shown():

@@ -8,7 +8,7 @@ import numpy as np
 
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.parse.columns import find, plain
+from fieldmon.io.parse.columns import find, is_id, plain, recognised
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -73,7 +73,7 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
                 f"{layer.name} must have a column that says what was found (found, result, count), "
                 f"but none was recognised among: {', '.join(names) or 'none'}. Name it.",
                 "columns",
-                tuple(names),
+                tuple(f"{role}={n}" for role in ("present", "count") for n in _open(layer)),
             )
     if plant is not None and line is not None and number is None and plain(plant) not in _IDS:
         plant, number = None, plant
@@ -81,6 +81,16 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     return InspectionColumns(
         result, count, marks, plant, line, number, own_column("face", layer), arrive
     )
+
+
+def _open(layer: Layer) -> list[str]:
+    """Return the columns that could hold results: none of known use, no running number."""
+    known = recognised(layer.columns)
+    return [
+        name
+        for name in layer.columns
+        if name not in known and not is_id(name, [text(v) for v in layer.columns[name][:200]])
+    ] or list(layer.columns)
 
 
 def _result_name(layer: Layer, count: str | None) -> str | None:

@@ -11,7 +11,7 @@ import numpy as np
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.positions import located
+from fieldmon.io.parse.positions import could_be_positions, located
 from fieldmon.io.parse.values import numbers
 
 if TYPE_CHECKING:
@@ -75,7 +75,8 @@ def positions_in(
                 f"number in it, or a position), but its columns are {', '.join(layer.columns)}. "
                 "Name them.",
                 "columns",
-                tuple(layer.columns),
+                tuple(f"plant={name}" for name in layer.columns)
+                + could_be_positions(layer, options),
             )
         return lonlat, accuracy_m, ()
     rows = np.empty(len(layer), dtype=object)

@@ -9,8 +9,9 @@ import numpy as np
 
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.import_report import ImportMessage, doubtful, seen
-from fieldmon.io.parse.values import counted, decimal_mark, is_missing, presence
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, seen
+from fieldmon.io.parse.result_words import MINUS, NOT_INSPECTED, ResultWords, about_minus
+from fieldmon.io.parse.values import counted, decimal_mark, is_missing, number, presence
 from fieldmon.io.readers.inspection_file.plants import PLANT_IN_NAME
 
 if TYPE_CHECKING:
@@ -19,36 +20,6 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_file.columns import InspectionColumns
     from fieldmon.io.readers.inspection_options import InspectionOptions
 
-_CLEAN = frozenset(
-    {"clear", "ok", "okay", "sauber", "befallsfrei", "limpio", "limpia", "sano", "sana", "propre"}
-    | {"sain", "saine", "pulito", "pulita", "limpo", "limpa", "sadio", "nil found", "no pests"}
-    | {
-        "kein befall",
-        "nicht gefunden",
-        "no encontrado",
-        "pas trouvé",
-        "non trovato",
-        "ללא",
-        "נקייה",
-    }
-)
-_FOUND = frozenset(
-    {"gefunden", "befall", "encontrado", "encontrada", "trouvé", "trouvée", "infesté", "trovato"}
-    | {"infestato", "infestado", "plaga", "pest", "pests", "mite", "mites", "נמצאה", "נגועה", "✔"}
-)
-_NOT_INSPECTED = frozenset(
-    {"not inspected", "uninspected", "could not inspect", "cannot inspect", "not visited", "ni"}
-    | {"n/i", "skip", "skipped", "missed", "not done", "no access", "nicht geprüft", "ausgelassen"}
-    | {"nicht kontrolliert", "no inspeccionado", "no inspeccionada", "sin inspeccionar", "saltado"}
-    | {"non inspecté", "non inspectée", "non ispezionato", "não inspecionado", "לא נבדק"}
-    | {"לא נבדקה", "דולג"}
-)
-_WORDS = (
-    dict.fromkeys(_CLEAN, ABSENT)
-    | dict.fromkeys(_FOUND, PRESENT)
-    | dict.fromkeys(_NOT_INSPECTED, UNKNOWN)
-)
-_MINUS = frozenset({"-", "\u2212", "\u2013"})
 _PLUS = re.compile(r"^\+\s*(\d*)$")
 
 
@@ -77,17 +48,19 @@ _SILENT = _CellResult(UNKNOWN, np.nan, is_said=False)
 def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> SeenResults:
     """Return what was seen at each plant of a layer."""
     if columns.marks is not None:
-        said = [_of_mark(text(v)) for v in layer.column(columns.marks)]
+        words = ResultWords(["+"], options)
+        said = [_of_mark(text(v), words) for v in layer.column(columns.marks)]
         return _put_together(said, [_SILENT] * len(said), [])
     by_result, by_count = [_SILENT] * len(layer), [_SILENT] * len(layer)
     messages: list[ImportMessage] = []
     if columns.result is not None:
         cells = [text(v) for v in layer.column(columns.result)]
-        signs = any(_PLUS.match(cell) for cell in cells)
+        words = ResultWords(cells, options)
         mark = options.decimal or decimal_mark(cells) or "."
-        known = {cell: _of_word(cell, mark, signs=signs) for cell in set(cells)}
+        known = {cell: _of_word(cell, mark, words) for cell in set(cells)}
         by_result = [known[cell] for cell in cells]
         messages += [seen(f"Results are in column {columns.result!r}."), *_unread(cells, known)]
+        messages += about_minus(cells, words)
     if columns.number_found is not None:
         cells = [text(v) for v in layer.column(columns.number_found)]
         mark = options.decimal or decimal_mark(cells) or "."
@@ -130,10 +103,12 @@ def _unread(cells: list[str], known: dict[str, _CellResult]) -> list[ImportMessa
         return []
     shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(odd))[:5])
     said = f"{len(odd)} record(s) say neither clean nor found ({shown}); left unknown."
-    return [doubtful(said)]
+    one = odd[0] if "," not in odd[0] else ""
+    remedy = Remedy("found", one, f"Take {one!r} as found; clean= takes it as clean")
+    return [doubtful(said, None, remedy if one else None)]
 
 
-def _of_word(cell: str, mark: str, *, signs: bool) -> _CellResult:
+def _of_word(cell: str, mark: str, words: ResultWords) -> _CellResult:
     """Return what a cell for a result says: a word in many languages, a sign, or a count.
 
     A lone minus is "clean" only in a column that has a plus somewhere, else it is nothing. A number
@@ -143,10 +118,11 @@ def _of_word(cell: str, mark: str, *, signs: bool) -> _CellResult:
     plus = _PLUS.match(word)
     if plus:
         return _CellResult(PRESENT, float(plus.group(1) or "nan"), is_said=True)
-    if signs and word in _MINUS:
-        return _CellResult(ABSENT, np.nan, is_said=True)
-    if word in _WORDS:
-        return _CellResult(_WORDS[word], np.nan, is_said=True)
+    if word in NOT_INSPECTED:
+        return _CellResult(UNKNOWN, np.nan, is_said=True)
+    meant = words[cell]
+    if meant is not None and not np.isfinite(number(word)):
+        return _CellResult(meant, np.nan, is_said=True)
     result = presence(word)
     if result == UNKNOWN:
         return _CellResult(UNKNOWN, np.nan, is_said=False, is_read=is_missing(word))
@@ -157,7 +133,7 @@ def _of_word(cell: str, mark: str, *, signs: bool) -> _CellResult:
 
 def _of_count(cell: str, mark: str) -> _CellResult:
     """Return what a cell for a count says; ``<5`` is a find that was not counted."""
-    if cell.strip().casefold() in _NOT_INSPECTED:
+    if cell.strip().casefold() in NOT_INSPECTED:
         return _CellResult(UNKNOWN, np.nan, is_said=True)
     read = counted(cell.removeprefix("+"), mark)
     if read.present == UNKNOWN:
@@ -167,23 +143,23 @@ def _of_count(cell: str, mark: str) -> _CellResult:
     return _CellResult(read.present, 0.0 if read.present == ABSENT else number, is_said=True)
 
 
-def _of_mark(name: str) -> _CellResult:
+def _of_mark(name: str, words: ResultWords) -> _CellResult:
     """Return what a waypoint's name says: ``+3``, ``+``, ``-``, ``0``, ``clean``, ``R3/17 +2``.
 
     A number alone is none: handhelds number their waypoints 001, 002.
     """
-    words = name.split()
-    last = words[-1] if words else ""
+    parts = name.split()
+    last = parts[-1] if parts else ""
     for sign in (name.strip(), last):
         plus = _PLUS.match(sign)
         if plus:
             return _CellResult(PRESENT, float(plus.group(1) or "nan"), is_said=True)
-        if sign in _MINUS:
+        if sign in MINUS:
             return _CellResult(ABSENT, np.nan, is_said=True)
     if name.strip() == "0":
         return _CellResult(ABSENT, np.nan, is_said=True)
     bare = PLANT_IN_NAME.sub(" ", name).strip()
     if not bare or re.fullmatch(r"[\d\s]+", bare):
         return _SILENT
-    said = _of_word(bare, ".", signs=True)
+    said = _of_word(bare, ".", words)
     return said if said.is_said else _SILENT

@@ -20,6 +20,7 @@ from fieldmon.io.readers.inspection_file.columns import columns_of, own_column, 
 from fieldmon.io.readers.inspection_file.plants import named_plants, positions_in
 from fieldmon.io.readers.inspection_file.results import results_in
 from fieldmon.io.readers.inspection_file.times import times_in
+from fieldmon.io.readers.wide_tables import by_day
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -121,7 +122,7 @@ def _known_layers(infos: tuple[LayerInfo, ...]) -> list[LayerInfo]:
 def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows]:
     """Return what one layer or table says of plants that were inspected."""
     layer, messages = _without_lines(layer)
-    layer = _without_undone(layer)
+    layer = by_day(_without_undone(layer), options)
     columns = columns_of(layer, options)
     results = results_in(layer, columns, options)
     notes = texts_in(layer, own_column("notes", layer))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.words.units import DATES, Units
+from fieldmon.compute.units import DATES, Units
 
 
 def test_units_say_what_they_measure():

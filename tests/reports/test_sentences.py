@@ -1,13 +1,15 @@
-"""Hot spots in words: where they are and how surprising."""
+"""A day and its hot spots in words: what to do, where they are and how surprising."""
 
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from app.show.hot_spots import meanings
 from fieldmon.plot.grid import plant_at
 from fieldmon.plot.layout import rectangle
+from fieldmon.reports.sentences import headline, runs
+from fieldmon.reports.sentences import hot_spot_meanings as meanings
+from tests.io.writers.handed import empty, usual
 
 GRID = rectangle(8, 30)
 
@@ -56,3 +58,24 @@ def test_how_likely_it_is_by_chance_is_said_in_ones_of_many(p, says):
 
 def test_of_very_many_only_the_first_are_said():
     assert len(meanings(GRID, spots(*([k] for k in range(12))))) == 8
+
+
+def test_the_headline_says_plants_rows_hours_and_finds():
+    route = usual().route
+    lines = route.aisles.grid.row_line[route.aisles.grid.row[route.plant]] + 1
+    assert headline(route, "2026-11-18") == (
+        f"Inspect {len(route)} plants in rows {lines.min()}–{lines.max()} on 2026-11-18, "
+        f"{route.end_s / 3600:.1f} h: about {round(route.expected_found)} finds expected."
+    )
+
+
+def test_a_day_without_a_stop_is_said():
+    assert headline(empty().route, "18.11.2026") == "Nothing to inspect on 18.11.2026."
+
+
+@pytest.mark.parametrize(
+    ("numbers", "said"),
+    [([], ""), ([7], "7"), ([3, 1, 2], "1–3"), ([1, 4, 5, 6, 9, 9], "1, 4–6, 9"), ([1, 2], "1–2")],
+)
+def test_numbers_in_a_row_are_put_together(numbers, said):
+    assert runs(numbers) == said

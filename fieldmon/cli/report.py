@@ -1,0 +1,73 @@
+"""`fieldmon report`: a day or a season on paper. Heavy imports wait."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fieldmon.cli.options import SeasonFile
+from fieldmon.cli.times import day
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring import Season
+    from fieldmon.reports.content import Report
+
+
+class Paper(StrEnum):
+    """Paper to print on."""
+
+    a4 = "a4"
+    letter = "letter"
+
+
+Output = Annotated[
+    Path, typer.Option("--output", "-o", help="File to write, .pdf or .html by its ending.")
+]
+OneDay = Annotated[
+    str | None, typer.Option("--date", help="One page for this day, YYYY-MM-DD; else the season.")
+]
+Until = Annotated[
+    str | None, typer.Option("--until", help="The season up to this day; else to its last one.")
+]
+OnPaper = Annotated[Paper, typer.Option("--paper", help="Paper of a PDF.")]
+
+
+def report(
+    season: SeasonFile,
+    output: Output = Path("report.pdf"),
+    on: OneDay = None,
+    until: Until = None,
+    paper: OnPaper = Paper.a4,
+) -> None:
+    """Write a season on four pages, or one of its days on one; nothing of it is changed.
+
+    Example: fieldmon report season.gpkg -o report.pdf
+    """
+    if on is not None and until is not None:
+        raise SettingError(
+            "A report must be of one day or of the season, but both --date and --until were given. "
+            "Leave one away."
+        )
+    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.reports.write import checked_ending, write_report  # noqa: PLC0415
+
+    checked_ending(output)
+    made = _made(Season(season), on, until)
+    typer.echo(f"Report written to {write_report(made, output, paper.value)}")
+
+
+def _made(season: Season, on: str | None, until: str | None) -> Report:
+    """Return the report of a day, or of the season."""
+    from fieldmon.compute.units import Units  # noqa: PLC0415
+    from fieldmon.reports.day import DayFacts, day_report  # noqa: PLC0415
+    from fieldmon.reports.season import season_report  # noqa: PLC0415
+
+    asked = day(on)
+    if asked is not None:
+        return day_report(DayFacts.of_season(season, asked), Units())
+    told = day(until, "--until")
+    return season_report(season, season.last_date() if told is None else told, Units())

@@ -1,0 +1,79 @@
+"""Lengths, areas and dates as the person is used to reading them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import date
+
+LENGTHS = {"m": 1.0, "ft": 0.3048}
+AREAS_M2 = {"ha": 10_000.0, "dunam": 1_000.0, "acre": 4_046.8564224}
+DATES = {"2026-11-16": "%Y-%m-%d", "16.11.2026": "%d.%m.%Y", "16/11/2026": "%d/%m/%Y",
+         "11/16/2026": "%m/%d/%Y"}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Units:
+    """How numbers are written.
+
+    Parameters
+    ----------
+    length
+        ``"m"`` or ``"ft"``.
+    area
+        ``"ha"``, ``"dunam"`` or ``"acre"``.
+    date_like
+        An example of a date, a key of `DATES`.
+    """
+
+    length: str = "m"
+    area: str = "ha"
+    date_like: str = "2026-11-16"
+
+    def metres(self, value_m: float, decimals: int = 0) -> str:
+        """Return a length; long ones in kilometres or miles."""
+        if self.length == "ft" and value_m >= 1609.344:
+            return f"{value_m / 1609.344:.2f} mi"
+        if self.length == "m" and value_m >= 1000.0:
+            return f"{value_m / 1000.0:.2f} km"
+        return f"{value_m / LENGTHS[self.length]:.{decimals}f} {self.length}"
+
+    def shown(self, value_m: float) -> float:
+        """Return a length as a number in the chosen unit, precise to less than a millimetre."""
+        return round(value_m / LENGTHS[self.length], 4)
+
+    def in_metres(self, shown: float) -> float:
+        """Return what `shown` showed, to the millimetre."""
+        return round(shown * LENGTHS[self.length], 3)
+
+    def limits(self, *values_m: float) -> tuple[float, ...]:
+        """Return lengths as limits of a box in the chosen unit."""
+        return tuple(round(value_m / LENGTHS[self.length], 1) for value_m in values_m)
+
+    def square(self, value_m2: float) -> str:
+        """Return an area."""
+        return f"{value_m2 / AREAS_M2[self.area]:,.2f} {self.area}"
+
+    @property
+    def date_format(self) -> str:
+        """Return how dates are typed in, in Streamlit's letters."""
+        form = DATES[self.date_like]
+        return form.replace("%Y", "YYYY").replace("%m", "MM").replace("%d", "DD")
+
+    def day(self, on: date | str) -> str:
+        """Return a date."""
+        day = date.fromisoformat(on) if isinstance(on, str) else on
+        return day.strftime(DATES[self.date_like])
+
+    def bar_m(self, at_most_m: float) -> tuple[float, str]:
+        """Return the longest round length up to `at_most_m`, in metres and as text."""
+        lengths = self.lengths()
+        return max([one for one in lengths if one[0] <= at_most_m], default=lengths[0])
+
+    def lengths(self) -> list[tuple[float, str]]:
+        """Return the round lengths for scale bars, shortest first: in metres and as text."""
+        long_m, long = (1000.0, "km") if self.length == "m" else (1609.344, "mi")
+        short = [(n * 10.0**power, self.length) for power in range(-1, 4) for n in (1, 2, 5)]
+        far = [(n * 10.0**power, long) for power in range(3) for n in (1, 2, 5)]
+        short_m = [(n * LENGTHS[self.length], f"{n:g} {unit}") for n, unit in short]
+        far_m = [(n * long_m, f"{n:g} {unit}") for n, unit in far]
+        return [one for one in short_m if one[0] < long_m] + far_m

@@ -1,0 +1,124 @@
+"""Words and signs for what was found at a plant, in the languages in which people write them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fieldmon.io.options import RecordOptions
+
+#: English; German; Dutch; French; Spanish; Italian; Portuguese; Polish; Turkish; Russian; Greek;
+#: Hebrew; Arabic; Hindi; Chinese, Japanese; signs
+_FOUND = """
+yes|y|true|t|present|positive|pos|p|found|detected|infested|infected|diseased|sick|attacked|pest
+pests|mite|mites|some|few|many|low|medium|high|x|v|1
+ja|gefunden|befall|befallen|nachweis|nachgewiesen|positiv|vorhanden|krank|schädlinge
+aanwezig|gevonden|positief|besmet|aangetast|ziek
+oui|présent|présente|trouvé|trouvée|infesté|infestée|infecté|infectée|positif|positive|attaqué
+attaquée|atteint|atteinte|malade
+si|sí|presente|encontrado|encontrada|infestado|infestada|infectado|infectada|positivo|positiva
+plaga|enfermo|enferma|atacado|atacada|afectado|afectada
+sì|trovato|trovata|infestato|infestata|infetto|infetta|malato|malata|attaccato|attaccata|colpito
+sim|achado|doente|atacado|contaminado
+tak|obecny|obecne|zakażony|zaatakowany|dodatni
+evet|var|bulundu|pozitif|bulaşık|hasta
+да|есть|позитив|найдено|обнаружено|заражено|заражён|заражен|положительно|положительный
+ναι|βρέθηκε|θετικό|θετικός|προσβεβλημένο
+כן|נמצא|נמצאה|נגוע|נגועה|חיובי|חיובית|יש
+نعم|موجود|مصاب|مصابة|إيجابي|ايجابي|وجد
+हाँ|हां|पाया गया|संक्रमित|सकारात्मक
+有|是|阳性|陽性|发现|發現|感染|あり|はい
++|++|+++|✓|✔|☑|●
+"""
+_CLEAN = """
+no|false|f|absent|negative|neg|n|none|nil|zero|clean|clear|healthy|nothing|not found|not detected
+nil found|no pests|ok|okay|free|0
+nein|keine|keiner|kein befall|nicht gefunden|sauber|befallsfrei|gesund|negativ|nichts|ohne befall
+nee|geen|niet gevonden|schoon|gezond|negatief|afwezig
+non|aucun|aucune|absent|absente|négatif|négative|sain|saine|propre|pas trouvé|rien|indemne
+ausente|ninguno|ninguna|negativo|negativa|sano|sana|limpio|limpia|no encontrado|no encontrada|nada
+libre|assente|nessuno|nessuna|pulito|pulita|non trovato|non trovata|niente|indenne
+não|nao|nenhum|nenhuma|limpo|limpa|sadio|sadia|saudável|são|não encontrado|nao encontrado
+nie|brak|zdrowy|zdrowa|ujemny|czysty
+hayır|hayir|yok|temiz|sağlıklı|negatif|bulunamadı
+нет|негатив|чисто|здоров|здоровый|здорово|отрицательно|отрицательный|не найдено|не обнаружено
+όχι|υγιές|υγιής|καθαρό|αρνητικό|αρνητικός
+לא|לא נמצא|לא נמצאה|נקי|נקייה|אין|ללא|שלילי|שלילית|בריא
+لا|غير موجود|سليم|سليمة|نظيف|سلبي|لا يوجد
+नहीं|स्वस्थ|नकारात्मक|नहीं मिला
+无|無|否|阴性|陰性|没有|沒有|健康|なし|いいえ
+✗|✘|☐|∅
+"""
+_NOT_INSPECTED = """
+not inspected|uninspected|could not inspect|cannot inspect|not visited|ni|n/i|skip|skipped|missed
+not done|no access|nicht geprüft|ausgelassen|nicht kontrolliert|niet gecontroleerd
+no inspeccionado|no inspeccionada|sin inspeccionar|saltado|non inspecté|non inspectée
+non ispezionato|não inspecionado|nie sprawdzono|kontrol edilmedi|не проверено
+לא נבדק|לא נבדקה|דולג|لم يفحص|未检查
+"""
+#: clean where a column also holds a plus; alone it is an empty cell, unless one says otherwise
+MINUS = frozenset({"-", "\u2212", "\u2013", "\u2014"})
+
+
+def _split(words: str) -> frozenset[str]:
+    return frozenset(w for line in words.strip().splitlines() for w in line.split("|"))
+
+
+FOUND = {word.casefold(): PRESENT for word in _split(_FOUND)}
+CLEAN = {word.casefold(): ABSENT for word in _split(_CLEAN)}
+NOT_INSPECTED = frozenset(word.casefold() for word in _split(_NOT_INSPECTED))
+
+
+def plain_word(cell: str) -> str:
+    """Return a word as it is looked up: without capitals, spaces in excess and a last full stop."""
+    return " ".join(cell.casefold().replace("_", " ").split()).rstrip(".!") or cell.strip()
+
+
+def meaning(cell: str) -> int | None:
+    """Return `PRESENT` or `ABSENT` for a word that says so in any language, else None."""
+    word = plain_word(cell)
+    return FOUND.get(word, CLEAN.get(word))
+
+
+class ResultWords:
+    """What the cells of one column of results mean.
+
+    Parameters
+    ----------
+    cells
+        All of them: a minus means clean in a column that has a plus somewhere.
+    options
+        Words of one's own in ``found`` and ``clean`` go before all others.
+    """
+
+    def __init__(self, cells: Iterable[str], options: RecordOptions) -> None:
+        found, clean = _own(options.found), _own(options.clean)
+        self.own = dict.fromkeys(found, PRESENT) | dict.fromkeys(clean, ABSENT)
+        self.has_plus = any(cell.strip().startswith("+") for cell in set(cells))
+
+    def __getitem__(self, cell: str) -> int | None:
+        """Return `PRESENT`, `ABSENT`, or None for a cell that is no word for a result."""
+        word = plain_word(cell)
+        if word in self.own:
+            return self.own[word]
+        if word in MINUS:
+            return ABSENT if self.has_plus else None
+        return meaning(word)
+
+
+def about_minus(cells: Iterable[str], words: ResultWords) -> list[ImportMessage]:
+    """Return a doubt about cells that hold a minus alone, where nothing says what it means."""
+    n = sum(plain_word(cell) in MINUS and words[cell] is None for cell in cells)
+    if not n:
+        return []
+    said = f"{n} record(s) hold a minus alone: taken as not filled in, not as clean."
+    return [doubtful(said, remedy=Remedy("clean", "-", "Take a minus as clean"))]
+
+
+def _own(words: str | None) -> list[str]:
+    return [plain_word(word) for word in (words or "").split(",") if word.strip()]

@@ -1,0 +1,92 @@
+"""Tables with a column for each day become records, one for each cell that was filled in."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.infestation.observations import UNKNOWN
+from fieldmon.io.formats.layer import text
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
+from fieldmon.io.parse.columns import find
+from fieldmon.io.parse.result_words import meaning
+from fieldmon.io.parse.values import counted, dates, is_missing, number
+from fieldmon.io.sandbox import limits
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.io.formats.layer import Layer
+    from fieldmon.io.options import RecordOptions
+    from fieldmon.io.parse.values import DatedColumn
+
+_FEWEST = 2
+
+
+def by_day(layer: Layer, options: RecordOptions) -> Layer:
+    """Return a table that has columns called by dates with one record a filled cell of those.
+
+    What the cells hold becomes column ``count`` where all of them are numbers, else ``result``.
+    Any other table is returned as it is.
+    """
+    names = list(layer.columns)
+    read = dates(np.array(names, dtype=object), options.date_order)
+    dated = [name for name, day in zip(names, read.day, strict=True) if not np.isnat(day)]
+    if len(dated) < _FEWEST or options.column("date") is not None:
+        return layer
+    others = [name for name in names if name not in dated]
+    stated = find("date", others)
+    if stated is not None:
+        said = f"{len(dated)} columns are called by dates, but the dates were taken from this one."
+        return layer.saying(doubtful(said, stated))
+    limits.check("records", len(layer) * len(dated), limits.RECORDS, layer.name)
+    days = {name: str(day) for name, day in zip(names, read.day, strict=True)}
+    return _unfolded(layer, {name: days[name] for name in dated}, _about(read, dated))
+
+
+def _unfolded(layer: Layer, days: dict[str, str], messages: list[ImportMessage]) -> Layer:
+    """Return one record a cell of the columns whose ``days`` are known."""
+    cells = np.stack([layer.columns[name] for name in days], axis=1)
+    filled = np.array([[bool(text(cell)) for cell in row] for row in cells], dtype=bool)
+    row, column = np.nonzero(filled)
+    values = cells[row, column]
+    long = layer.take(row)
+    columns = {name: cell for name, cell in long.columns.items() if name not in days}
+    passed = [name for role in ("count", "present") if (name := find(role, columns)) is not None]
+    for name in passed:
+        del columns[name]
+    if passed:
+        messages.append(seen(f"Beside the days, these were passed over: {', '.join(passed)}."))
+    day = np.array(list(days.values()), dtype=object)[column]
+    what = "count" if _are_counts(values) else "result"
+    blank = filled.size - len(row)
+    if blank:
+        messages.append(seen(f"{blank} cell(s) are not filled in: nothing is known of them."))
+    return replace(
+        long,
+        columns=columns | {"date": day, what: values},
+        messages=(*layer.messages, *messages),
+    )
+
+
+def _are_counts(values: NDArray[np.object_]) -> bool:
+    cells = {cell for v in values if not is_missing(cell := text(v))}
+    words = {cell for cell in cells if meaning(cell) is not None and np.isnan(number(cell))}
+    return not words and all(counted(cell).present != UNKNOWN for cell in cells)
+
+
+def _about(read: DatedColumn, dated: list[str]) -> list[ImportMessage]:
+    first, last = np.nanmin(read.day), np.nanmax(read.day)
+    said = f"{len(dated)} columns are called by dates, {first} to {last}: each cell is one record."
+    messages = [seen(said)]
+    if read.is_ambiguous:
+        messages.append(
+            guessed(
+                "The dates above the columns could be day first or month first; they were read "
+                "day first.",
+                remedy=Remedy("date_order", "mdy", "Read month first"),
+            )
+        )
+    return messages

@@ -1,0 +1,1 @@
+"""A day or a season on paper: gathered once, written as PDF or HTML."""

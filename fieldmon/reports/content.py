@@ -1,0 +1,159 @@
+"""What a report says, whatever it is written as: pages of blocks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from datetime import date
+
+    from fieldmon.reports.drawing import Drawing
+
+    Size = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """A sentence or several; a `lead` is what to read if nothing else is."""
+
+    text: str
+    lead: bool = False
+
+
+@dataclass(frozen=True)
+class KeyFigure:
+    """A figure with its name, and what stands under it: an interval, a unit, what it is of."""
+
+    label: str
+    value: str
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class KeyFigures:
+    """Figures side by side."""
+
+    figures: tuple[KeyFigure, ...]
+
+
+@dataclass(frozen=True)
+class Listing:
+    """Sentences below each other; `numbered` as on the map."""
+
+    title: str
+    sentences: tuple[str, ...]
+    numbered: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of texts.
+
+    Parameters
+    ----------
+    shares
+        Width of each column, as a share of the whole.
+    flow
+        How many times the table stands side by side; its rows go on from one to the next.
+    rest
+        What is said of rows that a page of paper has no room for, with ``{n}``.
+    left
+        Columns, from 0, whose texts begin at the left; figures end at the right.
+    whole
+        Whether every row must find room, whatever is left to others.
+    """
+
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    shares: tuple[float, ...]
+    flow: int = 1
+    rest: str = ""
+    left: tuple[int, ...] = ()
+    whole: bool = False
+
+
+@dataclass(frozen=True)
+class TickList:
+    """Every stop with a box to tick. Only a page without an end has room for it."""
+
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class NoteLines:
+    """Room for what somebody writes by hand."""
+
+    title: str
+
+
+@dataclass(frozen=True, eq=False)
+class Illustration:
+    """A map or a chart.
+
+    Parameters
+    ----------
+    alt
+        What it shows, in words.
+    draw
+        Draws it on so many millimetres.
+    heights
+        The least that it needs and the most that it is worth, millimetres.
+    """
+
+    title: str
+    alt: str
+    draw: Callable[[Size], Drawing]
+    heights: tuple[float, float]
+
+
+Block = Paragraph | KeyFigures | Listing | Table | TickList | NoteLines | Illustration
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """One page of paper."""
+
+    heading: str
+    blocks: tuple[Block, ...]
+
+
+@dataclass(frozen=True)
+class Report:
+    """A report: its plot, what it is about, and its pages."""
+
+    plot: str
+    title: str
+    on: date
+    sheets: tuple[Sheet, ...]
+
+    def words(self) -> Iterator[str]:
+        """Yield every text that goes on paper, but not those in drawings."""
+        yield from (self.plot, self.title)
+        for sheet in self.sheets:
+            yield sheet.heading
+            for block in sheet.blocks:
+                yield from _words(block)
+
+
+def _words(block: Block) -> Iterator[str]:
+    if isinstance(block, TickList):
+        return
+    if isinstance(block, Paragraph):
+        yield block.text
+    elif isinstance(block, KeyFigures):
+        for figure in block.figures:
+            yield from (figure.label, figure.value, figure.note)
+    else:
+        yield block.title
+    if isinstance(block, Listing):
+        yield from block.sentences
+    if isinstance(block, Table):
+        yield from block.columns
+        for row in block.rows:
+            yield from row
+        yield block.rest

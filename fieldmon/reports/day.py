@@ -1,0 +1,252 @@
+"""A day on one page: what to do or what was done, where, stop by stop, and by what settings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.infestation.hotspots import hot_spots
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.observations import PRESENT
+from fieldmon.monitoring import day_was_worked, worked_route
+from fieldmon.plot.grid import row_label
+from fieldmon.reports import maps, words
+from fieldmon.reports.content import (
+    Block,
+    Illustration,
+    KeyFigure,
+    KeyFigures,
+    NoteLines,
+    Paragraph,
+    Report,
+    Sheet,
+    Table,
+    TickList,
+)
+from fieldmon.reports.maps import PlotMap
+from fieldmon.reports.sentences import headline, runs
+from fieldmon.reports.settings_rows import WorkSettings, assumed_sentence, settings_blocks
+
+if TYPE_CHECKING:
+    from datetime import date
+
+    from numpy.typing import NDArray
+
+    from fieldmon.compute.units import Units
+    from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.monitoring import Season
+    from fieldmon.planning.route import Route
+
+# of more rows, three tables stand side by side instead of two
+_MOST_WIDE = 24
+# as many letters as a column has room for, in two tables and in three
+_WHICH = {2: 40, 3: 22}
+
+
+@dataclass(frozen=True, eq=False)
+class DayFacts:
+    """All that a day's report says.
+
+    Parameters
+    ----------
+    name
+        The plot's name.
+    begins
+        Local time at which the route begins.
+    route
+        The route as planned or, if `worked`, as it was worked.
+    chance, state
+        ``(n,)`` what is believed, and found (1), clean (0) or never inspected (-1), by records too.
+    spots
+        Where finds cluster.
+    settings
+        What the day goes by.
+    inspected
+        Plants inspected that day so far.
+    found
+        ``(k,)`` plants found infested that day, by number.
+    worked
+        Whether the day is over.
+    results
+        Result of each plant inspected that day, by its number.
+    """
+
+    name: str
+    begins: datetime
+    route: Route
+    chance: NDArray[np.float64]
+    state: NDArray[np.int8]
+    spots: HotSpots
+    settings: WorkSettings
+    inspected: int = 0
+    found: NDArray[np.integer] = field(default_factory=lambda: np.empty(0, np.int32))
+    worked: bool = False
+    results: dict[int, int] = field(default_factory=dict)
+
+    @classmethod
+    def of_season(cls, season: Season, on: date) -> DayFacts:
+        """Return what a season knows of a day; nothing is kept by it."""
+        settings, plan = season.settings, season.plan(on, keep=False)
+        day = settings.day(on)
+        route = plan.route
+        gone = timedelta(seconds=settings.robot.day_s - plan.scene.seconds_left)
+        begins = datetime.combine(on, settings.starts)
+        worked = day_was_worked(season, on, route)
+        state, done = season.history.known(day), season.history.on(day).inspected
+        return cls(
+            season.plot.field.name, begins if worked else begins + gone,
+            worked_route(season, on) if worked else route, season.evening(on), state,
+            hot_spots(season.plot.grid, state), WorkSettings.of_season(season),
+            len(done), np.unique(done.plant[done.result == FOUND]),
+            worked, results_on(season, on),
+        )  # fmt: skip
+
+
+def results_on(season: Season, on: date) -> dict[int, int]:
+    """Return what was last noted of each plant that somebody stood before on a day."""
+    done = season.history.on(season.settings.day(on))
+    return dict(zip(done.plant.tolist(), done.result.tolist(), strict=True))
+
+
+def day_report(facts: DayFacts, units: Units) -> Report:
+    """Return the report of a day."""
+    blocks: list[Block] = [
+        *(Paragraph(said, lead=True) for said in _leads(facts, units)),
+        _figures(facts, units),
+        *(Paragraph(said) for said in [assumed_sentence(facts.settings, units)] if said),
+        *_map(facts, units),
+    ]
+    if len(facts.route):
+        blocks.append(_stops(facts))
+    if len(facts.found):
+        blocks.append(_found(facts))
+    blocks += [*settings_blocks(facts.settings, units), NoteLines(words.NOTES)]
+    if len(facts.route):
+        blocks.append(_every_stop(facts))
+    on = facts.begins.date()
+    title = words.DAY_TITLE.format(day=units.day(on))
+    return Report(facts.name, title, on, (Sheet(words.DAY_SHEET, tuple(blocks)),))
+
+
+def _leads(facts: DayFacts, units: Units) -> list[str]:
+    day = units.day(facts.begins.date())
+    said = []
+    if facts.inspected:
+        numbers = {"inspected": facts.inspected, "found": len(facts.found)}
+        said.append(words.WORKED.format(day=day, **numbers))
+    return said if facts.worked and said else [*said, headline(facts.route, day)]
+
+
+def _figures(facts: DayFacts, units: Units) -> KeyFigures:
+    route, n = facts.route, len(facts.chance)
+    hours = words.FROM_TO.format(start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
+    ahead = KeyFigure(
+        words.FINDS, f"{route.expected_found:.1f}",
+        words.OF_INFESTED.format(n=route.expected_finds),
+    )  # fmt: skip
+    done = KeyFigure(
+        words.FOUND_TODAY, f"{len(facts.found)}", words.OF_INSPECTED.format(n=facts.inspected)
+    )
+    return KeyFigures(
+        (
+            KeyFigure(
+                words.INSPECTED if facts.worked else words.PLANTS_TO_INSPECT,
+                f"{len(route):,}", words.OF_PLANTS.format(n=n),
+            ),
+            KeyFigure(words.TIME, f"{route.end_s / 3600:.1f}", hours if len(route) else ""),
+            KeyFigure(words.DRIVE, units.metres(route.drive_m)),
+            done if facts.worked else ahead,
+        )
+    )  # fmt: skip
+
+
+def _map(facts: DayFacts, units: Units) -> list[Block]:
+    grid = facts.route.aisles.grid
+    what = PlotMap(grid, facts.chance, facts.state, facts.spots, facts.route.aisles.gate_m, units,
+                   facts.route)  # fmt: skip
+    alt = map_alt(facts.name, facts.state, len(facts.route))
+    return [Illustration("", alt, what.draw, what.heights(80.0, 190.0)), legend_block(route=True)]
+
+
+def map_alt(name: str, state: NDArray[np.int8], stops: int) -> str:
+    """Return what a map shows, in words."""
+    finds = int(np.count_nonzero(state == PRESENT))
+    return words.MAP_ALT.format(
+        name=words.isolated(name), plants=len(state), stops=stops, finds=finds
+    )
+
+
+def legend_block(*, route: bool = False, by_state: bool = False) -> Illustration:
+    """Return the legend below a map."""
+    return Illustration(
+        "", "", lambda size: maps.legend(size[0], route=route, by_state=by_state), (8.0, 8.0)
+    )
+
+
+def _stops(facts: DayFacts) -> Table:
+    """Return the rows in the order in which they are come to, with their plants."""
+    label = row_label(facts.route.aisles.grid, facts.route.plant)
+    lines, first = np.unique(label.line, return_index=True)
+    rows, flow = [], 2 if len(lines) <= _MOST_WIDE else 3
+    for line, k in sorted(zip(lines.tolist(), first.tolist(), strict=True), key=lambda one: one[1]):
+        own = label.number[label.line == line].tolist()
+        rows.append(
+            (
+                f"{line}",
+                _clock(facts, facts.route.arrive_s[k]),
+                f"{len(own)}",
+                which(own, _WHICH[flow]),
+            )
+        )
+    return Table(
+        words.STOPS, words.STOPS_COLUMNS, tuple(rows), (0.12, 0.17, 0.13, 0.58), flow=flow,
+        rest=words.STOPS_REST, left=(3,),
+    )  # fmt: skip
+
+
+def which(numbers: list[int], letters: int) -> str:
+    """Return which plants of a row these are, in about so many letters at most."""
+    said = runs(numbers)
+    if len(said) <= letters:
+        return said
+    return words.WHICH_MANY.format(n=len(numbers), low=min(numbers), high=max(numbers))
+
+
+def _found(facts: DayFacts) -> Table:
+    label = row_label(facts.route.aisles.grid, facts.found)
+    rows = tuple(
+        (f"{line}", runs(label.number[label.line == line].tolist()))
+        for line in np.unique(label.line).tolist()
+    )
+    return Table(
+        words.FOUND_BY_ROW, words.FOUND_COLUMNS, rows, (0.2, 0.8), flow=2, rest=words.FOUND_REST,
+        left=(1,),
+    )  # fmt: skip
+
+
+def _every_stop(facts: DayFacts) -> TickList:
+    """Return every stop with a box to tick or, once the day is over, with its result."""
+    route = facts.route
+    label = row_label(route.aisles.grid, route.plant)
+    said = [
+        words.RESULTS[facts.results.get(plant, -1)] if facts.worked else "☐"
+        for plant in route.plant.tolist()
+    ]
+    rows = zip(
+        range(1, len(route) + 1), route.arrive_s.tolist(), label.line.tolist(),
+        label.number.tolist(), (100 * route.chance).tolist(), said, strict=True,
+    )  # fmt: skip
+    return TickList(
+        words.EVERY_STOP, (*words.EVERY_COLUMNS, words.WAS if facts.worked else words.TICK),
+        tuple(
+            (f"{k}", _clock(facts, s, "%H:%M:%S"), f"{line}", f"{number}", f"{chance:.1f}", end)
+            for k, s, line, number, chance, end in rows
+        ),
+    )  # fmt: skip
+
+
+def _clock(facts: DayFacts, seconds: float, form: str = "%H:%M") -> str:
+    return (facts.begins + timedelta(seconds=round(seconds))).strftime(form)

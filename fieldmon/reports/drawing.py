@@ -1,0 +1,98 @@
+"""A drawing on paper, in millimetres: parts that a painter of PDF or of SVG puts down in order.
+
+x runs to the right and y downwards, from the drawing's upper left corner.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+Colour = tuple[int, int, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Strokes:
+    """Lines ``(k, 2)`` of one colour and width."""
+
+    lines: tuple[Floats, ...]
+    colour: Colour
+    width: float
+    dashed: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """Many short lines, ``(k, 4)`` from x, y to x, y, with flat ends."""
+
+    ends: Floats
+    colour: Colour
+    width: float
+
+
+@dataclass(frozen=True, eq=False)
+class Areas:
+    """Closed rings ``(k, 2)``; a ring inside another one is a hole."""
+
+    rings: tuple[Floats, ...]
+    fill: Colour | None = None
+    edge: Colour | None = None
+    width: float = 0.2
+    opacity: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Discs:
+    """Discs or rings about places ``(k, 2)``."""
+
+    places: Floats
+    radius: float
+    fill: Colour | None = None
+    edge: Colour | None = None
+    width: float = 0.2
+
+
+@dataclass(frozen=True)
+class Lettering:
+    """Words at a place: its height is their middle, `anchor` their ``start``, middle or end."""
+
+    x: float
+    y: float
+    text: str
+    size_pt: float = 7.0
+    colour: Colour = (20, 26, 30)
+    anchor: str = "start"
+    bold: bool = False
+
+
+@dataclass(frozen=True)
+class Bitmap:
+    """A PNG picture."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    png: bytes
+
+
+Part = Strokes | Segments | Areas | Discs | Lettering | Bitmap
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """Parts in the order in which they are put down, on so much paper."""
+
+    width: float
+    height: float
+    parts: tuple[Part, ...]
+
+    def words(self) -> list[str]:
+        """Return every text in it."""
+        return [part.text for part in self.parts if isinstance(part, Lettering)]

@@ -1,0 +1,106 @@
+"""Drawings put down on a page of PDF."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.reports.drawing import (
+    Areas,
+    Bitmap,
+    Discs,
+    Drawing,
+    Lettering,
+    Part,
+    Segments,
+    Strokes,
+)
+
+if TYPE_CHECKING:
+    from fpdf import FPDF
+    from numpy.typing import NDArray
+
+    from fieldmon.reports.drawing import Colour
+    from fieldmon.reports.fonts import FontSet
+
+#: a point of type in millimetres
+PT_MM = 25.4 / 72
+_ALIGN = {"start": "L", "middle": "C", "end": "R"}
+# a disc is drawn with so many corners: smaller than a plant, and a hundredth of a curve's bytes
+_CORNERS = 16
+
+
+def paint(pdf: FPDF, fonts: FontSet, drawing: Drawing, corner: tuple[float, float]) -> None:
+    """Put a drawing down, its upper left corner there."""
+    for part in drawing.parts:
+        _part(pdf, fonts, part, np.array(corner))
+
+
+def _part(pdf: FPDF, fonts: FontSet, part: Part, at: NDArray[np.float64]) -> None:
+    if isinstance(part, Strokes):
+        _strokes(pdf, part, at)
+    elif isinstance(part, Segments):
+        _segments(pdf, part, at)
+    elif isinstance(part, Areas):
+        _areas(pdf, part, at)
+    elif isinstance(part, Discs):
+        _discs(pdf, part, at)
+    elif isinstance(part, Lettering):
+        letter(pdf, fonts, part, (float(at[0]), float(at[1])))
+    elif isinstance(part, Bitmap):
+        x, y = at + np.array([part.x, part.y])
+        pdf.image(io.BytesIO(part.png), float(x), float(y), part.width, part.height)
+
+
+def _pen(pdf: FPDF, colour: Colour, width: float) -> None:
+    pdf.set_draw_color(*colour)
+    pdf.set_line_width(width)
+
+
+def _strokes(pdf: FPDF, part: Strokes, at: NDArray[np.float64]) -> None:
+    with pdf.local_context(stroke_join_style="round", stroke_cap_style="round"):
+        _pen(pdf, part.colour, part.width)
+        if part.dashed:
+            pdf.set_dash_pattern(dash=1.2, gap=1.2)
+        for line in part.lines:
+            pdf.polyline([(x, y) for x, y in (line + at).tolist()])
+
+
+def _segments(pdf: FPDF, part: Segments, at: NDArray[np.float64]) -> None:
+    with pdf.local_context(stroke_cap_style="butt"):
+        _pen(pdf, part.colour, part.width)
+        for x1, y1, x2, y2 in (part.ends + np.tile(at, 2)).tolist():
+            pdf.line(x1, y1, x2, y2)
+
+
+def _areas(pdf: FPDF, part: Areas, at: NDArray[np.float64]) -> None:
+    """Fill rings and draw their edges; what lies in a hole is left out by cutting it."""
+    style = ("D" if part.edge else "") + ("F" if part.fill else "")
+    with pdf.local_context(fill_opacity=part.opacity, stroke_join_style="round"):
+        if part.fill:
+            pdf.set_fill_color(*part.fill)
+        if part.edge:
+            _pen(pdf, part.edge, part.width)
+        for ring in part.rings:
+            pdf.polygon([(x, y) for x, y in (ring + at).tolist()], style=style)
+
+
+def _discs(pdf: FPDF, part: Discs, at: NDArray[np.float64]) -> None:
+    turn = np.linspace(0, 2 * np.pi, _CORNERS, endpoint=False)
+    about = part.radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    rings = tuple(place + about for place in part.places)
+    _areas(pdf, Areas(rings, part.fill, part.edge, part.width), at)
+
+
+def letter(pdf: FPDF, fonts: FontSet, part: Lettering, at: tuple[float, float]) -> None:
+    """Write words, their middle at the height named."""
+    text = fonts.printable(part.text)
+    pdf.set_font("open", "B" if part.bold else "", part.size_pt)
+    pdf.set_text_color(*part.colour)
+    wide = pdf.get_string_width(text)
+    x = at[0] + part.x - wide * {"start": 0.0, "middle": 0.5, "end": 1.0}[part.anchor]
+    high = part.size_pt * PT_MM * 1.2
+    pdf.set_xy(x - pdf.c_margin, at[1] + part.y - high / 2)
+    pdf.cell(wide + 2 * pdf.c_margin, high, text, align="L")

@@ -1,0 +1,283 @@
+"""A season on four pages: where it stands, how it went, hot spots and finds, what it goes by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.wording import counted
+from fieldmon.infestation.observations import PRESENT
+from fieldmon.monitoring import DayFigures
+from fieldmon.plot.grid import row_label
+from fieldmon.reports import words
+from fieldmon.reports.charts import DayChart
+from fieldmon.reports.content import (
+    Block,
+    Illustration,
+    KeyFigure,
+    KeyFigures,
+    Listing,
+    NoteLines,
+    Paragraph,
+    Report,
+    Sheet,
+    Table,
+)
+from fieldmon.reports.day import legend_block, map_alt, which
+from fieldmon.reports.maps import PlotMap
+from fieldmon.reports.sentences import hot_spot_meanings, runs
+from fieldmon.reports.settings_rows import WorkSettings, assumed_sentence, settings_blocks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from datetime import date
+
+    from numpy.typing import NDArray
+
+    from fieldmon.compute.units import Units
+    from fieldmon.monitoring import Season, Status
+
+_LATE_DAYS = 7
+# as many letters as a line of rows, and a column of plants, may have
+_ROWS_LONG, _FINDS_LONG = 70, 46
+
+
+@dataclass(frozen=True, eq=False)
+class _Facts:
+    """What a season knows on a day."""
+
+    season: Season
+    on: date
+    units: Units
+    status: Status
+    days: tuple[DayFigures, ...]
+    found_by: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, season: Season, on: date, units: Units) -> _Facts:
+        status = season.status(on)
+        today = DayFigures(
+            on, status.inspected_today, status.found_today, status.estimate.expected,
+            status.estimate.low, status.estimate.high, status.estimate.chance_clean,
+        )  # fmt: skip
+        days = (*(one for one in season.days() if one.on < on), today)
+        history, settings = season.history, season.settings
+        found_by = [
+            int(np.count_nonzero(history.states(settings.day(one.on)) == PRESENT)) for one in days
+        ]
+        return cls(season, on, units, status, days, np.array(found_by))
+
+    @property
+    def name(self) -> str:
+        return self.season.plot.field.name
+
+    @property
+    def state(self) -> NDArray[np.int8]:
+        return self.season.history.states(self.status.day)
+
+    def plot_map(self, *, by_state: bool) -> Iterator[Block]:
+        """Yield the map of plants by chance or by what was found there, and its legend."""
+        plot, state = self.season.plot, self.season.history.known(self.status.day)
+        what = PlotMap(
+            plot.grid, self.season.evening(self.on), state, self.status.hot_spots,
+            plot.aisles.gate_m, self.units, by_state=by_state,
+        )  # fmt: skip
+        yield Illustration("", map_alt(self.name, state, 0), what.draw, what.heights(75.0, 200.0))
+        yield legend_block(by_state=by_state)
+
+
+def season_report(season: Season, on: date, units: Units) -> Report:
+    """Return the report of a season up to a day; nothing is kept by it."""
+    facts = _Facts.of(season, on, units)
+    made = (_stands(facts), _went(facts), _hot_and_found(facts), _goes_by(facts))
+    title = words.SEASON_TITLE.format(begins=units.day(season.settings.begins), day=units.day(on))
+    sheets = tuple(
+        Sheet(heading, tuple(blocks))
+        for heading, blocks in zip(words.SEASON_SHEETS, made, strict=True)
+    )
+    return Report(facts.name, title, on, sheets)
+
+
+# -- where it stands
+
+
+def _stands(facts: _Facts) -> Iterator[Block]:
+    status, ahead = facts.status, facts.status.estimate
+    said = [
+        words.STANDS.format(
+            expected=ahead.expected, low=ahead.low, high=ahead.high,
+            found=counted(status.found, "plant"),
+        )
+    ]  # fmt: skip
+    if ahead.chance_clean >= 0.005:
+        said.append(words.STANDS_CLEAN.format(chance=ahead.chance_clean))
+    if len(status.hot_spots):
+        said.append(words.STANDS_HOT.format(n=counted(len(status.hot_spots), "hot spot")))
+    yield Paragraph(" ".join(said), lead=True)
+    yield _figures(facts)
+    assumed = assumed_sentence(WorkSettings.of_season(facts.season), facts.units)
+    if assumed:
+        yield Paragraph(assumed)
+    yield from facts.plot_map(by_state=False)
+    yield Paragraph(" ".join(_rows_seen(facts)))
+
+
+def _figures(facts: _Facts) -> KeyFigures:
+    status, ahead = facts.status, facts.status.estimate
+    low, high = _of_all(status.found, ahead.high), _of_all(status.found, ahead.low)
+    finds = sum(one.found for one in facts.days)
+    twice = words.FOUND_TWICE.format(n=finds) if finds != status.found else ""
+    return KeyFigures(
+        (
+            KeyFigure(words.STILL, f"{ahead.expected:,.1f}",
+                      words.INTERVAL.format(low=f"{ahead.low:,}", high=f"{ahead.high:,}")),
+            KeyFigure(words.FOUND_SO_FAR, f"{status.found:,}", twice),
+            KeyFigure(words.FOUND_OF_ALL, f"{status.detection_pct:.0f} %",
+                      words.INTERVAL.format(low=f"{low:.0f}", high=f"{high:.0f} %")),
+            KeyFigure(words.INSPECTED, f"{status.inspected:,}",
+                      words.OF_PLANTS.format(n=status.plants)),
+            KeyFigure(words.CLEAN, f"{ahead.chance_clean:.1%}", words.CLEAN_NOTE),
+            KeyFigure(words.HOT_SPOTS, f"{len(status.hot_spots)}", words.HOT_NOTE),
+        )
+    )  # fmt: skip
+
+
+def _of_all(found: float, left: float) -> float:
+    """Return what was found in percent of it and of what is left."""
+    return 100.0 * found / (found + left) if found + left else 100.0
+
+
+def _rows_seen(facts: _Facts) -> Iterator[str]:
+    """Yield which rows nobody was in, ever or for a week."""
+    line = facts.season.plot.grid.row_line + 1
+    lines = np.unique(line)
+    days = np.array([_least(facts.status.days_since[line == one]) for one in lines.tolist()])
+    never, late = lines[np.isinf(days)], lines[np.isfinite(days) & (days >= _LATE_DAYS)]
+    for said, rows in ((words.ROWS_UNSEEN, never), (words.ROWS_LATE, late)):
+        if len(rows):
+            named = (words.ROWS if len(rows) > 1 else words.ROW).split(" ")[0]
+            listed = f"{named} {runs(rows.tolist())}"
+            long = len(listed) > _ROWS_LONG
+            yield said.format(rows=counted(len(rows), "row") if long else listed)
+    if not len(never) and not len(late):
+        yield words.ROWS_ALL
+
+
+def _least(days: NDArray[np.float64]) -> float:
+    known = days[~np.isnan(days)]
+    return float(known.min()) if len(known) else float("inf")
+
+
+# -- how it went
+
+
+def _went(facts: _Facts) -> Iterator[Block]:
+    on = tuple(one.on for one in facts.days)
+    still, low, high = (
+        np.array([getattr(one, name) for one in facts.days], np.float64)
+        for name in ("expected", "low", "high")
+    )
+    share, least, most = (
+        np.array([_of_all(f, e) for f, e in zip(facts.found_by.tolist(), left, strict=True)])
+        for left in (still.tolist(), high.tolist(), low.tolist())
+    )
+    found = np.array([one.found for one in facts.days], np.float64)
+    inspected = np.array([one.inspected for one in facts.days], np.float64)
+    charts = {
+        words.CHART_FOUND: DayChart(on, found, facts.units),
+        words.CHART_OF_ALL: DayChart(on, share, facts.units, least, most, top=100.0),
+        words.CHART_STILL: DayChart(on, still, facts.units, low, high, marks=_treated(facts)),
+        words.CHART_INSPECTED: DayChart(on, inspected, facts.units),
+    }
+    for title, chart in charts.items():
+        yield Illustration(title, words.CHART_ALT.format(title=title), chart.draw, (28.0, 46.0))
+    yield _days(facts)
+
+
+def _treated(facts: _Facts) -> tuple[tuple[date, str], ...]:
+    """Return the days after which something was treated."""
+    days = {one.day for one in facts.season.history.treatments}
+    settings = facts.season.settings
+    return tuple((settings.date(day), words.CHART_TREATED) for day in sorted(days))
+
+
+def _days(facts: _Facts) -> Table:
+    rows = [
+        (
+            facts.units.day(one.on), f"{one.inspected:,}", f"{one.found:,}",
+            f"{one.expected:,.1f} ({one.low:,}–{one.high:,})",
+            f"{_of_all(found, one.expected):.0f} %",
+        )
+        for one, found in zip(facts.days, facts.found_by.tolist(), strict=True)
+    ]  # fmt: skip
+    return Table(
+        words.DAYS, words.DAY_COLUMNS, tuple(rows[::-1]), (0.22, 0.17, 0.12, 0.31, 0.18), flow=2,
+        rest=words.DAYS_REST, left=(0,),
+    )  # fmt: skip
+
+
+# -- hot spots and finds
+
+
+def _hot_and_found(facts: _Facts) -> Iterator[Block]:
+    grid = facts.season.plot.grid
+    yield from facts.plot_map(by_state=True)
+    meanings = tuple(hot_spot_meanings(grid, facts.status.hot_spots))
+    yield Listing(words.HOT_LIST, meanings, numbered=bool(len(facts.status.hot_spots)))
+    plants = np.flatnonzero(facts.state == PRESENT)
+    if not len(plants):
+        yield Paragraph(words.FINDS_NONE)
+        return
+    label = row_label(grid, plants)
+    rows = []
+    for line in np.unique(label.line).tolist():
+        own = label.number[label.line == line].tolist()
+        rows.append((f"{line}", f"{len(own)}", which(own, _FINDS_LONG)))
+    yield Table(
+        words.FINDS_BY_ROW, words.FINDS_COLUMNS, tuple(rows), (0.12, 0.12, 0.76), flow=2,
+        rest=words.FOUND_REST, left=(2,),
+    )  # fmt: skip
+
+
+# -- what it goes by
+
+
+def _goes_by(facts: _Facts) -> Iterator[Block]:
+    yield _batches(facts)
+    yield _treatments(facts)
+    season = facts.season
+    yield from settings_blocks(WorkSettings.of_season(season), facts.units)
+    yield Listing(words.MEANING, words.MEANINGS)
+    yield NoteLines(words.NOTES)
+
+
+def _batches(facts: _Facts) -> Block:
+    batches = facts.season.batches()
+    if not batches:
+        return Listing(words.BATCHES, (words.BATCHES_NONE,))
+    rows = []
+    for one in batches:
+        kind = words.BATCH_KINDS[one.kind]
+        said = words.BATCH_UNDONE.format(kind=kind) if one.undone else kind
+        rows.append((one.at[:16].replace("T", " "), said, one.source, one.who, f"{one.rows:,}"))
+    return Table(
+        words.BATCHES, words.BATCH_COLUMNS, tuple(rows), (0.2, 0.24, 0.32, 0.14, 0.1),
+        rest=words.BATCHES_REST, left=(0, 1, 2, 3),
+    )  # fmt: skip
+
+
+def _treatments(facts: _Facts) -> Block:
+    kept = [one for one in facts.season.history.treatments if one.day <= facts.status.day]
+    if not kept:
+        return Listing(words.TREATMENTS, (words.TREATMENTS_NONE,))
+    rows = tuple(
+        (facts.units.day(facts.season.settings.date(one.day)),
+         f"{np.count_nonzero(one.plants):,}", f"{one.efficacy:.0%}")
+        for one in reversed(kept)
+    )  # fmt: skip
+    return Table(
+        words.TREATMENTS, words.TREATMENT_COLUMNS, rows, (0.34, 0.33, 0.33), flow=2,
+        rest=words.TREATMENTS_REST, left=(0,),
+    )  # fmt: skip

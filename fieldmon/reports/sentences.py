@@ -1,0 +1,79 @@
+"""What a day and its hot spots are, in sentences; the app says the same."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.wording import Worded, counted, worded
+from fieldmon.plot.grid import row_label
+from fieldmon.reports import words
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.planning.route import Route
+    from fieldmon.plot.grid import PlantGrid
+
+_MOST_SPOTS = 8
+
+
+def headline(route: Route, day: str) -> str:
+    """Return what there is to do on a day, in one sentence."""
+    if not len(route):
+        return worded(words.HEADLINE_NONE, day=day)
+    line = row_label(route.aisles.grid, route.plant).line
+    low, high = int(line.min()), int(line.max())
+    rows = worded(words.ROW, low=low)
+    if low < high:
+        rows = worded(words.ROWS, low=low, high=high)
+    return worded(
+        words.HEADLINE, plants=counted(len(route), "plant"), rows=rows, day=day,
+        hours=route.end_s / 3600,
+        finds=counted(round(route.expected_found), "find"),
+    )  # fmt: skip
+
+
+def hot_spot_meanings(grid: PlantGrid, spots: HotSpots) -> list[str]:
+    """Return where each hot spot is and what it means, a sentence each; of eight at most."""
+    if not len(spots):
+        return [worded(words.HOT_NONE)]
+    said: list[str] = []
+    for k in range(min(len(spots), _MOST_SPOTS)):
+        p = float(spots.p[k])
+        chance = worded(words.CHANCE_P_SMALL)
+        if p >= 1e-4:
+            chance = worded(words.CHANCE_P, n=max(round(1 / p), 1))
+        said.append(
+            worded(
+                words.HOT_MEANS, rows=_place(grid, np.flatnonzero(spots.of_plant == k)),
+                found=spots.found[k], inspected=spots.inspected[k], plants=spots.plants[k],
+                expected=spots.expected[k], p=chance,
+            )
+        )  # fmt: skip
+    return said
+
+
+def _place(grid: PlantGrid, plants: NDArray[np.intp]) -> Worded:
+    """Return which rows and which of their plants these are, in words."""
+    label = row_label(grid, plants)
+    first, last = int(label.line.min()), int(label.line.max())
+    low, high = int(label.number.min()), int(label.number.max())
+    if first == last:
+        return worded(words.HOT_ROW, first=first, low=low, high=high)
+    return worded(words.HOT_ROWS, first=first, last=last, low=low, high=high)
+
+
+def runs(numbers: Iterable[int]) -> str:
+    """Return numbers with those in a row put together: ``"1, 4–6, 9"``."""
+    ends: list[list[int]] = []
+    for number in sorted({*numbers}):
+        if ends and number == ends[-1][1] + 1:
+            ends[-1][1] = number
+        else:
+            ends.append([number, number])
+    return ", ".join(f"{a}" if a == b else f"{a}–{b}" for a, b in ends)

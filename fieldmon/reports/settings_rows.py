@@ -1,0 +1,138 @@
+"""What a day or a season goes by, each value with where it comes from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fieldmon.io.import_report import Severity
+from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.plot.robot import Robot, scout
+from fieldmon.reports import words
+from fieldmon.reports.content import Listing, Table
+from fieldmon.samplers import USUAL, kind_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fieldmon.compute.units import Units
+    from fieldmon.infestation.prior import PriorSettings
+    from fieldmon.monitoring import Season
+    from fieldmon.plot.assumed import Assumed
+    from fieldmon.reports.content import Block
+
+    Row = tuple[str, str, str]
+
+_MOST_GUESSED = 3
+
+
+@dataclass(frozen=True)
+class WorkSettings:
+    """What a report says a day went by.
+
+    Parameters
+    ----------
+    robot, sampler
+        Who inspects, and who chooses the plants, by name.
+    spacing_m
+        From row to row, and from plant to plant.
+    assumed
+        What the figures rest on though nobody said it.
+    prior
+        How records become a chance.
+    belief
+        What is made of findings and nights; None where there is no season.
+    guessed
+        What the import of the plot had to guess, in sentences.
+    """
+
+    robot: Robot
+    sampler: str
+    prior: PriorSettings
+    spacing_m: tuple[float, float]
+    assumed: tuple[Assumed, ...] = ()
+    belief: BeliefSettings | None = None
+    guessed: tuple[str, ...] = ()
+
+    @classmethod
+    def of_season(cls, season: Season) -> WorkSettings:
+        """Return what a season goes by, and what had to be guessed when it began."""
+        settings, grid = season.settings, season.plot.grid
+        guessed = (one for one in season.messages() if one.severity == Severity.GUESSED)
+        return cls(
+            settings.robot, settings.sampler, settings.prior,
+            (grid.row_spacing_m, grid.plant_spacing_m), season.assumed(), settings.belief,
+            tuple(one.sentence for one in guessed),
+        )  # fmt: skip
+
+    def origin(self, setting: str) -> str:
+        """Return where the value of a setting comes from, by its name in `Assumed`."""
+        return words.FROM_NOBODY if setting in self.names else words.FROM_CHOSEN
+
+    @property
+    def names(self) -> set[str]:
+        """Names of what is assumed."""
+        return {one.setting for one in self.assumed}
+
+
+def settings_blocks(settings: WorkSettings, units: Units) -> Iterator[Block]:
+    """Yield the settings with where each comes from, and what was guessed."""
+    rows = (
+        *_of_plot(settings, units),
+        *_of_work(settings),
+        *_of_belief(settings),
+    )
+    yield Table(
+        words.SETTINGS, words.SETTING_COLUMNS, rows, (0.46, 0.2, 0.34), flow=2,
+        rest=words.FOUND_REST, left=(0, 1, 2), whole=True,
+    )  # fmt: skip
+    if settings.guessed:
+        yield Listing(words.GUESSED, settings.guessed[:_MOST_GUESSED])
+
+
+def assumed_sentence(settings: WorkSettings, units: Units) -> str:
+    """Return what the figures rest on though nobody said it, in a sentence; empty: nothing."""
+    rows = (*_of_plot(settings, units), *_of_work(settings), *_of_belief(settings))
+    said = [
+        f"{name.lower()} {value}" for name, value, origin in rows if origin == words.FROM_NOBODY
+    ]
+    return words.ASSUMED.format(what="; ".join(said)) if said else ""
+
+
+def _of_plot(settings: WorkSettings, units: Units) -> Iterator[Row]:
+    rows_m, plants_m = settings.spacing_m
+    yield words.ROWS_APART, units.metres(rows_m, 1), _told(settings, "row_spacing_m")
+    yield words.PLANTS_APART, units.metres(plants_m, 1), _told(settings, "plant_spacing_m")
+
+
+def _told(settings: WorkSettings, setting: str) -> str:
+    """Return where a spacing comes from: nobody chose it who did not have to."""
+    return words.FROM_NOBODY if setting in settings.names else words.FROM_FILE
+
+
+def _of_work(settings: WorkSettings) -> Iterator[Row]:
+    robot = settings.robot
+    usual = scout() if robot.turn_180_s == scout().turn_180_s else Robot()
+    yield words.SAMPLER, kind_of(settings.sampler).title, _from(settings.sampler == USUAL)
+    yield words.HOURS, f"{robot.hours:g}", _from(robot.hours == usual.hours)
+    yield words.LOOK, f"{robot.look_s:g}", _from(robot.look_s == usual.look_s)
+    yield words.SPEED, f"{robot.speed_m_s * 3.6:.1f} km/h", settings.origin("speed_m_s")
+    yield words.DETECTS, f"{robot.detects:.0%}", settings.origin("detects")
+
+
+def _of_belief(settings: WorkSettings) -> Iterator[Row]:
+    background = f"{100 * settings.prior.background_chance:g} %"
+    yield words.BACKGROUND, background, settings.origin("background_chance")
+    if settings.belief is None:
+        return
+    spread, usual = settings.belief.spread, BeliefSettings()
+    yield words.SPREAD, f"{100 * spread.rate_per_day:g} %", settings.origin("rate_per_day")
+    arrive = spread.arrivals_per_day
+    said = words.ARRIVALS_VALUE.format(n=1 / arrive) if arrive else words.ARRIVALS_NONE
+    yield words.ARRIVALS, said, _from(arrive == usual.spread.arrivals_per_day)
+    treated = settings.belief.treated
+    yield words.TREATED, words.TREATED_VALUES[treated], _from(treated == usual.treated)
+
+
+def _from(usual: bool) -> str:  # noqa: FBT001 - one question
+    return words.FROM_USUAL if usual else words.FROM_CHOSEN

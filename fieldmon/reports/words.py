@@ -1,0 +1,118 @@
+"""Every text of a report in one place: a translation is one file."""
+
+from __future__ import annotations
+
+
+def isolated(name: str) -> str:
+    """Return a name that reads right inside any sentence, whatever its script and direction."""
+    return f"\u2068{name}\u2069"
+
+
+# -- both
+FOOTER = "fieldmon"
+PAGE = "{page} / {of}"
+UNPRINTED = (
+    "{n} characters of names cannot be printed with this program's fonts and stand as ?: {codes}."
+)
+HEADLINE = "Inspect {plants} in {rows} on {day}, {hours:.1f} h: about {finds} expected."
+HEADLINE_NONE = "Nothing to inspect on {day}."
+WORKED = "Worked on {day}: {inspected} plants inspected, {found} found infested."
+ROW, ROWS = "row {low}", "rows {low}–{high}"
+LEGEND_CHANCE = "Chance that a plant is infested"
+LEGEND_FOUND, LEGEND_ROUTE = "found infested", "route, arrows show the way"
+LEGEND_STATES = ("never inspected", "looked clean")
+LEGEND_GATE, LEGEND_HOT = "gate", "hot spot"
+NORTH = "N"
+MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
+SETTINGS, SETTING_COLUMNS = "Settings", ("what", "value", "where from")
+
+# -- the day
+DAY_TITLE = "Day of {day}"
+DAY_SHEET = "The day's work"
+PLANTS_TO_INSPECT, OF_PLANTS = "Plants to inspect", "of {n:,}"
+TIME, FROM_TO = "Hours", "{start} to {end}"
+DRIVE, FINDS, OF_INFESTED = "Drive", "Expected finds", "of {n:.1f} infested on the route"
+FOUND_TODAY, OF_INSPECTED = "Found that day", "of {n} inspected"
+STOPS, STOPS_COLUMNS = "Stops by row, in order", ("row", "from", "plants", "which")
+WHICH_MANY = "{n} between {low} and {high}"
+STOPS_REST = "... and {n} more rows; the field sheet and the route files hold every stop."
+EVERY_STOP = "Every stop"
+EVERY_COLUMNS = ("stop", "arrive", "row", "plant", "chance %")
+TICK, WAS, RESULTS = "found?", "result", {0: "clean", 1: "found", 2: "could not inspect", -1: ""}
+FOUND_BY_ROW, FOUND_COLUMNS = "Found that day, by row", ("row", "plants found")
+FOUND_REST = "... and {n} more rows."
+NOTES = "Notes"
+
+# -- the season
+SEASON_TITLE = "Season from {begins} to {day}"
+SEASON_SHEETS = (
+    "Where it stands",
+    "How it went",
+    "Hot spots and finds",
+    "Records, treatments, settings",
+)
+STANDS = (
+    "About {expected:,.0f} plants are still infested ({low:,} to {high:,} with a chance of 90 %); "
+    "{found} found so far."
+)
+STANDS_CLEAN = "The plot is clean with a chance of {chance:.0%}."
+STANDS_HOT = "Finds cluster in {n}."
+STILL, INTERVAL = "Still infested", "{low} to {high} (90 %)"
+FOUND_SO_FAR, FOUND_TWICE = "Plants found", "{n} finds, some plants twice"
+FOUND_OF_ALL, INSPECTED = "Found of all expected", "Plants inspected"
+CLEAN, CLEAN_NOTE = "Chance it is clean", "as believed"
+HOT_SPOTS, HOT_NOTE = "Hot spots", "see page 3"
+ROWS_UNSEEN = "Never inspected: {rows}."
+ROWS_LATE = "Not inspected for a week or more: {rows}."
+ROWS_ALL = "Every row was inspected within the last week."
+CHART_INSPECTED, CHART_FOUND = "Plants inspected a day", "Plants found a day"
+CHART_OF_ALL = "Found of all infestations so far, % (line), and its 90 % interval"
+CHART_STILL = "Still infested and not found, as expected (line), and its 90 % interval"
+CHART_TREATED = "treated"
+CHART_ALT = "Chart by day: {title}."
+DAYS = "Day by day"
+DAY_COLUMNS = ("day", "inspected", "found", "still infested (90 %)", "found of all")
+DAYS_REST = "... and {n} earlier days; the season's file holds all of them."
+HOT_LIST = "Hot spots"
+HOT_MEANS = (
+    "{rows}: {found} found among {inspected} inspected of its {plants} plants, where "
+    "{expected:.1f} would be if finds were strewn evenly. So many by chance alone: {p}."
+)
+HOT_ROWS = "Rows {first} to {last}, plants {low} to {high}"
+HOT_ROW = "Row {first}, plants {low} to {high}"
+HOT_NONE = "No hot spots: finds cluster no more than chance allows."
+CHANCE_P_SMALL, CHANCE_P = "less than 1 in 10,000", "about 1 in {n:,}"
+FINDS_BY_ROW = "Plants found infested, by row"
+FINDS_COLUMNS = ("row", "finds", "plants")
+FINDS_NONE = "No plant was found infested yet."
+BATCHES = "What was recorded"
+BATCH_COLUMNS = ("recorded (UTC)", "what", "from", "by", "rows")
+BATCH_KINDS = {"findings": "inspections", "treatment": "treatment"}
+BATCH_UNDONE = "{kind}, taken back"
+BATCHES_NONE = "Nothing was recorded yet."
+BATCHES_REST = "... and {n} earlier ones; fieldmon status --batches lists them."
+TREATMENTS = "Treatments"
+TREATMENT_COLUMNS = ("day", "plants", "works on")
+TREATMENTS_NONE = "No treatment was noted."
+TREATMENTS_REST = "... and {n} earlier ones."
+ASSUMED = "Assumed, though nobody said so: {what}."
+ROWS_APART, PLANTS_APART = "From row to row", "From plant to plant"
+SAMPLER, HOURS = "Who chooses the plants", "Working hours"
+LOOK, SPEED = "Seconds at a plant", "Speed"
+DETECTS = "Finds what is there"
+SPREAD, ARRIVALS = "Spread to a neighbour, a night", "Plants new from outside, a night"
+ARRIVALS_NONE = "none"
+ARRIVALS_VALUE = "1 in {n:,.0f}"
+BACKGROUND = "Chance where nothing is known"
+TREATED, TREATED_VALUES = "Plants found are", {True: "treated", False: "flagged"}
+GUESSED = "Guessed when the plot was read"
+FROM_CHOSEN, FROM_USUAL, FROM_FILE = "chosen", "the usual", "of the plot's file"
+FROM_NOBODY = "assumed"
+MEANING = "How the numbers are meant"
+MEANINGS = (
+    "Unknown is not clean: a plant was found infested, or looked clean, or was never inspected.",
+    "A chance is what a model believes after all records, inspections and nights; it is no count.",
+    "An interval of 90 % is to hold the true number nine times in ten. On simulated seasons: 88 %.",
+    "A hot spot is where finds cluster more than chance allows, three or more; false ones: 5 %.",
+    "What is marked as assumed was neither measured nor chosen. Other values give other chances.",
+)

@@ -1,0 +1,70 @@
+"""`fieldmon report`: a day or a season on paper."""
+
+from datetime import date, timedelta
+
+import pytest
+
+from fieldmon.monitoring import Season
+from tests.cli.estate import BEGINS
+from tests.reports.reading import sizes_mm, texts
+
+
+def test_a_season_is_written_on_four_pages(run, season):
+    code, out, err, made = run("report", season, "-o", "season.pdf")
+    assert code == 0, err
+    assert out == "Report written to season.pdf\n"
+    (file,) = made
+    pages = texts(file.read_bytes())
+    assert len(pages) == 4
+    assert all("Nursery" in page for page in pages)
+    assert sizes_mm(file.read_bytes())[0] == (210.0, 297.0)
+
+
+def test_a_day_is_written_on_one_page_of_the_paper_asked_for(run, season):
+    code, _, err, made = run(
+        *("report", season, "-o", "day.pdf", "--date", BEGINS, "--paper", "letter")
+    )
+    assert code == 0, err
+    (file,) = made
+    (page,) = texts(file.read_bytes())
+    assert f"on {BEGINS}" in page
+    assert sizes_mm(file.read_bytes()) == [(215.9, 279.4)]
+
+
+def test_it_is_written_as_html_too_and_the_season_is_as_it_was(run, season):
+    before = season.read_bytes()
+    code, _, err, made = run("report", season, "-o", "season.html")
+    assert code == 0, err
+    (file,) = made
+    assert "Where it stands" in file.read_text("utf-8")
+    assert season.read_bytes() == before
+
+
+def test_the_season_can_end_on_an_earlier_day(run, season):
+    later = date.fromisoformat(BEGINS) + timedelta(days=2)
+    kept = Season(season)
+    kept.plan(later)
+    pages = {}
+    for name, words in (("a.html", ()), ("b.html", ("--until", BEGINS))):
+        run("report", season, "-o", name, *words)
+        pages[name] = (season.parent / name).read_text("utf-8")
+    assert f"to {later}" in pages["a.html"]
+    assert f"to {BEGINS}" in pages["b.html"]
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("-o", "report.docx"), "must end in .pdf or .html, but it is 'report.docx'"),
+        (("--date", "yesterday"), "--date must be a day as YYYY-MM-DD"),
+        (("--until", "2026-13-01"), "--until must be a day as YYYY-MM-DD"),
+        (("--date", BEGINS, "--until", BEGINS), "both --date and --until were given"),
+        (("--date", "2020-01-01"), f"which began on {BEGINS}"),
+        (("-o", "nowhere/report.pdf"), "The folder nowhere must exist"),
+    ],
+)
+def test_what_cannot_be_is_a_sentence_and_leaves_no_file(run, season, words, says):
+    code, _, err, made = run("report", season, *words)
+    assert code == 2
+    assert says in " ".join(err.split())
+    assert made == set()

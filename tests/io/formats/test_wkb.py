@@ -1,0 +1,42 @@
+"""Rings that do not end where they begin are closed, and what cannot be understood is said."""
+
+import struct
+
+import numpy as np
+from shapely import box
+
+from fieldmon.io.formats.wkb import shapes
+from fieldmon.io.import_report import Severity
+
+SQUARE = box(0, 0, 2, 2)
+
+
+def wkb(*corners):
+    points = b"".join(struct.pack("<dd", *corner) for corner in corners)
+    return struct.pack("<BIII", 1, 3, 1, len(corners)) + points
+
+
+def read(*cells):
+    column = np.empty(len(cells), dtype=object)
+    column[:] = cells
+    return shapes(column)
+
+
+def test_good_shapes_and_missing_ones_say_nothing():
+    geometry, messages = read(SQUARE.wkb, None)
+    assert geometry[0].equals(SQUARE)
+    assert geometry[1] is None
+    assert messages == []
+
+
+def test_a_ring_is_closed_by_a_straight_line_and_counted():
+    geometry, (said,) = read(wkb((0, 0), (2, 0), (2, 2), (0, 2)), SQUARE.wkb)
+    assert geometry[0].equals(SQUARE)
+    assert said.severity == Severity.REPAIRED
+    assert "The outline of 1 feature(s) did not end where it began" in said.sentence
+
+
+def test_what_is_no_ring_is_left_out_and_named():
+    geometry, (said,) = read(SQUARE.wkb, wkb((0, 0)))
+    assert geometry[1] is None
+    assert (said.severity, said.feature) == (Severity.DROPPED, "feature 2")

@@ -1,0 +1,44 @@
+"""Words for what was found, whatever the language: one meaning each."""
+
+import pytest
+
+from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.io.options import RecordOptions
+from fieldmon.io.parse.result_words import CLEAN, FOUND, NOT_INSPECTED, ResultWords, meaning
+
+
+def test_no_word_says_two_things():
+    assert not FOUND.keys() & CLEAN.keys()
+    assert not NOT_INSPECTED & (FOUND.keys() | CLEAN.keys())
+
+
+@pytest.mark.parametrize(
+    ("word", "says"),
+    [
+        *(
+            (w, PRESENT)
+            for w in ("Sì", "POSITIF", "positiva", "infestado", "да", "有", "نعم", "हाँ")
+        ),
+        *((w, PRESENT) for w in ("befallen", "aangetast", "evet", "nachweis", "נגוע", "+")),
+        *((w, ABSENT) for w in ("NEG", "Négatif", "sano", "негатив", "无", "لا", "नहीं", "hayır")),
+        *(
+            (w, ABSENT)
+            for w in ("gesund", "schoon", "não", "sain", "pulita", "zdrowy", "Not_found.")
+        ),
+    ],
+)
+def test_a_word_is_known_in_any_case(word, says):
+    assert meaning(word) == says
+
+
+def test_words_of_ones_own_go_before_all_others():
+    words = ResultWords(["x", "-"], RecordOptions(found="oops, Hm", clean="x,-"))
+    assert [words[w] for w in ("OOPS", "hm", "x", "-", "yes", "?")] == [
+        *(PRESENT, PRESENT, ABSENT, ABSENT, PRESENT),
+        None,
+    ]
+
+
+def test_a_minus_is_clean_only_beside_a_plus():
+    assert ResultWords(["+", "-"], RecordOptions())["-"] == ABSENT
+    assert ResultWords(["x", "-"], RecordOptions())["-"] is None

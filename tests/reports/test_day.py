@@ -1,0 +1,164 @@
+"""A day on one page: what it says, planned or worked."""
+
+from dataclasses import replace
+from datetime import timedelta
+
+import numpy as np
+import pytest
+
+from fieldmon.compute.units import Units
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.plot.grid import row_label
+from fieldmon.reports.content import (
+    Illustration,
+    KeyFigures,
+    Listing,
+    NoteLines,
+    Paragraph,
+    TickList,
+)
+from fieldmon.reports.day import DayFacts, day_report, which
+from fieldmon.reports.pdf import pdf_bytes
+from fieldmon.reports.sentences import headline
+from tests.monitoring.seasons import BEGINS, ROBOT, a_season, some_results
+from tests.reports.reading import MM, one, opened, table, texts
+
+
+@pytest.fixture(scope="module")
+def ahead(worked, last):
+    return DayFacts.of_season(worked, last + timedelta(days=1))
+
+
+@pytest.fixture(scope="module")
+def done(worked, last):
+    return DayFacts.of_season(worked, last)
+
+
+def figures(report):
+    return {each.label: each for each in one(report, KeyFigures).figures}
+
+
+def paragraphs(report):
+    return [block.text for block in report.sheets[0].blocks if isinstance(block, Paragraph)]
+
+
+def test_a_planned_day_says_what_to_do_first(worked, last, ahead, of_day):
+    on = last + timedelta(days=1)
+    plan = worked.plan(on, keep=False)
+    assert paragraphs(of_day)[0] == headline(plan.route, str(on))
+    shown = figures(of_day)
+    assert shown["Plants to inspect"].value == f"{len(plan.route):,}"
+    assert shown["Expected finds"].value == f"{plan.route.expected_found:.1f}"
+    assert shown["Drive"].value == Units().metres(plan.route.drive_m)
+    assert shown["Hours"].note.startswith("06:00 to ")
+    assert ahead.route.plant.tolist() == plan.route.plant.tolist()
+
+
+def test_a_day_that_is_over_says_what_was_done(worked, last, done, of_worked_day):
+    made = worked.history.on(worked.settings.day(last))
+    found = np.unique(made.plant[made.result == FOUND])
+    lead, *_ = paragraphs(of_worked_day)
+    assert lead == (f"Worked on {last}: {len(made)} plants inspected, {len(found)} found infested.")
+    assert figures(of_worked_day)["Found that day"].value == f"{len(found)}"
+    assert done.route.plant.tolist() == made.plant.tolist()
+    label = row_label(worked.plot.grid, found)
+    lines = [row[0] for row in table(of_worked_day, "Found that day, by row").rows]
+    assert lines == [f"{line}" for line in np.unique(label.line)]
+
+
+def test_half_a_day_says_both_what_was_done_and_what_is_left(tmp_path):
+    season = a_season(tmp_path / "half.gpkg")
+    season.record(some_results(season, 6, found=[2]))
+    facts = DayFacts.of_season(season, BEGINS)
+    leads = paragraphs(day_report(facts, Units()))
+    assert leads[0] == f"Worked on {BEGINS}: 6 plants inspected, 1 found infested."
+    assert leads[1] == headline(facts.route, str(BEGINS))
+    assert facts.begins.strftime("%H:%M") > "06:00"
+
+
+def test_making_a_report_keeps_nothing_in_the_season(tmp_path):
+    season = a_season(tmp_path / "quiet.gpkg")
+    before = season.revision
+    DayFacts.of_season(season, BEGINS + timedelta(days=3))
+    assert season.revision == before
+    assert len(season.kept_route(BEGINS + timedelta(days=3))) == 0
+
+
+def test_every_stop_stands_in_its_row_in_the_order_of_the_rows(ahead, of_day):
+    label = row_label(ahead.route.aisles.grid, ahead.route.plant)
+    rows = table(of_day, "Stops by row, in order").rows
+    assert sum(int(row[2]) for row in rows) == len(ahead.route)
+    assert [row[0] for row in rows] == [f"{line}" for line in dict.fromkeys(label.line.tolist())]
+    assert [row[1] for row in rows] == sorted(row[1] for row in rows)
+
+
+def test_every_stop_is_on_the_list_to_tick(ahead, of_day):
+    ticks = one(of_day, TickList).rows
+    label = row_label(ahead.route.aisles.grid, ahead.route.plant)
+    assert [int(row[0]) for row in ticks] == list(range(1, len(ahead.route) + 1))
+    assert [int(row[2]) for row in ticks] == label.line.tolist()
+    assert [int(row[3]) for row in ticks] == label.number.tolist()
+    assert {row[5] for row in ticks} == {"☐"}
+
+
+def test_after_the_work_every_stop_has_its_result_instead(of_worked_day, done):
+    ticks = one(of_worked_day, TickList)
+    assert ticks.columns[-1] == "result"
+    found = {int(plant) for plant in done.found}
+    said = [row[5] for row in ticks.rows]
+    assert said == ["found" if plant in found else "clean" for plant in done.route.plant.tolist()]
+
+
+def test_what_is_assumed_stands_under_the_figures(of_day):
+    sheet = of_day.sheets[0].blocks
+    under = sheet[[isinstance(block, KeyFigures) for block in sheet].index(True) + 1]
+    assert under.text.startswith("Assumed, though nobody said so: ")
+    assert "spread to a neighbour, a night 2 %" in under.text
+
+
+@pytest.mark.parametrize(
+    ("numbers", "said"),
+    [
+        ([3, 4, 5, 9], "3–5, 9"),
+        ([*range(1, 99, 2)], "49 between 1 and 97"),
+        ([*range(1, 99)], "1–98"),
+    ],
+)
+def test_plants_of_a_row_are_named_or_counted(numbers, said):
+    assert which(numbers, 40) == said
+
+
+def test_the_map_has_a_legend_and_says_in_words_what_it_shows(of_day, ahead):
+    maps = [block for block in of_day.sheets[0].blocks if isinstance(block, Illustration)]
+    assert len(maps) == 2
+    least, most = maps[0].heights
+    assert 0 < least <= most <= 190.0
+    assert f"{len(ahead.route)} stops on the route" in maps[0].alt
+    assert "50 %+" in maps[1].draw((186.0, 8.0)).words()
+
+
+def test_a_day_without_a_route_or_a_season_has_a_page_too(ahead):
+    settings = replace(ahead.settings, belief=None, guessed=("The rows were guessed.",))
+    report = day_report(replace(ahead, settings=settings), Units(date_like="16.11.2026"))
+    assert one(report, Listing).sentences == ("The rows were guessed.",)
+    assert f"{report.on:%d.%m.%Y}" in report.title
+    assert one(report, NoteLines)
+    hours = dict(row[:2] for row in table(report, "Settings").rows)["Working hours"]
+    assert hours == f"{ROBOT.hours:g}"
+
+
+def test_the_fullest_day_stays_on_its_page(done):
+    guessed = ("A sentence of an import that is long enough to need more than one line. " * 3,) * 3
+    found = np.arange(0, len(done.chance), 3)
+    full = replace(
+        done, found=found, worked=False, settings=replace(done.settings, guessed=guessed)
+    )
+    data = pdf_bytes(day_report(full, Units()), "letter")
+    lowest = []
+    opened(data).pages[0].extract_text(
+        visitor_text=lambda said, cm, tm, *_: lowest.append(cm[5] + tm[5]) if said.strip() else None
+    )
+    assert min(lowest) >= 12.0 * MM - 1
+    (page,) = texts(data)
+    assert "Notes" in page
+    assert "Plants found are" in page

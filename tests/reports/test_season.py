@@ -1,0 +1,132 @@
+"""A season on four pages: its figures are the season's."""
+
+from datetime import timedelta
+
+import numpy as np
+import pytest
+
+from fieldmon.compute.units import Units
+from fieldmon.errors import SettingError
+from fieldmon.infestation.observations import PRESENT
+from fieldmon.plot.grid import row_label
+from fieldmon.reports.content import Illustration, KeyFigures, Listing, Paragraph
+from fieldmon.reports.season import season_report
+from fieldmon.reports.sentences import hot_spot_meanings
+from tests.monitoring.seasons import BEGINS, a_season
+from tests.reports.reading import one, table
+
+
+def on_sheet(report, number, kind):
+    return [block for block in report.sheets[number].blocks if isinstance(block, kind)]
+
+
+def test_the_four_pages_have_their_subjects_in_order(of_season):
+    assert [sheet.heading for sheet in of_season.sheets] == [
+        "Where it stands", "How it went", "Hot spots and finds", "Records, treatments, settings",
+    ]  # fmt: skip
+
+
+def test_where_it_stands_is_the_season_s_status_with_its_intervals(of_season, worked, last):
+    status = worked.status(last)
+    shown = {each.label: each for each in one(of_season, KeyFigures).figures}
+    left = status.estimate
+    assert shown["Still infested"].value == f"{left.expected:.1f}"
+    assert shown["Still infested"].note == f"{left.low} to {left.high} (90 %)"
+    assert shown["Plants found"].value == f"{status.found}"
+    assert shown["Found of all expected"].value == f"{status.detection_pct:.0f} %"
+    assert shown["Plants inspected"].value == f"{status.inspected:,}"
+    assert shown["Hot spots"].value == f"{len(status.hot_spots)}"
+    lead = on_sheet(of_season, 0, Paragraph)[0].text
+    assert lead.startswith(f"About {left.expected:.0f} plants are still infested")
+
+
+def test_the_share_found_lies_in_its_interval(of_season):
+    (share,) = [
+        each for each in one(of_season, KeyFigures).figures
+        if each.label == "Found of all expected"
+    ]  # fmt: skip
+    low, high = (float(part.strip(" %")) for part in share.note.removesuffix("(90 %)").split("to"))
+    assert low <= float(share.value.strip(" %")) <= high
+
+
+def test_every_day_with_work_has_its_line_the_newest_first(of_season, worked):
+    rows = table(of_season, "Day by day").rows
+    kept = worked.days()
+    assert [row[0] for row in rows] == [str(one.on) for one in reversed(kept)]
+    assert [int(row[1]) for row in rows] == [one.inspected for one in reversed(kept)]
+    assert [int(row[2]) for row in rows] == [one.found for one in reversed(kept)]
+
+
+def test_the_charts_show_finds_share_expected_and_inspected(of_season):
+    charts = on_sheet(of_season, 1, Illustration)
+    assert [chart.title for chart in charts] == [
+        "Plants found a day", "Found of all infestations so far, % (line), and its 90 % interval",
+        "Still infested and not found, as expected (line), and its 90 % interval",
+        "Plants inspected a day",
+    ]  # fmt: skip
+    assert "treated" in charts[2].draw((186.0, 40.0)).words()
+    assert "treated" not in charts[0].draw((186.0, 40.0)).words()
+
+
+def test_hot_spots_are_said_as_everywhere_and_every_find_stands_by_its_row(of_season, worked, last):
+    status = worked.status(last)
+    said = one(of_season, Listing, "Hot spots").sentences
+    assert list(said) == hot_spot_meanings(worked.plot.grid, status.hot_spots)
+    found = np.flatnonzero(worked.history.states(status.day) == PRESENT)
+    rows = table(of_season, "Plants found infested, by row").rows
+    assert sum(int(row[1]) for row in rows) == len(found) == status.found
+    line = row_label(worked.plot.grid, found).line
+    assert [int(row[0]) for row in rows] == np.unique(line).tolist()
+
+
+def test_records_treatments_and_what_is_assumed_stand_on_the_last_page(of_season, worked):
+    rows = table(of_season, "What was recorded").rows
+    assert [row[2] for row in rows] == [batch.source for batch in worked.batches()]
+    assert {row[3] for row in rows if row[1] == "inspections"} == {"נועה"}
+    (treated,) = table(of_season, "Treatments").rows
+    assert treated == (str(BEGINS + timedelta(days=2)), f"{len(worked.plot.grid):,}", "70%")
+    settings = {row[0]: row[1:] for row in table(of_season, "Settings").rows}
+    assert settings["Spread to a neighbour, a night"] == ("2 %", "assumed")
+    assert settings["Working hours"] == ("1.5", "chosen")
+    assert len(one(of_season, Listing, "How the numbers are meant").sentences) == 5
+
+
+def test_a_season_just_begun_has_four_pages_too(tmp_path):
+    season = a_season(tmp_path / "new.gpkg")
+    report = season_report(season, BEGINS, Units())
+    assert len(report.sheets) == 4
+    assert one(report, Listing, "What was recorded").sentences == ("Nothing was recorded yet.",)
+    assert one(report, Listing, "Treatments").sentences == ("No treatment was noted.",)
+    assert "No plant was found infested yet." in [
+        block.text for block in on_sheet(report, 2, Paragraph)
+    ]
+    assert on_sheet(report, 0, Paragraph)[-1].text.startswith("Never inspected: ")
+    for chart in on_sheet(report, 1, Illustration):
+        assert chart.draw((186.0, 30.0)).parts
+
+
+def test_up_to_an_earlier_day_nothing_later_is_counted(worked):
+    until = BEGINS + timedelta(days=1)
+    report = season_report(worked, until, Units())
+    assert table(report, "Day by day").rows[0][0] == str(until)
+    shown = {each.label: each.value for each in one(report, KeyFigures).figures}
+    assert shown["Plants found"] == f"{worked.progress(until).found}"
+    assert one(report, Listing, "Treatments").sentences == ("No treatment was noted.",)
+
+
+def test_a_day_before_the_season_is_refused(worked):
+    with pytest.raises(SettingError, match="must be of this season"):
+        season_report(worked, BEGINS - timedelta(days=1), Units())
+
+
+def test_finds_of_one_plant_on_two_days_are_said_to_be_one_plant(tmp_path):
+    season = a_season(tmp_path / "twice.gpkg")
+    plants = np.array([5], np.int32)
+    from fieldmon.infestation.inspections import Inspections
+
+    for day in (0, 1):
+        on = np.datetime64(BEGINS + timedelta(days=day), "D")
+        season.record(Inspections.of(plants, np.array([1], np.int8), on))
+    report = season_report(season, BEGINS + timedelta(days=1), Units())
+    (found,) = [each for each in one(report, KeyFigures).figures if each.label == "Plants found"]
+    assert (found.value, found.note) == ("1", "2 finds, some plants twice")

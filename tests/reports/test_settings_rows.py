@@ -1,0 +1,92 @@
+"""What a day goes by, each value with where it comes from."""
+
+from dataclasses import replace
+
+import pytest
+
+from fieldmon.compute.units import Units
+from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.spread import Spread
+from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.plot.assumed import Assumed
+from fieldmon.plot.robot import Robot
+from fieldmon.reports.content import Listing, Table
+from fieldmon.reports.settings_rows import WorkSettings, assumed_sentence, settings_blocks
+
+TOLD = WorkSettings(Robot(), "adaptive", PriorSettings(), (4.0, 2.5), (), BeliefSettings())
+ALL = tuple(
+    Assumed(name, 0.5)
+    for name in ("row_spacing_m", "plant_spacing_m", "speed_m_s", "detects", "background_chance",
+                 "rate_per_day")
+)  # fmt: skip
+
+
+def rows(settings, units=None):
+    (table,) = [
+        block for block in settings_blocks(settings, units or Units()) if isinstance(block, Table)
+    ]
+    return {name: (value, origin) for name, value, origin in table.rows}
+
+
+def test_what_is_assumed_is_marked_and_nothing_else():
+    marked = {
+        "From row to row", "From plant to plant", "Speed", "Finds what is there",
+        "Chance where nothing is known", "Spread to a neighbour, a night",
+    }  # fmt: skip
+    made = rows(replace(TOLD, assumed=ALL))
+    assert {name for name, (_, origin) in made.items() if origin == "assumed"} == marked
+    assert "assumed" not in {origin for _, origin in rows(TOLD).values()}
+
+
+def test_the_sentence_names_what_is_assumed_with_its_value():
+    said = assumed_sentence(replace(TOLD, assumed=ALL[:3]), Units())
+    assert said == (
+        "Assumed, though nobody said so: from row to row 4.0 m; from plant to plant 2.5 m; "
+        "speed 2.5 km/h."
+    )
+    assert assumed_sentence(TOLD, Units()) == ""
+
+
+@pytest.mark.parametrize(
+    ("changed", "name", "shown"),
+    [
+        ({"robot": Robot(hours=3)}, "Working hours", ("3", "chosen")),
+        ({}, "Working hours", ("12", "the usual")),
+        ({"robot": Robot(speed_m_s=1.0)}, "Speed", ("3.6 km/h", "chosen")),
+        ({"robot": Robot(detection=0.7)}, "Finds what is there", ("70%", "chosen")),
+        ({"sampler": "naive"}, "Who chooses the plants", ("Naive", "chosen")),
+        (
+            {"belief": BeliefSettings(Spread(rate_per_day=0.1, arrivals_per_day=0.0))},
+            "Plants new from outside, a night",
+            ("none", "chosen"),
+        ),
+        ({"belief": BeliefSettings(treated=False)}, "Plants found are", ("flagged", "chosen")),
+        ({}, "From row to row", ("4.0 m", "of the plot's file")),
+    ],
+)
+def test_each_value_is_said_with_where_it_comes_from(changed, name, shown):
+    assert rows(replace(TOLD, **changed))[name] == shown
+
+
+def test_lengths_are_in_the_units_chosen():
+    assert rows(TOLD, Units("ft"))["From row to row"][0] == "13.1 ft"
+
+
+def test_without_a_season_nothing_is_said_of_nights():
+    made = rows(replace(TOLD, belief=None))
+    assert "Plants found are" not in made
+    assert "Working hours" in made
+
+
+def test_a_season_s_own_are_taken(worked):
+    made = WorkSettings.of_season(worked)
+    assert made.assumed == worked.assumed()
+    assert made.robot == worked.settings.robot
+    assert made.spacing_m == (worked.plot.grid.row_spacing_m, worked.plot.grid.plant_spacing_m)
+
+
+def test_of_what_was_guessed_three_sentences_are_shown():
+    guessed = tuple(f"Guess {k}." for k in range(5))
+    blocks = settings_blocks(replace(TOLD, guessed=guessed), Units())
+    (listing,) = [one for one in blocks if isinstance(one, Listing)]
+    assert listing.sentences == guessed[:3]

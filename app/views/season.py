@@ -45,16 +45,10 @@ def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
         st.metric(f"{texts.EXPECTED_LEFT}{star}", expected,
                   help=texts.EXPECTED_HELP, width="content")  # fmt: skip
         st.metric(texts.FOUND_EVER, number(progress.found, ","), width="content")
-        st.metric(
-            f"{texts.DETECTED}{star}",
-            texts.IN_PERCENT.format(value=number(detected, ".0f")),
-            width="content",
-        )
-        st.metric(
-            texts.INSPECTED_EVER,
-            f"{number(progress.inspected, ',')} / {number(plants, ',')}",
-            width="content",
-        )
+        share = texts.IN_PERCENT.format(value=number(detected, ".0f"))
+        st.metric(f"{texts.DETECTED}{star}", share, width="content")
+        seen = f"{number(progress.inspected, ',')} / {number(plants, ',')}"
+        st.metric(texts.INSPECTED_EVER, seen, width="content")
         st.metric(f"{texts.CLEAN_CHANCE}{star}", number(now.chance_clean, ".1%"), width="content")
 
 

@@ -21,9 +21,10 @@ def test_a_count_takes_the_form_that_the_language_asks_for(speaking):
 
 
 def test_numbers_in_a_text_are_written_as_in_the_language(speaking):
-    assert texts.CHANCE_P.format(n=12_345) == "about 1 in 12,345"
+    verdict = {"best": "A", "second": "B", "loss": 12_345, "percent": 3, "low": 1, "high": 9}
+    assert texts.VERDICT.format(**verdict).startswith("**A** is best: 12,345 infested")
     speaking("es")
-    assert texts.CHANCE_P.format(n=12_345) == "alrededor de 1 entre 12.345"
+    assert "12.345 días-planta" in texts.VERDICT.format(**verdict)
     assert Units().metres(1234.5) == "1,23 km"
     assert language.number(0.125, ".1%") == "12,5%"
 

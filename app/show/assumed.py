@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
     from fieldmon.plot.assumed import Assumed
 
-    from ..words.units import Units
+    from ..words.units import UnitsInLanguage
 
 _LENGTHS = frozenset({"row_spacing_m", "plant_spacing_m"})
 
 
-def sentence(assumed: Sequence[Assumed], units: Units) -> str:
+def sentence(assumed: Sequence[Assumed], units: UnitsInLanguage) -> str:
     """Return what is assumed, as one line; empty if nothing is."""
     if not assumed:
         return ""
@@ -30,7 +30,7 @@ def mark(label: str, assumed: Sequence[Assumed], settings: Sequence[str]) -> str
     return f"{label} *" if any(one.setting in settings for one in assumed) else label
 
 
-def _words(one: Assumed, units: Units) -> str:
+def _words(one: Assumed, units: UnitsInLanguage) -> str:
     if one.setting in _LENGTHS:
         value = in_unit(units.shown(one.value), "g", units.length)
     elif one.setting == "speed_m_s":

@@ -14,10 +14,10 @@ from .assumed import mark
 if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
 
-    from ..words.units import Units
+    from ..words.units import UnitsInLanguage
 
 
-def show(plot: Plot, units: Units) -> None:
+def show(plot: Plot, units: UnitsInLanguage) -> None:
     """Show the figures side by side."""
     grid = plot.grid
     area_m2 = shapely.area(grid.frame.geometry_m(plot.field.drivable()))

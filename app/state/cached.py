@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from pydeck import Layer
     from shapely import MultiLineString
 
+    from fieldmon.compute.units import Units
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, Source
@@ -61,7 +62,6 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.reports.content import Report
 
-    from ..words.units import Units
     from .comparison import ComparisonSettings
 
     Array = NDArray[np.float64]

@@ -8,10 +8,10 @@ from fieldmon.compute.units import AREAS_M2, DATES, LENGTHS
 from . import texts
 from .language import number
 
-__all__ = ["AREAS_M2", "DATES", "LENGTHS", "Units", "hours", "in_unit", "usual"]
+__all__ = ["AREAS_M2", "DATES", "LENGTHS", "UnitsInLanguage", "hours", "in_unit", "usual"]
 
 
-class Units(library.Units):
+class UnitsInLanguage(library.Units):
     """How numbers are written, in the session's language."""
 
     @property
@@ -47,9 +47,9 @@ def hours(value_h: float) -> str:
     return texts.IN_HOURS.format(hours=number(value_h, ".1f"))
 
 
-def usual(language: str) -> Units:
+def usual(language: str) -> UnitsInLanguage:
     """Return how numbers are usually written where a language is spoken."""
-    return Units(**_USUAL.get(language, {}))
+    return UnitsInLanguage(**_USUAL.get(language, {}))
 
 
 _USUAL = {

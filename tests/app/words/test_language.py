@@ -1,7 +1,7 @@
 """A language: its texts, its plurals and numbers, and the library's sentences in it."""
 
 from app.words import language, texts
-from app.words.units import Units
+from app.words.units import UnitsInLanguage
 from fieldmon.compute.wording import counted, joined, worded
 
 
@@ -25,7 +25,7 @@ def test_numbers_in_a_text_are_written_as_in_the_language(speaking):
     assert texts.VERDICT.format(**verdict).startswith("**A** is best: 12,345 infested")
     speaking("es")
     assert "12.345 días-planta" in texts.VERDICT.format(**verdict)
-    assert Units().metres(1234.5) == "1,23 km"
+    assert UnitsInLanguage().metres(1234.5) == "1,23 km"
     assert language.number(0.125, ".1%") == "12,5%"
 
 

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 FLAGS = {
     "plot": "--plot-option",
     "plants": "--plants-option",
+    "rows": "--rows-option",
+    "contours": "--contours-option",
     "paths": "--paths-option",
     "records": "--record-option",
     "canopy": "--canopy-option",
@@ -101,11 +103,16 @@ class Terminal:
 
 def describe(plot: Plot) -> None:
     """Print how a plot is planted."""
-    grid = plot.grid
+    grid, name = plot.grid, plot.field.name
+    if plot.rows is not None and not plot.rows.in_rows:
+        typer.echo(f"{name}: {len(grid)} plants in no rows.")
+        return
+    run = f"bearing {grid.frame.bearing_deg % 180:.1f} degrees"
+    if grid.aisles_m is not None:
+        run = f"which run as they bend, in {grid.n_blocks} block" + "s" * (grid.n_blocks > 1)
     typer.echo(
-        f"{plot.field.name}: {len(grid)} plants in {grid.n_rows} rows, bearing "
-        f"{grid.frame.bearing_deg % 180:.1f} degrees, rows {grid.row_spacing_m:.2f} m and plants "
-        f"{grid.plant_spacing_m:.2f} m apart."
+        f"{name}: {len(grid)} plants in {grid.n_rows} rows, {run}, rows {grid.row_spacing_m:.2f} m "
+        f"and plants {grid.plant_spacing_m:.2f} m apart."
     )
 
 

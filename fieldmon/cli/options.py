@@ -16,6 +16,7 @@ from fieldmon.samplers import kind_of, sampler
 
 if TYPE_CHECKING:
     from fieldmon.io.options import PlotOptions
+    from fieldmon.io.rasters.values import RasterOptions
     from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler
@@ -73,6 +74,24 @@ PlantsChoices = Annotated[
 PathsChoices = Annotated[
     list[str] | None,
     typer.Option("--paths-option", help="What the file of paths leaves open, as NAME=VALUE."),
+]
+Rows = Annotated[
+    Path | None,
+    typer.Option(help="Rows of plants as lines, or their end posts as points, two a row."),
+]
+RowsChoices = Annotated[
+    list[str] | None,
+    typer.Option("--rows-option", help="What the file of rows leaves open, as NAME=VALUE."),
+]
+Contours = Annotated[
+    Path | None,
+    typer.Option(help="GeoTIFF of heights: rows run along its contours, as on terraces."),
+]
+ContoursChoices = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--contours-option", help="How heights are read, as NAME=VALUE: band, crs, nodata, member."
+    ),
 ]
 Bearing = Annotated[
     float | None,
@@ -186,6 +205,10 @@ class FileOptions:
     record_option: RecordChoices = None
     plants_option: PlantsChoices = None
     paths_option: PathsChoices = None
+    rows: Rows = None
+    rows_option: RowsChoices = None
+    contours: Contours = None
+    contours_option: ContoursChoices = None
 
     def sources(self, plot: Path | None, feature: str | None) -> PlotSources:
         """Return the plot's files, given the first of them."""
@@ -204,6 +227,10 @@ class FileOptions:
             self.paths,
             chosen(ReadOptions(), self.paths_option),
             None if self.gate is None else _lonlat(self.gate),
+            self.rows,
+            chosen(ReadOptions(), self.rows_option),
+            self.contours,
+            _raster_options(self.contours_option),
         )
 
 
@@ -249,6 +276,15 @@ def sampler_settings(name: SamplerName, every: int | None) -> dict[str, float]:
 def sampler_of(name: SamplerName, every: int | None) -> Sampler:
     """Return the sampler that was chosen."""
     return sampler(name.value, **sampler_settings(name, every))
+
+
+def _raster_options(given: list[str] | None) -> RasterOptions | None:
+    """Return how a raster is read; None: as it says, and nothing heavy is loaded for it."""
+    if not given:
+        return None
+    from fieldmon.io.rasters.values import RasterOptions  # noqa: PLC0415
+
+    return chosen(RasterOptions(), given)
 
 
 def _lonlat(text: str) -> tuple[float, float]:

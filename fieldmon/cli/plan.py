@@ -26,6 +26,7 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.outputs import ChanceMap, day_in_words, write_chance_map, write_routes
 from fieldmon.cli.plan_season import plan_season
+from fieldmon.cli.plan_team import plan_team
 from fieldmon.cli.preparing import estate, prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.times import WorkStart, clock, day
@@ -37,6 +38,13 @@ if TYPE_CHECKING:
 Now = Annotated[
     str | None,
     typer.Option(help="Of a season: plan the rest of the day from this local time, HH:MM."),
+]
+Robots = Annotated[
+    str | None,
+    typer.Option(
+        help="How many robots, or a table of robots and scouts (CSV: name, who, hours, speed_km_h, "
+        "look_s, detection, start, lon, lat). Each has a route file of its own."
+    ),
 ]
 EveryPlot = Annotated[
     bool,
@@ -62,6 +70,7 @@ class PlanOptions:
     chance_map: ChanceMap = None
     every_plot: EveryPlot = False
     bound: Bounded = True
+    robots: Robots = None
 
     def starts(self) -> WorkStart:
         """Return when the work starts, as it was told."""
@@ -81,10 +90,13 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
 
     Example: fieldmon plan vines.zip --feature 3 --observations mites.csv --hours 6 -o route.geojson
     Example: fieldmon plan season.gpkg -o route.geojson
+    Example: fieldmon plan vines.zip --feature 3 --robots 2 --hours 4 -o route.geojson
     Example: fieldmon plan estate.zip --all --observations mites.csv -o routes
 
     Of a whole day it is said what no other route of these hours can expect to find, whichever
     plants it visits: how much a better plan could gain at most.
+
+    With --robots, no plant is visited twice, and no two are in one aisle at once.
 
     With --all, columns robot (robot or scout), hours, speed_km_h and look_s of the plot file say
     who works on each plot; options given here go before them.
@@ -92,11 +104,17 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
     from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
 
     if options.plot is not None and is_season(options.plot):
+        if options.robots is not None:
+            raise SettingError(
+                "--robots plans a plot file, but this is a season: it has one robot."
+            )
         plan_season(context, options, options.plot)
         return
     if options.now is not None:
         raise SettingError("--now needs a season (see fieldmon init), but this is a plot file.")
-    if options.every_plot:
+    if options.robots is not None:
+        plan_team(context, options, options.robots)
+    elif options.every_plot:
         _plan_every_plot(options)
     else:
         _plan_one(options)

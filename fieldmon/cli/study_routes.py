@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.study_output import must_be_folder, write_all
 from fieldmon.cli.waiting import progress
 from fieldmon.errors import FileProblem, SettingError
+
+if TYPE_CHECKING:
+    from fieldmon.studies.routes.instances import Instance
 
 _ALWAYS = ("GR", "GPR", "GFR", "OFR", "HPR")
 
@@ -24,6 +28,10 @@ def routes(  # noqa: PLR0913 - one a command-line option
         int | None, typer.Option(help="Draw the published families from this seed, too.")
     ] = None,
     *,
+    team: Annotated[
+        list[int] | None,
+        typer.Option(min=1, help="Size of a team, each with the budget; repeat for more."),
+    ] = None,
     maps: Annotated[
         bool, typer.Option(help="With the families, maps of 240 x 500 and 274 x 214 plants.")
     ] = True,
@@ -37,44 +45,51 @@ def routes(  # noqa: PLR0913 - one a command-line option
         float, typer.Option(help="Seconds for PyVRP and for the mixed-integer program.")
     ] = 10.0,
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="Folder for the table (routes.csv).")
+        Path, typer.Option("--output", "-o", help="Folder for the tables (routes.csv, routes.md).")
     ] = Path(),
 ) -> None:
     """Compare walks along rows by the published model: unit steps, back to the corner.
 
     Example: fieldmon study routes rewards.csv --budget 0.1 --budget 0.5 -o study
     """
-    from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
-    from fieldmon.studies.routes.instances import families, read_matrix  # noqa: PLC0415
     from fieldmon.studies.routes.study import (  # noqa: PLC0415
         MILP,
         PYVRP,
         csv_text,
         run,
+        run_teams,
         sentences,
+        table,
+        told_of_teams,
     )
 
-    if not output.is_dir():
-        raise FileProblem(f"The folder {output} must exist, but it does not. Make it first.")
+    must_be_folder(output)
     shares = budget or [0.1, 0.5]
     if not all(0.0 < share <= 1.0 for share in shares):
         raise SettingError(f"A budget must be a share above 0 and up to 1, but it is {shares}.")
+    instances = _instances(files, seed, maps=maps)
+    methods = [*_ALWAYS, *([PYVRP] if pyvrp else []), *([MILP] if milp else [])]
+    made, teams = [], []
+    with progress("Instances", len(instances)) as bar:
+        for instance in instances:
+            made += list(run(instance, shares, methods, solver_seconds))
+            teams += list(run_teams(instance, shares, team or []))
+            bar.update(1)
+    for sentence in (*sentences(made), *told_of_teams(teams)):
+        typer.echo(sentence)
+    write_all(output, {"routes.csv": csv_text([*made, *teams]), "routes.md": table(made)})
+
+
+def _instances(files: list[Path] | None, seed: int | None, *, maps: bool) -> list[Instance]:
+    """Return the reward matrices of files, and the families drawn from a seed."""
+    from fieldmon.studies.routes.instances import families, read_matrix  # noqa: PLC0415
+
     instances = [read_matrix(_text(file), file.name) for file in files or []]
     if seed is not None:
         instances += families(seed, maps=maps)
     if not instances:
         raise SettingError("A reward matrix or a seed must be given, but neither is.")
-    methods = [*_ALWAYS, *([PYVRP] if pyvrp else []), *([MILP] if milp else [])]
-    made = []
-    with progress("Instances", len(instances)) as bar:
-        for instance in instances:
-            made += list(run(instance, shares, methods, solver_seconds))
-            bar.update(1)
-    for sentence in sentences(made):
-        typer.echo(sentence)
-    table = output / "routes.csv"
-    write_whole(table, csv_text(made).encode())
-    typer.echo(f"Written: {table}")
+    return instances
 
 
 def _text(file: Path) -> str:

@@ -78,6 +78,41 @@ def outside_m(grid: PlantGrid, lonlat: Floats) -> Floats:
     return off_m
 
 
+class SearchRows(NamedTuple):
+    """A grid's plants as loops search them, and which plant each is; None: as they are numbered.
+
+    Where rows bend, x does not ascend along them: there plants stand in level strips instead.
+    """
+
+    rows: PlantRows
+    plant: NDArray[np.int64] | None
+
+    @classmethod
+    def of(cls, grid: PlantGrid) -> SearchRows:
+        """Return the rows of a grid, or strips two row spacings wide."""
+        if grid.aisles_m is None:
+            return cls(PlantRows.of(grid), None)
+        x, y = grid.xy_m.T
+        strip = np.floor((y - y.min()) / (2 * grid.row_spacing_m)).astype(np.int64)
+        plant = np.lexsort((x, strip))
+        starts = np.flatnonzero(np.diff(strip[plant], prepend=-1))
+        y_m = y[plant]
+        low, high = (v.reduceat(y_m, starts) for v in (np.minimum, np.maximum))
+        return cls(PlantRows(x[plant], y_m, np.append(starts, len(y)), low, high), plant)
+
+    def sorted(self, values: Floats) -> Floats:
+        """Return one value a plant ``(n,)`` in the order of the search."""
+        return values.copy() if self.plant is None else values[self.plant]
+
+    def numbered(self, values: Floats) -> Floats:
+        """Return values in the order of the search ``(n,)`` as plants are numbered."""
+        if self.plant is None:
+            return values
+        back = np.empty_like(values)
+        back[self.plant] = values
+        return back
+
+
 @routine
 def distance_m(rows: PlantRows, pieces: Floats, farthest_m: float) -> Floats:
     """Return metres from each plant to straight pieces ``(s, 4)``; infinite beyond `farthest_m`."""

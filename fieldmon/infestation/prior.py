@@ -17,7 +17,7 @@ from scipy.special import expit, logit
 
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import MOST_CHANCE
-from fieldmon.infestation.nearby_plants import PlantRows, distance_m
+from fieldmon.infestation.nearby_plants import SearchRows, distance_m
 from fieldmon.infestation.observations import usable
 from fieldmon.infestation.record_kernel import record_chance
 
@@ -222,4 +222,6 @@ def _from_lines(grid: PlantGrid, lines: shapely.Geometry, chance: float, depth_m
     ahead = np.flatnonzero(line[1:] == line[:-1])
     pieces = np.concatenate([points[ahead], points[ahead + 1]], axis=1)
     farthest_m = depth_m * np.log(max(chance / _LEAST_CHANGE, 1.0))
-    return chance * np.exp(-distance_m(PlantRows.of(grid), pieces, farthest_m) / depth_m)
+    search = SearchRows.of(grid)
+    away_m = search.numbered(distance_m(search.rows, pieces, farthest_m))
+    return chance * np.exp(-away_m / depth_m)

@@ -15,7 +15,7 @@ import numpy as np
 from fieldmon.compute.jit import kept, routine
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.belief import MOST_CHANCE
-from fieldmon.infestation.nearby_plants import FAR_M, PlantRows, first_from, outside_m
+from fieldmon.infestation.nearby_plants import FAR_M, PlantRows, SearchRows, first_from, outside_m
 from fieldmon.infestation.observations import PRESENT
 
 if TYPE_CHECKING:
@@ -75,15 +75,16 @@ def record_chance(
     # oldest first, a day's finds before its clean looks; the rest only settles the last digit
     order = np.lexsort((*kernel, *xy_m.T, ~find, -age_days))
     records = _Records(xy_m[order, 0].copy(), xy_m[order, 1].copy(), age_days[order], find[order])
-    chance = base.copy()
+    search = SearchRows.of(grid)
+    chance = search.sorted(base)
     _apply_records(
         chance,
-        PlantRows.of(grid),
+        search.rows,
         records,
         _RecordKernel(*(column[order] for column in kernel)),
         1.0 / settings.half_life_days,
     )
-    return chance
+    return search.numbered(chance)
 
 
 def _kernel(grid: PlantGrid, observations: Observations, settings: PriorSettings) -> _RecordKernel:

@@ -25,6 +25,7 @@ from fieldmon.io.read import (
     read_plots,
     read_records,
     read_records_by_plot,
+    read_rows,
 )
 from fieldmon.io.readers.crews import Crew
 from fieldmon.io.readers.nearby import on_plants, records_on_plot
@@ -39,9 +40,11 @@ if TYPE_CHECKING:
 
     import numpy as np
     from numpy.typing import NDArray
+    from shapely import MultiLineString
 
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import Source
+    from fieldmon.io.rasters.values import RasterOptions
     from fieldmon.io.readers.places import Plants
     from fieldmon.io.sources import (
         CanopySource,
@@ -82,7 +85,7 @@ class SourceMessage:
 
 @dataclass(frozen=True, eq=False)
 class Laid:
-    """A plot with its plants, and what had to be assumed for them."""
+    """A plot with its plants, what had to be assumed for them, and what is said of its rows."""
 
     plot: Plot
 
@@ -90,6 +93,19 @@ class Laid:
     def assumed(self) -> tuple[Assumed, ...]:
         """Return what nobody said of its rows."""
         return self.plot.assumed
+
+    @property
+    def messages(self) -> tuple[ImportMessage, ...]:
+        """Return how measured plants stand in rows, and what is doubtful about it."""
+        from fieldmon.io.import_report import doubtful, seen  # noqa: PLC0415
+
+        rows, drawn = self.plot.rows, self.plot.field.row_lines
+        if rows is None and self.plot.field.plants is None and len(drawn.geoms) > 1:
+            return (seen(f"Plants stand along the {len(drawn.geoms)} rows that were drawn."),)
+        if rows is None:
+            return ()
+        found = (seen(f"Rows were found: {rows.how}."),) if rows.in_rows else ()
+        return (*found, *(doubtful(sentence) for sentence in rows.doubts))
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,6 +201,11 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
     """
     hearing = _Hearing(listener)
     sources, measured = request.sources, None
+    if sources.plants is not None and (sources.rows or sources.contours) is not None:
+        raise SettingError(
+            "Plants stand where they were measured, or along rows that were drawn: give their "
+            "positions or the rows, not both."
+        )
     if sources.plot is None:
         measured = _measured(sources, hearing)
         laid = lay_around(sources, measured, request.planting)
@@ -192,10 +213,15 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
         field = one_of(_fields(sources, hearing))
         if sources.plants is not None:
             measured = _measured(sources, hearing)
-            field = replace(field, plants=measured.lonlat.copy())
+            field = replace(field, plants=measured.lonlat.copy(), plant_rows=_row_names(measured))
+        field = _with_rows(field, sources, request.planting, hearing)
         field = _with_paths((field,), sources, hearing)[0]
         gate = field.gate if sources.gate is None else sources.gate
         laid = lay(replace(field, gate=gate), request.planting)
+    if sources.plants is not None:
+        hearing.say("plants", sources.plants, laid.messages)
+    elif sources.rows is not None:
+        hearing.say("rows", sources.rows, laid.messages)
     if listener is not None:
         listener.laid(laid)
     plot, records, risk = laid.plot, Observations.none(), None
@@ -253,6 +279,8 @@ def lay(field: Field, choices: PlantingChoices | None = None) -> Laid:
     given = (choices or PlantingChoices()).given()
     planting = planting_of(field, **given)
     missing = [name for name in _SPACINGS if name not in given and getattr(field, name) is None]
+    if len(field.row_lines.geoms) > 1:  # rows are as far apart as they were drawn
+        missing = [name for name in missing if name != "row_spacing_m"]
     assumed = tuple(Assumed(name, getattr(planting, name)) for name in missing)
     plot = Plot.of(field, planting)
     return Laid(plot if field.plants is not None else replace(plot, assumed=assumed))
@@ -264,7 +292,8 @@ def lay_around(
     """Return the plot of measured plants whose boundary nobody drew, called as their file."""
     planting = Planting(**(choices or PlantingChoices()).given())  # type: ignore[arg-type]
     name = "plants" if sources.plants is None else Path(source_name(sources.plants)).stem
-    return Laid(Plot.around(name, measured.lonlat.copy(), planting, sources.gate))
+    plants, rows = measured.lonlat.copy(), _row_names(measured)
+    return Laid(Plot.around(name, plants, planting, sources.gate, rows))
 
 
 def records_on(
@@ -364,12 +393,16 @@ class _Hearing:
             imported = read()
         except ChoiceNeeded as question:
             raise ChoiceNeeded(str(question), question.option, question.choices, role) from None
-        for message in imported.messages:
+        self.say(role, source, imported.messages)
+        return imported.value
+
+    def say(self, role: Role, source: Source, messages: tuple[ImportMessage, ...]) -> None:
+        """Keep what there is to say of a file, and tell it on."""
+        for message in messages:
             said = SourceMessage(role, source_name(source), message)
             self.messages.append(said)
             if self.listener is not None:
                 self.listener.message(said)
-        return imported.value
 
 
 def _fields(sources: PlotSources, hearing: _Hearing) -> tuple[Field, ...]:
@@ -392,6 +425,43 @@ def _measured(sources: PlotSources, hearing: _Hearing) -> Plants:
     if file is None:
         raise SettingError("Give a file of plots, or the positions of a plot's plants.")
     return hearing.read("plants", file, partial(read_plants, file, sources.plants_options))
+
+
+def _with_rows(
+    field: Field, sources: PlotSources, choices: PlantingChoices, hearing: _Hearing
+) -> Field:
+    """Return a field with the rows that were drawn, or the contour along which rows run."""
+    if (file := sources.rows) is not None:
+        rows = hearing.read("rows", file, partial(read_rows, file, sources.rows_options))
+        field = replace(field, row_lines=rows)
+    if (raster := sources.contours) is not None:
+        spacing_m = planting_of(field, **choices.given()).row_spacing_m
+        read = partial(contour_of, field, raster, spacing_m, sources.contours_options)
+        field = replace(field, row_lines=hearing.read("contours", raster, read))
+    return field
+
+
+def contour_of(
+    field: Field, source: Source, row_spacing_m: float, options: RasterOptions | None = None
+) -> Imported[MultiLineString]:
+    """Return the contour through the middle of a plot, of which its rows are copies."""
+    from fieldmon.io.import_report import seen  # noqa: PLC0415
+    from fieldmon.io.rasters.read import read_raster  # noqa: PLC0415 - half a second
+    from fieldmon.plot.row_drawing import contour_row  # noqa: PLC0415
+
+    read = read_raster(source, options, field)
+
+    def height_m(lonlat: NDArray[np.float64]) -> NDArray[np.float64]:
+        return read.value.at(lonlat, "bilinear")
+
+    row = contour_row(field, height_m, row_spacing_m)
+    said = seen("Rows run along the contour through the middle of the plot, all others beside it.")
+    return read.having(row, [said])
+
+
+def _row_names(measured: Plants) -> NDArray[np.str_] | None:
+    """Return the names of the rows of plants, where all have one."""
+    return None if (measured.row == "").any() else measured.row
 
 
 def _with_paths(

@@ -131,6 +131,12 @@ def read_lines(
     return lines
 
 
+def read_rows(source: Source, options: ReadOptions | None = None) -> Imported[MultiLineString]:
+    """Return rows of plants in degrees WGS84, from lines or from end posts, two a row."""
+    rows: Imported[MultiLineString] = _read("drawn_rows", source, options or ReadOptions())
+    return rows
+
+
 def read_inspection_rows(source: Source, options: InspectionOptions) -> Imported[InspectionRows]:
     """Return what a file says of plants that were inspected, before they are looked up."""
     rows: Imported[InspectionRows] = _read("inspection_rows", source, options)

@@ -13,7 +13,9 @@ if TYPE_CHECKING:
     from fieldmon.io.rasters.values import How, RasterOptions
 
 #: what a file is to a plot
-Role: TypeAlias = Literal["plot", "plants", "paths", "records", "canopy", "risk"]
+Role: TypeAlias = Literal[
+    "plot", "plants", "rows", "contours", "paths", "records", "canopy", "risk"
+]
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,11 @@ class PlotSources:
         File of lines along which insects enter.
     gate
         ``(lon, lat)`` where the day starts and ends.
+    rows, rows_options
+        File of rows: as lines, or as their end posts, two a row. All others are copies of a
+        single one.
+    contours, contours_options
+        Raster of heights: rows run along its contours.
     """
 
     plot: Source | None = None
@@ -41,6 +48,10 @@ class PlotSources:
     paths: Source | None = None
     paths_options: ReadOptions = field(default_factory=ReadOptions)
     gate: tuple[float, float] | None = None
+    rows: Source | None = None
+    rows_options: ReadOptions = field(default_factory=ReadOptions)
+    contours: Source | None = None
+    contours_options: RasterOptions | None = None
 
 
 @dataclass(frozen=True)

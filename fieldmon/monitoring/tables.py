@@ -18,7 +18,7 @@ from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, geometry, insert, point_blobs, touch
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import PlantGrid, row_label
+from fieldmon.plot.grid import PlantGrid, row_corners, row_label
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.travel import Aisles
@@ -134,10 +134,10 @@ def _write_grid(db: sqlite3.Connection, grid: PlantGrid) -> None:
 
 def _write_plant_layers(db: sqlite3.Connection, grid: PlantGrid) -> None:
     lonlat, label = grid.lonlat(), row_label(grid)
-    ends = zip(grid.row_start[:-1], grid.row_start[1:] - 1, grid.row_line, strict=True)
+    lines = zip(row_corners(grid), grid.row_line, np.diff(grid.row_start), strict=True)
     rows = [
-        (blob(LineString(lonlat[[first, last]])), int(line) + 1, int(last - first) + 1)
-        for first, last, line in ends
+        (blob(LineString(grid.frame.lonlat(corners))), int(line) + 1, int(n))
+        for corners, line, n in lines
     ]
     insert(db, schema.ROWS, rows)
     plants = zip(

@@ -21,7 +21,7 @@ def share_above(held: float, bound: float) -> float:
 FINDS, REWARD = worded("finds"), worded("reward")
 
 
-def told(held: float, bound: float, what: str = FINDS) -> str:
+def told(held: float, bound: float, what: str = FINDS, routes: str = "route") -> str:
     """Return what a route is expected to hold and what no other can exceed.
 
     The bound and the share are rounded up: no route exceeds what is said.
@@ -33,6 +33,11 @@ def told(held: float, bound: float, what: str = FINDS) -> str:
     >>> told(20.0, 20.0)
     '20.0 finds expected; no route of these hours can expect more.'
     """
+    said = _of_route(held, bound, what)
+    return said if routes == "route" else said.replace("no route", f"no {routes}", 1)
+
+
+def _of_route(held: float, bound: float, what: str) -> str:
     digits = _digits(bound)
     values = {"held": held, "digits": digits, "what": what, "bound": _up(bound, digits)}
     gap = share_above(held, bound)

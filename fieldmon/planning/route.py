@@ -200,6 +200,8 @@ def _line(scene: Scene, work: Workday) -> tuple[NDArray[np.float64], NDArray[np.
     stop_m, corridor = scene.aisles.stop_m, scene.grid.corridor[scene.grid.row]
     known = (places[:-1] >= 0) & (places[1:] >= 0)
     straight = known & (corridor[places[:-1]] == corridor[places[1:]])
+    bend = scene.aisles.bend
+    straight &= bend[places[:-1]] == bend[places[1:]]
     # within an aisle a leg ends at its stop, straight ahead; only other legs have corners
     legs = list(stop_m[places[1:]][:, None])
     for leg in np.flatnonzero(~straight):

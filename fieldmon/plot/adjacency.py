@@ -57,10 +57,54 @@ def across(
     """
     above = _nearest(xy_m, line, 1, row_spacing_m, plant_spacing_m)
     below = _nearest(xy_m, line, -1, row_spacing_m, plant_spacing_m)
+    return _either_way(above, below)
+
+
+def across_aisles(
+    aisle: NDArray[np.integer],
+    place_m: Float,
+    off_m: Float,
+    row_spacing_m: float,
+    plant_spacing_m: float,
+) -> Lists:
+    """Return each plant's neighbours over the aisles on both sides, however the rows run.
+
+    As `across`: nearest is who stands nearest along the aisle between them.
+
+    Parameters
+    ----------
+    aisle
+        ``(n, 2)`` the aisles to the right and to the left of each plant's row.
+    place_m
+        ``(n, 2)`` each plant's place along both, ascending in each aisle.
+    off_m
+        ``(n, 2)`` how far it stands from the middle of both.
+    """
+    # one ascending axis for all aisles, as above
+    stretch = float(np.ptp(place_m)) + 4 * plant_spacing_m
+    key = place_m + aisle * stretch
+    reach_m = (0.5 + 1e-6) * plant_spacing_m
+
+    def over(own: int) -> Index:
+        other = key[:, 1 - own]
+        after = np.searchsorted(other, key[:, own]).clip(0, len(key) - 1)
+        before = (after - 1).clip(0)
+        nearer = key[:, own] - other[before] <= other[after] - key[:, own]
+        found: Index = np.where(nearer, before, after)
+        far_m = off_m[:, own] + off_m[found, 1 - own]
+        alone = np.abs(other[found] - key[:, own]) > reach_m
+        found[alone | (far_m > _NEXT * row_spacing_m)] = _NOBODY
+        return found
+
+    return _either_way(over(1), over(0))
+
+
+def _either_way(above: Index, below: Index) -> Lists:
+    """Return lists of neighbours from who is nearest above and who below each, -1 for nobody."""
     lower = np.flatnonzero(above != _NOBODY)
     upper = np.flatnonzero((below != _NOBODY) & (above[below] != np.arange(len(below))))
     return lists(
-        len(xy_m),
+        len(above),
         np.concatenate([lower, below[upper]]),
         np.concatenate([above[lower], upper]),
     )

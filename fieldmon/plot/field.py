@@ -37,10 +37,13 @@ class Field:
     plants
         ``(n, 2)`` lon/lat of plants whose positions were measured, or None.
     row_lines
-        Rows drawn or measured as lines, lon/lat; empty if unknown.
+        Rows drawn or measured as lines, lon/lat; empty if unknown. Several are the rows; of a
+        single one all others are copies.
     row_bearing_deg, row_spacing_m, plant_spacing_m
         As stated for this plot, or None: direction of the rows clockwise from true north, and the
         distances from row to row and from plant to plant.
+    plant_rows
+        ``(n,)`` the name of each measured plant's row; None: not known, then rows are found.
     """
 
     name: str
@@ -53,6 +56,7 @@ class Field:
     row_bearing_deg: float | None = None
     row_spacing_m: float | None = None
     plant_spacing_m: float | None = None
+    plant_rows: NDArray[np.str_] | None = None
 
     def __post_init__(self) -> None:
         if self.boundary.is_empty or not self.boundary.is_valid:

@@ -9,7 +9,7 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import block_label, row_label
 
 if TYPE_CHECKING:
     from geopandas import GeoDataFrame
@@ -23,14 +23,15 @@ _DEGREES = "EPSG:4326"
 def plant_frame(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> GeoDataFrame:
     """Return the given plants ``(k,)``, or all, as points in EPSG:4326.
 
-    Columns ``plant`` (number in the grid, from 0), ``row`` and ``number`` (from 1), and ``face``
-    (1 or 2) where both faces are inspected.
+    Columns ``plant`` (number in the grid, from 0), ``block`` where there are several, ``row`` and
+    ``number`` (from 1), and ``face`` (1 or 2) where both faces are inspected.
     """
     import geopandas  # noqa: PLC0415 - half a second to import
 
     chosen = np.arange(len(grid)) if plants is None else np.asarray(plants, np.int64)
     label = row_label(grid, chosen)
-    columns = {"plant": chosen, "row": label.line, "number": label.number}
+    block = {"block": block_label(grid, chosen)} if grid.n_blocks > 1 else {}
+    columns = {"plant": chosen, **block, "row": label.line, "number": label.number}
     twin = grid.twin[chosen]
     if (grid.twin >= 0).any():
         columns["face"] = np.where(twin < 0, 1, np.where(chosen < twin, 1, 2))

@@ -7,10 +7,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import shapely
 
 from fieldmon.compute.arrays import offsets, read_only
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
+from fieldmon.plot.polylines import Polylines
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,7 +23,10 @@ if TYPE_CHECKING:
 
 
 class RowLabel(NamedTuple):
-    """Where plants stand, as people count: from 1, ``(k,)`` each."""
+    """Where plants stand, as people count: from 1, ``(k,)`` each.
+
+    Rows are numbered on from block to block: a row and a number in it are one plant.
+    """
 
     line: NDArray[np.int64]
     number: NDArray[np.int64]
@@ -88,6 +93,13 @@ class PlantGrid:
         CSR lists: neighbours of each plant in the rows on either side.
     twin
         ``(n,)`` the other face of the same vine where both faces are inspected, else -1.
+    block
+        ``(r,)`` the block of each row, ascending, 0 first; None: there is one.
+    place_m, aisle, aisle_start, aisle_m
+        Where rows bend or blocks turn, else None: the place of each plant ``(n,)`` along the
+        middle of its aisle; the aisle of each row ``(r,)``; and the corners of the aisles'
+        middles: those of aisle a are ``aisle_m[aisle_start[a]:aisle_start[a + 1]]``. Then
+        `lane_x_m` are places along the aisle too, and `lane_y_m` is 0.
     """
 
     frame: Frame
@@ -106,6 +118,11 @@ class PlantGrid:
     across_start: NDArray[np.int32]
     across_plant: NDArray[np.int32]
     twin: NDArray[np.int32]
+    block: NDArray[np.int32] | None = None
+    place_m: NDArray[np.float64] | None = None
+    aisle: NDArray[np.int32] | None = None
+    aisle_start: NDArray[np.int64] | None = None
+    aisle_m: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         for value in vars(self).values():
@@ -122,7 +139,20 @@ class PlantGrid:
     @property
     def counts(self) -> str:
         """Return how many plants and rows there are, in words."""
-        return f"{counted(len(self), 'plant')} in {counted(self.n_rows, 'row')}"
+        blocks = f" of {counted(self.n_blocks, 'block')}" if self.n_blocks > 1 else ""
+        return f"{counted(len(self), 'plant')} in {counted(self.n_rows, 'row')}{blocks}"
+
+    @property
+    def n_blocks(self) -> int:
+        """Return the number of blocks."""
+        return 1 if self.block is None else int(self.block[-1]) + 1
+
+    @cached_property
+    def aisles_m(self) -> Polylines | None:
+        """Middles of the aisles where rows bend or blocks turn, None where all is straight."""
+        if self.aisle_start is None or self.aisle_m is None:
+            return None
+        return Polylines.of(self.aisle_start, self.aisle_m)
 
     @property
     def n_rows(self) -> int:
@@ -180,8 +210,15 @@ class PlantGrid:
 
     @property
     def along_m(self) -> NDArray[np.float64]:
-        """Position of each plant along its row, ``(n,)``."""
-        return self.xy_m[:, 0]
+        """Place of each plant along its lane, ``(n,)``: its x where rows are straight."""
+        return self.xy_m[:, 0] if self.place_m is None else self.place_m
+
+    @cached_property
+    def stop_m(self) -> NDArray[np.float64]:
+        """Where the robot stands to inspect each plant, ``(n, 2)``: in the middle of its aisle."""
+        if self.aisles_m is None or self.aisle is None:
+            return read_only(np.stack([self.along_m, self.lane_y_m[self.row]], axis=1))
+        return read_only(self.aisles_m.points(self.aisle[self.row], self.along_m))
 
     def lonlat(self, plants: NDArray[np.integer] | None = None) -> NDArray[np.float64]:
         """Return degrees ``(k, 2)`` of the given plants, or of all."""
@@ -196,6 +233,14 @@ def row_label(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> Row
     chosen = np.arange(len(grid)) if plants is None else np.asarray(plants)
     group_start = _line_faces(grid)[1][grid.row[chosen]]
     return RowLabel(grid.row_line[grid.row[chosen]].astype(np.int64) + 1, chosen - group_start + 1)
+
+
+def block_label(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> NDArray[np.int64]:
+    """Return the block, from 1, of the given plants, or of all, ``(k,)``."""
+    row = grid.row if plants is None else grid.row[plants]
+    if grid.block is None:
+        return np.ones(len(row), np.int64)
+    return grid.block[row].astype(np.int64) + 1
 
 
 def plant_at(grid: PlantGrid, line: int, number: int) -> int:
@@ -223,6 +268,19 @@ def plant_at(grid: PlantGrid, line: int, number: int) -> int:
             )
         )
     return plant
+
+
+def row_corners(grid: PlantGrid) -> list[NDArray[np.float64]]:
+    """Return each row as a line to draw, ``(k, 2)`` metres: its ends, and where it bends."""
+    ends = zip(grid.row_start[:-1].tolist(), (grid.row_start[1:] - 1).tolist(), strict=True)
+    if grid.aisles_m is None:
+        return [grid.xy_m[[a, b]] for a, b in ends]
+    return [
+        shapely.get_coordinates(shapely.simplify(shapely.linestrings(grid.xy_m[a : b + 1]), 0.05))
+        if b > a
+        else grid.xy_m[[a, a]]
+        for a, b in ends
+    ]
 
 
 def nearest_plants(

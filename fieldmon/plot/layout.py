@@ -14,7 +14,10 @@ from fieldmon.compute.arrays import offsets, runs
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot import adjacency
+from fieldmon.plot.bent_layout import Ground
 from fieldmon.plot.grid import PlantGrid
+from fieldmon.plot.line_layout import copies, is_straight, lay_along
+from fieldmon.plot.measured_rows import SaidRows, bent_rows, measured_grid, row_numbers
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import (
     distinct,
@@ -29,6 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.field import Field
+    from fieldmon.plot.row_detection import Rows
 
     Float = NDArray[np.float64]
 
@@ -126,6 +130,8 @@ def lay(field: Field, planting: Planting) -> PlantGrid:
     Raise `PlotError` if there is no room for a plant.
     """
     bearing_deg = planting.row_bearing_deg
+    if (along := _drawn_rows(field, planting)) is not None:
+        return along
     if bearing_deg is None:
         found = rows_from_lines if not field.row_lines.is_empty else rows_from_boundary
         bearing_deg = found(field).bearing_deg
@@ -138,6 +144,21 @@ def lay(field: Field, planting: Planting) -> PlantGrid:
     return assemble(frame, _fill(y, free, planting), area, planting)
 
 
+def _drawn_rows(field: Field, planting: Planting) -> PlantGrid | None:
+    """Return plants along the rows that were drawn; None where straight ones do as well."""
+    if field.row_lines.is_empty:
+        return None
+    frame = field.frame(rows_from_lines(field).bearing_deg)
+    lines = [shapely.get_coordinates(line) for line in frame.geometry_m(field.row_lines).geoms]
+    area = frame.geometry_m(field.drivable())
+    if len(lines) == 1:
+        if is_straight(lines[0], planting.row_spacing_m):
+            return None
+        _check_size(field.name, area, planting)
+        lines = copies(lines[0], area, planting.row_spacing_m)
+    return lay_along(field.name, frame, lines, Ground(area, _obstacles(field, frame)), planting)
+
+
 def found_planting(lonlat: Float, planting: Planting | None = None) -> Planting:
     """Return a planting with the bearing and the spacings in which measured plants stand.
 
@@ -145,7 +166,11 @@ def found_planting(lonlat: Float, planting: Planting | None = None) -> Planting:
     its row bearing, if any, says about where to look.
     """
     planting = planting or Planting()
-    found = rows_from_plants(lonlat, planting.row_bearing_deg)
+    return planting_in(rows_from_plants(lonlat, planting.row_bearing_deg), planting)
+
+
+def planting_in(found: Rows, planting: Planting) -> Planting:
+    """Return a planting with the bearing and the spacings of rows that were found."""
     return replace(
         planting,
         row_bearing_deg=found.bearing_deg,
@@ -155,9 +180,15 @@ def found_planting(lonlat: Float, planting: Planting | None = None) -> Planting:
 
 
 def grid_from_plants(
-    lonlat: Float, planting: Planting | None = None, field: Field | None = None
+    lonlat: Float,
+    planting: Planting | None = None,
+    field: Field | None = None,
+    said: SaidRows | None = None,
 ) -> PlantGrid:
     """Return plants as they were measured, sorted into rows.
+
+    Rows are straight and run one way, unless plants stand much better in rows that bend, or in
+    blocks of several directions.
 
     A gap in a row is missing plants; only holes and no-go areas of the field cut a row. Aisles
     run midway between the plants of neighbouring rows, lanes end half a headland beyond the last
@@ -172,6 +203,8 @@ def grid_from_plants(
         Bearing and spacings as found or given (see `found_planting`); None: found.
     field
         Boundary, holes and no-go areas to keep, or None.
+    said
+        What decides; None: the names of the field's rows, and a bearing in the planting.
 
     Raises
     ------
@@ -179,7 +212,10 @@ def grid_from_plants(
         If plants share a position, or none stands on the field.
     """
     lonlat = np.asarray(lonlat, dtype=np.float64).reshape(-1, 2)
-    _check_apart(lonlat)
+    check_apart(lonlat)
+    if said is None:
+        bearing = planting is not None and planting.row_bearing_deg is not None
+        said = SaidRows(row_numbers(None if field is None else field.plant_rows), bearing)
     if planting is None or planting.row_bearing_deg is None:
         planting = found_planting(lonlat, planting)
     frame = (field.frame() if field else frame_around(lonlat)).turned(
@@ -187,23 +223,33 @@ def grid_from_plants(
     )
     xy_m = frame.xy_m(lonlat)
     line = split_lines(xy_m[:, 1], planting.row_spacing_m)
+    obstacles = _obstacles(field, frame)
+    bent = bent_rows(xy_m, line, planting.row_spacing_m, said)
+    if bent is not None:
+        area = None if field is None else _held_area(field, frame, xy_m)
+        return measured_grid(frame, xy_m, bent, Ground(area, obstacles), planting)
     order = np.lexsort((xy_m[:, 0], line))
     xy_m, line = xy_m[order], line[order]
-    obstacles = _obstacles(field, frame)
     pieces = _pieces(xy_m, line, _aisles(xy_m[:, 1], line, planting), obstacles, planting)
     reach = shapely.difference(_reach(pieces, planting), obstacles)
     if field is None:
         return assemble(frame, pieces, _polygons(reach), planting)
-    area = frame.geometry_m(field.drivable())
-    if not shapely.contains_xy(area, xy_m).any():
-        raise PlotError(
-            f"Measured plants must stand on plot {field.name!r}, but none of {len(lonlat)} does. "
-            "Choose the plants' own plot, or check the coordinate systems."
-        )
+    area = _held_area(field, frame, xy_m)
     lanes = _boxes(pieces.lane_x_m, pieces.aisle_y_m)
     if not shapely.covers(shapely.buffer(area, 100 * _SLACK_M), lanes).all():
         area = _polygons(shapely.union(area, reach))
     return assemble(frame, pieces, area, planting)
+
+
+def _held_area(field: Field, frame: Frame, xy_m: Float) -> MultiPolygon:
+    """Return where one may drive on a field, which must hold some of the plants."""
+    area = frame.geometry_m(field.drivable())
+    if not shapely.contains_xy(area, xy_m).any():
+        raise PlotError(
+            f"Measured plants must stand on plot {field.name!r}, but none of {len(xy_m)} does. "
+            "Choose the plants' own plot, or check the coordinate systems."
+        )
+    return area
 
 
 def rectangle(
@@ -355,14 +401,6 @@ def _corridors(lane_y: Float, lane_x: Float) -> NDArray[np.intp]:
 
 
 def _check_size(name: str, area: MultiPolygon, planting: Planting) -> None:
-    if area.is_empty:
-        raise PlotError(
-            worded(
-                "A plot must have ground to drive on, but no-go areas cover all of plot "
-                "{name!r}. Take the no-go areas back, or make them smaller.",
-                name=name,
-            )
-        )
     about = area.area / (planting.row_spacing_m * planting.plant_spacing_m)
     if about > _MOST_PLANTS:
         raise PlotError(
@@ -453,7 +491,8 @@ def _edges(area: shapely.Geometry) -> tuple[Float, Float, Float, Float]:
     return low[:, 0], low[:, 1], high[:, 0], high[:, 1]
 
 
-def _check_apart(lonlat: Float) -> None:
+def check_apart(lonlat: Float) -> None:
+    """Raise `PlotError` where two plants stand in one place."""
     alone = distinct(lonlat)
     if len(alone) < len(lonlat):
         first = int(np.setdiff1d(np.arange(len(lonlat)), alone)[0])

@@ -58,6 +58,9 @@ def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
         across_start=across[0],
         across_plant=across[1],
         twin=np.where(twin >= 0, new[twin], -1).astype(np.int32),
+        block=None if grid.block is None else _counted(grid.block[rows]),
+        place_m=None if grid.place_m is None else grid.place_m[kept],
+        aisle=None if grid.aisle is None else grid.aisle[rows],
     )
 
 

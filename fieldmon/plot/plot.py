@@ -6,8 +6,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, found_planting, grid_from_plants, lay
+from fieldmon.plot.layout import Planting, check_apart, grid_from_plants, lay, planting_in
+from fieldmon.plot.measured_rows import SaidRows, row_numbers
 from fieldmon.plot.missing_plants import without
+from fieldmon.plot.row_detection import rows_from_plants
+from fieldmon.plot.row_report import RowReport, row_report
 from fieldmon.plot.travel import Aisles
 
 if TYPE_CHECKING:
@@ -38,6 +41,21 @@ def planting_of(field: Field, **given: float | None) -> Planting:
     return Planting(**known)
 
 
+def _in_rows(
+    plants: NDArray[np.float64],
+    names: NDArray[np.str_] | None,
+    field: Field | None,
+    planting: Planting | None,
+) -> tuple[PlantGrid, RowReport]:
+    """Return measured plants in their rows, and how well they stand in them."""
+    planting = planting or Planting()
+    check_apart(plants)
+    rows = rows_from_plants(plants, planting.row_bearing_deg)
+    said = SaidRows(row_numbers(names), planting.row_bearing_deg is not None).checked(plants)
+    grid = grid_from_plants(plants, planting_in(rows, planting), field, said)
+    return grid, row_report(grid, rows, said)
+
+
 @dataclass(frozen=True, eq=False)
 class Plot:
     """A field with its plants and the ways between them.
@@ -48,11 +66,14 @@ class Plot:
         The field; its plants, and the ways between them.
     assumed
         What was taken for its rows because nobody said it.
+    rows
+        How well its measured plants stand in rows; None where plants were laid, or read back.
     """
 
     field: Field
     aisles: Aisles
     assumed: tuple[Assumed, ...] = ()
+    rows: RowReport | None = None
 
     def __repr__(self) -> str:
         return f"<Plot {self.field.name}: {self.grid.counts}>"
@@ -66,8 +87,8 @@ class Plot:
     def of(cls, field: Field, planting: Planting | None = None) -> Plot:
         """Take a field's measured plants, or lay some, and find the ways between them."""
         if field.plants is not None:
-            found = None if planting is None else found_planting(field.plants, planting)
-            return cls._with(field, grid_from_plants(field.plants, found, field))
+            grid, rows = _in_rows(field.plants, field.plant_rows, field, planting)
+            return replace(cls._with(field, grid), rows=rows)
         return cls._with(field, lay(field, planting or planting_of(field)))
 
     @classmethod
@@ -77,12 +98,16 @@ class Plot:
         plants: NDArray[np.float64],
         planting: Planting | None = None,
         gate: tuple[float, float] | None = None,
+        plant_rows: NDArray[np.str_] | None = None,
     ) -> Plot:
-        """Return the plot of measured plants ``(n, 2)`` lon/lat whose boundary nobody drew."""
-        found = None if planting is None else found_planting(plants, planting)
-        grid = grid_from_plants(plants, found)
+        """Return the plot of measured plants ``(n, 2)`` lon/lat whose boundary nobody drew.
+
+        `plant_rows` ``(n,)`` names the row of each, where that is known.
+        """
+        grid, rows = _in_rows(plants, plant_rows, None, planting)
         boundary = grid.frame.geometry_lonlat(grid.drivable_m)
-        return cls._with(Field(name, boundary, gate=gate, plants=plants), grid)
+        field = Field(name, boundary, gate=gate, plants=plants, plant_rows=plant_rows)
+        return replace(cls._with(field, grid), rows=rows)
 
     @classmethod
     def from_geopandas(
@@ -153,7 +178,15 @@ class Plot:
         """Return the plot without the plants marked ``(n,)``, which are not there."""
         if not missing.any():
             return self
-        return replace(self._with(self.field, without(self.grid, missing)), assumed=self.assumed)
+        return replace(
+            self._with(self.field, without(self.grid, missing)),
+            assumed=self.assumed,
+            rows=self.rows,
+        )
+
+    def with_gate(self, gate: tuple[float, float]) -> Plot:
+        """Return the same plot with days that start and end elsewhere, ``(lon, lat)``."""
+        return self._with(replace(self.field, gate=gate), self.grid)
 
     @classmethod
     def _with(cls, field: Field, grid: PlantGrid) -> Plot:

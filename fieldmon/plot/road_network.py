@@ -18,6 +18,7 @@ from fieldmon.compute.arrays import runs
 from fieldmon.compute.jit import kept, routine
 from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError
+from fieldmon.plot.bent_ways import Bends, bends_of, off_steps, row_end_places, row_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -61,6 +62,9 @@ class RoadNetwork(NamedTuple):
         ``(r, 2)`` nodes of the low-x and the high-x end of each row's lane.
     gate
         Node at which a working day starts and ends.
+    via_start, via_m
+        Corners of ways that bend: of way e ``via_m[via_start[e]:via_start[e + 1]]``; of straight
+        ways there are none.
     """
 
     xy_m: Float
@@ -69,6 +73,8 @@ class RoadNetwork(NamedTuple):
     length_m: Float
     end: NDArray[np.int64]
     gate: int
+    via_start: NDArray[np.int64]
+    via_m: Float
 
     def __repr__(self) -> str:
         nodes, roads = counted(len(self.xy_m), "node"), counted(len(self.to) // 2, "way")
@@ -84,6 +90,11 @@ class Obstacles:
     row_box_m
         ``(b, 4)`` low x, low y, high x, high y: boxes about the rows with a little clearance,
         sorted by low y. A straight row has one, a row measured plant by plant one a step.
+    row_step_m
+        ``(b, 4)`` the steps of rows that bend, from x, y to x, y, beside their boxes; None where
+        the boxes say it all.
+    clearance_m
+        How far ways keep off such steps.
     drivable_m
         Where driving is fine.
     shut_m
@@ -93,6 +104,8 @@ class Obstacles:
     """
 
     row_box_m: Float
+    row_step_m: Float | None
+    clearance_m: float
     drivable_m: shapely.Geometry
     shut_m: shapely.Geometry
     no_go_m: shapely.Geometry
@@ -103,7 +116,7 @@ class Obstacles:
     @classmethod
     def of(cls, grid: PlantGrid, no_go_m: shapely.Geometry) -> Obstacles:
         """Return the obstacles on a plot."""
-        ends_x = grid.xy_m[_end_plants(grid), 0]
+        ends_x = grid.along_m[_end_plants(grid)]
         clearance_m = min(_CLEARANCE_M, 0.4 * float(np.abs(grid.lane_x_m - ends_x).min()))
         whole = shapely.union_all(
             [Polygon(part.exterior) for part in shapely.get_parts(grid.drivable_m)]
@@ -116,12 +129,17 @@ class Obstacles:
         )
         for area in areas:
             shapely.prepare(area)
-        return cls(_row_boxes(grid, clearance_m), *areas)
+        if grid.aisles_m is None:
+            return cls(_row_boxes(grid, clearance_m), None, clearance_m, *areas)
+        return cls(*row_steps(grid, clearance_m), clearance_m, *areas)
 
     def clear(self, from_m: Float, to_m: Float, where: Where = Where.INSIDE) -> Mask:
         """Tell of k straight ways, ``(k, 2)`` to ``(k, 2)``, whether they can be driven."""
         good = np.ones(len(from_m), np.bool_)
-        _off_boxes(self.row_box_m, from_m, to_m, good)
+        if self.row_step_m is None:
+            _off_boxes(self.row_box_m, from_m, to_m, good)
+        else:
+            off_steps((self.row_box_m, self.row_step_m), self.clearance_m, from_m, to_m, good)
         kept = np.flatnonzero(good)
         lines = shapely.linestrings(np.stack([from_m[kept], to_m[kept]], axis=1))
         if where is Where.INSIDE:
@@ -246,6 +264,8 @@ def find_roads(
     Raise `PlotError` if some row cannot be reached.
     """
     obstacles = Obstacles.of(grid, MultiPolygon() if no_go_m is None else no_go_m)
+    if grid.aisles_m is not None:
+        return _find_bent(grid, gate_xy_m, obstacles)
     xy_m, place = _merged(_row_end_places(grid))
     beside = np.where(grid.side[:, None] < 0, place[:, :, 2], place[:, :, 0])
     trusted = np.concatenate([beside, np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)])
@@ -261,6 +281,56 @@ def find_roads(
     needed = np.append(beside.ravel(), gate)
     net = _joined_outside(_chained(_joined_inside(net, needed, obstacles)), needed, obstacles)
     return _sorted(net, beside, gate)
+
+
+def _find_bent(
+    grid: PlantGrid, gate_xy_m: tuple[float, float] | None, obstacles: Obstacles
+) -> RoadNetwork:
+    """Return the network of rows that bend: along the middle of their aisles ways bend too."""
+    places, at_m = row_end_places(grid)
+    xy_m, place = _merged(places)
+    beside = np.where(grid.side[:, None] < 0, place[:, :, 2], place[:, :, 0])
+    lane = None if gate_xy_m is None else _lane_at(grid, np.array([gate_xy_m]))
+    gate = int(beside[0, 0]) if gate_xy_m is None else len(xy_m)
+    if lane is not None:
+        xy_m = np.concatenate([xy_m, lane[0]])
+    bends = bends_of(grid, place, at_m, None if lane is None else (gate, *lane[1:]))
+    bends = bends.where(_driveable(bends, obstacles))
+    across = place.reshape(-1, 3)
+    trusted = np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)
+    tried = [across[:, :2], across[:, 1:], _nearest(xy_m), _jumps(grid, place)]
+    pairs = _each_once(np.concatenate(tried))
+    good = obstacles.clear(xy_m[pairs[:, 0]], xy_m[pairs[:, 1]])
+    net = _Net(xy_m, np.concatenate([trusted, bends.pair, pairs[good]]))
+    if gate_xy_m is not None and lane is None:
+        net = _with_gate(net, np.array([gate_xy_m]), obstacles, grid)
+    needed = np.append(beside.ravel(), gate)
+    net = _joined_outside(_joined_inside(net, needed, obstacles), needed, obstacles)
+    return _sorted(net, beside, gate, bends)
+
+
+def _lane_at(grid: PlantGrid, gate_m: Float) -> tuple[Float, int, float] | None:
+    """Return where in an aisle a gate among the rows is, ``(1, 2)``, the aisle and the place."""
+    far_m, plant = grid.tree.query(gate_m[0])
+    row = int(grid.row[plant])
+    if grid.aisles_m is None or grid.aisle is None or far_m > 0.75 * grid.row_spacing_m:
+        return None
+    both = grid.aisle[row] + np.array([0, -1 if grid.side[row] < 0 else 1])
+    at_m, left_m = grid.aisles_m.project(np.repeat(gate_m, 2, axis=0), both)
+    near = np.argmin(np.abs(left_m))
+    aisle = both[near : near + 1]
+    place_m = np.clip(at_m[near], 0.0, grid.aisles_m.length_m[aisle])
+    return grid.aisles_m.points(aisle, place_m), int(aisle[0]), float(place_m[0])
+
+
+def _driveable(bends: Bends, obstacles: Obstacles) -> Mask:
+    """Tell of stretches of aisles whether they can be driven; those of a lane always can."""
+    good = bends.in_lane.copy()
+    asked = np.flatnonzero(~good)
+    from_m, to_m, of = bends.where(~good).steps()
+    bad = ~obstacles.clear(from_m, to_m)
+    good[asked] = np.bincount(of[bad], minlength=len(asked)) == 0
+    return good
 
 
 class _Net(NamedTuple):
@@ -395,7 +465,7 @@ def _with_gate(net: _Net, gate_m: Float, obstacles: Obstacles, grid: PlantGrid) 
     A gate outside the drivable area is first linked to the nearest point of that area; a gate
     among the plants of a row is moved to that row's lane.
     """
-    if not obstacles.clear(gate_m, gate_m, Where.ANYWHERE)[0]:
+    if grid.aisles_m is None and not obstacles.clear(gate_m, gate_m, Where.ANYWHERE)[0]:
         row = grid.row[np.argmin(np.hypot(*(grid.xy_m - gate_m).T))]
         gate_m = np.array([[np.clip(gate_m[0, 0], *grid.lane_x_m[row]), grid.lane_y_m[row]]])
     n, k = len(net.xy_m), min(_GATE_NEAREST, len(net.xy_m))
@@ -564,7 +634,7 @@ def _short_ones(net: _Net, bridges: Index) -> Index:
     return bridges[length_m <= 2 * shortest[part]]
 
 
-def _sorted(net: _Net, end: Index, gate: int) -> RoadNetwork:
+def _sorted(net: _Net, end: Index, gate: int, bends: Bends | None = None) -> RoadNetwork:
     """Return the network as sorted lists, without what cannot be reached from the gate."""
     part = net.component()
     kept = np.flatnonzero(part == part[gate])
@@ -577,6 +647,9 @@ def _sorted(net: _Net, end: Index, gate: int) -> RoadNetwork:
     xy_m = net.xy_m[kept]
     start = np.searchsorted(from_to[:, 0], np.arange(len(kept) + 1))
     length_m = _Net(xy_m, from_to).length_m()
+    via_start, via_m = np.zeros(len(from_to) + 1, np.int64), np.empty((0, 2))
+    if bends is not None:
+        via_start, via_m = bends.numbered(place).along(from_to, length_m)
     return RoadNetwork(
         xy_m,
         start,
@@ -584,4 +657,6 @@ def _sorted(net: _Net, end: Index, gate: int) -> RoadNetwork:
         length_m,
         place[end].astype(np.int64),
         int(place[gate]),
+        via_start,
+        via_m,
     )

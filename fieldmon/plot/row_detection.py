@@ -27,6 +27,8 @@ _EDGE_SMOOTH_DEG = 2.0
 _IN_LINE = 0.3
 # plants scattered anyhow stray by about 0.3 row spacings from any lines seen in them
 _NO_ROWS = 0.2
+# directions with lines as wide apart as the best, and as straight as this, are rows as well
+_AS_WIDE, _IN_ROWS, _LONGER = 0.93, 0.05, 1.15
 _MOST_PAIRS = 200_000
 # rows are found from this many plants in the middle of the plot; others only repeat them
 _MOST_PLANTS = 10_000
@@ -44,12 +46,16 @@ class Rows:
         Typical distances, or None where the evidence does not show them.
     how
         The evidence in words, for people.
+    others_deg
+        Other directions in which plants stand in rows as well: of a square planting one, of a
+        triangular one two.
     """
 
     bearing_deg: float
     row_spacing_m: float | None
     plant_spacing_m: float | None
     how: str
+    others_deg: tuple[float, ...] = ()
 
 
 def rows_from_boundary(field: Field) -> Rows:
@@ -101,7 +107,8 @@ def rows_from_plants(lonlat: Float, near_bearing_deg: float | None = None) -> Ro
     east_north_m = _middle_of(frame_around(lonlat).xy_m(lonlat))
     pairs = _Pairs.of(east_north_m)
     bearings = _promising_bearings(pairs) if near_bearing_deg is None else [near_bearing_deg]
-    best = min((_lines(east_north_m, pairs, b) for b in bearings), key=_unlikeliness)
+    seen = [_lines(east_north_m, pairs, b) for b in bearings]
+    best, others = _longest(seen, min(seen, key=_unlikeliness))
     rows = f"{best.n_lines} row" + "s" * (best.n_lines != 1)
     stray = f", {best.off_m:.2f} m beside their line" if np.isfinite(best.off_m) else ""
     doubt = "; they hardly stand in rows, so check the bearing" if best.blur > _NO_ROWS else ""
@@ -110,7 +117,25 @@ def rows_from_plants(lonlat: Float, near_bearing_deg: float | None = None) -> Ro
         best.row_spacing_m,
         best.plant_spacing_m,
         f"from {len(east_north_m)} plants in {rows}{stray}{doubt}",
+        tuple(lines.bearing_deg % 180.0 for lines in others),
     )
+
+
+def _longest(seen: list[_Lines], best: _Lines) -> tuple[_Lines, list[_Lines]]:
+    """Return of directions as good as the best one that with the longest lines, and the others."""
+    if best.blur > _NO_ROWS or best.row_spacing_m is None:
+        return best, []
+    least_m = _AS_WIDE * best.row_spacing_m
+    good = [
+        lines
+        for lines in seen
+        if (lines.row_spacing_m or 0.0) >= least_m and lines.blur <= max(2 * best.blur, _IN_ROWS)
+    ]
+    longest = max(good, key=lambda lines: lines.n_plants / lines.n_lines)
+    # hardly longer ones are no reason to leave the best
+    if best.n_lines < _LONGER * longest.n_lines:
+        longest = best
+    return longest, [lines for lines in good if lines is not longest]
 
 
 def distinct(lonlat: Float, apart_m: float = 0.05) -> NDArray[np.intp]:

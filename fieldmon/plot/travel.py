@@ -5,6 +5,7 @@ from __future__ import annotations
 import heapq
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -36,13 +37,13 @@ class TravelTable(NamedTuple):
     Parameters
     ----------
     x_m
-        ``(n,)`` position of each plant along its row.
+        ``(n,)`` place of each plant along its lane.
     row
         ``(n,)`` int32 row of each plant.
     row_start
         ``(r + 1,)`` offsets: plants of row k are ``row_start[k]:row_start[k + 1]``.
     end_x_m
-        ``(r, 2)`` x of the ends of each row's lane, low and high.
+        ``(r, 2)`` places of the ends of each row's lane, low and high.
     between_m
         ``(2r + 1, 2r + 1)`` shortest ways between lane ends: 2k is the low-x end of lane k,
         2k + 1 its high-x end, 2r the gate.
@@ -102,7 +103,7 @@ class Aisles:
         between_m = np.empty((2 * grid.n_rows + 1, 2 * grid.n_rows + 1))
         _reach(roads, np.append(roads.end.ravel(), roads.gate), between_m)
         travel = TravelTable(
-            np.ascontiguousarray(grid.xy_m[:, 0]),
+            np.ascontiguousarray(grid.along_m),
             grid.row,
             grid.row_start,
             grid.lane_x_m,
@@ -110,8 +111,9 @@ class Aisles:
             grid.corridor,
             grid.side,
         )
-        for values in (*roads[:-1], *travel):
-            read_only(values)
+        for values in (*roads, *travel):
+            if isinstance(values, np.ndarray):
+                read_only(values)
         return cls(grid, roads, travel)
 
     def __repr__(self) -> str:
@@ -126,8 +128,7 @@ class Aisles:
     @cached_property
     def stop_m(self) -> Float:
         """Where the robot stands to inspect each plant, ``(n, 2)``."""
-        lane_y_m = self.grid.lane_y_m[self.grid.row]
-        return read_only(np.stack([self.grid.xy_m[:, 0], lane_y_m], axis=1))
+        return self.grid.stop_m
 
     def distance_m(self, i: ArrayLike, j: ArrayLike) -> Float:
         """Return the metres from plants i to plants j, -1 for the gate; shapes broadcast."""
@@ -145,15 +146,50 @@ class Aisles:
         a, b = self._at(i), self._at(j)
         rows = self.grid.row[[i, j]]
         if min(i, j) >= 0 and self.grid.corridor[rows[0]] == self.grid.corridor[rows[1]]:
-            return np.stack([a, b])
+            return np.concatenate([a[None], self._along(rows[0], i, j), b[None]])
         out, out_m = self._exits(i)
         back, back_m = self._exits(j)
         way_m = out_m[:, None] + self.travel.between_m[out[:, None], back] + back_m
         best = int(np.argmin(way_m))
         first, last = out[best // len(back)], back[best % len(back)]
         nodes = _trace(self.roads, self._stop_node[first], self._stop_node[last])
-        line: Float = _plain(np.concatenate([a[None], self.roads.xy_m[nodes], b[None]]))
+        way = [a[None], self.roads.xy_m[nodes], b[None]]
+        if self.grid.aisles_m is not None:
+            way[1] = _with_corners(self.roads, nodes)
+            way.insert(1, self._to_end(i, first))
+            way.insert(3, self._to_end(j, last)[::-1])
+        line: Float = _plain(np.concatenate(way))
         return line
+
+    def _along(self, row: int, i: int, j: int) -> Float:
+        """Return the corners of a lane between two of its plants."""
+        at_m = self.grid.along_m
+        return self._corners(row, float(at_m[i]), float(at_m[j]))
+
+    def _to_end(self, i: int, end: int) -> Float:
+        """Return the corners of a lane from a plant to an end of it, as in `TravelTable`."""
+        if i < 0:
+            return np.empty((0, 2))
+        row = end // 2
+        return self._corners(
+            row, float(self.grid.along_m[i]), float(self.grid.lane_x_m[row, end % 2])
+        )
+
+    def _corners(self, row: int, from_m: float, to_m: float) -> Float:
+        if self.grid.aisles_m is None or self.grid.aisle is None:
+            return np.empty((0, 2))
+        return self.grid.aisles_m.corners_between(int(self.grid.aisle[row]), from_m, to_m)
+
+    @cached_property
+    def bend(self) -> NDArray[np.int64]:
+        """The straight stretch of aisle at which each plant is inspected, ``(n,)``; 0 if all are.
+
+        Between plants of one stretch one drives straight ahead.
+        """
+        grid = self.grid
+        if grid.aisles_m is None or grid.aisle is None:
+            return read_only(np.zeros(len(grid), np.int64))
+        return read_only(grid.aisles_m.corner_before(grid.aisle[grid.row], grid.along_m))
 
     @cached_property
     def _stop_node(self) -> NDArray[np.int64]:
@@ -165,7 +201,7 @@ class Aisles:
         if i < 0:
             return np.array([2 * self.grid.n_rows]), np.zeros(1)
         row = int(self.grid.row[i])
-        return 2 * row + np.arange(2), np.abs(self.grid.xy_m[i, 0] - self.grid.lane_x_m[row])
+        return 2 * row + np.arange(2), np.abs(self.grid.along_m[i] - self.grid.lane_x_m[row])
 
     def _at(self, i: int) -> Float:
         here: Float = self.gate_m if i < 0 else self.stop_m[i]
@@ -288,6 +324,16 @@ def _trace(roads: RoadNetwork, a: int, b: int) -> NDArray[np.int64]:
     while nodes[-1] != b:
         nodes.append(onward[nodes[-1]])
     return np.array(nodes)
+
+
+def _with_corners(roads: RoadNetwork, nodes: NDArray[np.int64]) -> Float:
+    """Return the places of nodes on a way, with the corners of ways that bend between them."""
+    way = [roads.xy_m[nodes[:1]]]
+    for a, b in pairwise(nodes.tolist()):
+        first, end = roads.start[a], roads.start[a + 1]
+        e = int(first + np.searchsorted(roads.to[first:end], b))
+        way += [roads.via_m[roads.via_start[e] : roads.via_start[e + 1]], roads.xy_m[b : b + 1]]
+    return np.concatenate(way)
 
 
 @routine

@@ -159,9 +159,10 @@ def _face_to_face(grid: PlantGrid) -> Stations:
     """Return a station for each place along an aisle, aisles alternately up and down."""
     n = len(grid)
     # aisles in the order of their first row; pieces of one line keep their direction
-    aisle = np.unique(np.round(grid.lane_y_m, 3), return_inverse=True)[1][grid.row]
+    lane = np.round(grid.lane_y_m, 3) if grid.aisle is None else grid.aisle
+    aisle = np.unique(lane, return_inverse=True)[1][grid.row]
     corridor = grid.corridor[grid.row]
-    place = np.floor((grid.xy_m[:, 0] - grid.xy_m[:, 0].min()) / grid.plant_spacing_m + 0.5)
+    place = np.floor((grid.along_m - grid.along_m.min()) / grid.plant_spacing_m + 0.5)
     up = np.where(aisle % 2 == 0, 1, -1)
     order = np.lexsort((grid.side[grid.row], up * place, up * grid.lane_x_m[grid.row, 0], aisle))
     keys = np.stack([aisle[order], corridor[order], place[order]], axis=1)

@@ -28,3 +28,16 @@ def test_what_cannot_be_read_or_played_is_said_in_a_sentence(run, tmp_path):
         code, _, err, _ = run("study", "routes", *words)
         assert code == 2
         assert said in err
+
+
+def test_a_team_has_its_lines_and_its_bound(run, tmp_path):
+    (tmp_path / "plot.csv").write_text("1,0,3\n0,2,2\n5,0,0\n")
+    code, out, err, _ = run(
+        *("study", "routes", tmp_path / "plot.csv", "--budget", 0.3, "--team", 2, "--team", 3)
+    )
+    assert code == 0, err
+    assert "team of 2, each 30% of the full budget" in out
+    with (tmp_path / "routes.csv").open(encoding="utf-8") as file:
+        rows = {row["method"]: row for row in csv.DictReader(file)}
+    assert float(rows["ladder"]["reward"]) <= float(rows["team of 2"]["reward"])
+    assert float(rows["team of 3"]["reward"]) <= float(rows["team of 3"]["bound"]) <= 13

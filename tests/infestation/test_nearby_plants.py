@@ -7,8 +7,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pyproj import Geod
 
-from fieldmon.infestation.nearby_plants import PlantRows, distance_m, first_from, outside_m
+from fieldmon.infestation.nearby_plants import (
+    PlantRows,
+    SearchRows,
+    distance_m,
+    first_from,
+    outside_m,
+)
 from fieldmon.plot.layout import Planting, rectangle
+from tests.bent import bent_grids
 from tests.crooked import crooked_grids
 
 GRID = rectangle(21, 25)
@@ -65,3 +72,18 @@ def test_positions_on_another_continent_are_far_to_the_kilometre():
     off_m = outside_m(GRID, np.array([[-72.0, -41.0]]))
     true_m = Geod(ellps="WGS84").inv(-72.0, -41.0, GRID.frame.lon, GRID.frame.lat)[2]
     assert off_m[0] == pytest.approx(true_m, rel=0.01)
+
+
+@settings(max_examples=20)
+@given(bent_grids(), st.integers(0, 1000))
+def test_where_rows_bend_the_same_distances_are_found_in_level_strips(grid, seed):
+    rng = np.random.default_rng(seed)
+    low, size = grid.xy_m.min(axis=0) - 20, np.ptp(grid.xy_m, axis=0) + 40
+    ends = (low + rng.random((6, 2)) * size).reshape(3, 4)
+    search = SearchRows.of(grid)
+    metres = search.numbered(distance_m(search.rows, ends, 15.0))
+    lines = shapely.multilinestrings(list(ends.reshape(3, 2, 2)))
+    wanted = shapely.distance(lines, shapely.points(grid.xy_m))
+    assert metres == pytest.approx(np.where(wanted <= 15.0, wanted, np.inf))
+    back = search.numbered(search.sorted(wanted))
+    assert back.tolist() == wanted.tolist()

@@ -253,7 +253,7 @@ def test_a_rectangle_that_holds_so_many_rows_and_plants_exactly_gets_them(
 
 def test_a_plot_all_under_no_go_areas_is_refused_in_a_sentence():
     field = plot_of(60, 20)
-    with pytest.raises(PlotError, match="no-go areas cover all"):
+    with pytest.raises(PlotError, match="must lie outside its no-go areas, but nothing does"):
         lay(replace(field, no_go=field.boundary), Planting(row_bearing_deg=90))
 
 

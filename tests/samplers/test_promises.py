@@ -13,6 +13,7 @@ from fieldmon.plot.layout import Planting, lay
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.base import NEVER
+from tests.bent import bent_grids
 from tests.crooked import crooked_fields
 from tests.scenes import GRIDS, charged_s, scene_on
 
@@ -131,3 +132,12 @@ def test_a_plant_inspected_earlier_today_is_left_out_when_planning_again(name):
     work = plan_work(scene, sampler(name))
     assert len(work) > 0
     promises_hold(scene, work)
+
+
+@given(grid=bent_grids(), seed=st.integers(0, 1000))
+@settings(max_examples=60)
+def test_the_promises_hold_where_rows_bend_and_blocks_turn(grid, seed):
+    scene = scene_on(grid, hours=1.0, seed=seed)
+    found = np.random.default_rng(seed).random(len(grid)) < 0.2
+    for name in NAMES:
+        promises_hold(scene, work_day(scene, sampler(name), found))

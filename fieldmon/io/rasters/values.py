@@ -145,6 +145,8 @@ class Raster:
         """Return the points of a plant's footprint in pixels from the plant, ``(k, 2)``."""
         middle = grid.xy_m.mean(axis=0)
         sides_m = _FOOTPRINT * np.array([grid.plant_spacing_m, grid.row_spacing_m])
+        if grid.aisles_m is not None:  # rows run anyhow: what is the plant's own either way
+            sides_m[:] = sides_m.min()
         ends = np.array([[-0.5, 0.0], [0.5, 0.0], [0.0, -0.5], [0.0, 0.5]]) * sides_m
         places = self.pixels(grid.frame.lonlat(middle + ends))
         sides = places[1::2] - places[::2]  # in pixels, along and across

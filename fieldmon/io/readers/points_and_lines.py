@@ -10,13 +10,14 @@ from shapely import MultiLineString
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.import_report import Imported, dropped, seen
+from fieldmon.io.import_report import Imported, dropped, guessed, seen
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
 from fieldmon.io.readers.places import Plants
 from fieldmon.plot.row_detection import distinct
+from fieldmon.plot.row_drawing import rows_from_posts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -69,6 +70,18 @@ def _about_doubles(layer: Layer, kept: NDArray[np.intp]) -> ChoiceNeeded:
 def _called(layer: Layer) -> str:
     first = next(iter(layer.columns.values()), None)
     return repr(text(first[0])) if first is not None and len(first) else "one without a name"
+
+
+def drawn_rows_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:
+    """Return the rows of a layer of lines, or of points that are their end posts, lon/lat."""
+    if layer.geometry is not None and geometry_kinds(layer.geometry)[1].any():
+        return lines_of(layer, options)
+    posts = plants_of(layer, options)
+    named = None if (posts.value.row == "").any() else posts.value.row
+    rows = rows_from_posts(posts.value.lonlat, named)
+    how = "by the names of their rows" if named is not None else "as they lie in line"
+    said = guessed(f"{len(posts.value)} points are the end posts of rows, paired {how}.")
+    return posts.having(rows, [said])
 
 
 def lines_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:

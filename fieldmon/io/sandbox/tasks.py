@@ -9,7 +9,7 @@ from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.readers.crews import crews_of
 from fieldmon.io.readers.inspection_file.rows import InspectionRows, rows_of
 from fieldmon.io.readers.plots import named_areas, plots_of
-from fieldmon.io.readers.points_and_lines import lines_of, plants_of
+from fieldmon.io.readers.points_and_lines import drawn_rows_of, lines_of, plants_of
 from fieldmon.io.readers.records import records_by_plot, records_of
 from fieldmon.io.sandbox.unpack import Workroom
 
@@ -67,6 +67,11 @@ def plants(folder: str, source: Source, options: ReadOptions) -> Imported[Plants
 def lines(folder: str, source: Source, options: ReadOptions) -> Imported[MultiLineString]:
     """Return the lines of a source."""
     return lines_of(open_layer(source, options, Workroom(Path(folder))), options)
+
+
+def drawn_rows(folder: str, source: Source, options: ReadOptions) -> Imported[MultiLineString]:
+    """Return the rows of a source that holds lines, or end posts."""
+    return drawn_rows_of(open_layer(source, options, Workroom(Path(folder))), options)
 
 
 def inspection_rows(

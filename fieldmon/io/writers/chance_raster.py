@@ -80,6 +80,8 @@ def chance_raster(grid: PlantGrid, chance: Float) -> ChanceRaster:
     turn = (axes[1:] - axes[0]).T / pixel_m * [[1.0], [-1.0]]
     values = np.full(shape, NODATA, np.float32)
     halves = np.array([grid.plant_spacing_m, grid.row_spacing_m]) / 2
+    if grid.aisles_m is not None:  # rows run anyhow: the nearest plant's, wherever it is beside
+        halves[:] = halves.max()
     _paint(values, places, chance.astype(np.float32), np.linalg.inv(turn), halves)
     return ChanceRaster(values, float(west_m), float(north_m), pixel_m, crs)
 

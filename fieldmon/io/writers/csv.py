@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 #: columns that are left empty for whoever inspects
 TO_FILL_IN = ("found", "count", "who", "notes")
-_BEFORE = ("stop", "row", "number")
+_BEFORE = ("row", "number")
 _AFTER = ("plant", "lon", "lat", "arrive", "arrive_s", "inspect_s", "chance", "plot")
 _FORMULA = ("=", "+", "-", "@")
 
@@ -29,7 +29,8 @@ def route_csv(plan: HandoffPlan) -> bytes:
     text = io.StringIO(newline="")
     table = csv.writer(text, lineterminator="\r\n")
     face = ("face",) if plan.has_faces else ()
-    table.writerow((*_BEFORE, *face, *TO_FILL_IN, *_AFTER))
+    block = ("block",) if plan.has_blocks else ()
+    table.writerow(("stop", *block, *_BEFORE, *face, *TO_FILL_IN, *_AFTER))
     table.writerows(_cells(stop, plan) for stop in plan.stops)
     return text.getvalue().encode("utf-8-sig")
 
@@ -37,7 +38,9 @@ def route_csv(plan: HandoffPlan) -> bytes:
 def _cells(stop: Stop, plan: HandoffPlan) -> tuple[object, ...]:
     plot = plain_text(plan.notes.plot)
     return (
-        *(stop.order, stop.row, stop.number),
+        stop.order,
+        *((stop.block,) if plan.has_blocks else ()),
+        *(stop.row, stop.number),
         *((stop.face,) if plan.has_faces else ()),
         *("" for _ in TO_FILL_IN),
         stop.plant,

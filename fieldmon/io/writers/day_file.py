@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import block_label, row_label
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,8 +31,8 @@ _NO_TEXT = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 class Stop(NamedTuple):
     """One stop, in numbers and words that stand in files.
 
-    ``order``, ``row``, ``number`` and ``face`` count from 1; ``plant`` is the plant's number in
-    the grid, from 0. ``vertex`` tells where on the driven line the robot stands.
+    ``order``, ``block``, ``row``, ``number`` and ``face`` count from 1; ``plant`` is the plant's
+    number in the grid, from 0. ``vertex`` tells where on the driven line the robot stands.
     """
 
     order: int
@@ -47,6 +47,7 @@ class Stop(NamedTuple):
     inspect_s: float
     chance: float
     vertex: int
+    block: int
 
     @property
     def plant_label(self) -> str:
@@ -168,9 +169,10 @@ class HandoffPlan:
 
     @property
     def title(self) -> str:
-        """Return what to call the day: the plot, and the date where it is known."""
-        start = self.notes.start
-        return plain_text(self.notes.plot if start is None else f"{self.notes.plot} {start:%F}")
+        """Return what to call the day: the plot, and date and member where they are known."""
+        start, who = self.notes.start, self.notes.who
+        title = self.notes.plot if start is None else f"{self.notes.plot} {start:%F}"
+        return plain_text(title if who is None else f"{title} {who}")
 
     @property
     def bound(self) -> str:
@@ -181,6 +183,11 @@ class HandoffPlan:
     def has_faces(self) -> bool:
         """Return whether both faces of a plant are inspected, each for itself."""
         return bool((self.grid.twin >= 0).any())
+
+    @property
+    def has_blocks(self) -> bool:
+        """Return whether the plot has several blocks."""
+        return self.grid.n_blocks > 1
 
     @cached_property
     def stops(self) -> tuple[Stop, ...]:
@@ -201,6 +208,7 @@ class HandoffPlan:
             np.round(route.leave_s - route.arrive_s, 3).tolist(),
             np.round(route.chance, 6).tolist(),
             route.line_stop.tolist(),
+            block_label(self.grid, route.plant).tolist(),
             strict=True,
         )
         return tuple(Stop(*values) for values in columns)

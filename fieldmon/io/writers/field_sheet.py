@@ -14,11 +14,13 @@ from markupsafe import Markup
 from fieldmon.io.html import page
 from fieldmon.io.writers.day_file import plain_text
 from fieldmon.io.writers.geojson import summary
+from fieldmon.plot.grid import row_corners
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.writers.day_file import HandoffPlan
+    from fieldmon.plot.grid import PlantGrid
 
     Float = NDArray[np.float64]
 
@@ -72,16 +74,12 @@ def route_sheet(plan: HandoffPlan) -> bytes:
 def _svg(plan: HandoffPlan) -> Markup:
     grid = plan.grid
     placed, size = _map_of(plan)
-    first, last = grid.row_start[:-1], grid.row_start[1:] - 1
-    rows = "".join(
-        f"M{_xy(placed(grid.xy_m[a]))}L{_xy(placed(grid.xy_m[b]))}"
-        for a, b in zip(first.tolist(), last.tolist(), strict=True)
-    )
+    rows = "".join(_path(placed(line)) for line in row_corners(grid))
     line = _path(placed(plan.route.line_m)) if len(plan.route.line_m) > 1 else ""
     return Markup(
         '<svg viewBox="0 0 {:.1f} {:.1f}" role="img" aria-label="map">'
         '<path d="{}" fill="#f4f4ee" stroke="#888" stroke-width="0.3" fill-rule="evenodd"/>'
-        '<path d="{}" stroke="#9c9" stroke-width="0.4" stroke-linecap="round"/>'
+        '<path d="{}" fill="none" stroke="#9c9" stroke-width="0.4" stroke-linecap="round"/>'
         '<path d="{}" fill="none" stroke="#c50" stroke-width="0.35" stroke-linejoin="round"/>'
         "{}{}{}{}</svg>"
     ).format(
@@ -113,7 +111,7 @@ def _row_numbers(plan: HandoffPlan, placed: _Map) -> Markup:
     lines, first = np.unique(grid.row_line, return_index=True)
     gap_mm = grid.row_spacing_m * placed.scale
     every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 10**9) if k * gap_mm >= 2.5)
-    ends = placed(np.stack([grid.lane_x_m[first, 0], grid.xy_m[grid.row_start[first], 1]], axis=1))
+    ends = placed(_before_rows(grid, first))
     texts = [
         Markup('<text x="{:.2f}" y="{:.2f}" text-anchor="middle">{}</text>').format(x, y, line + 1)
         for line, (x, y) in zip(lines.tolist(), ends.tolist(), strict=True)
@@ -122,6 +120,17 @@ def _row_numbers(plan: HandoffPlan, placed: _Map) -> Markup:
     return Markup(
         '<g font-size="2.4" font-family="sans-serif" fill="#363" dominant-baseline="central">{}</g>'
     ).format(Markup().join(texts))
+
+
+def _before_rows(grid: PlantGrid, row: NDArray[np.intp]) -> Float:
+    """Return a place in line with rows, before their first plants."""
+    plant_m = grid.xy_m[grid.row_start[row]]
+    if grid.aisles_m is None or grid.aisle is None:
+        return np.stack([grid.lane_x_m[row, 0], plant_m[:, 1]], axis=1)
+    back_m = grid.lane_x_m[row, 0] - grid.along_m[grid.row_start[row]]
+    ahead = grid.aisles_m.ahead(grid.aisle[row], grid.lane_x_m[row, 0])
+    before: Float = plant_m + back_m[:, None] * ahead
+    return before
 
 
 def _area(plan: HandoffPlan, placed: _Map) -> str:

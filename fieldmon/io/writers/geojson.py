@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import block_label, row_label
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,11 +33,14 @@ class RouteNotes:
         Who chose the plants.
     start
         Local date and time of the start, or None: only seconds are given then.
+    who
+        Who of a team drives it; None: it is the only one.
     """
 
     plot: str
     sampler: str
     start: datetime | None = None
+    who: str | None = None
 
 
 def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
@@ -45,6 +48,7 @@ def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
     return {
         "plot": notes.plot,
         "sampler": notes.sampler,
+        **({} if notes.who is None else {"who": notes.who}),
         "stops": len(route),
         "seconds": round(route.end_s, 3),
         "drive_m": round(route.drive_m, 3),
@@ -105,7 +109,8 @@ def _line_feature(
 
 
 def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]]:
-    label = row_label(route.aisles.grid, route.plant)
+    grid = route.aisles.grid
+    label = row_label(grid, route.plant)
     columns = zip(
         route.stops_lonlat().round(_DECIMALS).tolist(),
         route.plant.tolist(),
@@ -115,6 +120,7 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
         route.leave_s.tolist(),
         route.chance.tolist(),
         route.line_stop.tolist(),
+        block_label(grid, route.plant).tolist(),
         strict=True,
     )
     return [
@@ -126,6 +132,7 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
                 "kind": "stop",
                 "order": order,
                 "plant": plant,
+                **({"block": block} if grid.n_blocks > 1 else {}),
                 "row": row,
                 "number": number,
                 "arrive_s": round(arrive_s, 3),
@@ -139,8 +146,8 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
                 "notes": None,
             },
         }
-        for order, (place, plant, row, number, arrive_s, leave_s, chance, vertex) in enumerate(
-            columns, 1
+        for order, (place, plant, row, number, arrive_s, leave_s, chance, vertex, block) in (
+            enumerate(columns, 1)
         )
     ]
 

@@ -92,6 +92,7 @@ def _stops(plan: HandoffPlan) -> gpd.GeoDataFrame:
         for name, field, kind in (
             ("stop", "order", "int32"),
             ("plant", "plant", "int32"),
+            *((("block", "block", "int32"),) if plan.has_blocks else ()),
             ("row", "row", "int32"),
             ("number", "number", "int32"),
             *((("face", "face", "int32"),) if plan.has_faces else ()),

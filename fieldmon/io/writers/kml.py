@@ -67,6 +67,7 @@ def _stop(placemark: ET.Element, stop: Stop, plan: HandoffPlan) -> None:
     values = {
         "stop": stop.order,
         "plant": stop.plant,
+        **({"block": stop.block} if plan.has_blocks else {}),
         "row": stop.row,
         "number": stop.number,
         **({"face": stop.face} if plan.has_faces else {}),

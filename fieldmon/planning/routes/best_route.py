@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from time import monotonic
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -12,9 +12,10 @@ from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.planning.bound_wording import FINDS, PROVED, share_above, told
 from fieldmon.planning.routes.binned import proposals
+from fieldmon.planning.routes.blocks import Blocks, blockings
 from fieldmon.planning.routes.improve import Tour, fit, ruin
 from fieldmon.planning.routes.priced import Priced
-from fieldmon.planning.routes.relaxation import ladder_below
+from fieldmon.planning.routes.relaxation import Ladders
 from fieldmon.planning.routes.stops import stops_of
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock
@@ -22,12 +23,10 @@ from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.base import NEVER, Scene
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from numpy.typing import ArrayLike, NDArray
 
-    from fieldmon.planning.routes.priced import Drawn
-    from fieldmon.planning.routes.relaxation import Ladder
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.travel import Clock
 
@@ -39,6 +38,9 @@ _ROUNDED = 1e-9
 _LEG_M = 1e-6
 _BISECTIONS = 40
 _LEAST_PRICE = 1e-7
+# routes begin with the drives of so many of the least bounds
+_STARTED_FROM = 3
+_TOO_LONG = 1.5
 # plants worth less than this share of their stop at the price are not considered
 _CONSIDERED = 0.5
 # share of the hours that is left when the poorest stops are left out, before filling again
@@ -98,12 +100,13 @@ class _Posed(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _Bound:
-    """The least bound found, the price it was found at, and the drives met on the way."""
+class PriceBound:
+    """The least bound of a price of time, that price, what it is of, and drives about as long."""
 
     value: float
     price: float
-    drawn: tuple[tuple[Drawn, float], ...]
+    below: Priced | Blocks
+    met: tuple[tuple[Any, float], ...]
 
 
 def best(
@@ -152,21 +155,20 @@ def best(
     aisles, robot, clock, values = posed
     if not values.any():
         return BestRoute(np.empty(0, np.int32), 0.0, 0.0, 0.0, "nothing can be reached")
-    time_s = clock.seconds_left
-    ladder = ladder_below(aisles)
-    priced = Priced(ladder, values, robot)
-    found = upper_bound(priced, time_s)
+    bounds = sorted(_bounds(posed), key=lambda found: found.value)
     starts = [np.asarray(other, np.int64) for other in others]
-    starts += list(_starts(priced, found, robot, time_s))
-    starts.append(_walked(aisles, values, robot, time_s))
-    stops = _best_of(aisles, clock, values, starts, _CONSIDERED * found.price * robot.visit_s)
+    for found in bounds[:_STARTED_FROM]:
+        starts += list(_starts(found, robot, clock.seconds_left))
+    starts.append(_walked(aisles, values, robot, clock.seconds_left))
+    least = _CONSIDERED * bounds[0].price * robot.visit_s
+    stops = _best_of(aisles, clock, values, starts, least)
     held = float(values[stops].sum())
     return BestRoute(
         stops.astype(np.int32),
         held,
         _seconds(aisles, clock, stops),
-        max(found.value, held),
-        _how(ladder),
+        max(bounds[0].value, held),
+        bounds[0].below.how,
     )
 
 
@@ -205,8 +207,43 @@ def bound(
     posed = _posed(plot, reward, robot, seconds)
     if not posed.reward.any():
         return 0.0
-    priced = Priced(ladder_below(posed.aisles), posed.reward, posed.robot)
-    return upper_bound(priced, posed.clock.seconds_left, within_s).value
+    return min(found.value for found in _bounds(posed, within_s))
+
+
+class Bounded(NamedTuple):
+    """A bound, and how much of each plant ``(n,)`` the drives behind it visit, in 0..1."""
+
+    value: float
+    visits: Float
+
+
+def bounded(plot: Plot, reward: Float, robot: Robot) -> Bounded:
+    """Return what no route of a robot's day can hold, and what the drives behind it visit.
+
+    Two drives at about one price fill the hours, the one more, the other less: as much of each as
+    fills them just.
+    """
+    posed, visits = _posed(plot, reward, robot, None), np.zeros(len(reward))
+    if not posed.reward.any():
+        return Bounded(0.0, visits)
+    found = min(_bounds(posed), key=lambda each: each.value)
+    took_s = np.array([found.below.seconds(*met) for met in found.met])
+    share = np.ones(len(took_s))
+    if len(took_s) == 2 and took_s[0] != took_s[1]:
+        share[1] = (robot.day_s - took_s[0]) / (took_s[1] - took_s[0])
+        share = np.clip([1.0 - share[1], share[1]], 0.0, 1.0)
+    for met, of in zip(found.met, share, strict=True):
+        if of > 0.0:
+            visits[_stops_met(found.below, met, robot)] += of
+    return Bounded(found.value, np.minimum(visits, 1.0))
+
+
+def _stops_met(below: Priced | Blocks, met: tuple[Any, float], robot: Robot) -> Int:
+    """Return the plants of a drive in the order of one way to drive it."""
+    drawn, price = met
+    if isinstance(below, Blocks):
+        return below.stops(drawn, price)
+    return stops_of(below, drawn, np.full(len(drawn.way), price), robot)
 
 
 def _posed(
@@ -221,41 +258,68 @@ def _posed(
     return _Posed(aisles, robot, clock, np.where(_reachable(aisles, clock), values, 0.0))
 
 
-def upper_bound(priced: Priced, seconds: float, within_s: float = np.inf) -> _Bound:
+def _bounds(posed: _Posed, within_s: float = np.inf) -> Iterator[PriceBound]:
+    """Yield the bounds of all ways of taking the plot for less than it is: each is one."""
+    until = monotonic() + within_s
+    for below in _relaxations(posed):
+        yield upper_bound(below, posed.clock.seconds_left, until - monotonic())
+        if monotonic() > until:
+            return
+
+
+def _relaxations(posed: _Posed) -> Iterator[Priced | Blocks]:
+    """Yield what lies below the plot: a ladder, one with aisles hanging on it, several ladders."""
+    ladders = Ladders(posed.aisles)
+    yield Priced(ladders.whole(hanging=False), posed.reward, posed.robot)
+    hung = ladders.whole(hanging=True)
+    if hung.hangs.any():
+        yield Priced(hung, posed.reward, posed.robot)
+    for block in blockings(ladders.rungs):
+        yield Blocks(ladders, block, posed.reward, posed.robot)
+
+
+def upper_bound(below: Priced | Blocks, seconds: float, within_s: float = np.inf) -> PriceBound:
     """Return the least bound of all prices of time, by bisection of what they fill."""
     began = monotonic()
-    reward, stop_s = priced.reward, max(priced.costs.stop_s, 1e-9)
+    reward, costs = below.reward, below.costs
+    stop_s = max(costs.stop_s, 1e-9)
     high = float(reward.max()) / stop_s
     low = high * _LEAST_PRICE
-    most_stops = int(seconds // stop_s) if priced.costs.stop_s > 0 else len(reward)
+    most_stops = int(seconds // stop_s) if costs.stop_s > 0 else len(reward)
     value = float(np.sort(reward)[::-1][:most_stops].sum())
     # a leg on the ladder may be longer than the true one by less than a thousandth of a millimetre
-    seconds += (min(most_stops, len(reward)) + 1) * _LEG_M * priced.costs.metre_s
-    price, drawn = low, []
+    seconds += (min(most_stops, len(reward)) + 1) * _LEG_M * costs.metre_s
+    price = low
+    met: dict[bool, tuple[Any, float]] = {}
     for k in range(_BISECTIONS):
         middle = low if k == 0 else float(np.sqrt(low * high))
-        one = priced.best(middle)
-        here = priced.bound(one, middle, seconds)
+        one: Any = below.best(middle)
+        here = below.bound(one, middle, seconds)
         if here < value:
             value, price = here, middle
-        drawn.append((one, middle))
+        too_long = below.seconds(one, middle) > seconds
+        met[too_long] = one, middle
         if monotonic() - began > within_s:
             break
-        if priced.seconds(one, middle) > seconds:
+        if too_long:
             low = middle
         elif k == 0:
             break
         else:
             high = middle
-    return _Bound(value * (1.0 + _ROUNDED), price, tuple(drawn[-2:]))
+    return PriceBound(value * (1.0 + _ROUNDED), price, below, tuple(met.values()))
 
 
-def _starts(priced: Priced, bound: _Bound, robot: Robot, seconds: float) -> Iterable[Int]:
-    """Yield stops to begin with."""
-    for drawn, price in bound.drawn:
-        yield stops_of(priced, drawn, np.full(len(drawn.way), price), robot)
-    for drawn, prices in proposals(priced, bound.price, seconds):
-        yield stops_of(priced, drawn, prices, robot)
+def _starts(found: PriceBound, robot: Robot, seconds: float) -> Iterator[Int]:
+    """Yield stops to begin with; drives that are far too long take long to be cut to the hours."""
+    below = found.below
+    fitting = [met for met in found.met if below.seconds(*met) <= _TOO_LONG * seconds]
+    yield from (_stops_met(below, met, robot) for met in fitting)
+    if isinstance(below, Blocks):
+        yield from below.filling(found.price, seconds)
+        return
+    for drawn, prices in proposals(below, found.price, seconds):
+        yield stops_of(below, drawn, prices, robot)
 
 
 def _walked(aisles: Aisles, reward: Float, robot: Robot, seconds: float) -> Int:
@@ -302,15 +366,6 @@ def _seconds(aisles: Aisles, clock: Clock, stops: Int) -> float:
         return 0.0
     places = np.concatenate([[GATE], stops, [GATE] if clock.returns else []]).astype(np.int64)
     return float(driven_s(aisles.travel, clock, places)) + len(stops) * clock.visit_s
-
-
-def _how(ladder: Ladder) -> str:
-    if ladder.cross_links == 0:
-        return "price of time on a ladder of aisles"
-    return (
-        f"price of time on a ladder with {ladder.cross_links} cross links, "
-        "as the plot is no ladder itself"
-    )
 
 
 def _checked(reward: ArrayLike, n: int, seconds: float) -> Float:

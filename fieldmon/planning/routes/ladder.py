@@ -2,7 +2,7 @@
 
 Rows are swept from the start to the far side. What was walked so far touches the two headlands in
 one of five ways; for each of them and each number of steps the most reward is kept. The claim, its
-proof and what it assumes are in ``docs/routes.md``.
+proof and what it assumes are in ``docs/best_routes.md``.
 """
 
 from __future__ import annotations

@@ -122,6 +122,16 @@ class Priced:
             np.empty((4, 2)),
         )
 
+    @property
+    def how(self) -> str:
+        """Say what it is."""
+        if self.ladder.cross_links == 0 and not self.ladder.hangs.any():
+            return "price of time on a ladder of aisles"
+        return (
+            f"price of time on a ladder with {self.ladder.cross_links} cross links and "
+            f"{int((self.ladder.hangs > 0).sum())} hanging aisles, as the plot is no ladder itself"
+        )
+
     def best(self, price: float) -> Drawn:
         """Return the best drive at a price of reward a second."""
         room, ladder, tables = self._room, self.ladder, self.tables
@@ -192,6 +202,26 @@ def _value(
         if k != ladder.gate:
             _value_through(ladder, reward, costs, (k, price, feasible), room)
             _value_in(ladder, reward, costs, (k, price), room)
+            if ladder.hangs[k] > 0:
+                _hang(room, k, ladder.hangs[k] - 1)
+
+
+@part
+def _hang(room: _Room, k: int, side: int) -> None:
+    """Let an aisle that hangs on a headland be one way in and out, however it is driven."""
+    for into in range(2):
+        to = (FROM_LEFT, FROM_RIGHT)[side] if into == 0 else (END_LEFT, END_RIGHT)[side]
+        best = to
+        for way in range(1, N_WAYS):
+            if (way >= END_LEFT) == (into == 1) and room.worth[k, way] > room.worth[k, best]:
+                best = way
+        worth, held = room.worth[k, best], room.reward[k, best]
+        for c in range(4):
+            room.cut[k, to, c] = room.cut[k, best, c]
+        for way in range(1, N_WAYS):
+            if (way >= END_LEFT) == (into == 1):
+                room.worth[k, way] = _NEVER
+        room.worth[k, to], room.reward[k, to] = worth, held
 
 
 @part

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 _EXACT_M = 1e-7
 _LESS = 1.0 - 1e-9
 _ROUNDS = 40
+# an aisle goes on being the main one of its height if it has this share of the longest there
+_MUCH_SHORTER = 0.3
 
 
 class Ladder(NamedTuple):
@@ -52,6 +54,9 @@ class Ladder(NamedTuple):
         ``(n,)`` whether each of `plant` stands on the upper side of its aisle.
     cross_links
         Number of cross links: 0 where the plot is a ladder.
+    hangs
+        ``(e,)`` whether an element joins both headlands (0), or both its ends are one place of
+        the left (1) or of the right headland (2).
     """
 
     up_m: Float
@@ -63,35 +68,123 @@ class Ladder(NamedTuple):
     in_m: Float
     upper: NDArray[np.bool_]
     cross_links: int
+    hangs: Int
 
 
-class _Rungs(NamedTuple):
+class Rungs(NamedTuple):
     """Each aisle as a rung: its ends, and true metres between all of them and the gate.
 
-    ``low``, ``high`` ``(k,)``: x of the rung's ends. ``apart_m`` ``(2, 2, k + 1, k + 1)``: from
-    the left (0) or right (1) end of an aisle to the left or right end of another; the last is the
-    gate, whose two ends are one.
+    ``low``, ``high`` ``(k,)``: x of the rung's ends; ``up`` ``(k,)`` its y. ``apart_m``
+    ``(2, 2, k + 1, k + 1)``: from the left (0) or right (1) end of an aisle to the left or right
+    end of another; the last is the gate, whose two ends are one.
     """
 
     low: Float
     high: Float
+    up: Float
     apart_m: Float
 
 
 def ladder_below(aisles: Aisles) -> Ladder:
     """Return a ladder on which no way is longer than the true one."""
-    rungs = _rungs(aisles.travel)
-    order = _order(aisles, rungs)
-    apart_m = rungs.apart_m[:, :, order][:, :, :, order]
-    gate = int(np.flatnonzero(order == len(order) - 1)[0])
-    across_m = np.append(rungs.high - rungs.low, np.inf)[order]
-    left, right, links = _fitted(apart_m, across_m, gate)
-    stub_m = np.array([_stub(left, apart_m[0, 0], gate), _stub(right, apart_m[1, 1], gate)])
-    return _assembled(aisles.travel, rungs, order, (left, right), (links, across_m, stub_m))
+    return Ladders(aisles).whole(hanging=False)
 
 
-def _rungs(travel: TravelTable) -> _Rungs:
+class Ladders:
+    """Ladders below a plot, or below some of its aisles, on which no way is longer than true."""
+
+    def __init__(self, aisles: Aisles) -> None:
+        self.aisles, self.rungs = aisles, rungs_of(aisles)
+
+    def whole(self, *, hanging: bool) -> Ladder:
+        """Return a ladder of all aisles with the plot's gate; short ones beside others may hang."""
+        every = np.arange(len(self.rungs.low))
+        to_gate = self.rungs.apart_m[:, 0, :-1, -1]
+        return self.among(every, (to_gate, float(self.aisles.gate_m[1])), hanging=hanging)
+
+    def among(self, members: Int, gate: tuple[Float, float], *, hanging: bool) -> Ladder:
+        """Return a ladder of some aisles.
+
+        ``gate``: metres ``(2, k)`` from the left and right ends of the members to a gate, and its
+        y.
+        """
+        rungs = self.rungs
+        up, low = rungs.up[members], rungs.low[members]
+        order = np.lexsort((low, np.round(up, 3)))
+        order = np.insert(order, np.searchsorted(up[order], gate[1]), len(up))
+        hangs = np.zeros(len(up), np.int64)
+        if hanging:
+            hangs = _hanging(rungs, members, 0.6 * self.aisles.grid.row_spacing_m)
+        hangs = np.append(hangs, 0)[order]
+        apart_m = _apart(rungs, members, gate[0])[:, :, order][:, :, :, order]
+        at = int(np.flatnonzero(order == len(up))[0])
+        across_m = np.append(rungs.high[members] - low, np.inf)[order]
+        lines = _lines(apart_m, hangs)
+        left, right, links = _fitted(lines, np.where(hangs > 0, np.inf, across_m), at)
+        stub_m = np.array([_stub(left, lines[0, 0], at), _stub(right, lines[1, 1], at)])
+        placed = np.append(members, -1)[order]
+        return _assembled(
+            self.aisles.travel, rungs, (placed, hangs), (left, right), (links, across_m, stub_m)
+        )
+
+
+def _apart(rungs: Rungs, members: Int, to_gate_m: Float) -> Float:
+    """Return the metres between the ends of some aisles and a gate of their own, the last."""
+    apart_m = rungs.apart_m[:, :, members[:, None], members]
+    apart_m = np.pad(apart_m, ((0, 0), (0, 0), (0, 1), (0, 1)), constant_values=np.inf)
+    for side in range(2):
+        apart_m[side, :, :-1, -1] = to_gate_m[side]
+        apart_m[:, side, -1, :-1] = to_gate_m[side]
+    return apart_m
+
+
+def _lines(apart_m: Float, hangs: Int) -> Float:
+    """Return the metres between places of the two headlands, some aisles hanging on one of them.
+
+    Both ends of an aisle that hangs are one place of its headland, and it has none of the other.
+    """
+    either_from = apart_m.min(axis=0)
+    lines = apart_m.copy()
+    for side in range(2):
+        own, gone = hangs == side + 1, hangs == 2 - side
+        lines[side][:, own] = either_from[:, own]
+        lines[side][:, gone] = np.inf
+    either_to = lines.min(axis=1)
+    for side in range(2):
+        own, gone = hangs == side + 1, hangs == 2 - side
+        lines[:, side][:, :, own] = either_to[:, :, own]
+        lines[:, side][:, :, gone] = np.inf
+    return lines
+
+
+def _hanging(rungs: Rungs, members: Int, same_m: float) -> Int:
+    """Return which aisles ``(k,)`` hang on a headland: those beside the main one of their height.
+
+    The main aisle goes on from the one below as long as it is not much shorter than the others.
+    """
+    low, high, up = rungs.low[members], rungs.high[members], rungs.up[members]
+    hangs, main = np.zeros(len(members), np.int64), -1
+    order = np.argsort(up, kind="stable")
+    for i in order:
+        beside = np.flatnonzero((np.abs(up - up[i]) < same_m) & ((low > high[i]) | (high < low[i])))
+        longest = max((high[beside] - low[beside]).max(initial=0.0), high[i] - low[i])
+        goes_on = main < 0 or (low[i] < high[main] and high[i] > low[main])
+        if len(beside) == 0 or (goes_on and high[i] - low[i] > _MUCH_SHORTER * longest):
+            main = int(i)
+            continue
+        k = int(beside[np.argmax(high[beside] - low[beside])])
+        if main in beside:
+            k = main
+        elif high[i] - low[i] >= longest:
+            main = int(i)
+            continue
+        hangs[i] = 1 if high[i] < low[k] else 2
+    return hangs
+
+
+def rungs_of(aisles: Aisles) -> Rungs:
     """Join rows that are inspected from one aisle."""
+    travel = aisles.travel
     n_aisles = int(travel.corridor.max()) + 1
     first, last = np.full(n_aisles, np.inf), np.full(n_aisles, -np.inf)
     np.minimum.at(first, travel.corridor, travel.end_x_m[:, 0])
@@ -120,7 +213,9 @@ def _rungs(travel: TravelTable) -> _Rungs:
     middle = (first + last) / 2
     crossed = first > last
     first[crossed] = last[crossed] = middle[crossed]
-    return _Rungs(first, last, np.maximum(apart_m, 0.0))
+    up = np.zeros(n_aisles)
+    up[travel.corridor] = aisles.grid.lane_y_m
+    return Rungs(first, last, up, np.maximum(apart_m, 0.0))
 
 
 def _some_short(short: Float, corridor: NDArray[np.int32], n_aisles: int) -> NDArray[np.bool_]:
@@ -150,14 +245,6 @@ def _between_aisles(travel: TravelTable, short: Float) -> Float:
     return apart_m
 
 
-def _order(aisles: Aisles, rungs: _Rungs) -> Int:
-    """Return the aisles and the gate (the last) in order up the plot."""
-    y = np.zeros(len(rungs.low))
-    y[aisles.travel.corridor] = aisles.grid.lane_y_m
-    order = np.lexsort((rungs.low, np.round(y, 3)))
-    return np.insert(order, np.searchsorted(y[order], aisles.gate_m[1]), len(y))
-
-
 def _hull(apart_m: Float) -> Float:
     """Return for a < b the least metres from any place up to a to any place from b on."""
     metres = np.where(np.tri(len(apart_m), dtype=bool), np.inf, apart_m)
@@ -171,6 +258,9 @@ def _places(apart_m: Float) -> Float:
     place = np.zeros(len(apart_m))
     for k in range(1, len(place)):
         place[k] = (place[:k] + hull[:k, k]).min() * _LESS
+        if not np.isfinite(place[k]):
+            # nothing of this headland is there, or below
+            place[k] = place[k - 1]
     return place
 
 
@@ -228,31 +318,34 @@ def _from_left_to_right(left: Float, right: Float, cross: Float) -> Float:
 def _stub(place: Float, apart_m: Float, gate: int) -> float:
     """Return how far the gate can be from its node with no way from it being too long."""
     spare = np.delete(apart_m[gate] - np.abs(place - place[gate]), gate)
-    return max(float(spare.min()) * _LESS, 0.0)
+    least = float(spare.min(initial=np.inf))
+    return max(least * _LESS, 0.0) if np.isfinite(least) else 0.0
 
 
 def _assembled(
     travel: TravelTable,
-    rungs: _Rungs,
-    order: Int,
+    rungs: Rungs,
+    order: tuple[Int, Int],
     places: tuple[Float, Float],
     fitted: tuple[list[tuple[int, float]], Float, Float],
 ) -> Ladder:
-    """Return the ladder with its cross links as elements of their own."""
+    """Return the ladder of aisles in order (the gate: -1), cross links being their own elements."""
     links, across_m, stub_m = fitted
-    n_aisles = len(rungs.low)
-    rank = np.empty(n_aisles + 1, np.int64)
-    rank[order] = np.arange(len(order))
+    placed, hangs = order
+    rank = np.full(len(rungs.low), -1)
+    rank[placed[placed >= 0]] = np.flatnonzero(placed >= 0)
     aisle = travel.corridor[travel.row]
     x = np.clip(travel.x_m, rungs.low[aisle], rungs.high[aisle])
     in_m = x - rungs.low[aisle]
     plant = np.lexsort((in_m, rank[aisle]))
-    count = np.bincount(rank[aisle], minlength=len(order))
+    plant = plant[rank[aisle[plant]] >= 0]
+    count = np.bincount(rank[aisle[plant]], minlength=len(placed))
     after = np.array([k for k, _ in links], np.int64) + 1
     left, right = (np.insert(p, after, p[after - 1]) for p in places)
     across = np.insert(across_m, after, [metres for _, metres in links])
     count = np.insert(count, after, 0)
-    gate = int(rank[-1] + (after <= rank[-1]).sum())
+    gate = int(np.flatnonzero(placed < 0)[0])
+    gate += int((after <= gate).sum())
     across[gate] = np.inf
     return Ladder(
         np.stack([np.diff(left), np.diff(right)], axis=1),
@@ -264,4 +357,5 @@ def _assembled(
         in_m[plant],
         travel.side[travel.row[plant]] > 0,
         len(links),
+        np.insert(hangs, after, 0),
     )

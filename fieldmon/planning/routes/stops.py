@@ -79,6 +79,9 @@ class _Chosen:
         if k < 0 or self.drawn.way[k] not in (_FROM_LEFT, _FROM_RIGHT)[side]:
             return np.empty(0, np.int64)
         place = self._plants(k, side)
+        if self.priced.ladder.hangs[k]:
+            # both ends are one place: what is reached from either
+            place = np.concatenate([place, self._plants(k, 1 - side)])
         place = place if side == 0 else place[::-1]
         upper = self.priced.ladder.upper[place]
         if not upper.all() and upper.any():
@@ -95,7 +98,10 @@ class _Chosen:
     def end(self, k: int) -> Int:
         """Return the plants of an aisle in which the day ends."""
         from_left = self.drawn.way[k] in (END_LEFT, END_LEFT_AND)
-        return self._in_line(k, self._plants(k, 0 if from_left else 1), up=from_left)
+        place = self._plants(k, 0 if from_left else 1)
+        if self.priced.ladder.hangs[k]:
+            place = np.sort(np.concatenate([place, self._plants(k, 1 if from_left else 0)]))
+        return self._in_line(k, place, up=from_left)
 
     def _in_line(self, k: int, place: Int, *, up: bool) -> Int:
         """Return plants of both sides as they come, or a side after the other if that is less."""

@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
 
-# rewards are counted in thousandths and so much that steps only decide between equal rewards
-_PRIZE = 10**9
+# the highest reward in steps, which cost 1 each: with much more, or with steps that cost nothing,
+# PyVRP finds less or no walk that fits
+_PRIZE = 10_000
 MOST_PLANTS = 1200
 
 
@@ -45,20 +46,25 @@ def collect(reward: Float, budget: int, seconds: float = 10.0, seed: int = 1) ->
     model: Any = Model()
     nodes = [model.add_location(0, 0) for _ in places]
     depot = model.add_depot(nodes[0])
-    for node, prize in zip(nodes[1:], reward[row, column], strict=True):
-        model.add_client(node, prize=round(prize * _PRIZE), required=False)
+    for node, share in zip(nodes[1:], reward[row, column] / reward.max(), strict=True):
+        model.add_client(node, prize=round(share * _PRIZE), required=False)
     model.add_vehicle_type(start_depot=depot, end_depot=depot, max_distance=budget)
     for i, one in enumerate(nodes):
         for j, other in enumerate(nodes):
             if i != j:
                 model.add_edge(one, other, distance=int(steps[i, j]))
     result = model.solve(MaxRuntime(seconds), seed=seed, display=False)
-    walker = Walker(reward.shape[1])
-    if result.is_feasible():
-        for route in result.best.routes():
-            # clients are numbered from the depot on
-            for visit in route.visits():
-                _walk(walker, *places[visit].tolist())
+    return _walked(places, reward.shape[1], result)
+
+
+def _walked(places: Int, n: int, result: Any) -> Int:  # noqa: ANN401 - PyVRP's own
+    """Return the places of the walk through the clients of a result, in its order."""
+    walker = Walker(n)
+    for route in result.best.routes() if result.is_feasible() else ():
+        for stop in route:
+            if stop.is_client():
+                # clients are numbered among themselves; the depot is the first place
+                _walk(walker, *places[stop.idx + 1].tolist())
     return _home(walker)
 
 

@@ -8,9 +8,9 @@ import pytest
 from fieldmon.errors import FileProblem
 from fieldmon.studies.routes.drive import Walker, driven
 from fieldmon.studies.routes.heuristics import HEURISTICS, optimal_full_row
-from fieldmon.studies.routes.instances import families, full_budget, read_matrix
+from fieldmon.studies.routes.instances import Instance, families, full_budget, read_matrix
 from fieldmon.studies.routes.milp import solve
-from fieldmon.studies.routes.study import EXACT, csv_text, run
+from fieldmon.studies.routes.study import EXACT, csv_text, run, sentences, table
 
 
 def test_a_walk_across_a_row_or_away_from_home_is_no_walk():
@@ -81,6 +81,28 @@ def test_a_table_names_every_method_and_its_bound():
     assert rows[0]["proved"] == "yes"
     assert float(rows[0]["reward"]) == float(rows[-1]["reward"]) == float(rows[-1]["bound"])
     assert int(rows[0]["budget"]) == full_budget(2, 3) // 2
+
+
+def test_pyvrp_finds_a_walk_that_fits_and_is_no_better_than_the_exact_one():
+    pytest.importorskip("pyvrp")
+    reward = np.random.default_rng(4).random((6, 8)) ** 3
+    exact, other = run(Instance("tiny", reward), (0.4,), ["PyVRP"], solver_s=1.0)
+    assert other.method == "PyVRP"
+    assert 0.5 * exact.reward < other.reward <= exact.reward + 1e-9
+    assert other.cost <= other.budget
+
+
+def test_the_table_for_people_says_by_how_much_the_exact_walk_exceeds_the_others():
+    made = list(run(read_matrix("1,0,3\n0,2,2\n", "tiny.csv"), (0.3, 1.0), ["GR", "OFR"]))
+    head, rule, first, last = table(made).splitlines()
+    assert head.startswith(
+        "| instance | budget | of all reward | seconds | more than the best | GR"
+    )
+    assert rule.count("---") == head.count("|") - 1
+    assert first.startswith("| tiny.csv | 30% |")
+    assert last.split(" | ")[2] == "100.0%"
+    assert last.split(" | ")[4] == "0.0%"
+    assert "tiny.csv, 100% of the full budget: 100.0% of all reward" in sentences(made)[1]
 
 
 @pytest.mark.parametrize("text", ["", "1,2\n3\n", "1,x\n", "1,-2\n"])

@@ -1,0 +1,94 @@
+"""Who is in a team, as a table says: one line a robot or scout."""
+
+from __future__ import annotations
+
+import csv
+from typing import TYPE_CHECKING, NamedTuple
+
+from fieldmon.errors import FileProblem
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+COLUMNS = ("name", "who", "hours", "speed_km_h", "look_s", "detection", "start", "lon", "lat")
+
+
+class StatedMember(NamedTuple):
+    """A line of a team's table; None where it says nothing.
+
+    Parameters
+    ----------
+    name
+        What the member is called.
+    scout
+        Whether it is a person on foot.
+    settings
+        Settings of `Robot` that were stated.
+    start
+        Local time of day at which it starts, as ``HH:MM``.
+    gate
+        ``(lon, lat)`` where its day starts and ends.
+    """
+
+    name: str
+    scout: bool
+    settings: dict[str, float]
+    start: str | None
+    gate: tuple[float, float] | None
+
+
+def read_team(path: Path) -> tuple[StatedMember, ...]:
+    """Return the members of a table (CSV with a header, `COLUMNS`; only ``name`` is needed).
+
+    Raises
+    ------
+    FileProblem
+        If the file cannot be read, has other columns, or a value that is none.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileProblem(f"{path} must be a readable table (CSV), but it is not.") from error
+    delimiter = ";" if text.partition("\n")[0].count(";") else ","
+    table = csv.DictReader(text.splitlines(), delimiter=delimiter)
+    columns = [(name or "").strip().casefold() for name in table.fieldnames or ()]
+    unknown = [name for name in columns if name not in COLUMNS]
+    if "name" not in columns or unknown:
+        raise FileProblem(
+            f"{path} must have a column name, and of others only {', '.join(COLUMNS[1:])}, but it "
+            f"has {', '.join(columns) or 'none'}."
+        )
+    members = []
+    for number, line in enumerate(table, 2):
+        values = {k: (v or "").strip() for k, v in zip(columns, line.values(), strict=False)}
+        if any(values.values()):
+            members.append(_member(values, f"{path}, line {number}"))
+    if not members:
+        raise FileProblem(f"{path} must name a member of the team, but it names none.")
+    return tuple(members)
+
+
+def _member(values: dict[str, str], where: str) -> StatedMember:
+    who = values.get("who", "").casefold() or "robot"
+    if who not in {"robot", "scout"}:
+        raise FileProblem(f"{where}: who must be robot or scout, but it is {values['who']!r}.")
+    if not values["name"]:
+        raise FileProblem(f"{where}: every member must have a name, but this has none.")
+    number = {
+        name: _number(values[name], name, where)
+        for name in ("hours", "speed_km_h", "look_s", "detection", "lon", "lat")
+        if values.get(name)
+    }
+    if ("lon" in number) != ("lat" in number):
+        raise FileProblem(f"{where}: a gate must have lon and lat, but it has one of them.")
+    gate = (number.pop("lon"), number.pop("lat")) if "lon" in number else None
+    if "speed_km_h" in number:
+        number["speed_m_s"] = number.pop("speed_km_h") / 3.6
+    return StatedMember(values["name"], who == "scout", number, values.get("start") or None, gate)
+
+
+def _number(text: str, name: str, where: str) -> float:
+    try:
+        return float(text.replace(",", "."))
+    except ValueError as error:
+        raise FileProblem(f"{where}: {name} must be a number, but it is {text!r}.") from error

@@ -1,0 +1,461 @@
+"""A day for several robots and scouts: each aisle is one's own, and nobody meets in one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from time import monotonic
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.compute.wording import counted
+from fieldmon.errors import SettingError
+from fieldmon.planning.bound_wording import PROVED, told
+from fieldmon.planning.meetings import Meeting, meetings
+from fieldmon.planning.plan import DayPlan
+from fieldmon.planning.route import route_of
+from fieldmon.planning.routes import best, bound
+from fieldmon.planning.routes.best_route import bounded
+from fieldmon.planning.workday import Workday
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import GATE, travel_s
+from fieldmon.samplers.base import NEVER, Scene
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.plot import Plot
+
+    Float = NDArray[np.float64]
+    Int = NDArray[np.int64]
+
+# who must wait starts so much later than the other leaves
+_PAUSE_S = 1.0
+# each route is looked for again so often in what the others leave, and so often where they meet
+_ROUNDS, _TRIES = 2, 3
+# so many prices of plants are tried for a bound, for so long; a step that gained nothing so often
+# is halved; directions are remembered so far
+_PRICES, _WITHIN_S, _PATIENCE, _MEMORY = 60, 20.0, 5, 0.7
+
+
+@dataclass(frozen=True)
+class TeamMember:
+    """One of a team.
+
+    Parameters
+    ----------
+    name
+        What it is called, for people and in file names.
+    robot
+        Its speed, hours, inspection and detection.
+    gate
+        ``(lon, lat)`` where its day starts and ends; None: the plot's gate.
+    starts_s
+        Seconds after the team's day begins at which its own does.
+    """
+
+    name: str
+    robot: Robot = field(default_factory=Robot)
+    gate: tuple[float, float] | None = None
+    starts_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.starts_s < 24 * 3600.0:
+            raise SettingError(
+                f"{self.name} must start within a day, but it is {self.starts_s} s after the first."
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class TeamPlan:
+    """A planned day of a team.
+
+    Parameters
+    ----------
+    members
+        Who works, in the order of `days`.
+    days
+        A day each; its seconds count from the member's own start.
+    late_s
+        ``(m,)`` seconds that each begins later than its start, so that nobody is met in an aisle.
+    bound
+        No routes of these members and hours can expect more finds together.
+    """
+
+    members: tuple[TeamMember, ...]
+    days: tuple[DayPlan, ...]
+    late_s: Float
+    bound: float
+
+    def __repr__(self) -> str:
+        stops = sum(len(day.route) for day in self.days)
+        return f"<TeamPlan: {counted(len(self.days), 'member')}, {counted(stops, 'stop')}>"
+
+    @property
+    def starts_s(self) -> Float:
+        """Return when each begins, ``(m,)`` seconds after the team's day does."""
+        return self.late_s + [member.starts_s for member in self.members]
+
+    @property
+    def expected_found(self) -> float:
+        """Return the infested plants that would be found, as believed."""
+        return sum(day.route.expected_found for day in self.days)
+
+    @property
+    def sentence(self) -> str:
+        """Return for people what is expected, and what no other routes can exceed."""
+        return told(self.expected_found, self.bound, routes="routes")
+
+    def meetings(self) -> list[Meeting]:
+        """Return where two are in one aisle at once: nowhere, if the plan is right."""
+        return meetings([day.route for day in self.days], self.starts_s)
+
+
+class _Task(NamedTuple):
+    """What one member's route is looked for in."""
+
+    plot: Plot
+    robot: Robot
+    value: Float
+    starts_s: float = 0.0
+
+
+def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
+    """Return n robots of one kind.
+
+    Examples
+    --------
+    >>> [member.name for member in team_of(3)]
+    ['robot-1', 'robot-2', 'robot-3']
+    """
+    if n < 1:
+        raise SettingError(f"A team must have 1 member or more, but it has {n}.")
+    return tuple(TeamMember(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))
+
+
+def plan_team(
+    plot: Plot,
+    chance: Float,
+    members: Sequence[TeamMember],
+    done: NDArray[np.bool_] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> TeamPlan:
+    """Plan a day of a team: no plant twice, and no two in one aisle at once.
+
+    Routes are those of `fieldmon.planning.routes.best`.
+
+    Parameters
+    ----------
+    plot
+        Plants and the ways between them.
+    chance
+        ``(n,)`` believed chance of infestation.
+    members
+        Who works.
+    done
+        ``(n,)`` plants that are not visited again today; None: none.
+    progress
+        Told how many routes were looked for, and of how many.
+
+    Raises
+    ------
+    SettingError
+        If two members share a name, there are none, or no route of any of them fits its hours.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> from fieldmon.planning.team import plan_team, team_of
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
+    >>> chance = fm.plan_day(plot, on="2026-11-18").chance
+    >>> team = plan_team(plot, chance, team_of(2, fm.Robot(hours=0.5)))
+    >>> len(team.days), team.meetings(), team.expected_found <= team.bound
+    (2, [], True)
+    """
+    _must_differ(members)
+    left = np.ones(len(chance)) if done is None else np.where(done, 0.0, 1.0)
+    tasks = [
+        _Task(
+            plot if one.gate is None else plot.with_gate(one.gate),
+            one.robot,
+            chance * one.robot.detects * left,
+            one.starts_s,
+        )
+        for one in members
+    ]
+    search = _Search(plot, tasks, progress or (lambda _done, _of: None))
+    in_turn = search.in_turn()
+    exclusive = search.aisle_by_aisle(in_turn)
+    shared = search.apart(search.plant_by_plant(exclusive))
+    found = [search.turned(stops) for stops in (in_turn, exclusive, shared)]
+    timed = max((_kept_apart(tasks, days) for days in found), key=lambda each: _expected(each.days))
+    if not _expected(timed.days):
+        raise SettingError(
+            "The hours of some member must be long enough to reach a plant and come back, but "
+            "none are. Give more hours."
+        )
+    days = tuple(replace(day, scene=_seen(day.scene, chance, done)) for day in timed.days)
+    days = tuple(replace(day, route=route_of(day.scene, day.work)) for day in days)
+    held = _expected(days)
+    most = max(team_bound(tasks, held), held)
+    return TeamPlan(tuple(members), days, timed.late_s, most)
+
+
+def _expected(days: Sequence[DayPlan]) -> float:
+    return float(sum(day.route.expected_found for day in days))
+
+
+def team_bound(tasks: Sequence[_Task], held: float = 0.0) -> float:
+    """Return what no routes of a team can hold together: the least of some bounds.
+
+    Whatever is paid once for each plant, no more than all that and what each member could hold
+    alone of the rest (a price of plants, as Lagrange's). And where all start at one gate and come
+    back to it, what one robot could hold with the hours of all, as fast and sharp-eyed as the best
+    of them in everything: it drives the routes of all one after the other. Between two it changes
+    aisles once more than they do.
+
+    `held` is what routes are known to hold: the better it is known, the sooner prices are found.
+    """
+    values = np.array([task.value for task in tasks])
+    most = values.max(axis=0)
+    least = _by_prices(tasks, most, held)
+    robots = [task.robot for task in tasks]
+    one_gate = all(task.plot is tasks[0].plot for task in tasks)
+    if not one_gate or not all(robot.returns for robot in robots):
+        return least
+    quickest = replace(
+        robots[0],
+        speed_m_s=max(robot.speed_m_s for robot in robots),
+        row_change_s=min(robot.row_change_s for robot in robots),
+        turn_180_s=min(robot.turn_180_s for robot in robots),
+        stop_s=0.0,
+        look_s=min(robot.visit_s for robot in robots),
+    )
+    seconds = sum(robot.day_s for robot in robots) + (len(robots) - 1) * quickest.row_change_s
+    return min(least, bound(tasks[0].plot, most, quickest, seconds))
+
+
+def _by_prices(tasks: Sequence[_Task], most: Float, held: float) -> float:
+    """Return the least bound of many prices of plants.
+
+    A plant that is visited by more than one gets dearer, one that is visited by none cheaper, by
+    steps as Polyak's, in a direction that remembers the last ones. Any price gives a bound.
+    """
+    until = monotonic() + _WITHIN_S
+    price = direction = np.zeros(len(most))
+    least, kept, step, in_vain = np.inf, price, 1.0, 0
+    for _ in range(_PRICES):
+        alone = [bounded(task.plot, np.maximum(task.value - price, 0.0), task.robot)
+                 for task in tasks]  # fmt: skip
+        value = float(price.sum()) + sum(each.value for each in alone)
+        if value < least:
+            least, kept, in_vain = value, price, 0
+        else:
+            in_vain += 1
+        if in_vain >= _PATIENCE:
+            price, step, in_vain = kept, step / 2, 0
+        slope = 1.0 - sum(each.visits for each in alone)
+        direction = slope + _MEMORY * direction
+        direction = np.where((price <= 0.0) & (direction > 0.0), 0.0, direction)
+        norm = float((direction**2).sum())
+        if norm == 0.0 or value <= held * (1.0 + PROVED) or monotonic() > until:
+            break
+        price = np.clip(price - step * (value - held) / norm * direction, 0.0, most)
+    return least
+
+
+def _must_differ(members: Sequence[TeamMember]) -> None:
+    names = [member.name.casefold() for member in members]
+    if not names or len(set(names)) < len(names):
+        raise SettingError(
+            "A team must have members of different names, but they are "
+            f"{', '.join(member.name for member in members) or 'none'}."
+        )
+
+
+class _Search:
+    """Looks for the stops of each of a team's tasks, given those of the others."""
+
+    def __init__(
+        self, plot: Plot, tasks: Sequence[_Task], progress: Callable[[int, int], None]
+    ) -> None:
+        self.plot, self.tasks, self.progress = plot, tasks, progress
+        self.aisle = plot.grid.corridor[plot.grid.row]
+        self.looked, self.expected = 0, len(tasks) * (3 + _ROUNDS)
+
+    def look(self, k: int, free: NDArray[np.bool_], known: Int | None = None) -> Int:
+        """Return the best stops of a task among the free plants, no worse than those known."""
+        task, others = self.tasks[k], () if known is None else (known,)
+        found = best(task.plot, np.where(free, task.value, 0.0), task.robot, others=others)
+        self.looked += 1
+        self.progress(self.looked, max(self.expected, self.looked))
+        return found.plant.astype(np.int64)
+
+    def in_turn(self) -> list[Int]:
+        """Return stops for each task, the best in the aisles that those before it leave.
+
+        The first has the plot to itself, and waits for nobody: a team finds no less than it alone.
+        """
+        free, found = np.ones(len(self.aisle), np.bool_), []
+        for k in range(len(self.tasks)):
+            found.append(self.look(k, free))
+            free &= ~np.isin(self.aisle, self.aisle[found[-1]])
+        return found
+
+    def aisle_by_aisle(self, in_turn: Sequence[Int]) -> list[Int]:
+        """Return stops for each task; each aisle is visited by one only.
+
+        Aisles are given out in sections beside each other, too. From whichever is better each looks
+        once more in what the others leave.
+        """
+        section = _sections(self.plot, self.tasks, in_turn)
+        beside = [self.look(k, section == k) for k in range(len(self.tasks))]
+        chosen = [*max(in_turn, beside, key=lambda each: _held(self.tasks, each))]
+        for k in range(len(self.tasks)):
+            others = [self.aisle[own] for own in (*chosen[:k], *chosen[k + 1 :])]
+            taken = np.isin(self.aisle, np.concatenate([self.aisle[:0], *others]))
+            chosen[k] = self._better(k, ~taken, chosen[k])
+        return chosen
+
+    def plant_by_plant(self, known: Sequence[Int]) -> list[Int]:
+        """Return stops for each task, from those known; an aisle may be visited by several."""
+        chosen = [*known]
+        for _ in range(_ROUNDS if len(chosen) > 1 else 0):
+            for k in range(len(chosen)):
+                chosen[k] = self._better(k, self._untaken(chosen, k), chosen[k])
+        return chosen
+
+    def apart(self, known: Sequence[Int]) -> list[Int]:
+        """Return stops of which few are where two would meet: the poorer looks elsewhere."""
+        chosen, banned = [*known], [np.zeros(len(self.aisle), np.bool_) for _ in known]
+        for _ in range(_TRIES * len(chosen)):
+            days = self.turned(chosen)
+            met = meetings([day.route for day in days], self._starts_s)
+            if not met:
+                break
+            there = self.aisle == met[0].aisle
+            k = min(met[0].who, key=lambda who: _of(self.tasks[who], chosen[who], there))
+            banned[k] |= there
+            free = self._untaken(chosen, k) & ~banned[k]
+            chosen[k] = self.look(k, free, chosen[k][free[chosen[k]]])
+        return chosen
+
+    def turned(self, chosen: Sequence[Int]) -> list[DayPlan]:
+        """Return a day of each task's stops, driven the way round on which fewer are met."""
+        days: list[DayPlan] = []
+        for task, stops in zip(self.tasks, chosen, strict=True):
+            ways = [_day(task, stops)]
+            if task.robot.returns and days:
+                ways.append(_day(task, stops[::-1]))
+            starts_s = self._starts_s[: len(days) + 1]
+            days.append(min(ways, key=lambda day: _met_s([*days, day], starts_s)))
+        return days
+
+    @property
+    def _starts_s(self) -> Float:
+        return np.array([task.starts_s for task in self.tasks])
+
+    def _better(self, k: int, free: NDArray[np.bool_], known: Int) -> Int:
+        again = self.look(k, free, known)
+        value = self.tasks[k].value
+        return again if value[again].sum() > value[known].sum() else known
+
+    def _untaken(self, chosen: Sequence[Int], k: int) -> NDArray[np.bool_]:
+        free = np.ones(len(self.aisle), np.bool_)
+        for j, own in enumerate(chosen):
+            if j != k:
+                free[own] = False
+        return free
+
+
+def _met_s(days: Sequence[DayPlan], starts_s: Float) -> float:
+    met = meetings([day.route for day in days], starts_s)
+    return sum(each.until_s - each.since_s for each in met)
+
+
+def _of(task: _Task, stops: Int, there: NDArray[np.bool_]) -> float:
+    """Return what a task's stops hold in an aisle."""
+    return float(task.value[stops[there[stops]]].sum())
+
+
+def _held(tasks: Sequence[_Task], stops: Sequence[Int]) -> float:
+    return float(sum(task.value[own].sum() for task, own in zip(tasks, stops, strict=True)))
+
+
+def _sections(plot: Plot, tasks: Sequence[_Task], known: Sequence[Int]) -> Int:
+    """Return for each plant whose section it is in: aisles in order, with like work in each."""
+    corridor = plot.grid.corridor[plot.grid.row]
+    work = np.full(len(corridor), 1e-9)
+    for task, own in zip(tasks, known, strict=True):
+        work[own] += task.robot.visit_s
+    up = np.zeros(int(corridor.max()) + 1)
+    up[corridor] = plot.grid.lane_y_m[plot.grid.row]
+    order = np.argsort(up, kind="stable")
+    done = np.cumsum(np.bincount(corridor, work)[order])
+    shares = np.cumsum([task.robot.day_s for task in tasks])
+    of_aisle = np.empty(len(order), np.int64)
+    of_aisle[order] = np.searchsorted(shares / shares[-1], (done - 1e-12) / done[-1], "left")
+    return np.minimum(of_aisle, len(tasks) - 1)[corridor]
+
+
+def _day(task: _Task, stops: Int) -> DayPlan:
+    """Return a member's day: its work and route, in a scene whose chances are its own values."""
+    robot, n = task.robot, len(task.value)
+    believed = task.value / max(robot.detects, 1e-9)
+    never = np.full(n, NEVER, np.int32)
+    scene = Scene(task.plot.aisles, robot, believed, never, seconds_left=robot.day_s)
+    places = [GATE, *stops.tolist()]
+    travel, clock = scene.aisles.travel, scene.clock
+    way_s = np.array([travel_s(travel, clock, a, b) for a, b in pairwise(places)])
+    visit_s = np.full(len(stops), robot.visit_s)
+    leave_s = np.cumsum(way_s + visit_s)
+    end_s = float(leave_s[-1]) if len(stops) else 0.0
+    if robot.returns and len(stops):
+        end_s += travel_s(travel, clock, places[-1], GATE)
+    work = Workday(
+        stops.astype(np.int32),
+        leave_s - visit_s,
+        np.zeros(len(stops), np.bool_),
+        visit_s,
+        np.full(len(stops), robot.detects),
+        end_s,
+    )
+    return DayPlan(scene, work, route_of(scene, work))
+
+
+def _seen(scene: Scene, chance: Float, done: NDArray[np.bool_] | None) -> Scene:
+    """Return a scene with what is believed, and what was inspected today."""
+    last = scene.last_inspected
+    if done is not None:
+        last = np.where(done, scene.day, last).astype(np.int32)
+    return replace(scene, chance=chance, last_inspected=last)
+
+
+class _Timed(NamedTuple):
+    """Days, and the seconds ``(m,)`` that each begins later than its start."""
+
+    days: list[DayPlan]
+    late_s: Float
+
+
+def _kept_apart(tasks: Sequence[_Task], days: Sequence[DayPlan]) -> _Timed:
+    """Let whoever would still meet another in an aisle begin later, with fewer stops if need be."""
+    kept, late_s = [*days], np.zeros(len(days))
+    own_s = np.array([task.starts_s for task in tasks])
+    while met := meetings([day.route for day in kept], own_s + late_s):
+        # of two the later in the team waits: the first keeps its day
+        k = max(met[0].who)
+        late_s[k] += met[0].until_s - met[0].since_s + _PAUSE_S
+        kept[k] = _shortened(tasks[k], kept[k], tasks[k].robot.day_s - float(late_s[k]))
+    return _Timed(kept, late_s)
+
+
+def _shortened(task: _Task, day: DayPlan, seconds: float) -> DayPlan:
+    """Return a day without its poorest stops until it fits."""
+    while len(day.work) and day.work.end_s > seconds:
+        stops = day.work.plant.astype(np.int64)
+        day = _day(task, np.delete(stops, int(np.argmin(task.value[stops]))))
+    return day

@@ -1,0 +1,180 @@
+"""Rows drawn from what is known of them: their end posts, or the slope of the ground."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from shapely import MultiLineString
+
+from fieldmon.errors import PlotError
+from fieldmon.plot.row_detection import frame_around
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.field import Field
+
+    Float = NDArray[np.float64]
+
+_STEP_DEG, _FINE_DEG = 0.1, 0.01
+# posts of one row lie nearer to one line than this part of the distance to the next row
+_IN_LINE = 0.35
+_MOST_STEPS = 20_000
+
+
+def rows_from_posts(lonlat: Float, names: NDArray[np.str_] | None = None) -> MultiLineString:
+    """Return rows from their end posts, two a row.
+
+    Posts of one name are a pair; without names those are that lie in line, one way for all rows.
+
+    Parameters
+    ----------
+    lonlat
+        ``(n, 2)`` degrees, in any order.
+    names
+        ``(n,)`` the row of each; None: not known.
+
+    Raises
+    ------
+    PlotError
+        If posts are not two a row, or no direction pairs them.
+    """
+    n = len(lonlat)
+    if names is not None and not (names == "").any():
+        row, count = np.unique(names, return_inverse=True, return_counts=True)[1:]
+        if (count != 2).any():
+            wrong = str(names[row == np.flatnonzero(count != 2)[0]][0])
+            raise PlotError(
+                f"Rows must have two end posts each, but row {wrong!r} has "
+                f"{int(count[count != 2][0])}. Add or remove posts."
+            )
+        return _drawn(lonlat, np.argsort(row, kind="stable").reshape(-1, 2))
+    if n < 4 or n % 2:
+        raise PlotError(
+            f"End posts must be two a row, of two rows or more, but there are {n}. Add those that "
+            "are missing, or name the row of each post."
+        )
+    return _drawn(lonlat, _pairs_in_line(frame_around(lonlat).xy_m(lonlat)))
+
+
+def _drawn(lonlat: Float, pairs: NDArray[np.intp]) -> MultiLineString:
+    return MultiLineString([lonlat[pair] for pair in pairs])
+
+
+def _pairs_in_line(xy_m: Float) -> NDArray[np.intp]:
+    """Return pairs of posts ``(r, 2)`` that lie in line, the same way for all."""
+    coarse = np.arange(0.0, 180.0, _STEP_DEG)
+    best = coarse[np.argmin([_badness(xy_m, deg) for deg in coarse])]
+    fine = best + np.arange(-_STEP_DEG, _STEP_DEG, _FINE_DEG)
+    best = fine[np.argmin([_badness(xy_m, deg) for deg in fine])]
+    order, within, between = _in_turn(xy_m, float(best))
+    if within.max() > _IN_LINE * between.min():
+        raise PlotError(
+            f"End posts must lie two by two in line, but of {len(xy_m)} posts some do not. "
+            "Name the row of each post, or draw the rows as lines."
+        )
+    return order.reshape(-1, 2)
+
+
+def _in_turn(xy_m: Float, angle_deg: float) -> tuple[NDArray[np.intp], Float, Float]:
+    """Return posts sorted across a direction, the gaps within their pairs and between them."""
+    turn = np.deg2rad(angle_deg)
+    across = xy_m[:, 1] * np.cos(turn) - xy_m[:, 0] * np.sin(turn)
+    order = np.argsort(across)
+    gaps = np.diff(across[order])
+    return order, gaps[::2], gaps[1::2]
+
+
+def _badness(xy_m: Float, angle_deg: float) -> float:
+    """Return how badly pairs are in line; of equally good ways rows are the longer ones."""
+    order, within, between = _in_turn(xy_m, angle_deg)
+    pairs = xy_m[order].reshape(-1, 2, 2)
+    length = float(np.hypot(*(pairs[:, 1] - pairs[:, 0]).T).mean())
+    return float(within.mean() / max(between.min(), 1e-9) + 1e-3 * between.mean() / length)
+
+
+def contour_row(field: Field, height_m: Callable[[Float], Float], step_m: float) -> MultiLineString:
+    """Return the contour through the middle of a plot, as far as the plot reaches.
+
+    Of this row all others are copies (see `fieldmon.plot.layout.lay`): the spacing of rows stays,
+    and they follow the slope as terraces do.
+
+    Parameters
+    ----------
+    field
+        The plot.
+    height_m
+        Heights ``(n,)`` of positions ``(n, 2)`` lon/lat; NaN where not known.
+    step_m
+        How finely the contour is followed.
+
+    Raises
+    ------
+    PlotError
+        If heights are not known there, or the ground is level.
+    """
+    frame = field.frame()
+    area = frame.geometry_m(field.drivable())
+    inside = shapely.point_on_surface(area)
+    middle = area.centroid if shapely.contains(area, area.centroid) else inside
+    start = np.array([middle.x, middle.y])
+
+    def at(xy_m: Float) -> Float:
+        return height_m(frame.lonlat(xy_m))
+
+    level = float(at(start[None])[0])
+    reach = shapely.buffer(area.envelope, step_m)
+    halves = [_followed(at, (start, level), way * step_m, reach) for way in (1.0, -1.0)]
+    line = np.concatenate([halves[1][::-1], start[None], halves[0]])
+    if not np.isfinite(level) or len(line) < 3:
+        raise PlotError(
+            f"Rows along contours need heights that differ, but about the middle of plot "
+            f"{field.name!r} the raster shows {'none' if not np.isfinite(level) else 'no slope'}. "
+            "Choose another raster, or give the row bearing."
+        )
+    return MultiLineString(
+        [frame.lonlat(shapely.get_coordinates(shapely.simplify(shapely.linestrings(line), 0.02)))]
+    )
+
+
+def _followed(
+    at: Callable[[Float], Float], start: tuple[Float, float], step_m: float, reach: shapely.Geometry
+) -> Float:
+    """Return the points of a contour one way from its start until it leaves what it may reach."""
+    here, level = start
+    shapely.prepare(reach)
+    ahead = None
+    points: list[Float] = []
+    for _ in range(_MOST_STEPS):
+        up = _uphill(at, here, abs(step_m))
+        if up is None:
+            break
+        along = np.array([-up[1], up[0]]) / np.hypot(*up) * step_m
+        if ahead is not None and along @ ahead < 0:
+            break  # over a ridge or through a hollow
+        there = here + along
+        up = _uphill(at, there, abs(step_m))
+        if up is None:
+            break
+        # back to the level, but no farther than half a step
+        off = up * (level - float(at(there[None])[0])) / (up @ up)
+        there = there + off * min(1.0, abs(step_m) / 2 / max(float(np.hypot(*off)), 1e-12))
+        here, ahead = there, along
+        points.append(here)
+        if not shapely.contains_xy(reach, *here):
+            break
+        if len(points) > 10 and np.hypot(*(here - start[0])) < abs(step_m):
+            break  # once round a hill
+    return np.array(points).reshape(-1, 2)
+
+
+def _uphill(at: Callable[[Float], Float], here: Float, by_m: float) -> Float | None:
+    """Return the slope at a place, metres a metre; None where there is none."""
+    around = here + by_m * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+    east, west, north, south = at(around)
+    up = np.array([east - west, north - south]) / (2 * by_m)
+    return up if np.isfinite(up).all() and np.hypot(*up) > 1e-4 else None

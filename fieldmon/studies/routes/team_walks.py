@@ -1,0 +1,160 @@
+"""Walks of several from one corner: each the best in what the others leave, and a bound."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from time import monotonic
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.planning.routes.ladder import sweep
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    Float = NDArray[np.float64]
+    Int = NDArray[np.int64]
+
+# each walk is looked for again so often; so often one of two that meet looks elsewhere
+_ROUNDS, _TRIES = 5, 12
+# prices of plants: so many, for so long; a step that gained nothing so often is made shorter, and
+# directions are remembered so far
+_PRICES, _WITHIN_S, _PATIENCE, _MEMORY = 150, 20.0, 8, 0.7
+
+
+class TeamWalks(NamedTuple):
+    """Places ``(k, 2)`` of each walk, what they hold together, and what none can exceed."""
+
+    places: list[Int]
+    reward: float
+    bound: float
+
+
+def team_walks(reward: Float, budget: int, n_walks: int) -> TeamWalks:
+    """Return walks that hold much together, nobody meeting another in a row, and a bound."""
+    search = _Search(reward, budget, n_walks)
+    search.improve()
+    search.keep_apart()
+    held = float(reward[search.taken()].sum())
+    most = min(_all_steps(reward, budget, n_walks), _by_prices(reward, budget, n_walks, held))
+    return TeamWalks(search.places, held, max(most, held))
+
+
+def meetings(places: Sequence[Int], n_plants: int) -> list[tuple[int, int, int]]:
+    """Return who are in one row at one step: two walks and the row, each once.
+
+    All begin at once and make a step at a time. Who passes from place to place within a row is in
+    it, too.
+    """
+    rows = []
+    for walk in places:
+        inside = (walk[:, 1] > 0) & (walk[:, 1] <= n_plants)
+        rows.append(np.where(inside, walk[:, 0], -1))
+    found = []
+    for a, b in combinations(range(len(rows)), 2):
+        both = min(len(rows[a]), len(rows[b]))
+        same = (rows[a][:both] == rows[b][:both]) & (rows[a][:both] >= 0)
+        found += [(a, b, int(row)) for row in np.unique(rows[a][:both][same])]
+    return found
+
+
+class _Search:
+    """Walks on their way to be good ones."""
+
+    def __init__(self, reward: Float, budget: int, n_walks: int) -> None:
+        self.reward, self.budget = reward, budget
+        self.places = [np.zeros((1, 2), np.int64) for _ in range(n_walks)]
+        self.banned = [np.zeros(len(reward), np.bool_) for _ in range(n_walks)]
+
+    def taken(self, leaving_out: int = -1) -> NDArray[np.bool_]:
+        """Return which plants the walks pass, but for one of them."""
+        taken = np.zeros(self.reward.shape, np.bool_)
+        for k, walk in enumerate(self.places):
+            if k != leaving_out:
+                taken |= _passed(walk, self.reward.shape)
+        return taken
+
+    def look(self, k: int) -> None:
+        """Take the best walk in what the others leave."""
+        rest = np.where(self.taken(k) | self.banned[k][:, None], 0.0, self.reward)
+        self.places[k] = sweep(rest, self.budget).walk(self.budget).place
+
+    def improve(self) -> None:
+        """Look for one walk after the other, as long as they hold more together."""
+        held = -1.0
+        for _ in range(_ROUNDS):
+            for k in range(len(self.places)):
+                self.look(k)
+            now = float(self.reward[self.taken()].sum())
+            if now <= held:
+                break
+            held = now
+
+    def keep_apart(self) -> None:
+        """Turn walks round, or let the poorer of two look elsewhere, until nobody meets."""
+        for _ in range(_TRIES * len(self.places)):
+            self._turn_round()
+            met = meetings(self.places, self.reward.shape[1])
+            if not met:
+                return
+            a, b, row = met[0]
+            k = min((a, b), key=lambda each: self._held_in(each, row))
+            self.banned[k][row] = True
+            self.look(k)
+        while met := meetings(self.places, self.reward.shape[1]):
+            # the later of two that still meet stays at home
+            self.places[met[0][1]] = np.zeros((1, 2), np.int64)
+
+    def _turn_round(self) -> None:
+        """Walk each the way round on which it meets fewer of those before it."""
+        for k in range(1, len(self.places)):
+            ways = [self.places[k], self.places[k][::-1]]
+            before = self.places[:k]
+            met = [len(meetings([*before, way], self.reward.shape[1])) for way in ways]
+            self.places[k] = np.ascontiguousarray(ways[int(np.argmin(met))])
+
+    def _held_in(self, k: int, row: int) -> float:
+        return float(self.reward[row][_passed(self.places[k], self.reward.shape)[row]].sum())
+
+
+def _passed(walk: Int, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Return which plants a walk passes, ``(m, n)``."""
+    passed = np.zeros(shape, np.bool_)
+    row, column = walk[(walk[:, 1] > 0) & (walk[:, 1] <= shape[1])].T
+    passed[row, column - 1] = True
+    return passed
+
+
+def _all_steps(reward: Float, budget: int, n_walks: int) -> float:
+    """Return what one walk with the steps of all can hold: it makes their walks one by one."""
+    m, n = reward.shape
+    # with so many everything is passed
+    together = min(n_walks * budget, (m + 1) * (n + 1) + 2 * m)
+    return float(sweep(reward, together).walk(together).reward)
+
+
+def _by_prices(reward: Float, budget: int, n_walks: int, held: float) -> float:
+    """Return a bound by prices of plants, as of a team's day: see `fieldmon.planning.team`."""
+    until = monotonic() + _WITHIN_S
+    price = direction = np.zeros(reward.shape)
+    least, kept, step, in_vain = np.inf, price, 1.0, 0
+    for _ in range(_PRICES):
+        walk = sweep(np.maximum(reward - price, 0.0), budget).walk(budget)
+        value = float(price.sum()) + n_walks * walk.reward
+        if value < least:
+            least, kept, in_vain = value, price, 0
+        else:
+            in_vain += 1
+        if in_vain >= _PATIENCE:
+            price, step, in_vain = kept, 0.6 * step, 0
+        visits = _passed(walk.place, reward.shape) & (reward > price)
+        direction = 1.0 - n_walks * visits + _MEMORY * direction
+        direction = np.where((price <= 0.0) & (direction > 0.0), 0.0, direction)
+        norm = float((direction**2).sum())
+        if norm == 0.0 or value <= held * (1.0 + 1e-6) or monotonic() > until:
+            break
+        price = np.clip(price - step * (value - held) / norm * direction, 0.0, reward)
+    return least

@@ -1,0 +1,125 @@
+"""`fieldmon plan` where rows bend and blocks turn, end posts and contours tell of rows."""
+
+import csv
+import json
+
+import geopandas as gpd
+import numpy as np
+import pytest
+import rasterio
+import shapely
+from pyproj import Transformer
+from rasterio.transform import from_origin
+
+from fieldmon.monitoring import Season
+from tests.bent import FRAME
+
+
+def arcs(radius_m, n_rows, n_plants, east_m=0.0):
+    k, j = np.divmod(np.arange(n_rows * n_plants), n_plants)
+    at = radius_m + 2.5 * k
+    turn = 1.4 * (j - n_plants / 2) / at
+    return np.stack([at * np.sin(turn) + east_m, at * np.cos(turn) - radius_m], axis=1)
+
+
+@pytest.fixture
+def two_blocks(tmp_path):
+    """Write the plants of two blocks, one bent and one across."""
+    xy_m = np.concatenate([arcs(80.0, 10, 40), arcs(400.0, 8, 30)[:, ::-1] + [48.0, 0.0]])
+    rows = [f"{lon:.9f},{lat:.9f}" for lon, lat in FRAME.lonlat(xy_m)]
+    (tmp_path / "vines.csv").write_text("\n".join(["lon,lat", *rows]))
+    return tmp_path / "vines.csv"
+
+
+def area(path, low=-50.0, high=50.0):
+    shape = FRAME.geometry_lonlat(shapely.box(low, -30, high, 30))
+    gpd.GeoDataFrame({"name": ["home"]}, geometry=[shape], crs=4326).to_file(path)
+    return path
+
+
+def test_bent_rows_and_blocks_are_said_and_stops_carry_their_block(run, tmp_path, two_blocks):
+    code, out, err, _ = run("plan", "--plants", two_blocks, "--hours", 3, "-o", "day.csv")
+    assert code == 0, err
+    assert "640 plants in 18 rows of 2 blocks, as they bend" in err
+    assert "640 plants in 18 rows, which run as they bend, in 2 blocks" in out
+    table = list(csv.DictReader((tmp_path / "day.csv").read_text("utf-8-sig").splitlines()))
+    assert list(table[0])[:4] == ["stop", "block", "row", "number"]
+    block_of = {int(stop["row"]): int(stop["block"]) for stop in table}
+    assert all(block == (1 if row <= 10 else 2) for row, block in block_of.items())
+
+
+@pytest.mark.parametrize("ending", ["geojson", "gpkg", "kml"])
+def test_other_route_files_carry_the_block_too(run, tmp_path, two_blocks, ending):
+    assert run("plan", "--plants", two_blocks, "--hours", 1, "-o", f"day.{ending}")[0] == 0
+    if ending == "geojson":
+        stops = json.loads((tmp_path / "day.geojson").read_text())["features"][1:]
+        assert {stop["properties"]["block"] for stop in stops} <= {1, 2}
+    elif ending == "gpkg":
+        assert "block" in gpd.read_file(tmp_path / "day.gpkg", layer="stops").columns
+    else:
+        assert '<Data name="block">' in (tmp_path / "day.kml").read_text()
+
+
+def test_a_season_on_bent_rows_comes_back_as_it_was(run, tmp_path, two_blocks):
+    assert run("init", "vines.gpkg", "--plants", two_blocks)[0] == 0
+    plot = Season(tmp_path / "vines.gpkg").plot
+    assert (plot.grid.n_blocks, plot.grid.n_rows) == (2, 18)
+    assert plot.grid.aisles_m is not None
+    lines = gpd.read_file(tmp_path / "vines.gpkg", layer="rows").geometry
+    assert max(len(line.coords) for line in lines) > 4
+    assert run("plan", "vines.gpkg", "-o", "again.geojson")[0] == 0
+
+
+def test_trees_in_no_rows_are_said_and_not_called_rows(run, tmp_path):
+    xy_m = np.random.default_rng(0).uniform(0, 120, (60, 2))
+    rows = [f"{lon:.9f},{lat:.9f}" for lon, lat in FRAME.lonlat(xy_m)]
+    (tmp_path / "trees.csv").write_text("\n".join(["lon,lat", *rows]))
+    code, out, err, _ = run("plan", "--plants", "trees.csv", "--hours", 1)
+    assert code == 0
+    assert "doubtful: No rows were found: the plants stand anyhow." in err
+    assert "trees: 60 plants in no rows." in out
+
+
+def test_plants_stand_between_end_posts(run, tmp_path):
+    y = -24.0 + 3.5 * np.arange(14)
+    ends = np.stack([np.stack([0.2 * y - 42, y], 1), np.stack([0.3 * y + 40, y], 1)], axis=1)
+    lonlat = FRAME.lonlat(np.random.default_rng(1).permutation(ends.reshape(-1, 2)))
+    posts = gpd.GeoDataFrame(geometry=gpd.points_from_xy(*lonlat.T), crs=4326)
+    posts.to_file(tmp_path / "posts.geojson")
+    home = area(tmp_path / "home.geojson")
+    code, out, err, _ = run("plan", home, "--rows", "posts.geojson", "--hours", 1)
+    assert code == 0, err
+    assert "28 points are the end posts of rows, paired as they lie in line." in err
+    assert "Plants stand along the 14 rows that were drawn." in err
+    assert "in 14 rows" in out
+    assert "rows 3.50 m" in out
+    assert "guessed: row spacing" not in err
+    odd = posts.iloc[:27]
+    odd.to_file(tmp_path / "odd.geojson")
+    code, _, err, _ = run("plan", home, "--rows", "odd.geojson")
+    assert code != 0
+    assert "two a row" in err
+
+
+def test_rows_run_along_the_contours_of_a_raster(run, tmp_path):
+    east, north = Transformer.from_crs(4326, 32630, always_xy=True).transform(FRAME.lon, FRAME.lat)
+    x, y = np.meshgrid(east - 99.5 + np.arange(200), north + 99.5 - np.arange(200))
+    height = (200 - 0.3 * np.hypot(x - east, y - north + 120)).astype(np.float32)
+    profile = {"driver": "GTiff", "width": 200, "height": 200, "count": 1, "dtype": "float32"}
+    place = from_origin(east - 100, north + 100, 1.0, 1.0)
+    with rasterio.open(tmp_path / "dem.tif", "w", crs=32630, transform=place, **profile) as tif:
+        tif.write(height, 1)
+    home = area(tmp_path / "home.geojson")
+    words = ["--contours", "dem.tif", "--row-spacing", 3, "--plant-spacing", 1.5, "--hours", 1]
+    code, out, err, _ = run("plan", home, *words)
+    assert code == 0, err
+    assert "Rows run along the contour through the middle of the plot" in err
+    assert "which run as they bend" in out
+    assert "rows 3.00 m" in out
+
+
+def test_measured_plants_and_drawn_rows_are_not_given_together(run, tmp_path, two_blocks):
+    home = area(tmp_path / "home.geojson")
+    code, _, err, _ = run("plan", home, "--plants", two_blocks, "--rows", home)
+    assert code != 0
+    assert "not both" in err

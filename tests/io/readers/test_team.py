@@ -1,0 +1,29 @@
+"""Who is in a team, from a table as people write it."""
+
+import pytest
+
+from fieldmon.errors import FileProblem
+from fieldmon.io.readers.team import read_team
+
+
+def test_a_name_alone_is_a_robot(tmp_path):
+    (tmp_path / "t.csv").write_text("name\nr1\n\nr2\n", encoding="utf-8-sig")
+    first, second = read_team(tmp_path / "t.csv")
+    assert first == ("r1", False, {}, None, None)
+    assert second.name == "r2"
+
+
+def test_what_is_stated_is_said_in_the_words_of_a_robot(tmp_path):
+    (tmp_path / "t.csv").write_text(
+        "Name;Who;speed_km_h;detection;start;lat;lon\nAnn;Scout;3,6;0,9;07:30;30.3;35.1\n"
+    )
+    (ann,) = read_team(tmp_path / "t.csv")
+    assert ann.scout
+    assert ann.settings == pytest.approx({"speed_m_s": 1.0, "detection": 0.9})
+    assert (ann.start, ann.gate) == ("07:30", (35.1, 30.3))
+
+
+def test_a_file_that_is_no_text_is_refused(tmp_path):
+    (tmp_path / "t.csv").write_bytes(b"\xff\xfe\x00\x81")
+    with pytest.raises(FileProblem, match="must be a readable table"):
+        read_team(tmp_path / "t.csv")

@@ -1,0 +1,81 @@
+"""Several ladders for parts that lie apart: each is a bound, and closer than one ladder."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely import MultiPolygon, box
+
+from fieldmon.planning.routes import best, bound
+from fieldmon.planning.routes.best_route import upper_bound
+from fieldmon.planning.routes.blocks import Blocks, blockings
+from fieldmon.planning.routes.priced import Priced
+from fieldmon.planning.routes.relaxation import Ladders
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.projection import Frame
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock
+from tests.planning.routes.test_best_route import ROBOTS, crooked_aisles, rewards
+
+
+def below(aisles, reward, robot):
+    """Return everything that a plot is taken for."""
+    ladders = Ladders(aisles)
+    whole = [ladders.whole(hanging=hanging) for hanging in (False, True)]
+    blocks = [Blocks(ladders, block, reward, robot) for block in blockings(ladders.rungs)]
+    return [*(Priced(ladder, reward, robot) for ladder in whole), *blocks]
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.data())
+def test_at_no_price_is_any_route_worth_more_than_the_best_drive(data):
+    aisles = data.draw(crooked_aisles(max_radius_m=80.0, max_plants=500))
+    robot = data.draw(ROBOTS)
+    reward = data.draw(rewards(len(aisles.grid)))
+    rng = np.random.default_rng(data.draw(st.integers(0, 2**32)))
+    price = float(reward.max()) / robot.visit_s * data.draw(st.floats(0.001, 0.9))
+    everything = below(aisles, reward, robot)
+    most = [one.best(price).worth + price * robot.row_change_s for one in everything]
+    for n in rng.integers(1, len(reward) + 1, 12):
+        route = rng.permutation(len(reward))[:n]
+        if rng.random() < 0.7:
+            # aisle by aisle, which a price likes better
+            route = np.sort(route)
+        back = [GATE] if robot.returns else []
+        places = np.concatenate([[GATE], route, back]).astype(np.int64)
+        used_s = float(driven_s(aisles.travel, robot_clock(robot, 1.0), places)) + n * robot.visit_s
+        worth = reward[route].sum() - price * used_s
+        assert all(worth <= one + 1e-6 * max(1.0, abs(one)) for one in most)
+
+
+def far_apart():
+    """Return two parts beside each other, with a way of 300 m between them."""
+    area = Frame(35.15, 30.36).geometry_lonlat(
+        MultiPolygon([box(-210, -40, -150, 40), box(150, -40, 210, 40)])
+    )
+    return Aisles.of(lay(Field("apart", area), Planting(row_bearing_deg=90.0)))
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_two_parts_far_apart_are_bound_more_closely_by_two_ladders_than_by_one(returns):
+    aisles, robot = far_apart(), Robot(hours=1.0, returns=returns)
+    reward = np.random.default_rng(2).random(len(aisles.grid))
+    one, _, *several = (
+        upper_bound(each, robot.day_s).value for each in below(aisles, reward, robot)
+    )
+    assert len(several) == 1
+    assert several[0] < one
+    assert bound(aisles, reward, robot) == min(one, *several)
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_a_route_through_both_parts_drives_there_once_and_back(returns):
+    aisles, robot = far_apart(), Robot(hours=3.0, returns=returns)
+    reward = np.random.default_rng(2).random(len(aisles.grid)) ** 4
+    route = best(aisles, reward, robot)
+    part = aisles.grid.xy_m[route.plant, 0] > aisles.grid.xy_m[:, 0].mean()
+    assert sum(a != b for a, b in pairwise(part.tolist())) <= 2
+    assert route.gap < 0.05

@@ -1,0 +1,62 @@
+"""Two in one aisle at once are seen on their lines, one after the other are not."""
+
+import numpy as np
+
+from fieldmon.planning.meetings import meetings
+from fieldmon.planning.plan import plan_in
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
+from fieldmon.samplers.base import NEVER, Sampler, Scene, Stops
+
+AISLES = Aisles.of(rectangle(4, 10))
+
+
+class Fixed(Sampler):
+    """Visits the plants that it is told, as if each took a second."""
+
+    def __init__(self, *plants):
+        self.plants = plants
+
+    def walk(self, scene, would_find):  # noqa: ARG002 - as every sampler is asked
+        plants = np.array(self.plants, np.int32)
+        times, now, at = [], 0.0, scene.at
+        for plant in plants:
+            now += float(scene.aisles.distance_m(at, plant)) / scene.robot.speed_m_s
+            times.append(now)
+            now, at = now + scene.robot.visit_s, plant
+        return Stops(plants, np.array(times))
+
+
+def route(*plants):
+    robot = Robot(row_change_s=0.0, turn_180_s=0.0)
+    never = np.full(40, NEVER, np.int32)
+    scene = Scene(AISLES, robot, np.full(40, 0.1), never, seconds_left=robot.day_s)
+    return plan_in(scene, Fixed(*plants)).route
+
+
+def test_two_with_stops_in_one_aisle_at_one_time_meet_there():
+    (met,) = meetings([route(13), route(16)], np.zeros(2))
+    assert met.who == (0, 1)
+    assert met.aisle == AISLES.grid.corridor[AISLES.grid.row[13]]
+    assert met.since_s < met.until_s
+
+
+def test_two_in_different_aisles_do_not_meet():
+    assert meetings([route(13), route(23)], np.zeros(2)) == []
+
+
+def test_one_after_the_other_in_one_aisle_do_not_meet():
+    first = route(13)
+    assert meetings([first, route(16)], np.array([0.0, first.end_s])) == []
+
+
+def test_who_only_drives_through_is_met_too():
+    crossing = route(19, 20)
+    assert [met.aisle for met in meetings([route(15), crossing], np.zeros(2))] == [
+        AISLES.grid.corridor[1]
+    ]
+
+
+def test_a_day_without_stops_meets_nobody():
+    assert meetings([route(13), route()], np.zeros(2)) == []

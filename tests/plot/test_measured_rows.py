@@ -1,0 +1,129 @@
+"""Which rows measured plants stand in: straight, bent, named; and what is doubtful about it."""
+
+import numpy as np
+import pytest
+
+from fieldmon.plot.layout import Planting, grid_from_plants
+from fieldmon.plot.measured_rows import SaidRows, row_numbers
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.projection import Frame
+from fieldmon.plot.row_detection import rows_from_plants
+from tests.bent import right_share
+
+FRAME = Frame(8.0, 47.0)
+
+
+def planted(n_rows=10, n_plants=40, radius_m=None, noise_m=0.03, seed=1):
+    k, j = np.divmod(np.arange(n_rows * n_plants), n_plants)
+    x, y = (j - n_plants / 2) * 1.4, k * 2.5
+    xy_m = np.stack([x, y], axis=1)
+    if radius_m is not None:
+        at = radius_m + y
+        xy_m = np.stack([at * np.sin(x / at), at * np.cos(x / at) - radius_m], axis=1)
+    return xy_m + np.random.default_rng(seed).normal(0, noise_m, xy_m.shape), k
+
+
+def rows_of(grid, xy_m):
+    plant = grid.tree.query(grid.frame.xy_m(FRAME.lonlat(xy_m)))[1]
+    return grid.row_line[grid.row[plant]]
+
+
+def test_straight_rows_are_kept_as_they_were_before_rows_could_bend():
+    xy_m, row = planted()
+    grid = grid_from_plants(FRAME.lonlat(xy_m))
+    assert grid.aisles_m is grid.block is grid.place_m is None
+    assert right_share(rows_of(grid, xy_m), row) == 1.0
+    assert grid.along_m.tolist() == grid.xy_m[:, 0].tolist()
+
+
+@pytest.mark.parametrize("radius_m", [30.0, 60.0, 200.0])
+def test_bent_rows_are_taken_as_they_bend(radius_m):
+    xy_m, row = planted(radius_m=radius_m)
+    plot = Plot.around("bent", FRAME.lonlat(xy_m))
+    assert plot.grid.aisles_m is not None
+    assert right_share(rows_of(plot.grid, xy_m), row) == 1.0
+    assert plot.rows.in_rows
+    assert plot.rows.doubts == ()
+    assert "in 10 rows, as they bend" in plot.rows.how
+
+
+def test_a_bearing_that_is_said_keeps_rows_that_run_that_way():
+    # as wide in the row as between rows, nearly: rows may be seen either way
+    k, j = np.divmod(np.arange(400), 20)
+    xy_m = np.stack([2.2 * j, 2.0 * k], axis=1)
+    xy_m += np.random.default_rng(3).normal(0, 0.05, xy_m.shape)
+    for bearing_deg in (90.0, 0.0):
+        plot = Plot.around("square", FRAME.lonlat(xy_m), Planting(row_bearing_deg=bearing_deg))
+        off_deg = (plot.grid.frame.bearing_deg - bearing_deg + 90) % 180 - 90
+        assert off_deg == pytest.approx(0.0, abs=1.0)
+        assert plot.grid.n_rows == 20
+        assert plot.rows.others_deg == ()
+
+
+def test_names_of_rows_decide_where_they_tell_of_rows():
+    xy_m, row = planted(radius_m=60.0)
+    named = row.copy()
+    far = xy_m[:, 0] > 10
+    named[far & (row == 4)], named[far & (row == 5)] = 5, 4
+    names = np.array([f"R{k}" for k in named])
+    plot = Plot.around("named", FRAME.lonlat(xy_m), plant_rows=names)
+    assert right_share(rows_of(plot.grid, xy_m), named) == 1.0
+    (doubt,) = [said for said in plot.rows.doubts if "names" in said]
+    assert "in another row than the file names; the names decided" in doubt
+
+
+def test_names_that_fit_are_checked_and_not_doubted():
+    xy_m, row = planted(radius_m=60.0)
+    plot = Plot.around("named", FRAME.lonlat(xy_m), plant_rows=row.astype(np.str_))
+    assert plot.rows.misnamed_share == 0.0
+    assert plot.rows.doubts == ()
+
+
+def test_one_name_for_all_plants_is_no_name_of_a_row():
+    xy_m, row = planted(radius_m=60.0)
+    names = np.full(len(row), "Riesling")
+    plot = Plot.around("variety", FRAME.lonlat(xy_m), plant_rows=names)
+    assert right_share(rows_of(plot.grid, xy_m), row) == 1.0
+    assert "rows were found instead" in " ".join(plot.rows.doubts)
+
+
+def test_names_are_numbers_only_where_every_plant_has_one():
+    assert row_numbers(None) is None
+    assert row_numbers(np.array(["1", "", "2"])) is None
+    assert row_numbers(np.array(["b", "a", "b"])).tolist() == [1, 0, 1]
+    assert SaidRows(None, bearing=False).checked(np.empty((0, 2))).misnamed is None
+
+
+def test_trees_that_stand_anyhow_are_in_no_rows():
+    xy_m = np.random.default_rng(5).uniform(0, 120, (80, 2))
+    plot = Plot.around("park", FRAME.lonlat(xy_m))
+    assert not plot.rows.in_rows
+    assert plot.rows.doubts[0].startswith("No rows were found")
+    assert len(plot.grid) == 80
+
+
+def test_the_share_of_plants_off_their_row_is_said():
+    xy_m, _ = planted(n_plants=60)
+    stray = np.random.default_rng(2).random(len(xy_m)) < 0.06
+    xy_m[stray] += np.where(xy_m[stray, :1] > 0, 0.7, -0.7) * np.array([1.0, 1.3])
+    plot = Plot.around("strays", FRAME.lonlat(xy_m))
+    assert plot.rows.off_share == pytest.approx(stray.mean(), abs=0.02)
+    assert any(f"{plot.rows.off_share:.0%} of the plants stand more" in s for s in plot.rows.doubts)
+
+
+def test_a_square_planting_has_rows_two_ways_and_takes_the_longer_ones():
+    k, j = np.divmod(np.arange(12 * 30), 30)
+    xy_m = 3.0 * np.stack([j, k], axis=1) + np.random.default_rng(1).normal(0, 0.05, (360, 2))
+    rows = rows_from_plants(Frame(8.0, 47.0, 20.0).lonlat(xy_m))
+    assert rows.bearing_deg == pytest.approx(20.0, abs=0.5)
+    assert [round(way) for way in rows.others_deg] == [110]
+    plot = Plot.around("square", Frame(8.0, 47.0, 20.0).lonlat(xy_m))
+    assert any("along 110 degrees as well" in said for said in plot.rows.doubts)
+
+
+def test_a_triangular_planting_has_rows_three_ways():
+    k, j = np.divmod(np.arange(20 * 20), 20)
+    xy_m = 3.0 * np.stack([j + k / 2 - k // 2, k * np.sqrt(0.75)], axis=1)
+    rows = rows_from_plants(Frame(8.0, 47.0, 10.0).lonlat(xy_m))
+    ways = sorted(round(way) for way in (rows.bearing_deg, *rows.others_deg))
+    assert ways == [10, 70, 130]

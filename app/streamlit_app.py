@@ -21,12 +21,16 @@ from fieldmon.errors import FieldmonError  # noqa: E402 - after the path is righ
 
 from .show import field_map  # noqa: E402
 from .startup import first_screen, preload  # noqa: E402
-from .state import browser, plot_source, rooms, widget_memory  # noqa: E402
-from .words import texts  # noqa: E402
+from .state import browser, chosen_language, plot_source, rooms, widget_memory  # noqa: E402
+from .words import language, texts  # noqa: E402
+from .words.language import of_error  # noqa: E402
 
+chosen_language.begin()
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
 st.html(_HERE / "style" / "every_page.css")
 st.html(_HERE / "style" / ("dark.css" if browser.is_dark() else "light.css"))
+if language.is_right_to_left():
+    st.html(_HERE / "style" / "right_to_left.css")
 preload.start()
 
 
@@ -87,7 +91,7 @@ def in_panel(name: str) -> None:
         try:
             view("rooms").show(name, chosen.choices, view)
         except FieldmonError as error:
-            st.error(str(error))
+            st.error(of_error(error))
 
 
 def wide(run: str, *, of_plot: bool) -> None:

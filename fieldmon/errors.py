@@ -39,7 +39,7 @@ class ChoiceNeeded(FieldmonError):  # noqa: N818
         self.role = role
 
     def __reduce__(self) -> tuple[type[ChoiceNeeded], tuple[str, str, tuple[str, ...], str]]:
-        return type(self), (str(self), self.option, self.choices, self.role)
+        return type(self), (self.args[0], self.option, self.choices, self.role)
 
 
 class SettingError(FieldmonError):

@@ -11,6 +11,7 @@ from fieldmon.errors import ChoiceNeeded
 from ..state import brought_files, rasters
 from ..state.brought_files import PLANTS, PLOT, RECORDS, answers, brought
 from ..words import texts
+from ..words.language import in_words, of_error
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
@@ -86,10 +87,10 @@ def say(error: FieldmonError, asked: str | None = None) -> None:
     """Show a problem as its sentence; where the file leaves a choice, ask for it by buttons."""
     asking = brought_files.asking() if asked is None else asked
     if isinstance(error, ChoiceNeeded):
-        st.warning(str(error))
+        st.warning(of_error(error))
         _ask(error, asking)
     else:
-        st.error(str(error))
+        st.error(of_error(error))
     _offer_undo(asking)
 
 
@@ -133,11 +134,11 @@ def show_messages(said: tuple[FileMessage, ...]) -> None:
         message = one.message
         place = f"{texts.isolated(message.feature)}: " if message.feature else ""
         mark = f"{_ICONS[message.severity]} **{texts.SEVERITIES[message.severity]}**"
-        st.markdown(f"{mark} · {place}{message.sentence}")
+        st.markdown(f"{mark} · {place}{in_words(message.sentence)}")
         remedy = message.remedy
         if remedy is not None:
             key = f"remedy {number} {one.asked} {remedy.option} {remedy.value}"
-            st.button(remedy.label, key=key, on_click=brought_files.answer,
+            st.button(in_words(remedy.label), key=key, on_click=brought_files.answer,
                       args=(one.asked, remedy.option, remedy.value))  # fmt: skip
     for asked in dict.fromkeys(one.asked for one in said):
         _offer_undo(asked)

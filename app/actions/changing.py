@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
@@ -19,11 +19,20 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
     from ..state.comparison import Strategy
 
-#: a sampler's box is too narrow for more than its name
-NAMED = {
-    "format_func": sampler_name,
-    "help": "\n".join(f"- {is_}" for is_ in texts.SAMPLERS.values()),
-}
+#: who may inspect, whatever they are called in a language
+ROBOT, SCOUT = "Robot", "Scout on foot"
+WHO = (ROBOT, SCOUT)
+
+
+def who_name(who: str) -> str:
+    """Return what one who inspects is called."""
+    return texts.SCOUT if who == SCOUT else texts.ROBOT
+
+
+def named() -> dict[str, Any]:
+    """Return how a box names samplers: it is too narrow for more than that."""
+    help_ = "\n".join(f"- {is_}" for is_ in texts.SAMPLERS.values())
+    return {"format_func": sampler_name, "help": help_}
 
 
 def show(name: str, season: Season) -> None:
@@ -43,11 +52,12 @@ def _wanted(name: str, settings: MonitoringSettings) -> MonitoringSettings:
     """Show the boxes; return the settings that they say."""
     robot = settings.robot
     key = f"{name} {robot.hours} {robot.look_s} {settings.sampler} {robot.speed_m_s}"
-    was = texts.SCOUT if is_on_foot(robot) else texts.ROBOT
-    who = st.segmented_control(texts.WHO, [texts.ROBOT, texts.SCOUT], default=was, required=True,
-                               key=f"who {key}", label_visibility="collapsed")  # fmt: skip
+    was = SCOUT if is_on_foot(robot) else ROBOT
+    who = st.segmented_control(texts.WHO, list(WHO), default=was, required=True,
+                               format_func=who_name, key=f"who {key}",
+                               label_visibility="collapsed")  # fmt: skip
     if who != was:
-        robot = scout() if who == texts.SCOUT else Robot()
+        robot = scout() if who == SCOUT else Robot()
         key = f"{key} {who}"
     # a command, or "one hour more", may have set what is beyond the usual
     usual_s = robot.look_s
@@ -57,7 +67,7 @@ def _wanted(name: str, settings: MonitoringSettings) -> MonitoringSettings:
                              5.0, format="%g", key=f"inspection_s {key}")  # fmt: skip
     names = list(texts.SAMPLERS)
     sampler = st.selectbox(
-        texts.SAMPLER, names, names.index(settings.sampler), key=f"sampler {key}", **NAMED
+        texts.SAMPLER, names, names.index(settings.sampler), key=f"sampler {key}", **named()
     )
     st.caption(sampler_does(sampler))
     robot = replace(robot, hours=float(hours), look_s=float(inspection_s))
@@ -89,7 +99,7 @@ def use(choices: Choices, strategy: Strategy) -> str:
         robot = replace(settings.robot, hours=hours, look_s=inspection_s)
         choices.season.change(replace(settings, robot=robot, sampler=sampler), settings)
     else:
-        who = st.session_state.get("who", texts.ROBOT)
+        who = st.session_state.get("who", ROBOT)
         st.session_state["sampler"] = sampler
         st.session_state[f"hours {who}"] = hours
         st.session_state[f"inspection_s {who}"] = int(inspection_s)

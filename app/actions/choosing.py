@@ -18,6 +18,7 @@ from fieldmon.samplers import USUAL
 from ..state import (
     assumptions,
     cached,
+    chosen_language,
     chosen_units,
     kept_files,
     plot_files,
@@ -31,7 +32,7 @@ from ..state import (
 from ..state.brought_files import FileMessage
 from ..state.choices import Choices, Chosen
 from ..state.work_day import Calendar
-from ..words import texts
+from ..words import language, texts
 from ..words.strategies import sampler_does
 from ..words.units import AREAS_M2, DATES, LENGTHS
 from . import changing
@@ -63,7 +64,7 @@ def choose(head: DeltaGenerator, foot: DeltaGenerator, wait: Wait) -> Chosen:
     with head:
         source = _source()
         try:
-            if source in (texts.SAMPLE, texts.UPLOAD):
+            if source in (plot_source.SAMPLE, plot_source.FILES):
                 return Chosen(_from_files(source, wait, foot))
             wait(None)
             return Chosen(_from_season(source, foot))
@@ -75,16 +76,21 @@ def choose(head: DeltaGenerator, foot: DeltaGenerator, wait: Wait) -> Chosen:
 
 
 def _source() -> str:
-    options = [texts.SAMPLE, texts.UPLOAD, *seasons_folder.names()]
+    options = [plot_source.SAMPLE, plot_source.FILES, *seasons_folder.names()]
     plot_source.begin_from_address()
     if widget_memory.value(plot_source.KEY) not in options:
-        st.session_state[plot_source.KEY] = texts.SAMPLE
+        st.session_state[plot_source.KEY] = plot_source.SAMPLE
     chosen = widget_memory.show(
         st.selectbox, texts.PLOT_FROM, options, key=plot_source.KEY, filter_mode=None,
-        label_visibility="collapsed",
+        label_visibility="collapsed", format_func=_source_name,
     )  # fmt: skip
     plot_source.keep_in_address(chosen)
     return chosen
+
+
+def _source_name(source: str) -> str:
+    """Return what a source is called: a season by its own name."""
+    return {plot_source.SAMPLE: texts.SAMPLE, plot_source.FILES: texts.UPLOAD}.get(source, source)
 
 
 # -- a season
@@ -117,7 +123,7 @@ def _message(kept: KeptMessage) -> ImportMessage:
 
 def _from_files(source: str, wait: Wait, foot: DeltaGenerator) -> Choices | None:
     kept_files.sync()
-    if source == texts.SAMPLE:
+    if source == plot_source.SAMPLE:
         st.caption(texts.SAMPLE_NOTE)
         files = plot_files.of_sample()
     elif (files := plot_files.of_session()) is None:
@@ -128,7 +134,7 @@ def _from_files(source: str, wait: Wait, foot: DeltaGenerator) -> Choices | None
     wait(outline.field)
     made = plot_files.prepared(files, outline)
     clock = local_clock(made.plot.field)
-    today = sample_estate.LAST_DAY if source == texts.SAMPLE else clock.today()
+    today = sample_estate.LAST_DAY if source == plot_source.SAMPLE else clock.today()
     with when:
         day = _day(source, Calendar(today), clock)
     with foot:
@@ -189,10 +195,11 @@ def _which(file: File, names: list[str]) -> int:
 def _work() -> tuple[Robot, str]:
     with st.expander(texts.WHO):
         who = widget_memory.show(
-            st.segmented_control, texts.WHO, [texts.ROBOT, texts.SCOUT], key="who",
-            default=texts.ROBOT, required=True, label_visibility="collapsed",
+            st.segmented_control, texts.WHO, list(changing.WHO), key="who",
+            default=changing.ROBOT, required=True, label_visibility="collapsed",
+            format_func=changing.who_name,
         )  # fmt: skip
-        base = robots.scout() if who == texts.SCOUT else robots.Robot()
+        base = robots.scout() if who == changing.SCOUT else robots.Robot()
         hours = widget_memory.show(st.slider, texts.HOURS, 0.5, 16.0, step=0.5,
                                    key=f"hours {who}", default=base.hours)  # fmt: skip
         inspection_s = widget_memory.show(
@@ -201,7 +208,7 @@ def _work() -> tuple[Robot, str]:
         )  # fmt: skip
         sampler = widget_memory.show(
             st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), key="sampler",
-            default=USUAL, **changing.NAMED,
+            default=USUAL, **changing.named(),
         )  # fmt: skip
         st.caption(sampler_does(sampler))
     return replace(base, hours=float(hours), look_s=float(inspection_s)), sampler
@@ -212,11 +219,26 @@ def _work() -> tuple[Robot, str]:
 
 def _units() -> None:
     with st.expander(texts.DISPLAY):
+        code = widget_memory.show(
+            st.selectbox, texts.LANGUAGE, list(language.LANGUAGES), key=chosen_language.KEY,
+            default=language.current(), filter_mode=None, format_func=language.LANGUAGES.get,
+            on_change=chosen_language.carry_over, args=(language.current(),),
+        )  # fmt: skip
+        chosen_language.keep_in_address(code)
+        if code != language.ENGLISH:
+            st.caption(texts.MACHINE_MADE)
+        now = chosen_units.units()
         for key, label, options in zip(
             chosen_units.KEYS, (texts.LENGTH, texts.AREA, texts.DATE_LIKE),
             (LENGTHS, AREAS_M2, DATES), strict=True,
         ):  # fmt: skip
             widget_memory.show(
-                st.selectbox, label, list(options), key=key, default=next(iter(options)),
-                filter_mode=None, on_change=row_settings.carry_over, args=(chosen_units.units(),),
+                st.selectbox, label, list(options), key=key, default=getattr(now, key),
+                filter_mode=None, format_func=_unit_name, on_change=row_settings.carry_over,
+                args=(now,),
             )  # fmt: skip
+
+
+def _unit_name(unit: str) -> str:
+    """Return what a unit is called; dates are shown as they are."""
+    return texts.UNITS.get(unit, unit)

@@ -19,6 +19,7 @@ from ..state.chosen_units import units
 from ..state.plot_edits import GATE, NO_GO, PATH, Edit, points_of
 from ..state.plot_files import draw, drawn, laid
 from ..words import texts
+from ..words.language import of_error
 
 if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
@@ -27,8 +28,7 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
     from ..state.plot_edits import Points
 
-_NAMES = {GATE: texts.DRAW_KINDS["gate"], PATH: texts.DRAW_KINDS["path"],
-          NO_GO: texts.DRAW_KINDS["no_go"]}  # fmt: skip
+_NAMES = {GATE: "gate", PATH: "path", NO_GO: "no_go"}
 _SHAPES = {GATE: "point", PATH: "line", NO_GO: "area"}
 # more corners than this are no help
 _SNAPS = 2_000
@@ -43,8 +43,9 @@ def rows(plot_key: str) -> None:
         spacings(plot_key)
         now, usual_m = units(), Planting().headland_m
         widget_memory.show(
-            st.number_input, texts.HEADLAND.format(unit=now.length), *now.limits(0.1, 50.0),
-            step=0.1, key=f"headland {plot_key}", default=now.shown(usual_m),
+            st.number_input, texts.HEADLAND.format(unit=texts.UNITS[now.length]),
+            *now.limits(0.1, 50.0), step=0.1, key=f"headland {plot_key}",
+            default=now.shown(usual_m),
         )  # fmt: skip
         widget_memory.show(st.toggle, texts.BOTH_FACES, key=f"both_faces {plot_key}", default=False)
 
@@ -52,11 +53,12 @@ def rows(plot_key: str) -> None:
 def spacings(plot_key: str) -> None:
     """Show how far rows and plants are apart, to be set by hand."""
     now, usual = units(), Planting()
+    unit = texts.UNITS[now.length]
     rows_m, plants_m = usual.row_spacing_m, usual.plant_spacing_m
     help_ = texts.SPACING_HELP.format(rows=now.metres(rows_m), plants=now.metres(plants_m))
     for name, label in (("row_spacing", texts.ROW_SPACING), ("plant_spacing", texts.PLANT_SPACING)):
         widget_memory.show(
-            st.number_input, label.format(unit=now.length), *now.limits(0.1, 50.0), step=0.1,
+            st.number_input, label.format(unit=unit), *now.limits(0.1, 50.0), step=0.1,
             help=help_, key=f"{name} {plot_key}",
         )  # fmt: skip
 
@@ -79,7 +81,7 @@ def tools(choices: Choices) -> None:
                 st.button(texts.DRAW_DROP, key="draw_drop", on_click=_drop, args=(choices,))
         made = drawn(choices.plot_key)
         for edit in made:
-            st.caption(f"{_NAMES[edit.kind]}: {len(edit.lonlat)}")
+            st.caption(f"{texts.DRAW_KINDS[_NAMES[edit.kind]]}: {len(edit.lonlat)}")
         if made:
             st.button(texts.DRAW_UNDO, key="draw_undo", icon=":material/undo:", on_click=_undo,
                       args=(choices,))  # fmt: skip
@@ -156,7 +158,7 @@ def _add(choices: Choices) -> None:
         _put(choices, points_of(st.session_state.get("draw_typed", "")))
         st.session_state["draw_typed"] = ""
     except FieldmonError as error:
-        notices.keep("error", str(error))
+        notices.keep("error", of_error(error))
 
 
 def _finish(choices: Choices) -> None:
@@ -167,7 +169,7 @@ def _finish(choices: Choices) -> None:
         draw(choices.plot_key, made)
         _drop(choices)
     except FieldmonError as error:
-        notices.keep("error", str(error))
+        notices.keep("error", of_error(error))
 
 
 def _drop(choices: Choices) -> None:

@@ -42,13 +42,18 @@ def show(choices: Choices, plan: DayPlan) -> None:
 def _other_formats(choices: Choices, plan: HandoffPlan) -> None:
     """Offer the route in the formats of robots, phones and paper."""
     name = st.selectbox(texts.FORMAT, list(FORMATS), key="format", filter_mode=None,
-                        format_func=lambda one: f"{one}: {FORMATS[one].reader}")  # fmt: skip
+                        format_func=lambda one: f"{one}: {_reader(one)}")  # fmt: skip
     chosen = FORMATS[name]
     ending = f".{name}.zip" if chosen.several else chosen.endings[0]
     st.download_button(
-        texts.DOWNLOAD_AS.format(reader=chosen.reader), partial(made, chosen, plan),
+        texts.DOWNLOAD_AS.format(reader=_reader(name)), partial(made, chosen, plan),
         f"route_{choices.day}{ending}", key="download_format", on_click="ignore",
     )  # fmt: skip
+
+
+def _reader(name: str) -> str:
+    """Return who reads a format."""
+    return texts.READERS.get(name, FORMATS[name].reader)
 
 
 def made(chosen: HandoffFormat, plan: HandoffPlan) -> bytes:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.compute.wording import counted
 from fieldmon.planning.wishes import Wishes
 
 from ..show.maps import plant_layers
@@ -35,7 +34,7 @@ def show(choices: Choices, plan: DayPlan) -> None:
     """Show what can be done with the plants that are picked, and what is wished for already."""
     some = wishes.picked(choices.place)
     if some:
-        st.markdown(texts.PICKED.format(plants=counted(len(some), "plant")))
+        st.markdown(texts.PICKED.format(plants=texts.PLANTS_COUNTED.format(n=len(some))))
         with st.container(horizontal=True):
             for key, label in (("also", texts.PICKED_ALSO), ("never", texts.PICKED_NEVER)):
                 st.button(label, key=f"picked_{key}", on_click=_wish, args=(choices, key, some))
@@ -44,14 +43,14 @@ def show(choices: Choices, plan: DayPlan) -> None:
     if not wanted:
         return
     said = [
-        text.format(plants=counted(len(of), "plant"))
+        text.format(plants=texts.PLANTS_COUNTED.format(n=len(of)))
         for text, of in ((texts.WISHED, wanted.wanted), (texts.UNWISHED, wanted.unwanted))
         if of
     ]
     st.caption(" ".join(said))
     unmet = wanted.unmet(plan.route)
     if len(unmet):
-        st.warning(texts.WISHES_UNMET.format(plants=counted(len(unmet), "plant")))
+        st.warning(texts.WISHES_UNMET.format(plants=texts.PLANTS_COUNTED.format(n=len(unmet))))
     st.button(texts.WISHES_DROP, key="wishes_drop", icon=":material/undo:", on_click=_drop,
               args=(choices,))  # fmt: skip
 

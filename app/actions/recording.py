@@ -17,6 +17,7 @@ from fieldmon.plot.grid import plant_at, row_label
 from ..state import chosen_day, notices, unconfirmed
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
+from ..words.language import in_words
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
@@ -88,7 +89,7 @@ def _show_route(choices: Choices) -> None:
             texts.COLUMN_PLANT: label.number,
             texts.LEGEND_STATES["found"]: False,
         },
-        index=pd.RangeIndex(1, len(plants) + 1, name="stop"),
+        index=pd.RangeIndex(1, len(plants) + 1, name=texts.STOP_NUMBER),
     )
     # Enter after typing a number must not record: the button under it would record as many again
     with st.form("route_form", border=False, enter_to_submit=False):
@@ -138,7 +139,7 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
     options = InspectionOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
     options = options.choose("day", choices.day).on(choices.plot.field)
     read = read_inspections(Upload(name, data), choices.plot.grid, options)
-    messages = "".join(f"\n- {message.sentence}" for message in read.messages)
+    messages = "".join(f"\n- {in_words(message.sentence)}" for message in read.messages)
     said = _recorded(choices, read.value, name)
     return said + messages if said else ""
 
@@ -166,7 +167,7 @@ def _ask_about_contradictions(choices: Choices) -> None:
     said = season.contradictions(waiting.results).sentences(season.label)
     others = len(waiting.results) - len(said)
     st.warning(texts.CONTRADICTING.format(n=len(said), others=others, source=waiting.source))
-    st.markdown("\n".join(f"- {sentence}" for sentence in said[:_MOST]))
+    st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in said[:_MOST]))
     if len(said) > _MOST:
         st.caption(texts.AND_MORE.format(n=len(said) - _MOST))
     with st.container(horizontal=True):
@@ -250,4 +251,4 @@ def show_batches(choices: Choices) -> None:
 @notices.reporting
 def undo(choices: Choices, batch: int) -> str:
     """Take a batch back."""
-    return choices.season.undo(batch)
+    return in_words(choices.season.undo(batch))

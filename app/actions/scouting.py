@@ -14,6 +14,7 @@ from fieldmon.plot.grid import row_label
 
 from ..state import chosen_day, notices
 from ..words import texts
+from ..words.language import in_words, number
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
@@ -71,7 +72,7 @@ def last_said(choices: Choices) -> str:
 @notices.reporting
 def undo(choices: Choices, batch: int) -> str:
     """Take the last tap back."""
-    return choices.season.undo(batch)
+    return in_words(choices.season.undo(batch))
 
 
 @notices.reporting
@@ -84,7 +85,7 @@ def longer(choices: Choices) -> str:
     hours = max(settings.robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
     robot = replace(settings.robot, hours=float(min(hours, 24.0)))
     choices.season.change(replace(settings, robot=robot), settings)
-    return texts.NOW_USED.format(name=f"{robot.hours:g} h")
+    return texts.NOW_USED.format(name=texts.IN_HOURS.format(hours=number(robot.hours, "g")))
 
 
 def ask_start(choices: Choices) -> None:

@@ -12,6 +12,7 @@ from fieldmon.infestation.prior import prior_chance
 from fieldmon.studies.thesis.chapter5.sites import Site
 
 from ..words import texts
+from ..words.language import of_error
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,7 +42,7 @@ def run(name: str, make: Callable[[Progress], T]) -> T | None:
     try:
         made = make(progress)
     except FieldmonError as error:
-        st.error(str(error))
+        st.error(of_error(error))
     # not reached where the script was ended
     st.session_state[f"{name} at work"] = False
     place.empty()

@@ -5,18 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..words import texts
+from ..words.language import number
+from ..words.units import in_unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fieldmon.plot.assumed import Assumed
 
-    from ..words.units import Units
+    from ..words.units import UnitsInLanguage
 
 _LENGTHS = frozenset({"row_spacing_m", "plant_spacing_m"})
 
 
-def sentence(assumed: Sequence[Assumed], units: Units) -> str:
+def sentence(assumed: Sequence[Assumed], units: UnitsInLanguage) -> str:
     """Return what is assumed, as one line; empty if nothing is."""
     if not assumed:
         return ""
@@ -28,11 +30,11 @@ def mark(label: str, assumed: Sequence[Assumed], settings: Sequence[str]) -> str
     return f"{label} *" if any(one.setting in settings for one in assumed) else label
 
 
-def _words(one: Assumed, units: Units) -> str:
+def _words(one: Assumed, units: UnitsInLanguage) -> str:
     if one.setting in _LENGTHS:
-        value = f"{units.shown(one.value):g} {units.length}"
+        value = in_unit(units.shown(one.value), "g", units.length)
     elif one.setting == "speed_m_s":
-        value = f"{3.6 * one.value:.3g}"
+        value = number(3.6 * one.value, ".3g")
     else:
-        value = f"{100 * one.value:g}"
+        value = number(100 * one.value, "g")
     return texts.ASSUMED_WHAT[one.setting].format(value=value)

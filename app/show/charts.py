@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from functools import wraps
 from typing import TYPE_CHECKING
 
 import altair as alt
 import pandas as pd
 
-from ..words import texts
+from ..words import language, texts
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from datetime import date
 
     import numpy as np
@@ -30,6 +32,29 @@ _LEGEND = alt.Legend(orient="top", title=None, columns=2, labelLimit=300, symbol
 _GREY = "#7F7F7F"
 
 
+def _in_language(make: Callable[..., alt.Chart]) -> Callable[..., alt.Chart]:
+    """Return charts whose numbers are written as in the language, their axes where it begins."""
+
+    @wraps(make)
+    def made(*args: object, **settings: object) -> alt.Chart:
+        chart = make(*args, **settings)
+        if language.current() == language.ENGLISH:
+            return chart
+        fraction, thousands = language.separators()
+        number = {"decimal": fraction, "thousands": thousands, "grouping": [3],
+                  "currency": ["", ""]}  # fmt: skip
+        chart = chart.configure(locale={"number": number})
+        return chart.configure_axisY(orient=_sides()[0])
+
+    return made
+
+
+def _sides() -> tuple[str, str]:
+    """Return on which side a line begins and ends."""
+    return ("right", "left") if language.is_right_to_left() else ("left", "right")
+
+
+@_in_language
 def detection(seasons: dict[str, SeasonMetrics], day: int, axes: tuple[str, str]) -> alt.LayerChart:
     """Return detection per day, a line for each sampler, with a rule at the day shown."""
     table = pd.concat(
@@ -45,6 +70,7 @@ def detection(seasons: dict[str, SeasonMetrics], day: int, axes: tuple[str, str]
     return alt.layer(lines, rule).properties(height=280)
 
 
+@_in_language
 def curves(table: pd.DataFrame, axes: tuple[str, str]) -> alt.Chart:
     """Return a line for each column of a table whose index counts days."""
     long = (
@@ -82,6 +108,7 @@ def _dashes(names: list[str]) -> alt.Scale:
     return alt.Scale(domain=names, range=dashes)
 
 
+@_in_language
 def found(figures: SeasonMetrics, axes: tuple[str, str]) -> alt.Chart:
     """Return the plants found on each day."""
     table = pd.DataFrame({"day": range(1, len(figures.found) + 1), "found": figures.found})
@@ -97,6 +124,7 @@ def found(figures: SeasonMetrics, axes: tuple[str, str]) -> alt.Chart:
     )
 
 
+@_in_language
 def bands(
     curves: dict[str, tuple[NDArray[np.float64], ...]], axes: tuple[str, str]
 ) -> alt.LayerChart:
@@ -120,6 +148,7 @@ def bands(
     return alt.layer(band, _lines(table, list(curves), axes)).properties(height=320)
 
 
+@_in_language
 def season_days(days: list[DayFigures], axes: tuple[str, str, str]) -> alt.LayerChart:
     """Return plants inspected and found on each day of a season; a day without work is a gap."""
     worked = {one.on: one for one in days if one.inspected}
@@ -135,13 +164,20 @@ def season_days(days: list[DayFigures], axes: tuple[str, str, str]) -> alt.Layer
     bars = (
         alt.Chart(table)
         .mark_bar(color=_COLOURS[5])
-        .encode(x=x, y=alt.Y("inspected:Q", title=axes[1]), tooltip=tip)
+        .encode(
+            x=x,
+            y=alt.Y("inspected:Q", title=axes[1], axis=alt.Axis(orient=_sides()[0])),
+            tooltip=tip,
+        )
     )
     found_ = (
         alt.Chart(table)
         .mark_line(color=_COLOURS[1], point={"color": _COLOURS[1], "size": 60}, strokeWidth=2.5,
                    invalid="break-paths-filter-domains")
-        .encode(x=x, y=alt.Y("found:Q", title=axes[2]), tooltip=tip)
+        .encode(
+            x=x, tooltip=tip,
+            y=alt.Y("found:Q", title=axes[2], axis=alt.Axis(orient=_sides()[1])),
+        )
     )  # fmt: skip
     return alt.layer(bars, found_).resolve_scale(y="independent").properties(height=220)
 
@@ -151,6 +187,7 @@ def _dates(days: list[DayFigures]) -> list[date]:
     return [at.date() for at in pd.date_range(days[0].on, days[-1].on)]
 
 
+@_in_language
 def still_out(days: list[DayFigures], axes: tuple[str, str]) -> alt.LayerChart:
     """Return the expected number of infested plants by day, with its interval."""
     table = pd.DataFrame(
@@ -179,6 +216,7 @@ def still_out(days: list[DayFigures], axes: tuple[str, str]) -> alt.LayerChart:
     return alt.layer(band, line).properties(height=220)
 
 
+@_in_language
 def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64],
              axes: tuple[str, str]) -> alt.LayerChart:  # fmt: skip
     """Return the days since each row was inspected, ``(r,)``.

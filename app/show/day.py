@@ -16,6 +16,8 @@ from fieldmon.reports import sentences
 
 from ..state import assumptions, chosen_day
 from ..words import texts
+from ..words.language import in_words, number, weekday
+from ..words.units import hours
 from .assumed import mark
 
 if TYPE_CHECKING:
@@ -41,12 +43,12 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
         done = choices.season.history.inspections.on(choices.on)
         was = dict(zip(done.plant.tolist(), done.result.tolist(), strict=True))
         columns[texts.REPORT_WAS] = [texts.HISTORY_RESULTS[was[p]] for p in route.plant.tolist()]
-    return pd.DataFrame(columns, pd.RangeIndex(1, len(route) + 1, name="stop"))
+    return pd.DataFrame(columns, pd.RangeIndex(1, len(route) + 1, name=texts.STOP_NUMBER))
 
 
 def headline(choices: Choices, plan: DayPlan) -> str:
     """Return what there is to do on the day, in one sentence."""
-    return sentences.headline(plan.route, choices.units.day(choices.day))
+    return in_words(sentences.headline(plan.route, choices.units.day(choices.day)))
 
 
 def route_figures(choices: Choices, plan: DayPlan) -> None:
@@ -56,16 +58,16 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
     rows, speed = ("row_spacing_m", "plant_spacing_m"), "speed_m_s"
     for_finds = (*rows, "background_chance", "rate_per_day", "detects")
     with st.container(horizontal=True):
-        st.metric(mark(texts.PLANTS_TO_INSPECT, taken, rows), f"{len(route):,} / {n:,}",
-                  width="content")  # fmt: skip
-        st.metric(mark(texts.TIME, taken, (*rows, speed)), f"{route.end_s / 3600:.1f} h",
+        st.metric(mark(texts.PLANTS_TO_INSPECT, taken, rows),
+                  f"{number(len(route), ',')} / {number(n, ',')}", width="content")  # fmt: skip
+        st.metric(mark(texts.TIME, taken, (*rows, speed)), hours(route.end_s / 3600),
                   width="content")  # fmt: skip
         st.metric(mark(texts.DRIVE, taken, rows), choices.units.metres(route.drive_m),
                   width="content")  # fmt: skip
-        st.metric(mark(texts.FINDS, taken, for_finds), f"{route.expected_found:.1f}",
+        st.metric(mark(texts.FINDS, taken, for_finds), number(route.expected_found, ".1f"),
                   width="content")  # fmt: skip
     if len(route) and route.bound_sentence:
-        st.caption(route.bound_sentence, help=texts.BOUND_HELP)
+        st.caption(in_words(route.bound_sentence), help=texts.BOUND_HELP)
 
 
 def said_of_day(choices: Choices, plan: DayPlan) -> None:
@@ -114,7 +116,7 @@ def _risen(choices: Choices, yesterday: str) -> str:
     total = [np.bincount(line, chance) for chance in chances]
     rise = (total[1] - total[0]) / np.maximum(np.bincount(line), 1)
     top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]
-    return ", ".join(f"{k + 1} (+{rise[k]:.1%})" for k in top)
+    return ", ".join(f"{k + 1} (+{number(rise[k], '.1%')})" for k in top)
 
 
 def reasons(choices: Choices, plan: DayPlan) -> list[str]:
@@ -125,7 +127,8 @@ def reasons(choices: Choices, plan: DayPlan) -> list[str]:
     done, now = season.history.inspections, np.datetime64(choices.on)
     lately = (done.result == FOUND) & (done.date <= now) & (done.date > now - 7)
     finds = dict(zip(done.plant[lately].tolist(), done.date[lately].tolist(), strict=True))
-    on = [texts.WHY_TODAY if day == choices.on else f"{day:%A}" for day in finds.values()]
+    on = [texts.WHY_TODAY if day == choices.on else weekday(day) for day in finds.values()]
     recorded = season.history.recorded
     seen = None if recorded is None else recorded >= 0
-    return explain(plan.scene, plan.work, np.array([*finds], np.int32), on, seen)
+    told = explain(plan.scene, plan.work, np.array([*finds], np.int32), on, seen)
+    return [in_words(one) for one in told]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..state import cached, chosen_day
-from ..words import texts
+from ..words import language, texts
 from . import field_map
 from .map_view import Frames, MapContent, Switch
 from .maps import colours, deck, labels, legends, marks, plant_layers, route_layers
@@ -52,7 +52,7 @@ def day_map(
     ]
     play = route_layers.playback(route, driven.begins)
     if play is not None:
-        play["key"] = _route_key(choices, route)
+        play["key"] = f"{language.current()} {_route_key(choices, route)}"
     return MapContent(
         **field_map.of_plot(choices, len(route)), layers=layers,
         switches=switches(layers, off, ("numbers", "rows")), shades=shades,
@@ -71,7 +71,7 @@ def season_frames(choices: Choices) -> Frames | None:
     kept = np.unique(np.linspace(0, len(days) - 1, min(len(days), _FRAMES)).round().astype(int))
     days = [days[k] for k in kept.tolist()]
     at = [replace(choices, day=day) for day in days]
-    key = f"{choices.key} {choices.revision} {choices.day} {choices.dark}"
+    key = f"{language.current()} {choices.key} {choices.revision} {choices.day} {choices.dark}"
     names = tuple(choices.units.day(day) for day in days)
     now = int(np.searchsorted(days, choices.day))
     shown = tuple(marks.with_hot(plants(one), _hot_layers(one)) for one in at)

@@ -13,7 +13,7 @@ import streamlit as st
 
 from ..state import browser, chosen_units
 from ..state.map_file import ADDRESS
-from ..words import texts
+from ..words import language, texts
 from .maps import deck
 
 if TYPE_CHECKING:
@@ -166,6 +166,8 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
         "dark": browser.is_dark(),
         "lengths": chosen_units.units().lengths(),
         "words": texts.MAP_WORDS,
+        "language": language.current(),
+        "direction": "rtl" if language.is_right_to_left() else "ltr",
     }  # fmt: skip
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.samplers.base import Scene
 
-    from ..words.units import Units
+    from ..words.units import UnitsInLanguage
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class NextStop:
     chance: str
 
 
-def next_stop(plan: DayPlan, done: int, units: Units) -> NextStop:
+def next_stop(plan: DayPlan, done: int, units: UnitsInLanguage) -> NextStop:
     """Return where to go next, from where the last result was noted; `done` stops are done."""
     route, scene = plan.route, plan.scene
     grid, plant = scene.aisles.grid, int(route.plant[0])

@@ -8,15 +8,16 @@ import shapely
 import streamlit as st
 
 from ..words import texts
+from ..words.language import number
 from .assumed import mark
 
 if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
 
-    from ..words.units import Units
+    from ..words.units import UnitsInLanguage
 
 
-def show(plot: Plot, units: Units) -> None:
+def show(plot: Plot, units: UnitsInLanguage) -> None:
     """Show the figures side by side."""
     grid = plot.grid
     area_m2 = shapely.area(grid.frame.geometry_m(plot.field.drivable()))
@@ -27,7 +28,9 @@ def show(plot: Plot, units: Units) -> None:
     )
     with st.container(horizontal=True):
         st.metric(texts.AREA_IS, units.square(float(area_m2)), width="content")
-        st.metric(plants, f"{len(grid):,}", width="content")
+        st.metric(plants, number(len(grid), ","), width="content")
         st.metric(texts.ROWS_ARE, int(grid.row_line.max()) + 1, width="content")
-        st.metric(texts.BEARING_IS, f"{grid.frame.bearing_deg % 180:.1f}°", width="content")
+        st.metric(
+            texts.BEARING_IS, f"{number(grid.frame.bearing_deg % 180, '.1f')}°", width="content"
+        )
         st.metric(spacing, apart, width="content")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def of_season(choices: Choices) -> Report:
     """Return the report of the season up to the chosen day."""
     return cached.season_report(
-        choices.key, choices.revision, choices.day, choices.units, choices.season
+        choices.key, choices.revision, choices.day, choices.units.of_library, choices.season
     )
 
 
@@ -33,7 +33,7 @@ def of_day(choices: Choices) -> Report:
         chosen_day.found(choices), shown.worked,
         {} if season is None else results_on(season, choices.on),
     )  # fmt: skip
-    return day_report(facts, choices.units)
+    return day_report(facts, choices.units.of_library)
 
 
 def _settings(choices: Choices) -> WorkSettings:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from ..words import texts
+from ..words.language import number
 from ..words.strategies import strategy_name
 
 if TYPE_CHECKING:
@@ -42,12 +43,14 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
     return pd.DataFrame(
         {
             texts.COLUMN_STRATEGY: [name(o.strategy) for o in ranked],
-            texts.COLUMN_LOSS: [_interval(o.loss, "{:,.0f}") for o in ranked],
-            texts.COLUMN_FOUND: [
-                _interval(_share(o.detection_pct), "{:.3g}", " %") for o in ranked
+            texts.COLUMN_LOSS: [_interval(o.loss, ",.0f") for o in ranked],
+            texts.COLUMN_FOUND: [_interval(_share(o.detection_pct), ".3g", " %") for o in ranked],
+            texts.COLUMN_VISITED: [
+                texts.IN_PERCENT.format(value=number(o.visited_pct, ".1f")) for o in ranked
             ],
-            texts.COLUMN_VISITED: [f"{o.visited_pct:.1f} %" for o in ranked],
-            texts.COLUMN_HALF: ["-" if o.half_day is None else f"{o.half_day:g}" for o in ranked],
+            texts.COLUMN_HALF: [
+                "-" if o.half_day is None else number(o.half_day, "g") for o in ranked
+            ],
             texts.COLUMN_VERDICT: [_word(o, base) for o in ranked],
         }
     )
@@ -59,10 +62,10 @@ def _share(e: SummaryStatistics) -> SummaryStatistics:
 
 
 def _interval(e: SummaryStatistics, form: str, unit: str = "") -> str:
-    mean = form.format(e.mean) + unit
+    mean = number(e.mean, form) + unit
     if isnan(e.low):
         return mean
-    return f"{mean} ({form.format(e.low)} .. {form.format(e.high)})"
+    return f"{mean} ({number(e.low, form)} .. {number(e.high, form)})"
 
 
 def _word(o: Outcome, base: float) -> str:

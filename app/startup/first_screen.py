@@ -36,7 +36,7 @@ class FirstScreen:
 
     def begin(self) -> bool:
         """Outline the sample estate where nothing can be planned yet; return whether it was."""
-        if preload.start().ready.is_set() or plot_source.chosen() != texts.SAMPLE:
+        if preload.start().ready.is_set() or plot_source.chosen() != plot_source.SAMPLE:
             return False
         with suppress(FieldmonError):  # it is said where the plot is wanted
             self._outline(sample_estate.plots()[0])

@@ -1,8 +1,10 @@
-"""What a visitor's browser says of itself: a phone or not, dark or light."""
+"""What a visitor's browser says of itself: a phone or not, dark or light, its language."""
 
 from __future__ import annotations
 
 import streamlit as st
+
+from ..words.language import ENGLISH, LANGUAGES
 
 
 def is_phone() -> bool:
@@ -13,3 +15,11 @@ def is_phone() -> bool:
 def is_dark() -> bool:
     """Return whether the page is dark."""
     return st.context.theme.get("type") == "dark"
+
+
+def language() -> str:
+    """Return the first language that the browser asks for, if the app speaks it, else English."""
+    said = st.context.locale or (st.context.headers.get("Accept-Language") or "").split(",")[0]
+    # what Java called Hebrew once
+    code = said.split(";")[0].split("-")[0].strip().lower().replace("iw", "he")
+    return code if code in LANGUAGES else ENGLISH

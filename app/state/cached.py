@@ -29,7 +29,8 @@ from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
 from fieldmon.simulation.season import SeasonSettings, SimulatedDay, simulated_days
 from fieldmon.simulation.start import season_start
 
-from ..words import texts
+from ..words import language, texts
+from ..words.language import Late
 from .comparison import Comparison
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from pydeck import Layer
     from shapely import MultiLineString
 
+    from fieldmon.compute.units import Units
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, Source
@@ -60,11 +62,12 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.reports.content import Report
 
-    from ..words.units import Units
     from .comparison import ComparisonSettings
 
     Array = NDArray[np.float64]
 
+#: shown while something is made, in the language of whoever waits
+_WORKING = Late(lambda: texts.WORKING)
 _FEW = 24
 # maps of many plants are megabytes each, a day's figures a few numbers
 _MAPS, _DAYS = 60, 200
@@ -75,13 +78,13 @@ def digest(data: bytes) -> str:
     return sha256(data).hexdigest()
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def plots(key: str, options: PlotOptions, _source: Source) -> Imported[tuple[Field, ...]]:  # noqa: ARG001
     """Return the plots of a file."""
     return read.read_plots(_source, options)
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def records(
     key: str,  # noqa: ARG001
     _source: RecordSource,
@@ -96,25 +99,25 @@ def records(
     return prepare.records_on(_plot, _source, lambda: _fields, _measured)
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def measured_plants(key: str, options: ReadOptions, _source: Source) -> Plants:  # noqa: ARG001
     """Return measured plants: positions, and labels if the file has any."""
     return read.read_plants(_source, options).value
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def paths(source: Path) -> MultiLineString:
     """Return the lines of one of the program's own files."""
     return read.read_lines(source).value
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def plot(key: str, choices: PlantingChoices, _field: Field) -> Plot:  # noqa: ARG001
     """Return a field with its plants and aisles."""
     return prepare.lay(_field, choices).plot
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def plot_around(
     key: str,  # noqa: ARG001
     choices: PlantingChoices,
@@ -125,7 +128,7 @@ def plot_around(
     return prepare.lay_around(_sources, _measured, choices).plot
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def day_plan(
     key: str,
     day: str,
@@ -175,7 +178,7 @@ def season(path: Path) -> Season:
     return _season(path, inode)
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def _season(path: Path, inode: int) -> Season:  # noqa: ARG001 - another file of the same name
     return Season(path)
 
@@ -186,7 +189,7 @@ def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:  # n
     return _season.messages()
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def season_plan(
     path: str,  # noqa: ARG001
     revision: str,  # noqa: ARG001
@@ -247,7 +250,7 @@ def morning(path: str, revision: str, day: str, _season: Season) -> Array:  # no
     return _season.morning(np.datetime64(day).item())
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def season_report(
     path: str,  # noqa: ARG001
     revision: str,  # noqa: ARG001
@@ -259,13 +262,13 @@ def season_report(
     return reports.season_report(_season, np.datetime64(day).item(), units)
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Backdrop:  # noqa: ARG001
     """Return a picture of the ground about a plot."""
     return read_backdrop(_source, options, _near).value
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def risk(
     key: str,  # noqa: ARG001
     _source: RiskSource,
@@ -275,7 +278,7 @@ def risk(
     return prepare.risk_on(_plot, _source)
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def without_missing(
     key: str,  # noqa: ARG001
     _source: CanopySource,
@@ -285,9 +288,13 @@ def without_missing(
     return prepare.without_missing(_plot, _source)
 
 
+def layers(key: str, make: Callable[[], list[Layer]]) -> list[Layer]:
+    """Return map layers, made once a language; `key` stands for all that they show."""
+    return _layers(f"{language.current()} {key}", make)
+
+
 @st.cache_resource(max_entries=_MAPS)
-def layers(key: str, _make: Callable[[], list[Layer]]) -> list[Layer]:  # noqa: ARG001
-    """Return map layers, made once; `key` stands for all that they show."""
+def _layers(key: str, _make: Callable[[], list[Layer]]) -> list[Layer]:  # noqa: ARG001
     return _make()
 
 
@@ -306,7 +313,7 @@ def comparison(
     return Comparison(settings, _plot, _chance, robot)
 
 
-@st.cache_resource(max_entries=_FEW, show_spinner=texts.WORKING)
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def simulated_season(
     key: str,  # noqa: ARG001
     sampler_name: str,

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
 
-    from ..words.units import Units
+    from ..words.units import UnitsInLanguage
     from .brought_files import FileMessage, LeftOut
 
 
@@ -64,7 +64,7 @@ class Choices:
     robot: Robot
     sampler: str
     day: str
-    units: Units
+    units: UnitsInLanguage
     season: Season | None = None
     plot_key: str = ""
     risk: cached.Array | None = None

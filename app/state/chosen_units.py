@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from ..words.units import Units
+from dataclasses import replace
+
+from ..words import language
+from ..words.units import UnitsInLanguage, usual
 from . import widget_memory
 
-#: the boxes' keys, which are the fields of `Units`
+#: the boxes' keys, which are the fields of `UnitsInLanguage`
 KEYS = ("length", "area", "date_like")
 
 
-def units() -> Units:
+def units() -> UnitsInLanguage:
     """Return how this session wants numbers written."""
     chosen = {name: widget_memory.value(name) for name in KEYS}
-    return Units(**{name: value for name, value in chosen.items() if value})
+    said = {name: value for name, value in chosen.items() if value}
+    return replace(usual(language.current()), **said)

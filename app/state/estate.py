@@ -11,7 +11,7 @@ from fieldmon.errors import FieldmonError
 from fieldmon.io.options import PlotOptions
 from fieldmon.plot.local_clock import local_clock
 
-from ..words import texts
+from ..words.language import of_error
 from . import cached, plot_files, plot_source, sample_estate, seasons_folder
 from .brought_files import settled
 
@@ -56,7 +56,7 @@ def plots() -> tuple[list[PlotState], list[str]]:
         try:
             found.append(_of_season(name, cached.season(seasons_folder.path_of(name))))
         except FieldmonError as error:
-            problems.append(f"{name}: {error}")
+            problems.append(f"{name}: {of_error(error)}")
     files = plot_files.of_session()
     if files is not None and files.plot is not None:
         try:
@@ -64,14 +64,14 @@ def plots() -> tuple[list[PlotState], list[str]]:
                 files.plot.key, settled(files.plot, PlotOptions()), files.plot.source
             )
             found += [
-                PlotState(field.name, texts.UPLOAD, field.boundary, number)
+                PlotState(field.name, plot_source.FILES, field.boundary, number)
                 for number, field in enumerate(read.value)
             ]
         except FieldmonError as error:
-            problems.append(str(error))
+            problems.append(of_error(error))
     if not found:
         found = [
-            PlotState(field.name, texts.SAMPLE, field.boundary, number)
+            PlotState(field.name, plot_source.SAMPLE, field.boundary, number)
             for number, field in enumerate(sample_estate.plots())
         ]
     return found, problems
@@ -97,6 +97,6 @@ def open_plot(plot: PlotState) -> None:
     plot_source.open_season(plot.source)
     if plot.number is None:
         return
-    files = plot_files.of_sample() if plot.source == texts.SAMPLE else plot_files.of_session()
+    files = plot_files.of_sample() if plot.source == plot_source.SAMPLE else plot_files.of_session()
     if files is not None and files.plot is not None:
         plot_source.choose_feature(files.plot.key, plot.number)

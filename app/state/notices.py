@@ -8,6 +8,8 @@ import streamlit as st
 
 from fieldmon.errors import FieldmonError
 
+from ..words.language import of_error
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -36,7 +38,7 @@ def reporting(action: Callable[..., str]) -> Callable[..., None]:
         try:
             sentence = action(*arguments)
         except FieldmonError as error:
-            keep("error", str(error))
+            keep("error", of_error(error))
         else:
             if sentence:
                 keep("success", sentence)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import streamlit as st
 
-from ..words import texts
 from . import widget_memory
 
 #: names the box that says it; also the word in the address
 KEY = "season"
+#: what the box holds beside the names of seasons, and the address, whatever the language
+SAMPLE, FILES = "Sample estate", "My own files"
 
 
 def begin_from_address() -> None:
@@ -17,14 +18,14 @@ def begin_from_address() -> None:
 
 
 def chosen() -> str:
-    """Return `texts.SAMPLE`, `texts.UPLOAD` or the name of a season."""
-    source: str = widget_memory.value(KEY, texts.SAMPLE)
+    """Return `SAMPLE`, `FILES` or the name of a season."""
+    source: str = widget_memory.value(KEY, SAMPLE)
     return source
 
 
 def keep_in_address(source: str) -> None:
     """Let the address lead back to a source after a reload, and to another person's screen."""
-    if source == texts.SAMPLE:
+    if source == SAMPLE:
         st.query_params.pop(KEY, None)
     elif st.query_params.get(KEY) != source:
         st.query_params[KEY] = source

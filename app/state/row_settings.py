@@ -8,7 +8,7 @@ from . import widget_memory
 from .chosen_units import units
 
 if TYPE_CHECKING:
-    from ..words.units import Units
+    from ..words.units import UnitsInLanguage
 
 #: the boxes that hold lengths
 LENGTHS = ("row_spacing", "plant_spacing", "headland")
@@ -25,7 +25,7 @@ def row_settings(plot_key: str) -> dict[str, float | None]:
     return {**said, "row_bearing_deg": bearing, "faces": 2 if both else None}
 
 
-def carry_over(before: Units) -> None:
+def carry_over(before: UnitsInLanguage) -> None:
     """Carry lengths that boxes hold over into the unit that is now chosen (for callbacks)."""
     now = units()
     if now.length != before.length:

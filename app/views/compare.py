@@ -11,6 +11,7 @@ from ..show import charts, field_map, map_layers, verdicts
 from ..state import cached, chosen_day
 from ..state.comparison import Comparison, curve, outcomes
 from ..words import texts
+from ..words.language import of_error
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
@@ -43,7 +44,7 @@ def _results(choices: Choices, running: Comparison, *, at_work: bool) -> None:
     if at_work and not running.running:
         st.rerun()  # the buttons must know
     if running.problem is not None:
-        st.error(str(running.problem))
+        st.error(of_error(running.problem))
         return
     progress = texts.COMPARE_PROGRESS.format(done=running.done, total=running.total)
     st.progress(running.done / running.total, progress)

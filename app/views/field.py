@@ -12,6 +12,7 @@ from ..actions import rasters
 from ..show import map_layers, plant_history
 from ..state import chosen_day
 from ..words import texts
+from ..words.language import in_words
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
@@ -25,5 +26,5 @@ def show(choices: Choices) -> None:
     plant_history.want(choices, map_layers.day_map(choices, below=below))
     st.markdown(f"### {texts.HOT_TITLE}")
     said = hot_spot_meanings(choices.plot.grid, chosen_day.hot_spots(choices))
-    st.markdown("\n".join(f"- {meaning}" for meaning in said))
+    st.markdown("\n".join(f"- {in_words(meaning)}" for meaning in said))
     plant_history.show(choices)

@@ -16,6 +16,7 @@ from ..show.records import records_until
 from ..state import chosen_day, plot_files, plot_source
 from ..state.row_settings import row_settings
 from ..words import texts
+from ..words.language import in_words
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
@@ -28,7 +29,7 @@ def bring(problem: FieldmonError | None) -> None:
     if problem is None:
         st.title(texts.TITLE)
         st.markdown(texts.EMPTY)
-    if plot_source.chosen() == texts.UPLOAD:
+    if plot_source.chosen() == plot_source.FILES:
         bringing_files.show()
     if problem is not None:
         bringing_files.say(problem)
@@ -40,7 +41,7 @@ def bring(problem: FieldmonError | None) -> None:
 
 def show(choices: Choices) -> None:
     """Show the plot as it was understood, and change what was not."""
-    if plot_source.chosen() == texts.UPLOAD:
+    if plot_source.chosen() == plot_source.FILES:
         bringing_files.show()
     plot_figures.show(choices.plot, choices.units)
     st.caption(sentence(choices.plot.assumed, choices.units))
@@ -55,7 +56,7 @@ def show(choices: Choices) -> None:
     with st.expander(texts.MESSAGES, expanded=True):
         bringing_files.show_messages(choices.messages)
         for message in chosen_day.messages_on_records(choices):
-            st.markdown(f"- {message}")
+            st.markdown(f"- {in_words(message)}")
     _say_records(choices, said)
     field_map.want(*drawing.content(choices, records))
 

@@ -23,8 +23,8 @@ def show() -> None:
     with st.container(key="lead"):
         st.markdown(texts.PLOTS_TITLE.format(n=len(plots)))
     with st.container(horizontal=True):
-        for name, icon, source in (("sample", "park", texts.SAMPLE),
-                                   ("file", "upload_file", texts.UPLOAD)):  # fmt: skip
+        for name, icon, source in (("sample", "park", plot_source.SAMPLE),
+                                   ("file", "upload_file", plot_source.FILES)):  # fmt: skip
             st.button(texts.WAYS_IN[name], icon=f":material/{icon}:", key=f"way_{name}",
                       on_click=_begin, args=(source,))  # fmt: skip
     for problem in problems:
@@ -46,7 +46,7 @@ def show() -> None:
 
 def _begin(source: str) -> None:
     plot_source.open_season(source)
-    rooms.turn_to("today" if source == texts.SAMPLE else "plot")
+    rooms.turn_to("today" if source == plot_source.SAMPLE else "plot")
 
 
 def _open(plot: PlotState) -> None:

@@ -29,23 +29,26 @@ if TYPE_CHECKING:
     from ..actions.studying import Progress
     from ..state.choices import Choices
 
+#: stands for the plot that is open, whatever it is called in a language
+_OWN = "This plot"
+
 
 def show(choices: Choices | None) -> None:
     """Choose a scenario, a sweep or the own plot; run it with progress, show it."""
     st.subheader(texts.PRIOR_TITLE)
     st.caption(texts.PRIOR_INTRO)
-    names = [*PARTS] if choices is None else [*PARTS, texts.PRIOR_OWN]
+    names = [*PARTS] if choices is None else [*PARTS, _OWN]
     with st.container(horizontal=True, vertical_alignment="bottom"):
         part = st.selectbox(
             texts.PRIOR_PART, names, key="prior_part", width=320,
-            format_func=lambda name: TITLES.get(name, name),
+            format_func=lambda name: texts.PRIOR_OWN if name == _OWN else TITLES.get(name, name),
         )  # fmt: skip
         seeds = st.number_input(texts.REPLICATES, 2, 1000, 10, 10, key="prior_seeds", width=200)
         started = st.button(texts.STUDY_RUN, type="primary", key="prior_run")
-    asked = (part, int(seeds), choices.key if choices and part == texts.PRIOR_OWN else "")
+    asked = (part, int(seeds), choices.key if choices and part == _OWN else "")
     studying.say_stopped("prior")
     if started:
-        own = choices if part == texts.PRIOR_OWN else None
+        own = choices if part == _OWN else None
         made = studying.run("prior", lambda progress: _run(part, int(seeds), own, progress))
         if made is None:
             return

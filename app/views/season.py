@@ -12,6 +12,7 @@ from ..actions import assuming, beginning
 from ..show import charts, map_layers, plant_history
 from ..state import assumptions, chosen_day
 from ..words import texts
+from ..words.language import number
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import DayFigures, Progress
@@ -40,12 +41,15 @@ def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
     detected = 100.0 * progress.found / everything if everything else 100.0
     star = " *" if assumptions.of(choices) else ""
     with st.container(horizontal=True):
-        st.metric(f"{texts.EXPECTED_LEFT}{star}", f"{now.expected:.1f} ({now.low}-{now.high})",
+        expected = f"{number(now.expected, '.1f')} ({now.low}-{now.high})"
+        st.metric(f"{texts.EXPECTED_LEFT}{star}", expected,
                   help=texts.EXPECTED_HELP, width="content")  # fmt: skip
-        st.metric(texts.FOUND_EVER, f"{progress.found:,}", width="content")
-        st.metric(f"{texts.DETECTED}{star}", f"{detected:.0f} %", width="content")
-        st.metric(texts.INSPECTED_EVER, f"{progress.inspected:,} / {plants:,}", width="content")
-        st.metric(f"{texts.CLEAN_CHANCE}{star}", f"{now.chance_clean:.1%}", width="content")
+        st.metric(texts.FOUND_EVER, number(progress.found, ","), width="content")
+        share = texts.IN_PERCENT.format(value=number(detected, ".0f"))
+        st.metric(f"{texts.DETECTED}{star}", share, width="content")
+        seen = f"{number(progress.inspected, ',')} / {number(plants, ',')}"
+        st.metric(texts.INSPECTED_EVER, seen, width="content")
+        st.metric(f"{texts.CLEAN_CHANCE}{star}", number(now.chance_clean, ".1%"), width="content")
 
 
 def _again(progress: Progress) -> None:

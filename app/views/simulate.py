@@ -12,6 +12,7 @@ from ..actions import comparing
 from ..show import charts, field_map, simulated_day
 from ..state import cached, chosen_day
 from ..words import texts
+from ..words.language import number
 from ..words.strategies import sampler_name
 
 if TYPE_CHECKING:
@@ -57,7 +58,15 @@ def _names(choices: Choices) -> list[str]:
 
 def _figures(day: SimulatedDay) -> None:
     with st.container(horizontal=True):
-        st.metric(texts.FOUND_SO_FAR, f"{day.detection_pct:.0f} %", width="content")
+        st.metric(
+            texts.FOUND_SO_FAR,
+            texts.IN_PERCENT.format(value=number(day.detection_pct, ".0f")),
+            width="content",
+        )
         st.metric(texts.FOUND_TODAY, day.found, width="content")
         st.metric(texts.LEFT, day.left, width="content")
-        st.metric(texts.VISITED_TODAY, f"{day.visited_pct:.0f} %", width="content")
+        st.metric(
+            texts.VISITED_TODAY,
+            texts.IN_PERCENT.format(value=number(day.visited_pct, ".0f")),
+            width="content",
+        )

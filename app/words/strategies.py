@@ -9,12 +9,21 @@ from . import texts
 
 def sampler_name(sampler: str) -> str:
     """Return a sampler's name without its description."""
-    return kind_of(sampler).title
+    return _parts(sampler)[0]
 
 
 def sampler_does(sampler: str) -> str:
     """Return what a sampler does, without its name."""
-    return kind_of(sampler).does
+    return _parts(sampler)[1]
+
+
+def _parts(sampler: str) -> tuple[str, str]:
+    """Return name and description; of one that has no equal times, as the library has them."""
+    if sampler not in texts.SAMPLERS:
+        kind = kind_of(sampler)
+        return kind.title, kind.does
+    name, _, does = texts.SAMPLERS[sampler].partition(": ")
+    return name, does
 
 
 def strategy_name(sampler: str, hours: float, inspection_s: float) -> str:

@@ -1,6 +1,17 @@
-"""Every text of the app in one place: a translation is one file."""
+"""Every text of the app in English, each under a name; `texts.NAME` is in the session's language.
+
+A translation is one file, ``languages/LANGUAGE.po``; `language` finds a text in it by its name
+here. A text that names a count is a `Plural`: its words for one, and for more.
+"""
+
+import sys
+from types import ModuleType
+from typing import Any
 
 from fieldmon.samplers import of_equal_times
+
+from . import language
+from .language import Plural
 
 
 def isolated(name: str) -> str:
@@ -134,9 +145,10 @@ SHOW_SAMPLER, SHOW_DAY, SHOW_TRUTH = "On the map", "Day", "Show what is really i
 LEFT = "Infested left"
 FOUND_SO_FAR, FOUND_TODAY, VISITED_TODAY = "Found so far", "Found that day", "Inspected that day"
 WORKING = "Working ..."
-COMPILING = (
-    "fieldmon is being compiled for this machine: {n} parts so far. This happens once and takes "
-    "up to a minute; the plan follows by itself."
+_COMPILING = "so far. This happens once and takes up to a minute; the plan follows by itself."
+COMPILING = Plural(
+    "fieldmon is being compiled for this machine: {n} part " + _COMPILING,
+    "fieldmon is being compiled for this machine: {n} parts " + _COMPILING,
 )
 OUTLINE_ALT = "Outline of plot {name}; its plants are not laid yet."
 STUDY_TITLE = "The thesis's samplers without prior information"
@@ -156,6 +168,14 @@ STUDY_ALT = "Found so far by day, a line a configuration: {title}."
 CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
 UNDO_CHANGE = "Back to {strategy}, from {starts}"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"
+LANGUAGE = "Language"
+#: said in the other languages only: see `language.is_machine_made`
+MACHINE_MADE = "Translated by a machine; no native speaker has read it yet."
+UNITS = {"m": "m", "km": "km", "ft": "ft", "mi": "mi", "ha": "ha", "dunam": "dunam",
+         "acre": "acre"}  # fmt: skip
+IN_UNIT, IN_HOURS = "{value} {unit}", "{hours} h"
+IN_PERCENT = "{value} %"
+STOP_NUMBER = "stop"
 
 SEASON_NAMED = (
     "A season's name must be letters, digits, spaces and dashes, without \\ / : * ? \" < > | and "
@@ -173,18 +193,20 @@ WISHES_UNMET = (
 WISHES_DROP = "As planned before"
 
 # -- all plots
-PLOTS_TITLE = "{n} plots"
-PLOTS_ALT = "Map of {n} plots: {names}."
+PLOTS_TITLE = Plural("{n} plot", "{n} plots")
+PLOTS_ALT = Plural("Map of {n} plot: {names}.", "Map of {n} plots: {names}.")
 PLOTS_COLUMNS = {"name": "plot", "days_since": "days since seen", "expected": "expected infested"}
 PLOTS_STATES = {"fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
                 "late": "a week ago or never", "new": "no season yet"}  # fmt: skip
 PLOTS_TIP = "{name}: {expected:.0f} infested expected, {seen}"
 PLOTS_TIP_NEW = "{name}: no season yet"
-PLOTS_SEEN = {0: "seen today", None: "never seen", "n": "seen {n} days ago"}
+PLOTS_SEEN = {0: "seen today", None: "never seen",
+              "n": Plural("seen {n} day ago", "seen {n} days ago")}  # fmt: skip
 PLOTS_PICK = "Click a plot on the map, or a row here."
 WAYS_IN = {"sample": "Try the sample estate", "file": "Bring a plot of mine"}
 
 # -- today
+PLANTS_COUNTED = Plural("{n} plant", "{n} plants")
 BEGIN_TITLE = "Keep this season"
 BEGIN_NOTE = (
     "Begin a season, and everything is kept from here on: routes, what was found, and what that "
@@ -198,17 +220,35 @@ GIVE_OUT_HELP = "Keeps the route with the season, so that the report can hold it
 WHY, WHY_TODAY = "Why there", "today"
 CHANGED = "Since yesterday"
 CHANGED_FIRST = "This is the first day of the season; from tomorrow, changes stand here."
-CHANGED_FINDS = "{found} found on {inspected} plants inspected on {day}."
+CHANGED_FINDS = Plural(
+    "{found} found on {inspected} plant inspected on {day}.",
+    "{found} found on {inspected} plants inspected on {day}.", by="inspected",
+)  # fmt: skip
 CHANGED_NONE = "Nothing was recorded on {day}."
 CHANGED_OUT = "Still infested, as expected: {now:.1f} after {before:.1f} ({sign}{diff:.1f})."
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
-TODAY_OVER = (
-    "{inspected} plants inspected today, {found} found: the working day is over. Choose the next "
-    "day above for its route, or give more hours."
+_OVER = (
+    "inspected today, {found} found: the working day is over. Choose the next day above for "
+    "its route, or give more hours."
 )
-TODAY_DONE = "{inspected} plants inspected today so far, {found} found. The route shows the rest."
+TODAY_OVER = Plural(
+    "{inspected} plant " + _OVER, "{inspected} plants " + _OVER, by="inspected"
+)  # fmt: skip
+TODAY_DONE = Plural(
+    "{inspected} plant inspected today so far, {found} found. The route shows the rest.",
+    "{inspected} plants inspected today so far, {found} found. The route shows the rest.",
+    by="inspected",
+)
 OTHER_FORMATS, FORMAT, DOWNLOAD_AS = "Robot, phone, paper", "Format", "Download for {reader}"
+#: as `fieldmon.io.writers.handoff` says them, which takes long to load
+READERS = {
+    "nav2": "robots with Nav2 (ROS 2)", "waypoints": "robots of any kind",
+    "geojson": "QGIS, phones, web maps", "gpkg": "QGIS, QField, ArcGIS",
+    "shapefile": "older map programs and consoles", "csv": "spreadsheets",
+    "kml": "Google Earth, map apps on phones", "gpx": "GPS handhelds and hiking apps",
+    "sheet": "a printer: a scout without a phone",
+}  # fmt: skip
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
 
@@ -231,7 +271,7 @@ DRAW_HINTS = {"gate": "Click where the gate is.", "path": "Click along the path.
               "no_go": "Click the corners, one way round."}  # fmt: skip
 DRAW_TYPED = "or type positions (lon,lat lon,lat ...)"
 DRAW_ADD, DRAW_DONE, DRAW_UNDO, DRAW_DROP = "Add", "Finish", "Undo the last one", "Drop points"
-DRAW_POINTS = "{n} point(s) so far."
+DRAW_POINTS = Plural("{n} point so far.", "{n} points so far.")
 DRAW_LEAST = (
     "{what} needs {least} points or more, but {n} are given. Add points on the map, or type them."
 )
@@ -318,16 +358,22 @@ ONE_UNSAID = (
     "Row, plant and result must be said before they are recorded, but one of them is empty. Fill "
     "in all three."
 )
-CONTRADICTING = (
-    "{n} results from {source} contradict what is recorded of the same plants and day. Nothing is "
-    "recorded yet, nor are the {others} others. Which holds?"
+_CONTRADICTING = (
+    "what is recorded of the same plants and day. Nothing is recorded yet, nor are the {others} "
+    "others. Which holds?"
+)
+CONTRADICTING = Plural(
+    "{n} result from {source} contradicts " + _CONTRADICTING,
+    "{n} results from {source} contradict " + _CONTRADICTING,
 )
 AND_MORE = "... and {n} more."
 LEAVE_OUT, CONFIRM = "Leave these out, record {n} others", "Record these {n} too, both hold"
 RECORD_NONE = "Record nothing"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
 BATCHES_SAID = {
-    "findings": "{day} {time} · {source} · {n} plant(s)",
+    "findings": Plural(
+        "{day} {time} · {source} · {n} plant", "{day} {time} · {source} · {n} plants"
+    ),
     "treatment": "{day} {time} · treatment of the plot {source}",
 }
 TYPED_IN, ROUTE_TABLE = "typed in", "route table"
@@ -341,7 +387,9 @@ TREATED_BEFORE = "This treatment was noted already; nothing changed."
 ROW_AGES, DAYS_SINCE, ROW_AXIS = "Days since each row was inspected", "days", "row"
 OUT_AXIS, INSPECTED_AXIS, DATE_AXIS = "still infested (expected)", "inspected", "day"
 ROW_NEVER, ROW_TODAY = "never", "today"
-NEVER_ROWS = "{n} of {all} rows were never inspected."
+NEVER_ROWS = Plural(
+    "{n} of {all} rows was never inspected.", "{n} of {all} rows were never inspected."
+)
 
 # -- scouting
 SCOUT_NEEDS = (
@@ -359,7 +407,10 @@ ARROWS = ("⬆️", "↗️", "➡️", "↘️", "⬇️", "↙️", "⬅️", 
 CLEAN_BUTTON, FOUND_BUTTON = "Clean", "Found"
 SKIP_BUTTON, UNDO_BUTTON = "Could not inspect", "Undo"
 COUNT_LABEL = "Pests counted (if found)"
-SCOUT_DONE = "### Done for today\n{inspected} plants inspected, {found} found."
+SCOUT_DONE = Plural(
+    "### Done for today\n{inspected} plant inspected, {found} found.",
+    "### Done for today\n{inspected} plants inspected, {found} found.", by="inspected",
+)  # fmt: skip
 SCOUT_START = "Work starts at {start} by the settings of this season; it is {now}."
 SCOUT_NOW = "Begin now"
 SCOUT_LONGER, SCOUT_LONGER_NOTE = "One hour more", "The working day is over. Work on?"
@@ -410,3 +461,14 @@ PRIOR_INTRO = (
     "this plot the season starts from its own records where it has any."
 )
 PRIOR_PART, PRIOR_OWN = "Scenario or sweep", "This plot"
+
+
+class _Texts(ModuleType):
+    """A module whose constants are read in the session's language."""
+
+    def __getattribute__(self, name: str) -> Any:  # noqa: ANN401 - as the constant is
+        value = ModuleType.__getattribute__(self, name)
+        return language.translated(name, value) if name.isupper() and name[0] != "_" else value
+
+
+sys.modules[__name__].__class__ = _Texts

@@ -1,8 +1,70 @@
-"""How numbers of things are said."""
+"""Sentences that can be said in another language too, and how numbers of things are said."""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any, Self
 
-def counted(number: int, thing: str) -> str:
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+
+class Worded(str):  # noqa: SLOT000 - it holds what it was made of
+    """A finished English sentence that remembers its words and what stands in their blanks.
+
+    It is the sentence wherever one is printed or compared. Who speaks another language finds its
+    words by the English ones (see the app's `language`), and fills the same blanks.
+
+    Attributes
+    ----------
+    words
+        The sentence with its blanks, ``"{n} plants"``.
+    values
+        What stands in the blanks: numbers, names, other `Worded`.
+    one
+        The words for one thing, where they differ; ``number`` decides.
+    parts, between
+        Sentences that it joins, and by what.
+    """
+
+    words: str
+    values: dict[str, Any]
+    one: str
+    number: int
+    parts: tuple[str, ...]
+    between: str
+
+    def __new__(cls, sentence: str) -> Self:
+        """Return a sentence, which does not remember anything yet."""
+        made = super().__new__(cls, sentence)
+        made.words, made.values, made.one, made.number = sentence, {}, "", 0
+        made.parts, made.between = (), ""
+        return made
+
+
+def worded(words: str, **values: Any) -> Worded:  # noqa: ANN401 - whatever can be written
+    """Return a sentence from its words and what stands in their blanks.
+
+    Examples
+    --------
+    >>> worded("in rows {low} to {high}", low=3, high=17)
+    'in rows 3 to 17'
+    """
+    made = Worded(words.format(**values))
+    made.words, made.values = words, values
+    return made
+
+
+def joined(between: str, parts: Iterable[str]) -> Worded:
+    """Return sentences, or parts of one, joined."""
+    kept = tuple(parts)
+    made = Worded(between.join(kept))
+    made.parts, made.between = kept, between
+    return made
+
+
+def counted(number: int, thing: str) -> Worded:
     """Return so many things in words: "1 plant", "12 plants"."""
-    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
+    one, many = f"{{n}} {thing}", f"{{n}} {thing}s"
+    made = worded(one if number == 1 else many, n=number)
+    made.words, made.one, made.number = many, one, int(number)
+    return made

@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.hotspots import record_states
 from fieldmon.infestation.observations import Observations, usable
@@ -182,8 +183,10 @@ class Season:
         with self._lock, self.store.writing() as db:
             if as_json(_settings(db)) != as_json(seen):
                 raise FileProblem(
-                    "The season's settings must be as they were when you looked, but another "
-                    "window changed them. Look again and repeat your change."
+                    worded(
+                        "The season's settings must be as they were when you looked, but another "
+                        "window changed them. Look again and repeat your change."
+                    )
                 )
             settings_log.write(db, as_json(settings))
             self._refresh(db)
@@ -307,8 +310,10 @@ class Season:
         plants = self._inside(ground)
         if not plants.any():
             raise SettingError(
-                "The area treated must hold plants of this plot, but it holds none. "
-                "Check its coordinates."
+                worded(
+                    "The area treated must hold plants of this plot, but it holds none. Check its "
+                    "coordinates."
+                )
             )
         with self._lock, self.store.writing() as db:
             day = _settings(db).day(on)

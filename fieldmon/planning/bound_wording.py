@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from fieldmon.compute.wording import worded
+
 #: gaps up to this are none, but for rounding
 PROVED = 1e-6
 
@@ -15,7 +17,11 @@ def share_above(held: float, bound: float) -> float:
     return bound / held - 1.0 if held > 0.0 else math.inf
 
 
-def told(held: float, bound: float, what: str = "finds", routes: str = "route") -> str:
+#: what a route may hold
+FINDS, REWARD = worded("finds"), worded("reward")
+
+
+def told(held: float, bound: float, what: str = FINDS, routes: str = "route") -> str:
     """Return what a route is expected to hold and what no other can exceed.
 
     The bound and the share are rounded up: no route exceeds what is said.
@@ -27,13 +33,27 @@ def told(held: float, bound: float, what: str = "finds", routes: str = "route") 
     >>> told(20.0, 20.0)
     '20.0 finds expected; no route of these hours can expect more.'
     """
+    said = _of_route(held, bound, what)
+    return said if routes == "route" else said.replace("no route", f"no {routes}", 1)
+
+
+def _of_route(held: float, bound: float, what: str) -> str:
     digits = _digits(bound)
-    begins = f"{held:.{digits}f} {what} expected; no {routes} of these hours can expect more"
+    values = {"held": held, "digits": digits, "what": what, "bound": _up(bound, digits)}
     gap = share_above(held, bound)
     if gap <= PROVED:
-        return f"{begins}."
-    share = f" ({_up(100.0 * gap, 1)} %)" if math.isfinite(gap) else ""
-    return f"{begins} than {_up(bound, digits)}{share}."
+        return worded(
+            "{held:.{digits}f} {what} expected; no route of these hours can expect more.", **values
+        )
+    if not math.isfinite(gap):
+        return worded(
+            "{held:.{digits}f} {what} expected; no route of these hours can expect more than "
+            "{bound:.{digits}f}.", **values,
+        )  # fmt: skip
+    return worded(
+        "{held:.{digits}f} {what} expected; no route of these hours can expect more than "
+        "{bound:.{digits}f} ({share:.1f} %).", **values, share=_up(100.0 * gap, 1),
+    )  # fmt: skip
 
 
 def _digits(value: float) -> int:
@@ -41,7 +61,7 @@ def _digits(value: float) -> int:
     return 1 if value >= 1.0 or value <= 0.0 else 1 - math.floor(math.log10(value))
 
 
-def _up(value: float, digits: int) -> str:
-    """Return a number rounded up, but for what is mere rounding of sums."""
+def _up(value: float, digits: int) -> float:
+    """Return a number rounded up to so many decimals, but for what is mere rounding of sums."""
     scale = 10.0**digits
-    return f"{math.ceil(value * scale * (1.0 - 1e-9)) / scale:.{digits}f}"
+    return math.ceil(value * scale * (1.0 - 1e-9)) / scale

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.plot.grid import row_label
 from fieldmon.samplers.base import NEVER
 
@@ -46,7 +46,7 @@ def explain(
         ``(n,)`` plants of which records speak that are older than all inspections.
     """
     if not len(work):
-        return ["No plant can be reached in the hours left."]
+        return [worded("No plant can be reached in the hours left.")]
     finds = np.empty(0, np.int32) if finds is None else finds
     near = _nearest_find(scene, work.plant, finds)
     recorded = np.zeros(len(scene.grid), bool) if recorded is None else recorded
@@ -61,15 +61,23 @@ def _told_finds(
     which, count = np.unique(near[near >= 0], return_counts=True)
     order = np.argsort(-count, kind="stable")
     few = order if len(order) <= _FINDS + 1 else order[:_FINDS]
-    said = []
+    said: list[str] = []
     for find, around in zip(which[few].tolist(), count[few].tolist(), strict=True):
         line, number = (int(part[0]) for part in row_label(scene.grid, finds[[find]]))
-        when = f"{found_on[find]}'s find" if len(found_on) else "the find"
-        said.append(f"{counted(around, 'plant')} around {when} in row {line}, plant {number}.")
+        words: dict[str, Any] = {
+            "plants": counted(around, "plant"), "row": line, "number": number,
+        }  # fmt: skip
+        if len(found_on):
+            sentence = worded("{plants} around {day}'s find in row {row}, plant {number}.",
+                              day=found_on[find], **words)  # fmt: skip
+        else:
+            sentence = worded("{plants} around the find in row {row}, plant {number}.", **words)
+        said.append(sentence)
     if len(few) == len(order):
         return said
     rest = order[_FINDS:]
-    return [*said, f"{counted(int(count[rest].sum()), 'plant')} around {len(rest)} other finds."]
+    around = counted(int(count[rest].sum()), "plant")
+    return [*said, worded("{plants} around {n} other finds.", plants=around, n=len(rest))]
 
 
 def _nearest_find(
@@ -106,16 +114,23 @@ def _block(
     recorded: NDArray[np.bool_],
 ) -> str:
     low, high = int(line.min()), int(line.max())
-    where = f"in row {low}" if low == high else f"in rows {low} to {high}"
+    plants_said = counted(len(plants), "plant")
+    where = worded("in rows {low} to {high}", low=low, high=high)
+    if low == high:
+        where = worded("in row {row}", row=low)
     last = scene.last_inspected[plants]
     unseen = last == NEVER
     never = int(np.count_nonzero(unseen & ~recorded[plants]))
     known = int(np.count_nonzero(unseen)) - never
     if never == len(plants):
-        return f"{counted(len(plants), 'plant')} {where}: never inspected yet."
-    said = [f"{known} known from records only"] if known else []
+        return worded("{plants} {where}: never inspected yet.", plants=plants_said, where=where)
+    said = [worded("{n} known from records only", n=known)] if known else []
     if not unseen.all():
         days = round(float(np.median(scene.day - last[~unseen])))
-        said = [f"not inspected for {counted(days, 'day')}", *said]
-    said += [f"{never} {'of them ' if not known else ''}never inspected yet"] if never else []
-    return f"{counted(len(plants), 'plant')} {where}: {', '.join(said)}."
+        said = [worded("not inspected for {days}", days=counted(days, "day")), *said]
+    if never and known:
+        said.append(worded("{n} never inspected yet", n=never))
+    elif never:
+        said.append(worded("{n} of them never inspected yet", n=never))
+    all_said = joined(", ", said)
+    return worded("{plants} {where}: {said}.", plants=plants_said, where=where, said=all_said)

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from fieldmon.compute.arrays import offsets, read_only
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
@@ -250,12 +250,24 @@ def plant_at(grid: PlantGrid, line: int, number: int) -> int:
     first_of_line, _ = _line_faces(grid)
     n_lines = len(first_of_line)
     if not 1 <= line <= n_lines:
-        raise PlotError(f"A row must be one of 1 to {n_lines} on this plot, but it is {line}.")
+        raise PlotError(
+            worded(
+                "A row must be one of 1 to {last} on this plot, but it is {line}.",
+                last=n_lines,
+                line=line,
+            )
+        )
     plant = int(first_of_line[line - 1]) + number - 1
     last = int(row_label(grid).number[grid.row_line[grid.row] == line - 1].max())
     if not 1 <= number <= last:
         raise PlotError(
-            f"A plant in row {line} must be one of 1 to {last} on this plot, but it is {number}."
+            worded(
+                "A plant in row {line} must be one of 1 to {last} on this plot, but it is "
+                "{number}.",
+                line=line,
+                last=last,
+                number=number,
+            )
         )
     return plant
 

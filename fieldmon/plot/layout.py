@@ -11,7 +11,7 @@ import shapely
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.arrays import offsets, runs
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot import adjacency
 from fieldmon.plot.bent_layout import Ground
@@ -81,11 +81,17 @@ class Planting:
                 )
         if self.row_bearing_deg is not None and not np.isfinite(self.row_bearing_deg):
             raise SettingError(
-                f"A row bearing must be a number of degrees, but it is {self.row_bearing_deg}."
+                worded(
+                    "A row bearing must be a number of degrees, but it is {row_bearing_deg}.",
+                    row_bearing_deg=self.row_bearing_deg,
+                )
             )
         if self.faces not in (1, 2):
             raise SettingError(
-                f"A row has 1 or 2 faces to inspect, but the planting says {self.faces}."
+                worded(
+                    "A row has 1 or 2 faces to inspect, but the planting says {faces}.",
+                    faces=self.faces,
+                )
             )
 
 
@@ -258,8 +264,12 @@ def rectangle(
     """
     if n_rows < 1 or n_plants < 1:
         raise SettingError(
-            f"A rectangle of plants must have at least 1 row of 1 plant, "
-            f"but {n_rows} rows of {n_plants} plants were asked for."
+            worded(
+                "A rectangle of plants must have at least 1 row of 1 plant, but {n_rows} rows "
+                "of {n_plants} plants were asked for.",
+                n_rows=n_rows,
+                n_plants=n_plants,
+            )
         )
     planting = planting or Planting()
     bearing_deg = 90.0 if planting.row_bearing_deg is None else planting.row_bearing_deg
@@ -342,8 +352,10 @@ def _two_faced(frame: Frame, pieces: Pieces, area: MultiPolygon, planting: Plant
         inner = (sides[0] & sides[1])[corridor]
         if not inner.any():
             raise PlotError(
-                "Two rows or more must face each other if outer faces are not inspected, "
-                "but no two do. Inspect outer faces too, or one face only."
+                worded(
+                    "Two rows or more must face each other if outer faces are not inspected, but "
+                    "no two do. Inspect outer faces too, or one face only."
+                )
             )
         piece, upper, lane_y, lane_x = piece[inner], upper[inner], lane_y[inner], lane_x[inner]
         corridor = np.unique(corridor[inner], return_inverse=True)[1]
@@ -392,20 +404,36 @@ def _check_size(name: str, area: MultiPolygon, planting: Planting) -> None:
     about = area.area / (planting.row_spacing_m * planting.plant_spacing_m)
     if about > _MOST_PLANTS:
         raise PlotError(
-            f"A plot may have {_MOST_PLANTS} plants, but {name!r} ({area.area / 1e4:.0f} ha) would "
-            f"have about {about:.0f} with rows {planting.row_spacing_m} m and plants "
-            f"{planting.plant_spacing_m} m apart. Check the spacings and the boundary's units."
+            worded(
+                "A plot may have {most} plants, but {name!r} ({area_ha:.0f} ha) would have "
+                "about {about:.0f} with rows {row_spacing_m} m and plants {plant_spacing_m} m "
+                "apart. Check the spacings and the boundary's units.",
+                most=_MOST_PLANTS,
+                name=name,
+                area_ha=area.area / 10000.0,
+                about=about,
+                row_spacing_m=planting.row_spacing_m,
+                plant_spacing_m=planting.plant_spacing_m,
+            )
         )
 
 
 def _no_room(name: str, area: MultiPolygon, planting: Planting) -> PlotError:
     low_x, low_y, high_x, high_y = area.bounds
     return PlotError(
-        f"A plot must have room for one plant: a strip {planting.row_spacing_m:g} m wide (the row "
-        f"spacing) and {2 * planting.headland_m:g} m long (two headlands) along the rows. Plot "
-        f"{name!r} ({area.area:.0f} m2; {high_x - low_x:.1f} m along the rows, "
-        f"{high_y - low_y:.1f} m across) has none. Choose a smaller headland or row spacing, "
-        "another row bearing, or check the boundary."
+        worded(
+            "A plot must have room for one plant: a strip {row_spacing_m:g} m wide (the "
+            "row spacing) and {headlands_m:g} m long (two headlands) along the rows. Plot "
+            "{name!r} ({area_m2:.0f} m2; {along_m:.1f} m along the rows, {across_m:.1f} m "
+            "across) has none. Choose a smaller headland or row spacing, another row "
+            "bearing, or check the boundary.",
+            row_spacing_m=planting.row_spacing_m,
+            headlands_m=2 * planting.headland_m,
+            name=name,
+            area_m2=area.area,
+            along_m=high_x - low_x,
+            across_m=high_y - low_y,
+        )
     )
 
 
@@ -469,9 +497,16 @@ def check_apart(lonlat: Float) -> None:
     if len(alone) < len(lonlat):
         first = int(np.setdiff1d(np.arange(len(lonlat)), alone)[0])
         raise PlotError(
-            f"No two plants may stand in one place, but {len(lonlat) - len(alone)} of "
-            f"{len(lonlat)} are within 5 cm of an earlier one, the first of them plant "
-            f"{first + 1} at ({lonlat[first, 0]:.7f}, {lonlat[first, 1]:.7f}). Leave doubles out."
+            worded(
+                "No two plants may stand in one place, but {n} of {all} are within 5 cm of an "
+                "earlier one, the first of them plant {plant} at ({lon:.7f}, {lat:.7f}). Leave "
+                "doubles out.",
+                n=len(lonlat) - len(alone),
+                all=len(lonlat),
+                plant=first + 1,
+                lon=lonlat[first, 0],
+                lat=lonlat[first, 1],
+            )
         )
 
 

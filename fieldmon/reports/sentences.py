@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import Worded, counted, worded
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import words
 
@@ -25,12 +25,15 @@ _MOST_SPOTS = 8
 def headline(route: Route, day: str) -> str:
     """Return what there is to do on a day, in one sentence."""
     if not len(route):
-        return words.HEADLINE_NONE.format(day=day)
+        return worded(words.HEADLINE_NONE, day=day)
     line = row_label(route.aisles.grid, route.plant).line
     low, high = int(line.min()), int(line.max())
-    rows = (words.ROWS if low < high else words.ROW).format(low=low, high=high)
-    return words.HEADLINE.format(
-        plants=counted(len(route), "plant"), rows=rows, day=day, hours=route.end_s / 3600,
+    rows = worded(words.ROW, low=low)
+    if low < high:
+        rows = worded(words.ROWS, low=low, high=high)
+    return worded(
+        words.HEADLINE, plants=counted(len(route), "plant"), rows=rows, day=day,
+        hours=route.end_s / 3600,
         finds=counted(round(route.expected_found), "find"),
     )  # fmt: skip
 
@@ -38,14 +41,16 @@ def headline(route: Route, day: str) -> str:
 def hot_spot_meanings(grid: PlantGrid, spots: HotSpots) -> list[str]:
     """Return where each hot spot is and what it means, a sentence each; of eight at most."""
     if not len(spots):
-        return [words.HOT_NONE]
-    said = []
+        return [worded(words.HOT_NONE)]
+    said: list[str] = []
     for k in range(min(len(spots), _MOST_SPOTS)):
         p = float(spots.p[k])
-        chance = words.CHANCE_P_SMALL if p < 1e-4 else words.CHANCE_P.format(n=max(round(1 / p), 1))
+        chance = worded(words.CHANCE_P_SMALL)
+        if p >= 1e-4:
+            chance = worded(words.CHANCE_P, n=max(round(1 / p), 1))
         said.append(
-            words.HOT_MEANS.format(
-                rows=_place(grid, np.flatnonzero(spots.of_plant == k)),
+            worded(
+                words.HOT_MEANS, rows=_place(grid, np.flatnonzero(spots.of_plant == k)),
                 found=spots.found[k], inspected=spots.inspected[k], plants=spots.plants[k],
                 expected=spots.expected[k], p=chance,
             )
@@ -53,13 +58,14 @@ def hot_spot_meanings(grid: PlantGrid, spots: HotSpots) -> list[str]:
     return said
 
 
-def _place(grid: PlantGrid, plants: NDArray[np.intp]) -> str:
+def _place(grid: PlantGrid, plants: NDArray[np.intp]) -> Worded:
     """Return which rows and which of their plants these are, in words."""
     label = row_label(grid, plants)
     first, last = int(label.line.min()), int(label.line.max())
-    said = words.HOT_ROW if first == last else words.HOT_ROWS
     low, high = int(label.number.min()), int(label.number.max())
-    return said.format(first=first, last=last, low=low, high=high)
+    if first == last:
+        return worded(words.HOT_ROW, first=first, low=low, high=high)
+    return worded(words.HOT_ROWS, first=first, last=last, low=low, high=high)
 
 
 def runs(numbers: Iterable[int]) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 from shapely import MultiPolygon, box
 
 from app.state.choices import Choices
-from app.words.units import Units
+from app.words.units import UnitsInLanguage
 from fieldmon.infestation.observations import Observations
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting
@@ -38,7 +38,9 @@ def chosen(plot, records=None, season=None, **more):
     given = {"robot": Robot(hours=1.0), "sampler": "adaptive", "day": DAY.isoformat()} | more
     key = f"test {next(_KEYS)}" if season is None else str(season.path)
     records = Observations.none() if records is None else records
-    return Choices(key, plot, records, (), units=Units(), season=season, plot_key=key, **given)
+    return Choices(
+        key, plot, records, (), units=UnitsInLanguage(), season=season, plot_key=key, **given
+    )
 
 
 def in_season(season, day=DAY):

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 import streamlit as st
 
+from app.words import language
 from fieldmon.monitoring import Season
 from fieldmon.plot import local_clock
 from tests.app.driving import begun, opened
@@ -160,3 +161,14 @@ def shared():
             pytest.fail(f"the real data folder {folder} must be here, but it is not")
         pytest.skip(f"the real data folder {folder} is not on this machine")
     return folder
+
+
+@pytest.fixture
+def speaking():
+    """Let the texts speak a language, and English again at the end."""
+
+    def speak(code):
+        language.use(code)
+
+    yield speak
+    language.use(language.ENGLISH)

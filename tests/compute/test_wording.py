@@ -1,8 +1,10 @@
-"""Numbers of things as they are said."""
+"""Sentences that remember their words, and numbers of things as they are said."""
+
+import pickle
 
 import pytest
 
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import Worded, counted, worded
 
 
 @pytest.mark.parametrize(
@@ -10,3 +12,23 @@ from fieldmon.compute.wording import counted
 )
 def test_one_thing_stands_alone_and_any_other_number_is_several(number, said):
     assert counted(number, "plant") == said
+
+
+def test_a_worded_sentence_is_the_sentence_everywhere_but_remembers_its_words():
+    said = worded("{plants} {where}: never inspected yet.", plants=counted(3, "plant"),
+                  where=worded("in row {row}", row=7))  # fmt: skip
+    assert said == "3 plants in row 7: never inspected yet."
+    assert f"{said}" == str(said) == said
+    assert isinstance(said, Worded)
+
+
+def test_worded_sentences_survive_the_way_from_another_process():
+
+    said = pickle.loads(  # noqa: S301 - from here
+        pickle.dumps(worded("in row {row}", row=counted(2, "plant")))
+    )
+    assert (said, said.words, said.values["row"].one) == (
+        "in row 2 plants",
+        "in row {row}",
+        "{n} plant",
+    )

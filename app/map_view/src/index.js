@@ -54,6 +54,7 @@ class MapPage {
     this.data = data;
     this.tell = setTriggerValue;
     const turn = (this.turn = (this.turn ?? 0) + 1);
+    this.speak(data);
     this.restore();
     this.shape.again(); // another room's panel may be wider, and now there are words
     this.root.classList.toggle("dark", data.dark);
@@ -76,6 +77,14 @@ class MapPage {
     this.look();
     this.drawLayers();
     this.root.dataset.shown = data.layers.map((one) => one.url).join(" ");
+  }
+
+  // the page reads in the language of its words; the panel's handle is then on the other side
+  speak({ language, direction }) {
+    const page = document.documentElement, turned = page.dir !== direction;
+    page.lang = language;
+    page.dir = direction;
+    if (turned) window.dispatchEvent(new Event("resize"));
   }
 
   look() {

@@ -36,8 +36,7 @@ export function covered() {
 
 function measure() {
   const { left, right, bottom } = covered();
-  page.style.setProperty("--covers-left", `${left}px`);
-  page.style.setProperty("--covers-right", `${right}px`);
+  page.style.setProperty("--covers-start", `${left + right}px`);
   page.style.setProperty("--covers-bottom", `${bottom}px`);
 }
 
@@ -58,7 +57,7 @@ export function keepShape(words) {
     page.style.setProperty("--sheet-top", `${Math.round(100 * (shape.sheet ?? HALF))}dvh`);
     measure();
     const said = words() ?? {};
-    fold.textContent = shape.folded ? "›" : "‹";
+    fold.textContent = shape.folded ? "›" : "‹"; // mirrored by itself where one reads from the right
     fold.setAttribute("aria-label", (shape.folded ? said.unfold : said.fold) ?? "");
     fold.setAttribute("aria-expanded", String(!shape.folded));
     grip.setAttribute("aria-label", said.sheet ?? "");

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ...words import texts
+from ...words.language import number
 from . import colours
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ def part(title: str, items: list[tuple[str, Colour, str]], of: str = "") -> Lege
 
 def by_chance(*, dark: bool = False) -> LegendPart:
     """Return the scale of chances: the lower end of each class."""
-    names = [f"{low * 100:g} %" for low in colours.CHANCE_FROM]
+    names = [texts.IN_PERCENT.format(value=number(low * 100, "g")) for low in colours.CHANCE_FROM]
     names[-1] += "+"
     classes = zip(colours.of_chance(dark=dark), names, strict=True)
     items = [("square", colour, name) for colour, name in classes]

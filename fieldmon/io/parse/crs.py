@@ -16,6 +16,7 @@ from pyproj.enums import PJType
 from pyproj.exceptions import CRSError, ProjError
 from pyproj.transformer import TransformerGroup
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import ImportMessage, doubtful, seen
 
@@ -87,18 +88,21 @@ class Transformation:
         """Return what there is to say about the accuracy."""
         if self.transformer is None:
             return []
-        stated = (
-            "PROJ states no accuracy for this"
-            if self.accuracy_m is None
-            else f"PROJ states {self.accuracy_m:g} m for this"
-        )
-        how = f"Positions were transformed from {self.name} ({self.code}); {stated}."
+        stated = worded("PROJ states no accuracy for this")
+        if self.accuracy_m is not None:
+            stated = worded("PROJ states {accuracy_m:g} m for this", accuracy_m=self.accuracy_m)
+        how = worded("Positions were transformed from {name} ({code}); {stated}.",
+                     name=self.name, code=self.code, stated=stated)  # fmt: skip
         if self.missing_grid is None:
             return [seen(how)]
         return [
             doubtful(
-                f"{how} A better transformation needs the grid file {self.missing_grid}, which "
-                "is not on this machine: add it to PROJ's data folder if that is too coarse."
+                worded(
+                    "{how} A better transformation needs the grid file {grid}, which is not on "
+                    "this machine: add it to PROJ's data folder if that is too coarse.",
+                    how=how,
+                    grid=self.missing_grid,
+                )
             )
         ]
 

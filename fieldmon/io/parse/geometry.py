@@ -10,6 +10,7 @@ import shapely
 from shapely import MultiPolygon, Polygon
 from shapely.errors import GEOSException
 
+from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, doubtful, dropped, repaired
 
 if TYPE_CHECKING:
@@ -168,8 +169,13 @@ def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Impo
         whole = MultiPolygon([p for p, wide in zip(whole.geoms, is_wide, strict=True) if wide])
         messages.append(
             dropped(
-                f"{int((~is_wide).sum())} part(s) too small or narrow for a plant were left out "
-                f"(under {_SLIVER_M2:g} m2 or {_SLIVER_WIDTH_M:g} m wide).",
+                worded(
+                    "{n} part(s) too small or narrow for a plant were left out (under "
+                    "{sliver_m2:g} m2 or {sliver_width_m:g} m wide).",
+                    n=int((~is_wide).sum()),
+                    sliver_m2=_SLIVER_M2,
+                    sliver_width_m=_SLIVER_WIDTH_M,
+                ),
                 name,
                 many="{n} plots have parts too small or narrow for a plant, which were left out",
             )
@@ -209,8 +215,13 @@ def _questions(area: float, name: str) -> list[ImportMessage]:
         return []
     return [
         doubtful(
-            f"A plot has {_amount(SMALLEST_M2)} to {_amount(LARGEST_M2)} as a rule, but this one "
-            f"has {_amount(area)}. Check the coordinate system and the choice of feature.",
+            worded(
+                "A plot has {least} to {most} as a rule, but this one has {has}. Check the "
+                "coordinate system and the choice of feature.",
+                least=_amount(SMALLEST_M2),
+                most=_amount(LARGEST_M2),
+                has=_amount(area),
+            ),
             name,
             many="{n} plots are smaller or larger than is usual",
         )

@@ -12,6 +12,7 @@ import pyproj
 import shapely
 from pyproj.exceptions import CRSError
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import (
@@ -99,13 +100,20 @@ def _points(layer: Layer, options: ReadOptions) -> LocatedFeatures:
     areas, lines, points = geometry_kinds(np.asarray(geometry))
     if geometry is None or not points.any():
         raise FileProblem(
-            f"{layer.name} must hold points, but it holds {int(areas.sum())} area(s) and "
-            f"{int(lines.sum())} line(s). Choose another file or layer."
+            worded(
+                "{file} must hold points, but it holds {areas} area(s) and {lines} line(s). "
+                "Choose another file or layer.",
+                file=layer.name,
+                areas=int(areas.sum()),
+                lines=int(lines.sum()),
+            )
         )
     messages = []
     others = len(layer) - int(points.sum())
     if others:
-        messages.append(dropped(f"{others} feature(s) that are no points were left out."))
+        messages.append(
+            dropped(worded("{n} feature(s) that are no points were left out.", n=others))
+        )
     single, index = shapely.get_parts(geometry[points], return_index=True)
     kept = layer.take(np.flatnonzero(points)[index])
     placed = place(shapely.get_coordinates(single), layer.crs, options)
@@ -163,7 +171,7 @@ def _by_coordinates(
     messages += unread.messages()
     placed = place(xy[there], stated or crs, options)
     accuracy, coarse = _rounding(placed.step_m, int(there.sum()))
-    found = (seen(f"Positions are in column(s) {shown}."), *messages, *more)
+    found = (seen(worded("Positions are in column(s) {shown}.", shown=shown)), *messages, *more)
     return LocatedFeatures(
         layer.take(np.flatnonzero(there)),
         placed.lonlat,
@@ -207,9 +215,9 @@ def _order_of(is_certain: bool, name: str) -> list[ImportMessage]:  # noqa: FBT0
         return []
     return [
         guessed(
-            "Both coordinates stand in one column; they were read as latitude, longitude.",
+            worded("Both coordinates stand in one column; they were read as latitude, longitude."),
             name,
-            Remedy("swap_axes", "yes", "Read as longitude, latitude"),
+            Remedy("swap_axes", "yes", worded("Read as longitude, latitude")),
         )
     ]
 
@@ -273,8 +281,13 @@ def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Im
         return None, []  # Datum: the day in German, the system in English
     if len(stated) > 1:
         raise ChoiceNeeded(
-            f"All records must be in one coordinate system, but column {name!r} names "
-            f"{len(stated)}: {', '.join(sorted(stated)[:5])}. Choose the records of one of them.",
+            worded(
+                "All records must be in one coordinate system, but column {name!r} names {n}: "
+                "{names}. Choose the records of one of them.",
+                name=name,
+                n=len(stated),
+                names=", ".join(sorted(stated)[:5]),
+            ),
             "where",
             tuple(f"{name}={value}" for value in sorted(stated)),
         )
@@ -283,7 +296,9 @@ def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Im
         if known is None:
             said = f"It names the coordinate system {value!r}, which is not known."
             return None, [doubtful(said, name)]
-        return known, [seen(f"Column {name!r} names the coordinate system {value}.")]
+        return known, [
+            seen(worded("Column {name!r} names the coordinate system {crs}.", name=name, crs=value))
+        ]
     return None, []
 
 
@@ -319,9 +334,13 @@ def _by_name(layer: Layer, options: ReadOptions, places: NamedPlaces) -> Located
         )
     else:
         raise ChoiceNeeded(
-            f"{layer.name} must have a column of longitudes and one of latitudes (or eastings and "
-            "northings, or rows and plants), but none were recognised among: "
-            f"{', '.join(layer.columns)}. Name them.",
+            worded(
+                "{file} must have a column of longitudes and one of latitudes (or eastings and "
+                "northings, or rows and plants), but none were recognised among: {names}. Name "
+                "them.",
+                file=layer.name,
+                names=", ".join(layer.columns),
+            ),
             "columns",
             could_be_positions(layer, options),
         )
@@ -370,8 +389,10 @@ def _plants_needed(layer: Layer, plot: str | None) -> ChoiceNeeded:
     """Return the question for the plants that records name, with the plots they name."""
     plots = sorted({text(v) for v in layer.column(plot)} - {""}) if plot else []
     return ChoiceNeeded(
-        "The records name plants instead of positions. Give the plants they name: the plot's "
-        "own rows and numbers, or a file with their positions.",
+        worded(
+            "The records name plants instead of positions. Give the plants they name: the "
+            "plot's own rows and numbers, or a file with their positions."
+        ),
         "plants",
         tuple(plots),
     )
@@ -384,9 +405,14 @@ def _check_one_plot(layer: Layer, plot: str | None) -> None:
     names = sorted({text(v) for v in layer.column(plot)} - {""})
     if len(names) > 1:
         raise ChoiceNeeded(
-            f"Records that name rows and plants must be of one plot, but column {plot!r} names "
-            f"{len(names)}: {', '.join(names[:12])}. Choose the records of one of them, "
-            "or say that no column names a plot: columns=plot=.",
+            worded(
+                "Records that name rows and plants must be of one plot, but column {plot!r} "
+                "names {n}: {names}. Choose the records of one of them, or say that no column "
+                "names a plot: columns=plot=.",
+                plot=plot,
+                n=len(names),
+                names=", ".join(names[:12]),
+            ),
             "where",
             tuple(f"{plot}={name}" for name in names),
         )
@@ -414,7 +440,10 @@ def _rounding(step_m: float, n: int) -> tuple[NDArray[np.float64], list[ImportMe
         return np.full(n, np.nan), []
     return np.full(n, step_m / np.sqrt(6)), [  # both axes, each even over the step
         doubtful(
-            f"Coordinates are rounded to about {step_m:.3g} m: too coarse to name a plant. "
-            "They are used with that accuracy."
+            worded(
+                "Coordinates are rounded to about {step_m:.3g} m: too coarse to name a plant. "
+                "They are used with that accuracy.",
+                step_m=step_m,
+            )
         )
     ]

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
+from fieldmon.compute.wording import worded
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.import_report import (
@@ -50,7 +51,7 @@ _LISTED = 20  # doubtful records that are named one by one
 _NEIGHBOURS = 13  # plants among which the nearest and its rivals are: two rings, or both faces
 _FARTHEST_DEG = 1.0
 _TOUCH_M = 1e-3
-_TAKE = Remedy("take_doubtful", "yes", "Take it all the same")
+_TAKE = Remedy("take_doubtful", "yes", worded("Take it all the same"))
 
 
 def read_inspections(
@@ -112,7 +113,9 @@ def look_up(
     once = _once_each(inspections)
     if len(once) < len(inspections):
         n_again = len(inspections) - len(once)
-        said.append(seen(f"{n_again} record(s) say again what another one says; taken once."))
+        said.append(
+            seen(worded("{n} record(s) say again what another one says; taken once.", n=n_again))
+        )
     return once, tuple(said)
 
 
@@ -300,7 +303,9 @@ def _about_accuracy(
         return []
     said = f"{int(unsaid.sum())} position(s) state no accuracy and were taken as exact."
     return [
-        guessed(said, None, Remedy("accuracy_m", "3", "Say how far off they may be, in metres"))
+        guessed(
+            said, None, Remedy("accuracy_m", "3", worded("Say how far off they may be, in metres"))
+        )
     ]
 
 

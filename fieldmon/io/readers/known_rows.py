@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, seen
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.values import numbers
@@ -56,5 +57,10 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
     if not used:
         return {}, []
     rows = (KnownRows(*one) for one in zip(*values, strict=True))
-    said = seen(f"Direction and spacings of rows and plants are taken from {', '.join(used)}.")
+    said = seen(
+        worded(
+            "Direction and spacings of rows and plants are taken from {names}.",
+            names=", ".join(used),
+        )
+    )
     return dict(zip(names, rows, strict=True)), [said]

@@ -9,6 +9,7 @@ import numpy as np
 import pyproj
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, dropped, seen
 from fieldmon.plot.grid import nearest_plants
@@ -51,8 +52,15 @@ class RecordsNearPlot:
             return []
         return [
             dropped(
-                f"{n} of {n + len(self.inside)} record(s) lie outside {plot} and were kept apart: "
-                f"{_far(self.outside_m.min())} to {_far(self.outside_m.max())} away."
+                worded(
+                    "{n} of {all} record(s) lie outside {plot} and were kept apart: {nearest} to "
+                    "{farthest} away.",
+                    n=n,
+                    all=n + len(self.inside),
+                    plot=plot,
+                    nearest=_far(self.outside_m.min()),
+                    farthest=_far(self.outside_m.max()),
+                )
             )
         ]
 
@@ -88,16 +96,26 @@ def of_plot(observations: Observations, field: Field) -> tuple[Observations, lis
     swapped_m = distance_m(observations.lonlat[:, ::-1], field)
     if np.median(swapped_m) < min(10_000.0, 0.01 * float(np.median(split.outside_m))):
         raise ChoiceNeeded(
-            f"Records must lie on plot {field.name} or near it, but the nearest is {nearest} away. "
-            f"With longitude and latitude exchanged they would be {_far(float(swapped_m.min()))} "
-            "away: exchange them if that is right.",
+            worded(
+                "Records must lie on plot {name} or near it, but the nearest is {nearest} "
+                "away. With longitude and latitude exchanged they would be {far} away: "
+                "exchange them if that is right.",
+                name=field.name,
+                nearest=nearest,
+                far=_far(float(swapped_m.min())),
+            ),
             "swap_axes",
             ("yes",),
         )
     raise ObservationError(
-        f"Records must lie on plot {field.name} or near it, but the nearest of "
-        f"{len(observations)} is {nearest} away. Check the choice of plot, the coordinate system "
-        "and the order of longitude and latitude."
+        worded(
+            "Records must lie on plot {name} or near it, but the nearest of {n} is "
+            "{nearest} away. Check the choice of plot, the coordinate system and the order "
+            "of longitude and latitude.",
+            name=field.name,
+            n=len(observations),
+            nearest=nearest,
+        )
     )
 
 
@@ -114,17 +132,25 @@ def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage
     if beside.any():
         messages.append(
             doubtful(
-                f"{int(beside.sum())} record(s) lie on no plant: {_far(away[beside].min())} to "
-                f"{_far(away[beside].max())} from the nearest. They count for the plants around "
-                "them, and for none as its own."
+                worded(
+                    "{n} record(s) lie on no plant: {nearest} to {farthest} from the nearest. They "
+                    "count for the plants around them, and for none as its own.",
+                    n=int(beside.sum()),
+                    nearest=_far(away[beside].min()),
+                    farthest=_far(away[beside].max()),
+                )
             )
         )
     if rough.any():
         messages.append(
             seen(
-                f"{int(rough.sum())} record(s) are placed to {_far(float(np.median(own_m[rough])))}"
-                f" while plants stand {grid.plant_spacing_m:g} m apart: they count "
-                "for the nearest plant and for those around it."
+                worded(
+                    "{n} record(s) are placed to {far} while plants stand {plant_spacing_m:g} m "
+                    "apart: they count for the nearest plant and for those around it.",
+                    n=int(rough.sum()),
+                    far=_far(float(np.median(own_m[rough]))),
+                    plant_spacing_m=grid.plant_spacing_m,
+                )
             )
         )
     return messages
@@ -155,9 +181,12 @@ def _questioned(observations: Observations, field: Field) -> list[ImportMessage]
         return []
     return [
         doubtful(
-            f"{int(odd.sum())} record(s) would lie on the plot with longitude and latitude "
-            "exchanged. Check their order.",
-            remedy=Remedy("swap_axes", "yes", "Exchange longitude and latitude"),
+            worded(
+                "{n} record(s) would lie on the plot with longitude and latitude exchanged. "
+                "Check their order.",
+                n=int(odd.sum()),
+            ),
+            remedy=Remedy("swap_axes", "yes", worded("Exchange longitude and latitude")),
         )
     ]
 

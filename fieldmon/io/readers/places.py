@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, dropped, guessed, seen
@@ -171,14 +172,26 @@ def _elsewhere(plot: NDArray[np.str_], places: NamedPlaces) -> list[ImportMessag
     if not others:
         return []
     named = sorted(set(others))
-    return [dropped(f"{len(others)} record(s) are of {len(named)} other plot(s): {_some(named)}.")]
+    return [
+        dropped(
+            worded(
+                "{n} record(s) are of {plots} other plot(s): {names}.",
+                n=len(others),
+                plots=len(named),
+                names=_some(named),
+            )
+        )
+    ]
 
 
 def by_plot(names: NDArray[np.object_], places: NamedPlaces) -> PlacedByName:
     """Return where records lie that name a plot: at its middle, as far off as the plot is wide."""
     if not places.plots:
         raise ChoiceNeeded(
-            "The records name plots instead of positions. Give the file with the plots they name.",
+            worded(
+                "The records name plots instead of positions. Give the file with the plots "
+                "they name."
+            ),
             "plots",
         )
     wanted = _names(names)
@@ -191,8 +204,11 @@ def by_plot(names: NDArray[np.object_], places: NamedPlaces) -> PlacedByName:
     lonlat = np.where(there[:, None], middle[match], np.nan)
     accuracy = np.where(there, reach[match], np.nan)
     said = seen(
-        f"{int(there.sum())} record(s) name a plot and lie somewhere on it: they were put at its "
-        "middle, with the plot's radius as their accuracy."
+        worded(
+            "{n} record(s) name a plot and lie somewhere on it: they were put at its "
+            "middle, with the plot's radius as their accuracy.",
+            n=int(there.sum()),
+        )
     )
     return PlacedByName(lonlat, accuracy, (*how, said, *_unmatched(wanted, match, "plot")))
 

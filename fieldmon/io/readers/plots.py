@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 from shapely import MultiLineString, MultiPolygon
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import (
@@ -79,7 +80,9 @@ def named_areas(layer: Layer, options: PlotOptions) -> tuple[Layer, list[str]]:
 
 def _shapes(layer: Layer) -> NDArray[np.object_]:
     if layer.geometry is None:
-        raise FileProblem(f"{layer.name} must hold shapes, but it is a plain table.")
+        raise FileProblem(
+            worded("{file} must hold shapes, but it is a plain table.", file=layer.name)
+        )
     return layer.geometry
 
 
@@ -91,7 +94,7 @@ def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[Import
         base = [layer.name] * len(layer)
         if len(layer) > 1:
             messages.append(
-                guessed("No column was recognised as the plots' names; they are numbered.")
+                guessed(worded("No column was recognised as the plots' names; they are numbered."))
             )
     else:
         try:
@@ -100,7 +103,7 @@ def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[Import
             raise ChoiceNeeded(str(asked), "name_column", asked.choices) from None
         base = [text(v) or layer.name for v in cells]
         if len(layer) > 1 or column is None:
-            messages.append(seen(f"Plots are named by column {named!r}."))
+            messages.append(seen(worded("Plots are named by column {name!r}.", name=named)))
     return _told_apart(base), messages
 
 
@@ -131,7 +134,9 @@ def _areas(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
         _refuse_without_areas(layer, int(lines.sum()), int(points.sum()))
     missing = len(layer) - int((areas | lines | points).sum())
     if missing:
-        messages.append(dropped(f"{missing} feature(s) without a geometry were left out."))
+        messages.append(
+            dropped(worded("{n} feature(s) without a geometry were left out.", n=missing))
+        )
     if lines.any():
         said = f"{int(lines.sum())} line(s) were left out: import them as rows or paths."
         messages.append(dropped(said))
@@ -166,8 +171,12 @@ def _refuse_without_areas(layer: Layer, n_lines: int, n_points: int) -> None:
             offers,
         )
     raise FileProblem(
-        f"{layer.name} must hold at least one plot with a boundary, but it holds "
-        f"{len(layer)} feature(s) without any geometry. Choose another file or layer."
+        worded(
+            "{file} must hold at least one plot with a boundary, but it holds {n} "
+            "feature(s) without any geometry. Choose another file or layer.",
+            file=layer.name,
+            n=len(layer),
+        )
     )
 
 
@@ -229,11 +238,23 @@ def _parts(fields: list[Field]) -> list[ImportMessage]:
     messages = []
     if several:
         messages.append(
-            seen(f"{len(several)} plot(s) have several parts, which were kept: {_some(several)}.")
+            seen(
+                worded(
+                    "{n} plot(s) have several parts, which were kept: {names}.",
+                    n=len(several),
+                    names=_some(several),
+                )
+            )
         )
     if holed:
         messages.append(
-            seen(f"{len(holed)} plot(s) have holes, kept as places without plants: {_some(holed)}.")
+            seen(
+                worded(
+                    "{n} plot(s) have holes, kept as places without plants: {names}.",
+                    n=len(holed),
+                    names=_some(holed),
+                )
+            )
         )
     return messages
 
@@ -269,9 +290,13 @@ def _plot_of_corners(layer: Layer, options: PlotOptions) -> Imported[tuple[Field
         raise _which_are_corners(layer, len(points))
     kept, more = boundary(ring, layer.name)
     if kept.is_empty:
-        raise FileProblem(f"The corners in {layer.name} must enclose an area, but they do not.")
+        raise FileProblem(
+            worded("The corners in {file} must enclose an area, but they do not.", file=layer.name)
+        )
     said = guessed(
-        f"{len(points)} positions were taken as the corners of one plot, in their order."
+        worded(
+            "{n} positions were taken as the corners of one plot, in their order.", n=len(points)
+        )
     )
     return Imported((Field(layer.name, kept),), (*layer.messages, *messages, said, *more))
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.infestation.observations import PRESENT, UNKNOWN, Observations
 from fieldmon.io.formats.layer import Layer, text
@@ -157,7 +158,10 @@ def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[ImportMessage]]:
             return unknown, [doubtful(said, remedy=_offer(table, "date", _are_dates))]
         read = dates(table.layer.column(name), table.options.date_order)
         where = name
-    return read.day, [seen(f"Dates are in column(s) {where}."), *_about_dates(read, where)]
+    return read.day, [
+        seen(worded("Dates are in column(s) {where}.", where=where)),
+        *_about_dates(read, where),
+    ]
 
 
 def _about_dates(read: DatedColumn, where: str) -> list[ImportMessage]:
@@ -165,20 +169,26 @@ def _about_dates(read: DatedColumn, where: str) -> list[ImportMessage]:
     if read.is_ambiguous:
         messages.append(
             guessed(
-                "Every date could be day first or month first; they were read day first.",
+                worded("Every date could be day first or month first; they were read day first."),
                 where,
-                Remedy("date_order", "mdy", "Read month first"),
+                Remedy("date_order", "mdy", worded("Read month first")),
             )
         )
     if read.n_serial:
         messages.append(
-            guessed(f"{read.n_serial} number(s) were read as days counted by Excel.", where)
+            guessed(
+                worded("{n} number(s) were read as days counted by Excel.", n=read.n_serial), where
+            )
         )
     if read.broken:
         shown = ", ".join(repr(cell) for cell in read.broken[:3])
         messages.append(
             doubtful(
-                f"{read.n_broken} record(s) have a date that is none ({shown}); it is left open.",
+                worded(
+                    "{n} record(s) have a date that is none ({shown}); it is left open.",
+                    n=read.n_broken,
+                    shown=shown,
+                ),
                 where,
             )
         )
@@ -187,7 +197,14 @@ def _about_dates(read: DatedColumn, where: str) -> list[ImportMessage]:
     if n_future:
         latest = np.nanmax(read.day)
         messages.append(
-            doubtful(f"{n_future} record(s) lie in the future, the last on {latest}.", where)
+            doubtful(
+                worded(
+                    "{n} record(s) lie in the future, the last on {latest}.",
+                    n=n_future,
+                    latest=latest,
+                ),
+                where,
+            )
         )
     return messages
 
@@ -263,18 +280,27 @@ def _numbers_of(table: _Table, name: str) -> _Counts:
     known = {cell: counted(cell, mark) for cell in set(cells)}
     count = np.array([known[cell].number for cell in cells])
     present = np.array([known[cell].present for cell in cells], dtype=np.int8)
-    messages.append(seen(f"Counts are in column {name!r}."))
+    messages.append(seen(worded("Counts are in column {name!r}.", name=name)))
     rough = [cell for cell in cells if known[cell].is_rough]
     if rough:
         shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(rough))[:3])
         messages.append(
-            doubtful(f"{len(rough)} count(s) are no plain number ({shown}); read roughly.", name)
+            doubtful(
+                worded(
+                    "{n} count(s) are no plain number ({shown}); read roughly.",
+                    n=len(rough),
+                    shown=shown,
+                ),
+                name,
+            )
         )
     n_missing = int(np.count_nonzero(present == UNKNOWN)) - sum(
         known[cell].present == UNKNOWN for cell in rough
     )
     if n_missing:
-        messages.append(seen(f"{n_missing} record(s) have no count: not known, not zero.", name))
+        messages.append(
+            seen(worded("{n} record(s) have no count: not known, not zero.", n=n_missing), name)
+        )
     return _Counts(count, present, messages)
 
 
@@ -289,7 +315,7 @@ def _mark(table: _Table, name: str, cells: list[str]) -> tuple[str, list[ImportM
     if mark is not None or unsure is None:
         return mark or ".", []
     said = f"Counts such as {unsure} were read as thousands."
-    return ".", [guessed(said, name, Remedy("decimal", ",", "Read the comma as decimal"))]
+    return ".", [guessed(said, name, Remedy("decimal", ",", worded("Read the comma as decimal")))]
 
 
 def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
@@ -298,10 +324,13 @@ def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
     known = {cell: _present(cell, words) for cell in set(cells)}
     stated = np.array([known[cell] for cell in cells], dtype=np.int8)
     at_odds = (stated != UNKNOWN) & (counts.present != UNKNOWN) & (stated != counts.present)
-    messages = [*counts.messages, seen(f"Presence is in column {name!r}.")]
+    messages = [*counts.messages, seen(worded("Presence is in column {name!r}.", name=name))]
     if at_odds.any():
         messages.append(
-            doubtful(f"{int(at_odds.sum())} record(s) say another thing than their count.", name)
+            doubtful(
+                worded("{n} record(s) say another thing than their count.", n=int(at_odds.sum())),
+                name,
+            )
         )
     unread = {cell for cell in known if known[cell] == UNKNOWN and not is_missing(cell)}
     if unread:
@@ -330,8 +359,10 @@ def _species(table: _Table) -> list[ImportMessage]:
         return []
     shown = ", ".join(kinds[:5]) + (", ..." if len(kinds) > 5 else "")
     only = tuple(f"{name}={kind}" for kind in kinds)
-    remedy = Remedy("where", only[0], f"Only {kinds[0]}", only[1:])
-    return [doubtful(f"{len(kinds)} species are mixed: {shown}.", name, remedy)]
+    remedy = Remedy("where", only[0], worded("Only {species}", species=kinds[0]), only[1:])
+    return [
+        doubtful(worded("{n} species are mixed: {shown}.", n=len(kinds), shown=shown), name, remedy)
+    ]
 
 
 def _same_visit(observations: Observations) -> list[ImportMessage]:
@@ -350,8 +381,11 @@ def _same_visit(observations: Observations) -> list[ImportMessage]:
         return []
     return [
         doubtful(
-            f"{n_stated - n_visits} record(s) give another count for a place and day that "
-            "another record already has."
+            worded(
+                "{n} record(s) give another count for a place and day that another record "
+                "already has.",
+                n=n_stated - n_visits,
+            )
         )
     ]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
-from fieldmon.planning.bound_wording import PROVED, share_above, told
+from fieldmon.planning.bound_wording import FINDS, PROVED, share_above, told
 from fieldmon.planning.routes.binned import proposals
 from fieldmon.planning.routes.blocks import Blocks, blockings
 from fieldmon.planning.routes.improve import Tour, fit, ruin
@@ -85,7 +85,7 @@ class BestRoute:
         """Tell whether it is proved that no other route holds more (by over a millionth)."""
         return self.gap <= PROVED
 
-    def sentence(self, what: str = "finds") -> str:
+    def sentence(self, what: str = FINDS) -> str:
         """Return for people what the route holds and what no other can exceed."""
         return told(self.reward, self.bound, what)
 

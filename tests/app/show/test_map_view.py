@@ -10,7 +10,7 @@ from app.show.map_view import Drawable, MapAnswers, MapContent, Switch
 from app.show.maps import deck
 from app.state.map_store import STORE
 from app.words import texts
-from app.words.units import Units
+from app.words.units import UnitsInLanguage
 from tests.app.chosen import a_plot
 from tests.app.driving import go, map_of
 from tests.paths import ROOT
@@ -67,7 +67,7 @@ def test_scale_bars_are_in_the_person_s_unit(sent, session):
     session["length"] = "ft"
     feet = sent(content())["lengths"]
     assert [pytest.approx(30.48), "100 ft"] in feet
-    assert feet == [list(one) for one in Units(length="ft").lengths()]
+    assert feet == [list(one) for one in UnitsInLanguage(length="ft").lengths()]
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import pytest
 
 from app.show.next_stop import next_stop
 from app.words import texts
-from app.words.units import Units
+from app.words.units import UnitsInLanguage
 from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
@@ -32,7 +32,7 @@ def planned(plot, at=-1):
 
 def test_the_way_is_as_long_as_the_route_to_the_first_stop(plot):
     plan = planned(plot)
-    stop = next_stop(plan, 0, Units())
+    stop = next_stop(plan, 0, UnitsInLanguage())
     line = plan.route.line_m[: plan.route.line_stop[0] + 1]
     metres = np.hypot(*np.diff(line, axis=0).T).sum()
     assert stop.direction.startswith(f"{metres:.0f} m ")
@@ -43,7 +43,7 @@ def test_the_way_is_as_long_as_the_route_to_the_first_stop(plot):
 @pytest.mark.parametrize("at", [-1, 0, 57, 120, 200])
 def test_compass_and_arrow_point_from_here_to_there(plot, at):
     plan = planned(plot, at)
-    stop = next_stop(plan, 0, Units())
+    stop = next_stop(plan, 0, UnitsInLanguage())
     frame, grid = plot.grid.frame, plot.grid
     from_m = plot.aisles.gate_m if at < 0 else grid.xy_m[at]
     (here,) = frame.lonlat(np.reshape(from_m, (1, 2)))
@@ -59,5 +59,5 @@ def test_compass_and_arrow_point_from_here_to_there(plot, at):
 
 def test_stops_done_and_left_and_hours_are_counted(plot):
     plan = planned(plot)
-    said = next_stop(plan, 17, Units()).chance
+    said = next_stop(plan, 17, UnitsInLanguage()).chance
     assert said == f"Chance 1.0% · stop 17 done, {len(plan.route)} to go · 2:00 left"

@@ -3,7 +3,7 @@
 import pytest
 
 from app.show import plot_figures
-from app.words.units import Units
+from app.words.units import UnitsInLanguage
 from fieldmon.io.parse.geometry import area_m2
 from tests.app.chosen import a_plot
 
@@ -22,7 +22,7 @@ def metrics(monkeypatch):
 
 def test_figures_are_the_plot_s_in_the_units_chosen(metrics):
     plot = a_plot(row_bearing_deg=200.0, row_spacing_m=5.0, plant_spacing_m=2.0)
-    plot_figures.show(plot, Units())
+    plot_figures.show(plot, UnitsInLanguage())
     assert metrics == {
         "Area": f"{area_m2(plot.field.boundary) / 1e4:.2f} ha",
         "Plants": f"{len(plot.grid):,}",
@@ -30,6 +30,6 @@ def test_figures_are_the_plot_s_in_the_units_chosen(metrics):
         "Row bearing": "20.0°",
         "Rows / plants apart": "5.0 m / 2.0 m",
     }
-    plot_figures.show(plot, Units("ft", "dunam"))
+    plot_figures.show(plot, UnitsInLanguage("ft", "dunam"))
     assert metrics["Rows / plants apart"] == "16.4 ft / 6.6 ft"
     assert metrics["Area"].endswith(" dunam")

@@ -1,0 +1,291 @@
+"""Which language the app speaks, and every text in it. No Streamlit in here.
+
+English is `texts` itself. Another language is one file, ``languages/he.po``: a text is found there
+by the name of its constant (its context) and by its English words. Numbers in a text are written
+as the language writes them, and a text that names a count takes the form that the count asks for.
+"""
+
+from __future__ import annotations
+
+import gettext
+from contextvars import ContextVar
+from functools import cache
+from io import BytesIO
+from numbers import Real
+from pathlib import Path
+from string import Formatter
+from typing import TYPE_CHECKING, Any, Self
+
+from fieldmon.compute.wording import Worded
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from datetime import date
+
+ENGLISH = "en"
+#: each by its own name
+LANGUAGES = {ENGLISH: "English", "he": "עברית", "ar": "العربية", "es": "Español"}
+RIGHT_TO_LEFT = frozenset({"he", "ar"})
+FOLDER = Path(__file__).with_name("languages")
+#: the context of the library's sentences
+LIBRARY = "fieldmon"
+#: names, signs and files, which are the same in every language
+SAME = frozenset({"TITLE", "ARROWS", "MAP_WORDS.picture_name", "MAP_WORDS.film_name"})
+
+_NOW: ContextVar[str | None] = ContextVar("language", default=None)
+_ASKED: list[Callable[[], str]] = []
+
+
+def ask(chosen: Callable[[], str]) -> None:
+    """Let the language be asked for here wherever none is said: in what a click begins."""
+    _ASKED[:] = [chosen]
+
+
+def use(language: str) -> None:
+    """Speak this language in this run of the page."""
+    _NOW.set(language)
+
+
+def current() -> str:
+    """Return the language of this session."""
+    said = _NOW.get()
+    if said is None:
+        said = _ASKED[0]() if _ASKED else ENGLISH
+    return said
+
+
+def is_right_to_left() -> bool:
+    """Return whether the language is read from the right."""
+    return current() in RIGHT_TO_LEFT
+
+
+# -- texts
+
+
+class Text(str):  # noqa: SLOT000 - it holds more than words
+    """A text in a language; filling its blanks writes numbers as the language does."""
+
+    language: str
+
+    def __new__(cls, words: str, language: str = ENGLISH) -> Self:
+        """Return these words of a language."""
+        made = super().__new__(cls, words)
+        made.language = language
+        return made
+
+    def format(self, *args: object, **values: object) -> str:
+        """Return the text with its blanks filled."""
+        return _filled(self, self.language, args, values)
+
+
+class Plural(Text):
+    """A text that names a count: its words for one, and for more, which are what it is itself.
+
+    Parameters
+    ----------
+    one, many
+        The words.
+    by
+        The blank whose number decides.
+    """
+
+    one: str
+    by: str
+    context: str
+
+    def __new__(cls, one: str, many: str, by: str = "n", language: str = ENGLISH) -> Self:
+        """Return a text with its words for one and for more."""
+        made = super().__new__(cls, many, language)
+        made.one, made.by, made.context = one, by, ""
+        return made
+
+    def format(self, *args: object, **values: object) -> str:
+        """Return the form that the count asks for, with its blanks filled."""
+        return _filled(self.form(values[self.by]), self.language, args, values)
+
+    def form(self, count: object) -> str:
+        """Return the words for so many."""
+        number = int(count)  # type: ignore[call-overload]
+        if self.language == ENGLISH:
+            return self.one if number == 1 else str(self)
+        found = _catalogue(self.language)
+        return found.npgettext(self.context, self.one, str(self), number) or str(self)
+
+
+class Late(str):  # noqa: SLOT000
+    """A text that is looked up when it is shown, for what is told its words before any session."""
+
+    look_up: Callable[[], str]
+
+    def __new__(cls, look_up: Callable[[], str]) -> Self:
+        """Return the text that `look_up` returns when it is shown."""
+        made = super().__new__(cls, "...")
+        made.look_up = look_up
+        return made
+
+    def __str__(self) -> str:
+        return str(self.look_up())
+
+
+def translated(name: str, value: Any) -> Any:  # noqa: ANN401 - a text, or many in a dict or tuple
+    """Return a constant of `texts` in the current language."""
+    language = current()
+    if language == ENGLISH:
+        return value
+    key = language, name
+    if key not in _TRANSLATED:
+        _TRANSLATED[key] = _in_language(language, name, value)
+    return _TRANSLATED[key]
+
+
+_TRANSLATED: dict[tuple[str, str], Any] = {}
+
+
+def _in_language(language: str, context: str, value: Any) -> Any:  # noqa: ANN401
+    if isinstance(value, dict):
+        return {key: _in_language(language, f"{context}.{key}", one) for key, one in value.items()}
+    if isinstance(value, tuple):
+        return tuple(
+            _in_language(language, f"{context}.{k}", one) for k, one in enumerate(value)
+        )  # fmt: skip
+    if not isinstance(value, str) or context in SAME or context.split(".", maxsplit=1)[0] in SAME:
+        return value
+    if isinstance(value, Plural):
+        made = Plural(value.one, str(value), value.by, language)
+        made.context = context
+        return made
+    return Text(_catalogue(language).pgettext(context, value) or value, language)
+
+
+@cache
+def _catalogue(language: str) -> gettext.GNUTranslations:
+    """Return a language's texts, read once."""
+    from babel.messages.mofile import write_mo  # noqa: PLC0415 - who reads English needs none
+    from babel.messages.pofile import read_po  # noqa: PLC0415
+
+    written = BytesIO()
+    with (FOLDER / f"{language}.po").open("rb") as file:
+        write_mo(written, read_po(file, locale=language))
+    written.seek(0)
+    found = gettext.GNUTranslations(written)
+    found.add_fallback(_Unknown())
+    return found
+
+
+class _Unknown(gettext.NullTranslations):
+    """Says nothing of what a catalogue has no words for."""
+
+    def pgettext(self, context: str, message: str) -> str:  # noqa: ARG002 - as gettext asks
+        return ""
+
+    def npgettext(self, context: str, msgid1: str, msgid2: str, n: int) -> str:  # noqa: ARG002
+        return ""
+
+
+# -- the library's sentences
+
+
+def in_words(sentence: str) -> str:
+    """Return a sentence of the library in the current language.
+
+    One that nobody has translated stays English, and is marked as such.
+    """
+    language = current()
+    if language == ENGLISH or not sentence:
+        return str(sentence)
+    said = _said(sentence, language)
+    return marked_as_english(sentence) if said is None else said
+
+
+def of_error(error: BaseException) -> str:
+    """Return what an error says, in the current language."""
+    return in_words(error.args[0] if error.args else str(error))
+
+
+def marked_as_english(sentence: str) -> str:
+    """Return an English sentence among others, marked as such and kept from the left."""
+    return f"\u2066{sentence}\u2069 [English]"
+
+
+def _said(sentence: object, language: str) -> str | None:
+    """Return a sentence in a language; None if there are no words for it."""
+    if not isinstance(sentence, Worded):
+        return None
+    found = _catalogue(language)
+    if sentence.parts:
+        parts = {part: _said(part, language) for part in sentence.parts}
+        if all(said is None for said in parts.values()):
+            return None
+        said = [parts[p] or marked_as_english(p) for p in sentence.parts]
+        return sentence.between.join(said)
+    if sentence.one:
+        form = found.npgettext(LIBRARY, sentence.one, sentence.words, sentence.number)
+    else:
+        form = found.pgettext(LIBRARY, sentence.words)
+    if not form:
+        return None
+    values = {
+        name: value if (made := _said(value, language)) is None else made
+        for name, value in sentence.values.items()
+    }
+    return _filled(form, language, (), values)
+
+
+# -- numbers and dates
+
+
+class _Blanks(Formatter):
+    def __init__(self, language: str) -> None:
+        self._language = language
+
+    def format_field(self, value: Any, format_spec: str) -> str:  # noqa: ANN401
+        written = format(value, format_spec)
+        if isinstance(value, Real) and not isinstance(value, bool):
+            return _separated(written, self._language)
+        return written
+
+
+def _filled(words: str, language: str, args: Any, values: Any) -> str:  # noqa: ANN401
+    if language == ENGLISH:
+        return str.format(words, *args, **values)
+    return _Blanks(language).vformat(str(words), args, values)
+
+
+def number(value: float, form: str = "") -> str:
+    """Return a number as the current language writes it; `form` as Python's `format` takes it.
+
+    Examples
+    --------
+    >>> number(1234.5, ",.1f")
+    '1,234.5'
+    """
+    return _separated(format(value, form), current())
+
+
+def _separated(written: str, language: str) -> str:
+    if language == ENGLISH:
+        return written
+    return written.translate(_separators(language))
+
+
+@cache
+def _separators(language: str) -> dict[int, str]:
+    from babel import Locale  # noqa: PLC0415
+
+    signs = Locale.parse(language).number_symbols["latn"]
+    return {ord("."): signs["decimal"], ord(","): signs["group"]}
+
+
+def separators() -> tuple[str, str]:
+    """Return the signs of fractions and of thousands."""
+    return number(0.5, ".1f")[1:2], number(1000, ",")[1:2]
+
+
+def weekday(on: date) -> str:
+    """Return the name of a date's day of the week."""
+    language = current()
+    if language == ENGLISH:
+        return f"{on:%A}"
+    from babel.dates import format_date  # noqa: PLC0415
+
+    return format_date(on, "EEEE", locale=language)

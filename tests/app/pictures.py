@@ -1,0 +1,122 @@
+"""Pictures of every room in every language, to be looked at: ``python -m tests.app.pictures``.
+
+It is no test: it starts the app, turns to each part of each room on a laptop and a phone, and keeps
+what a person would see in a folder. ``--languages he,ar`` and ``--parts today,season`` take fewer;
+``--url`` takes an app that is running.
+"""
+
+import argparse
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+from contextlib import contextmanager
+from pathlib import Path
+from urllib.parse import quote
+
+from playwright.sync_api import sync_playwright
+
+from app.state import rooms
+from app.words.language import LANGUAGES
+from tests.paths import ROOT
+
+SIZES = {"laptop": (1440, 900, None), "phone": (390, 844, "Mozilla/5.0 (Android 14) Mobile Safari")}
+PARTS = tuple(part for room in rooms.ROOMS.values() for part in room.parts)
+STILL = "[data-testid=stApp][data-test-script-state=notRunning]"
+
+
+@contextmanager
+def served():
+    """Start the app with seasons of its own; give its address."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    with tempfile.TemporaryDirectory() as seasons:
+        command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser",
+                   "--port", str(port), "--seasons", seasons]  # fmt: skip
+        server = subprocess.Popen(command, cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)})
+        try:
+            yield wait_for(f"http://127.0.0.1:{port}")
+        finally:
+            server.terminate()
+            server.wait(20)
+
+
+def wait_for(url):
+    """Return the address once the app answers there."""
+    for _ in range(300):
+        try:
+            urllib.request.urlopen(f"{url}/_stcore/health", timeout=2)  # noqa: S310
+        except OSError:
+            time.sleep(0.2)
+        else:
+            return url
+    message = f"no app answers at {url}"
+    raise SystemExit(message)
+
+
+def take(page, url, language, part, to, season=""):
+    """Turn to a part of a room and take its picture."""
+    room = rooms.room_of(part)
+    page.goto(f"{url}/{'' if room == 'today' else room}?lang={language}{season}")
+    page.wait_for_selector(".map[data-shown]", timeout=90_000)
+    page.wait_for_selector(STILL, timeout=90_000)
+    parts = rooms.ROOMS[room].parts
+    if len(parts) > 1:
+        box = page.locator(f".st-key-part-{room} button")
+        box.nth(parts.index(part)).click()
+    page.wait_for_timeout(700)
+    page.wait_for_selector(STILL, timeout=90_000)
+    # what moves comes to rest
+    page.wait_for_timeout(1200)
+    page.screenshot(path=to)
+
+
+def main():
+    """Take the pictures."""
+    ask = argparse.ArgumentParser(description=__doc__)
+    ask.add_argument("--to", type=Path, default=Path(tempfile.gettempdir()) / "fieldmon-pictures")
+    ask.add_argument("--languages", default=",".join(LANGUAGES))
+    ask.add_argument("--parts", default=",".join(PARTS))
+    ask.add_argument("--sizes", default=",".join(SIZES))
+    ask.add_argument("--url", default="")
+    ask.add_argument("--season", default="", help="of the app at --url")
+    said = ask.parse_args()
+    said.to.mkdir(parents=True, exist_ok=True)
+    with sync_playwright() as browsers:
+        if said.url:
+            pictures(browsers, said.url, said)
+        else:
+            with served() as url:
+                pictures(browsers, url, said)
+    print(said.to)  # noqa: T201
+
+
+def pictures(browsers, url, said):
+    """Take all pictures that are asked for."""
+    chromium = os.environ.get("CHROMIUM", "/usr/bin/chromium")
+    browser = browsers.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+    for size in said.sizes.split(","):
+        width, height, agent = SIZES[size]
+        for language in said.languages.split(","):
+            context = browser.new_context(viewport={"width": width, "height": height},
+                                          user_agent=agent, color_scheme="light")  # fmt: skip
+            page = context.new_page()
+            for part in said.parts.split(","):
+                take(
+                    page,
+                    url,
+                    language,
+                    part,
+                    said.to / f"{part}_{language}_{size}.png",
+                    f"&season={quote(said.season)}" if said.season else "",
+                )
+            context.close()
+    browser.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,46 @@
+"""A language: its texts, its plurals and numbers, and the library's sentences in it."""
+
+from app.words import language, texts
+from app.words.units import UnitsInLanguage
+from fieldmon.compute.wording import counted, joined, worded
+
+
+def test_a_text_is_read_in_the_language_that_is_spoken(speaking):
+    assert texts.ROOMS["today"] == "Today"
+    speaking("he")
+    assert texts.ROOMS["today"] == "היום"
+    assert texts.COMPASS[0] == "צפונה"
+    assert texts.TITLE == "fieldmon"
+
+
+def test_a_count_takes_the_form_that_the_language_asks_for(speaking):
+    assert [texts.PLOTS_TITLE.format(n=n) for n in (1, 2)] == ["1 plot", "2 plots"]
+    speaking("ar")
+    said = [texts.PLOTS_TITLE.format(n=n) for n in (1, 2, 5, 12, 100)]
+    assert said == ["قطعة واحدة", "قطعتان", "5 قطع", "12 قطعة", "100 قطعة"]
+
+
+def test_numbers_in_a_text_are_written_as_in_the_language(speaking):
+    verdict = {"best": "A", "second": "B", "loss": 12_345, "percent": 3, "low": 1, "high": 9}
+    assert texts.VERDICT.format(**verdict).startswith("**A** is best: 12,345 infested")
+    speaking("es")
+    assert "12.345 días-planta" in texts.VERDICT.format(**verdict)
+    assert UnitsInLanguage().metres(1234.5) == "1,23 km"
+    assert language.number(0.125, ".1%") == "12,5%"
+
+
+def test_a_worded_sentence_of_the_library_is_said_in_the_language(speaking):
+    said = worded("{plants} {where}: never inspected yet.", plants=counted(1, "plant"),
+                  where=worded("in row {row}", row=7))  # fmt: skip
+    speaking("he")
+    assert language.in_words(said) == "צמח אחד בשורה 7: עדיין לא נבדקו מעולם."
+    assert language.in_words(joined("; ", [said, said])).count("צמח אחד") == 2
+
+
+def test_a_sentence_that_nobody_translated_stays_english_and_says_so(speaking):
+    assert language.in_words("Something.") == "Something."
+    speaking("he")
+    assert language.in_words("Something.") == "\u2066Something.\u2069 [English]"
+    assert language.in_words(worded("Nobody knows {n}.", n=3)) == (
+        "\u2066Nobody knows 3.\u2069 [English]"
+    )

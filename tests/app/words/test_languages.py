@@ -1,0 +1,168 @@
+"""Languages: every text has its words in each, with the same blanks; the app speaks them."""
+
+import gettext
+import re
+import string
+from pathlib import Path
+
+import pytest
+
+import fieldmon
+from app.state import chosen_language
+from app.words import catalogues, language, texts
+from fieldmon.io.writers import FORMATS
+from tests.app.driving import go, opened, texts_of
+
+OTHERS = tuple(code for code in language.LANGUAGES if code != language.ENGLISH)
+ENTRIES = catalogues.entries()
+#: words that are the same in English and Spanish, and names of programs
+SAME_WORDS = {
+    "Robot", "No", "m", "km", "ft", "mi", "ha", "dunam", "acre", "QGIS", "QField", "ArcGIS",
+    "GPS", "GeoTIFF", "GeoJSON", "GeoPackage", "KML", "HTML", "CSV", "PDF", "NDVI", "Nav2", "ROS",
+    "Google", "Earth", "shapefile", "zip", "Excel", "lon", "lat", "found", "fieldmon", "h", "s",
+}  # fmt: skip
+
+
+def blanks(words):
+    """Return what is filled into a text, and how it is written."""
+    return {
+        (field, form, how) for _, field, form, how in string.Formatter().parse(words) if field
+    }  # fmt: skip
+
+
+def strings(catalogue, entry):
+    """Return the words of an entry in a catalogue, all its forms; none where it has no entry."""
+    found = catalogue.get(entry.id, entry.context)
+    if found is None:
+        return ()
+    return found.string if isinstance(found.string, tuple) else (found.string,)
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_every_text_is_translated_and_no_catalogue_holds_more(code):
+    catalogue = catalogues.read(code)
+    missing = [e for e in ENTRIES if not all(strings(catalogue, e) or ("",))]
+    assert missing == []
+    known = {(entry.context, entry.words) for entry in ENTRIES}
+    held = {(m.context, m.id[-1] if isinstance(m.id, tuple) else m.id) for m in catalogue if m.id}
+    assert held - known == set()
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_translations_have_the_blanks_of_the_english(code):
+    catalogue = catalogues.read(code)
+    for entry in ENTRIES:
+        for words in strings(catalogue, entry):
+            less = blanks(entry.words) - blanks(words)
+            # "one plant" and "two plants" are words in some languages, not numbers
+            counts = {one for one in less if entry.one and one[0] in {"n", "inspected"}}
+            assert blanks(words) <= blanks(entry.words) | blanks(entry.one), (entry, words)
+            assert less == counts, (entry, words)
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_translations_keep_the_signs_of_the_page(code):
+    catalogue = catalogues.read(code)
+    for entry in ENTRIES:
+        for words in strings(catalogue, entry):
+            for sign in ("**", "### ", "\n"):
+                assert words.count(sign) == entry.words.count(sign), (entry, words)
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_a_plural_has_as_many_forms_as_the_language_tells_apart(code):
+    catalogue = catalogues.read(code)
+    some = gettext.c2py(catalogue.plural_expr)
+    assert {some(n) for n in range(201)} == set(range(catalogue.num_plurals))
+    for entry in ENTRIES:
+        if entry.one:
+            assert len(strings(catalogue, entry)) == catalogue.num_plurals, entry
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_a_catalogue_says_who_made_it_and_holds_the_words_of_the_field(code):
+    head = catalogues.read(code).header_comment
+    assert "MADE BY A MACHINE" in head
+    assert "hot spot = " in head
+
+
+# -- texts
+
+
+def test_who_reads_a_format_is_said_as_the_library_says_it():
+    assert {name: one.reader for name, one in FORMATS.items()} == texts.READERS
+
+
+# -- the library's sentences
+
+
+def test_the_library_knows_nothing_of_languages():
+    for path in Path(fieldmon.__file__).parent.rglob("*.py"):
+        assert "gettext" not in path.read_text(encoding="utf-8"), path
+
+
+# -- the app
+
+
+@pytest.mark.parametrize("code", OTHERS)
+@pytest.mark.parametrize("part", ["today", "season", "compare", "plot"])
+def test_pages_speak_the_language_of_the_address(code, part, speaking):
+    speaking(code)  # the harness asks boxes for the names of what they hold
+    app = opened(lang=code)
+    go(app, part)
+    assert not app.exception
+    assert not app.error
+    left = english_left(app, code)
+    assert left == []
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_a_season_speaks_the_language(season_app, code, speaking):
+    season_app.session_state[chosen_language.KEY] = code
+    season_app.run()
+    speaking(code)  # see above
+    for part in ("today", "season", "plot"):
+        go(season_app, part)
+        assert not season_app.exception
+        assert english_left(season_app, code) == []
+
+
+def said(app):
+    """Return everything that a page says: texts, names of boxes and buttons, what they offer."""
+    kinds = ("button", "selectbox", "number_input", "metric", "tabs", "expander", "toggle",
+             "text_input", "date_input", "slider", "download_button", "button_group")  # fmt: skip
+    lines = texts_of(app).splitlines()
+    for kind in kinds:
+        for one in app.get(kind):
+            lines.append(str(getattr(one, "label", "") or ""))
+            lines += [str(option) for option in getattr(one, "options", ())]
+    return lines
+
+
+def english_left(app, code):
+    """Return our own English texts on a page, and lines with three of our English words."""
+    catalogue = catalogues.read(code)
+    english = {
+        entry.words for entry in ENTRIES if entry.words not in strings(catalogue, entry)
+    } - {w for entry in ENTRIES for w in strings(catalogue, entry)}  # fmt: skip
+    lines = [line for line in said(app) if "[English]" not in line]
+    whole = [line for line in lines if line in english]
+    plain = [re.sub(r"\u2068.*?\u2069|\u2066.*?\u2069", "", line) for line in lines]
+    ours = {w.lower() for e in ENTRIES for w in re.findall(r"[A-Za-z]{2,}", e.words)}
+    ours -= {word.lower() for word in SAME_WORDS}
+    return whole + [
+        line for line in plain
+        if any(all(w.lower() in ours for w in run.split()) and not spanish(run)
+               for run in re.findall(r"(?:\b[A-Za-z]{2,}\b[ ]){2}\b[A-Za-z]{2,}\b", line))
+    ]  # fmt: skip
+
+
+def spanish(words):
+    """Return whether all of these words are also Spanish ones of ours."""
+    return all(word.lower() in SPANISH for word in words.split())
+
+
+SPANISH = {
+    word.lower() for entry in ENTRIES for text in strings(catalogues.read("es"), entry)
+    for word in re.findall(r"[A-Za-z]{2,}", text)
+}  # fmt: skip

@@ -33,7 +33,7 @@ def test_a_season_keeps_what_it_is_told_and_what_the_files_said(run, tmp_path):
     ("words", "says"),
     [
         (["--begins", "soon"], "YYYY-MM-DD"),
-        (["--feature", "Moon"], "none called 'Moon'"),
+        (["--feature", "Moon"], "none is called 'Moon'"),
         (["--spread", "2"], "2"),
     ],
 )

@@ -103,10 +103,13 @@ def test_a_finding_is_printed_with_its_remedy_and_the_remedy_works(run, tmp_path
     (tmp_path / "r.csv").write_text(f"lon,lat,date,eggs\n{lon},{lat},03/04/2026,4\n")
     words = ["plan", ZIP, "--feature", "Gate", "--date", "2026-05-02", "--hours", 1]
     code, _, err, _ = run(*words, "--observations", "r.csv")
+    assert code == 2
+    assert "none was recognised among: lon, lat, date, eggs" in err
+    options = ["--record-option", "columns=count=eggs"]
+    code, _, err, _ = run(*words, "--observations", "r.csv", *options)
     assert code == 0, err
     assert "(Read month first: --record-option date_order=mdy)" in err
-    assert "(Take the count from eggs: --record-option columns=count=eggs)" in err
-    options = ["--record-option", "date_order=mdy", "--record-option", "columns=count=eggs"]
+    options += ["--record-option", "date_order=mdy"]
     code, _, err, _ = run(*words, "--observations", "r.csv", *options)
     assert code == 0, err
     assert "guessed" not in err

@@ -63,7 +63,7 @@ def test_columns_named_by_hand_go_before_all_others():
 
 def test_a_file_that_says_nothing_of_what_was_found_is_a_question():
     with pytest.raises(ChoiceNeeded, match="what was found") as asked:
-        found("present=height", "count=height")
+        found("height")
     assert (asked.value.option, asked.value.choices) == (
         "columns",
         ("present=height", "count=height"),

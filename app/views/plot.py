@@ -47,8 +47,8 @@ def show(choices: Choices) -> None:
     st.caption(sentence(choices.plot.assumed, choices.units))
     records, said = records_until(choices.records)
     if choices.season is None:
-        drawing.rows(choices.plot_key)
         drawing.tools(choices)
+        drawing.rows(choices.plot_key)
         rasters.show_missing()
         rasters.show_risk()
     else:

@@ -75,7 +75,7 @@ class Task:
 
     def digest(self, observations: Observations) -> str:
         """Return what tells this task from any other, however alike."""
-        parts = (*vars(self.plot).values(), self.who, self.stated, *vars(self.orders).values())
+        parts = (*self.plot.told, self.who, self.stated, *vars(self.orders).values())
         return digest(*parts, *vars(observations).values(), length=16)
 
 

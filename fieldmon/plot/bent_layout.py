@@ -9,6 +9,7 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.compute.arrays import offsets, runs
+from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError
 from fieldmon.plot import adjacency
 from fieldmon.plot.aisle_lines import aisles_of
@@ -53,6 +54,9 @@ class RowLines(NamedTuple):
     lines: Polylines
     block: Int
 
+    def __repr__(self) -> str:
+        return f"<RowLines: {counted(len(self.block), 'row')}>"
+
 
 class Blocked(NamedTuple):
     """Where rows cannot go on: row, from which place on its line, and to which; ascending."""
@@ -60,6 +64,9 @@ class Blocked(NamedTuple):
     row: Int
     from_m: Float
     to_m: Float
+
+    def __repr__(self) -> str:
+        return f"<Blocked: {counted(len(self.row), 'stretch')}>"
 
     @classmethod
     def nowhere(cls) -> Blocked:
@@ -102,6 +109,9 @@ class BentPieces(NamedTuple):
     place_m: Float  # (n, 2)
     off_m: Float  # (n, 2)
     lane_m: Float  # (r, 2, 2): aisle, then low and high end
+
+    def __repr__(self) -> str:
+        return f"<BentPieces: {counted(len(self.xy_m), 'plant')}>"
 
 
 def bent_grid(

@@ -9,6 +9,7 @@ import shapely
 
 from fieldmon.compute.arrays import offsets
 from fieldmon.compute.jit import routine
+from fieldmon.compute.wording import counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,6 +47,9 @@ class Bends(NamedTuple):
     at_m: Float
     in_lane: Mask
     aisles: Polylines
+
+    def __repr__(self) -> str:
+        return f"<Bends: {counted(len(self.pair), 'way')}>"
 
     def where(self, some: Mask) -> Self:
         """Return some of the stretches."""

@@ -73,6 +73,17 @@ class Field:
         plants = "" if self.plants is None else f", {counted(len(self.plants), 'measured plant')}"
         return f"<Field {self.name}: {parts}{plants}>"
 
+    @property
+    def told(self) -> tuple[object, ...]:
+        """Return all that is said of the plot, as digests take it.
+
+        What later versions added counts only where it is said: digests of before stay valid.
+        """
+        said = dict(vars(self))
+        if self.plant_rows is None:
+            del said["plant_rows"]
+        return tuple(said.values())
+
     def frame(self, bearing_deg: float = 90.0) -> Frame:
         """Return the plane in metres centred on this plot, x along ``bearing_deg``."""
         west, south, east, north = self.boundary.bounds

@@ -9,6 +9,7 @@ import shapely
 
 from fieldmon.compute.arrays import offsets, runs
 from fieldmon.compute.jit import routine
+from fieldmon.compute.wording import counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,6 +36,9 @@ class Polylines(NamedTuple):
     start: Int
     xy_m: Float
     at_m: Float
+
+    def __repr__(self) -> str:
+        return f"<Polylines: {counted(len(self.start) - 1, 'line')}>"
 
     @classmethod
     def of(cls, start: NDArray[np.integer], xy_m: Float) -> Self:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import routine
+from fieldmon.compute.wording import counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -57,6 +58,9 @@ class Windows(NamedTuple):
     radius_m: float
     near_m: float
 
+    def __repr__(self) -> str:
+        return f"<Windows: {counted(len(self.centre_m), 'window')}>"
+
     @classmethod
     def of(cls, xy_m: Float, near_m: float, area_m2: float) -> Windows:
         """Return the windows about plants with so much ground each."""
@@ -77,6 +81,9 @@ class Directions(NamedTuple):
 
     angle: Float
     bend_per_m: Float
+
+    def __repr__(self) -> str:
+        return f"<Directions: {counted(len(self.angle), 'direction')}>"
 
 
 def pieces(xy_m: Float, windows: Windows) -> tuple[Int, Directions]:

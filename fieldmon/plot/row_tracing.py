@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 
 from fieldmon.compute.arrays import offsets
 from fieldmon.compute.jit import routine
+from fieldmon.compute.wording import counted
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.row_pieces import Windows, pieces
 
@@ -65,6 +66,9 @@ class TracedRows(NamedTuple):
     off_m: Float
     row_spacing_m: float
     plant_spacing_m: float
+
+    def __repr__(self) -> str:
+        return f"<TracedRows: {counted(len(self.plant), 'plant')}>"
 
 
 class _Strands(NamedTuple):
@@ -249,6 +253,9 @@ class DrawnRows(NamedTuple):
     lines: Polylines
     block: Int
     spacing_m: float
+
+    def __repr__(self) -> str:
+        return f"<DrawnRows: {counted(len(self.block), 'row')}>"
 
 
 def sorted_rows(lines: Polylines, reach_m: float) -> DrawnRows:
@@ -571,6 +578,9 @@ class BesideRows(NamedTuple):
     off_m: Float
     alone_m: Float
     free: float
+
+    def __repr__(self) -> str:
+        return f"<BesideRows: {counted(len(self.off_m), 'plant')}>"
 
 
 def beside_their_rows(xy_m: Float, row: NDArray[np.integer]) -> BesideRows:

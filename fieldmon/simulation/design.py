@@ -55,7 +55,7 @@ class StudyPlot:
     @cached_property
     def digest(self) -> str:
         """Return what tells this plot and its records from any others."""
-        parts = (*vars(self.field).values(), *vars(self.observations).values())
+        parts = (*self.field.told, *vars(self.observations).values())
         return digest(*parts, _as_written(self.planting), str(self.day), length=_DIGITS)
 
     @cached_property

@@ -101,4 +101,4 @@ def test_a_task_has_the_digest_that_folders_of_routes_hold():
     by_hand = {"robot": {"hours": 2.0}, "planting": {"row_spacing_m": 3.0}}
     orders = Orders(np.datetime64("2026-04-06"), "bouncy", 3, **by_hand)
     task = Task(field, "scout", {"look_s": 30.0, "hours": 4.0}, orders)
-    assert task.digest(records) == "174468ea339db794"
+    assert task.digest(records) == "c9b199b28e29aa71"

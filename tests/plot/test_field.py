@@ -1,5 +1,7 @@
 """What people know about a plot: a valid area, and what is left of it to drive on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -72,3 +74,11 @@ def test_it_says_itself_with_its_parts_and_measured_plants():
     assert repr(Field("Gate", two)) == "<Field Gate: 2 parts>"
     measured = Field("ענבים", MultiPolygon([SQUARE]), plants=np.zeros((1, 2)))
     assert repr(measured) == "<Field ענבים: 1 part, 1 measured plant>"
+
+
+def test_what_was_added_later_is_told_only_where_it_is_said():
+    field = Field("a", MultiPolygon([box(35.15, 30.36, 35.151, 30.361)]))
+    rows = np.array(["1", "2"])
+    assert len(replace(field, plant_rows=rows).told) == len(field.told) + 1
+    assert replace(field, plant_rows=rows).told[-1] is rows
+    assert set(map(type, field.told)) <= {type(value) for value in vars(field).values()}

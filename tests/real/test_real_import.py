@@ -59,7 +59,8 @@ def test_the_banana_field_has_its_four_corners(shared):
         (-50.834468, -20.460958),
         (-50.833915, -20.46241),
     }
-    found = read_records(path, RecordOptions(where="marker=plantas"), near=field).value
+    options = RecordOptions(where="marker=plantas").naming(present="")
+    found = read_records(path, options, near=field).value
     assert len(found) == 159
     np.testing.assert_allclose(found.lonlat[0], (-50.833389, -20.460995), atol=1e-9)
 
@@ -257,7 +258,9 @@ def test_severities_of_a_watermelon_field_stand_on_its_plants(shared):
 def test_eight_soil_samples_lie_outside_the_fence(shared):
     folder = shared / "field_sensor_samples"
     (field,) = read_plots(folder / "sensor_farm_boundary.geojson").value
-    samples = read_records(folder / "sensor_samples.geojson", near=field).value
+    samples = read_records(
+        folder / "sensor_samples.geojson", RecordOptions().naming(present=""), near=field
+    ).value
     np.testing.assert_allclose(samples.lonlat[0], (-117.0464255, 47.03466384), atol=1e-12)
     assert (distance_m(samples.lonlat, field) > 0).sum() == 8
     assert area_m2(field.boundary) == pytest.approx(60_500, rel=2e-3)

@@ -1,0 +1,51 @@
+"""What is doubtful about rows is said, each doubt in a sentence; what is certain is not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.projection import Frame
+from fieldmon.plot.row_report import RowReport
+
+SURE = RowReport("20 plants in 4 rows", 0.02, 0.0, in_rows=True)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, None),
+        ({"off_share": 0.009, "misnamed_share": 0.009}, None),
+        ({"off_share": 0.04}, "4% of the plants stand more than a quarter"),
+        ({"misnamed_share": 0.2, "named": True}, "20% of the plants seem to stand in another row"),
+        ({"misnamed_share": 0.2, "named": True}, "the names decided"),
+        ({"misnamed_share": 0.6}, "rows were found instead"),
+        ({"others_deg": (30.0, 90.0)}, "along 30 and 90 degrees as well"),
+        ({"in_rows": False}, "No rows were found"),
+    ],
+)
+def test_each_doubt_is_a_sentence_and_what_is_certain_is_none(changes, said):
+    doubts = replace(SURE, **changes).doubts
+    if said is None:
+        assert doubts == ()
+    else:
+        (doubt,) = doubts
+        assert said in doubt
+
+
+def test_plants_that_stand_anyhow_are_not_said_to_be_beside_rows_too():
+    (doubt,) = replace(SURE, in_rows=False, off_share=0.5).doubts
+    assert "No rows" in doubt
+
+
+def test_the_share_beside_a_row_is_that_of_the_plants_moved_out_of_it():
+    rng = np.random.default_rng(4)
+    row, number = np.divmod(np.arange(12 * 50), 50)
+    xy_m = np.stack([1.5 * number, 3.0 * row], axis=1) + rng.normal(0, 0.02, (600, 2))
+    moved = rng.choice(np.flatnonzero((number > 4) & (number < 45)), 30, replace=False)
+    xy_m[moved, 1] += 1.0
+    found = Plot.around("plot", Frame(8.0, 47.0).lonlat(xy_m)).rows
+    assert found.in_rows
+    assert found.off_share == pytest.approx(30 / 600, abs=0.01)
+    assert any("beside their row" in doubt for doubt in found.doubts)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.arrays import offsets
-from fieldmon.compute.wording import counted
 from fieldmon.plot.polylines import Polylines, sampled
 
 if TYPE_CHECKING:
@@ -40,7 +39,7 @@ class RowAisles(NamedTuple):
     left: Int
 
     def __repr__(self) -> str:
-        return f"<RowAisles: {counted(len(self.lines.start) - 1, 'aisle')}>"
+        return f"<RowAisles: {len(self.lines.start) - 1} aisles>"
 
 
 def aisles_of(rows: Polylines, block: Int, row_spacing_m: float, beyond_m: float) -> RowAisles:

@@ -9,7 +9,6 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.compute.arrays import offsets, runs
-from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError
 from fieldmon.plot import adjacency
 from fieldmon.plot.aisle_lines import aisles_of
@@ -55,7 +54,7 @@ class RowLines(NamedTuple):
     block: Int
 
     def __repr__(self) -> str:
-        return f"<RowLines: {counted(len(self.block), 'row')}>"
+        return f"<RowLines: {len(self.block)} rows>"
 
 
 class Blocked(NamedTuple):
@@ -66,7 +65,7 @@ class Blocked(NamedTuple):
     to_m: Float
 
     def __repr__(self) -> str:
-        return f"<Blocked: {counted(len(self.row), 'stretch')}>"
+        return f"<Blocked: {len(self.row)} stretches>"
 
     @classmethod
     def nowhere(cls) -> Blocked:
@@ -111,7 +110,7 @@ class BentPieces(NamedTuple):
     lane_m: Float  # (r, 2, 2): aisle, then low and high end
 
     def __repr__(self) -> str:
-        return f"<BentPieces: {counted(len(self.xy_m), 'plant')}>"
+        return f"<BentPieces: {len(self.xy_m)} plants>"
 
 
 def bent_grid(

@@ -9,7 +9,6 @@ import shapely
 
 from fieldmon.compute.arrays import offsets
 from fieldmon.compute.jit import routine
-from fieldmon.compute.wording import counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,7 +48,7 @@ class Bends(NamedTuple):
     aisles: Polylines
 
     def __repr__(self) -> str:
-        return f"<Bends: {counted(len(self.pair), 'way')}>"
+        return f"<Bends: {len(self.pair)} ways>"
 
     def where(self, some: Mask) -> Self:
         """Return some of the stretches."""

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import counted
 from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
 from fieldmon.plot.row_detection import frame_around
 from fieldmon.plot.row_tracing import TracedRows, row_lines_of, trace
@@ -45,7 +44,7 @@ class SaidRows(NamedTuple):
     misnamed: float | None = None
 
     def __repr__(self) -> str:
-        return f"<SaidRows: {counted(0 if self.label is None else len(self.label), 'name')}>"
+        return f"<SaidRows: {0 if self.label is None else len(self.label)} names>"
 
     def checked(self, lonlat: Float) -> SaidRows:
         """Return the same with the share of plants that rows found besides put elsewhere.

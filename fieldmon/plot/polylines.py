@@ -9,7 +9,6 @@ import shapely
 
 from fieldmon.compute.arrays import offsets, runs
 from fieldmon.compute.jit import routine
-from fieldmon.compute.wording import counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,7 +37,7 @@ class Polylines(NamedTuple):
     at_m: Float
 
     def __repr__(self) -> str:
-        return f"<Polylines: {counted(len(self.start) - 1, 'line')}>"
+        return f"<Polylines: {len(self.start) - 1} lines>"
 
     @classmethod
     def of(cls, start: NDArray[np.integer], xy_m: Float) -> Self:

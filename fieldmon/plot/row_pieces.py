@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import routine
-from fieldmon.compute.wording import counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -59,7 +58,7 @@ class Windows(NamedTuple):
     near_m: float
 
     def __repr__(self) -> str:
-        return f"<Windows: {counted(len(self.centre_m), 'window')}>"
+        return f"<Windows: {len(self.centre_m)} windows>"
 
     @classmethod
     def of(cls, xy_m: Float, near_m: float, area_m2: float) -> Windows:
@@ -83,7 +82,7 @@ class Directions(NamedTuple):
     bend_per_m: Float
 
     def __repr__(self) -> str:
-        return f"<Directions: {counted(len(self.angle), 'direction')}>"
+        return f"<Directions: {len(self.angle)} directions>"
 
 
 def pieces(xy_m: Float, windows: Windows) -> tuple[Int, Directions]:

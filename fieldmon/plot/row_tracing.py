@@ -12,7 +12,6 @@ from scipy.spatial import cKDTree
 
 from fieldmon.compute.arrays import offsets
 from fieldmon.compute.jit import routine
-from fieldmon.compute.wording import counted
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.row_pieces import Windows, pieces
 
@@ -68,7 +67,7 @@ class TracedRows(NamedTuple):
     plant_spacing_m: float
 
     def __repr__(self) -> str:
-        return f"<TracedRows: {counted(len(self.plant), 'plant')}>"
+        return f"<TracedRows: {len(self.plant)} plants>"
 
 
 class _Strands(NamedTuple):
@@ -255,7 +254,7 @@ class DrawnRows(NamedTuple):
     spacing_m: float
 
     def __repr__(self) -> str:
-        return f"<DrawnRows: {counted(len(self.block), 'row')}>"
+        return f"<DrawnRows: {len(self.block)} rows>"
 
 
 def sorted_rows(lines: Polylines, reach_m: float) -> DrawnRows:
@@ -580,7 +579,7 @@ class BesideRows(NamedTuple):
     free: float
 
     def __repr__(self) -> str:
-        return f"<BesideRows: {counted(len(self.off_m), 'plant')}>"
+        return f"<BesideRows: {len(self.off_m)} plants>"
 
 
 def beside_their_rows(xy_m: Float, row: NDArray[np.integer]) -> BesideRows:

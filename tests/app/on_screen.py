@@ -58,6 +58,8 @@ def becomes(page, as_wanted, what):
 
 def view(page):
     """Return what the map shows: longitude and latitude of its middle, zoom, width and height."""
+    # the first picture is drawn a moment after the map has what it shows
+    page.wait_for_selector(f"{MAP}[data-view]", timeout=_REST_MS)
     return json.loads(page.locator(MAP).get_attribute("data-view"))
 
 

@@ -1,15 +1,10 @@
-"""What a visitor's browser says of itself: a phone or not, dark or light, its language."""
+"""What a visitor's browser says of itself: dark or light, its language."""
 
 from __future__ import annotations
 
 import streamlit as st
 
 from ..words.language import ENGLISH, LANGUAGES
-
-
-def is_phone() -> bool:
-    """Return whether the page is shown on a phone, by what its browser says."""
-    return "Mobi" in (st.context.headers.get("User-Agent") or "")
 
 
 def is_dark() -> bool:

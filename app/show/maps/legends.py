@@ -67,30 +67,3 @@ def signs(*, dark: bool = False) -> list[LegendPart]:
         part("", [("dot", hot, texts.LEGEND_SEEN), ("ring", hot, texts.LEGEND_NOT_SEEN)],
              "records"),
     ]  # fmt: skip
-
-
-def markup(parts: list[LegendPart]) -> str:
-    """Return parts of a legend as HTML for paper; on the map the browser draws them itself."""
-    signs = "".join(
-        f'<span style="white-space:nowrap;margin-right:14px">{_drawn(kind, colour)}{words}</span>'
-        for part in parts
-        for kind, colour, words in part["items"]
-    )
-    return f'<div style="line-height:1.9">{signs}</div>'
-
-
-def _drawn(kind: str, colour: Colour) -> str:
-    shapes = {
-        "square": f'<rect x="1" y="1" width="14" height="14" fill="rgb{colour}"/>',
-        "dot": f'<circle cx="8" cy="8" r="5" fill="rgb{colour}"/>',
-        "ring": f'<circle cx="8" cy="8" r="5" fill="none" stroke="rgb{colour}" stroke-width="2"/>',
-        "find": f'<circle cx="8" cy="8" r="6.5" fill="#fff" stroke="#140000" stroke-width="2"/>'
-        f'<circle cx="8" cy="8" r="4" fill="rgb{colour}"/>',
-        "line": f'<rect x="0" y="6" width="16" height="4" fill="rgb{colour}"/>',
-        "outline": f'<rect x="2" y="2" width="12" height="12" rx="4" fill="none" '
-        f'stroke="rgb{colour}" stroke-width="3"/>',
-    }
-    return (
-        '<svg width="16" height="16" aria-hidden="true" '
-        f'style="vertical-align:-3px;margin-right:5px">{shapes[kind]}</svg>'
-    )

@@ -15,12 +15,6 @@ def visitor(monkeypatch):
     return context
 
 
-def test_a_phone_is_told_by_its_name(visitor):
-    assert not browser.is_phone()
-    visitor.headers["User-Agent"] = "Mozilla/5.0 (Linux; Android 14) Mobile Safari/537.36"
-    assert browser.is_phone()
-
-
 def test_a_page_is_light_unless_it_says_dark(visitor):
     assert not browser.is_dark()
     visitor.theme = {"type": "dark"}

@@ -14,6 +14,7 @@ import numpy as np
 
 from fieldmon.compute.jit import loop, part
 from fieldmon.errors import SettingError
+from fieldmon.planning.routes.passes import Passes
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -391,33 +392,14 @@ def _sweep(
 
 def _euler(drives: list[Drive], n: int) -> Int:
     """Return the places of a closed walk that drives what is to be driven, each pass once."""
-    links: dict[tuple[int, int], list[tuple[tuple[int, int], list[bool]]]] = {}
-
-    def link(a: tuple[int, int], b: tuple[int, int], passes: int) -> None:
-        for _ in range(passes):
-            driven = [False]
-            links.setdefault(a, []).append((b, driven))
-            links.setdefault(b, []).append((a, driven))
-
-    deep = {}
+    passes, deep = Passes(), {}
     for drive in drives:
         row = drive.row
-        link((row, 0), (row, 1), drive.through)
-        link((row, 0), (row + 1, 0), drive.left_passes)
-        link((row, 1), (row + 1, 1), drive.right_passes)
+        passes.link((row, 0), (row, 1), drive.through)
+        passes.link((row, 0), (row + 1, 0), drive.left_passes)
+        passes.link((row, 1), (row + 1, 1), drive.right_passes)
         deep[row, 0], deep[row, 1] = drive.from_left, drive.from_right
-    stack, ends = [(0, 0)], []
-    while stack:
-        ways = links.get(stack[-1], [])
-        while ways and ways[-1][1][0]:
-            ways.pop()
-        if ways:
-            to, driven = ways.pop()
-            driven[0] = True
-            stack.append(to)
-        else:
-            ends.append(stack.pop())
-    return _spell_out(ends, deep, n)
+    return _spell_out(passes.walk((0, 0))[::-1], deep, n)
 
 
 def _spell_out(ends: list[tuple[int, int]], deep: dict[tuple[int, int], int], n: int) -> Int:

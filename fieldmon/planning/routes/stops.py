@@ -21,6 +21,7 @@ from fieldmon.planning.routes.frontier import (
     RIGHT_BACK,
     TWICE,
 )
+from fieldmon.planning.routes.passes import Passes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,10 +40,10 @@ _FROM_RIGHT = (FROM_RIGHT, FROM_BOTH, END_LEFT_AND)
 
 def stops_of(priced: Priced, drawn: Drawn, price: Float, robot: Robot) -> Int:
     """Return the plants of a drive on the ladder in the order of one way to drive it."""
-    links = _links(priced, drawn, robot)
+    path = _passes(priced, drawn, robot).walk(_HOME)
     chosen = _Chosen(priced, drawn, price, robot)
     stops: list[Int] = []
-    for before, node in zip([None, *(path := _euler(links))], path, strict=False):
+    for before, node in zip([None, *path], path, strict=False):
         if node[1] == 2:
             stops.append(chosen.end(node[0]))
             continue
@@ -114,49 +115,22 @@ class _Chosen:
         return ladder.plant[place]
 
 
-def _links(  # noqa: C901 - one case a way
-    priced: Priced, drawn: Drawn, robot: Robot
-) -> dict[tuple[int, int], list[tuple[tuple[int, int], list[bool]]]]:
+def _passes(priced: Priced, drawn: Drawn, robot: Robot) -> Passes:
     """Return the passes of a drive as edges between ladder nodes; (k, 2) is an end within k."""
-    links: dict[tuple[int, int], list[tuple[tuple[int, int], list[bool]]]] = {}
-
-    def link(a: tuple[int, int], b: tuple[int, int], passes: int) -> None:
-        for _ in range(passes):
-            driven = [False]
-            links.setdefault(a, []).append((b, driven))
-            links.setdefault(b, []).append((a, driven))
-
+    made = Passes()
     for k, way in enumerate(drawn.way.tolist()):
         for side in range(2):
-            link((k, side), (k + 1, side), int(drawn.passes[k, side]))
+            made.link((k, side), (k + 1, side), int(drawn.passes[k, side]))
         if k == priced.ladder.gate:
             stubs = (GATE_CLOSED if robot.returns else GATE_OPEN)[way]
             for side in range(2):
-                link(_HOME, (k, side), stubs[side])
+                made.link(_HOME, (k, side), stubs[side])
         elif way in _THROUGH:
-            link((k, 0), (k, 1), 2 if way == TWICE else 1)
+            made.link((k, 0), (k, 1), 2 if way == TWICE else 1)
             if way in (LEFT_BACK, RIGHT_BACK):
-                link((k, 1 if way == LEFT_BACK else 0), (k, 2), 1)
+                made.link((k, 1 if way == LEFT_BACK else 0), (k, 2), 1)
         elif way in (END_LEFT, END_LEFT_AND):
-            link((k, 0), (k, 2), 1)
+            made.link((k, 0), (k, 2), 1)
         elif way in (END_RIGHT, END_RIGHT_AND):
-            link((k, 1), (k, 2), 1)
-    return links
-
-
-def _euler(
-    links: dict[tuple[int, int], list[tuple[tuple[int, int], list[bool]]]],
-) -> list[tuple[int, int]]:
-    """Return the nodes of a walk from the gate that drives every pass once."""
-    stack, path = [_HOME], []
-    while stack:
-        ways = links.get(stack[-1], [])
-        while ways and ways[-1][1][0]:
-            ways.pop()
-        if ways:
-            to, driven = ways.pop()
-            driven[0] = True
-            stack.append(to)
-        else:
-            path.append(stack.pop())
-    return path[::-1]
+            made.link((k, 1), (k, 2), 1)
+    return made

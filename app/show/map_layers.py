@@ -74,8 +74,8 @@ def season_frames(choices: Choices) -> Frames | None:
     key = f"{language.current()} {choices.key} {choices.revision} {choices.day} {choices.dark}"
     names = tuple(choices.units.day(day) for day in days)
     now = int(np.searchsorted(days, choices.day))
-    shown = tuple(marks.with_hot(plants(one), _hot_layers(one)) for one in at)
-    return Frames(key, names, shown, min(now, len(days) - 1))
+    shown = cached.frames(key, lambda: [marks.with_hot(_plants(one), _hot(one)) for one in at])
+    return Frames(key, names, tuple(shown), min(now, len(days) - 1))
 
 
 def shaded(choices: Choices, first: str = "chance") -> tuple[Switch, ...]:
@@ -151,8 +151,9 @@ def _route_key(choices: Choices, route: Route) -> str:
 
 
 def _hot_layers(choices: Choices) -> list:
-    def make() -> list:
-        return marks.hot(choices.plot.grid, chosen_day.hot_spots(choices), dark=choices.dark)
-
     key = f"{choices.key} {choices.revision} {choices.day} {choices.dark}"
-    return cached.layers(f"hot {key}", make)
+    return cached.layers(f"hot {key}", partial(_hot, choices))
+
+
+def _hot(choices: Choices) -> list:
+    return marks.hot(choices.plot.grid, chosen_day.hot_spots(choices), dark=choices.dark)

@@ -70,7 +70,7 @@ if TYPE_CHECKING:
 _WORKING = Late(lambda: texts.WORKING)
 _FEW = 24
 # maps of many plants are megabytes each, a day's figures a few numbers
-_MAPS, _DAYS = 60, 200
+_MAPS, _DAYS, _FILMS = 60, 200, 6
 
 
 def digest(data: bytes) -> str:
@@ -295,6 +295,15 @@ def layers(key: str, make: Callable[[], list[Layer]]) -> list[Layer]:
 
 @st.cache_resource(max_entries=_MAPS)
 def _layers(key: str, _make: Callable[[], list[Layer]]) -> list[Layer]:  # noqa: ARG001
+    return _make()
+
+
+@st.cache_resource(max_entries=_FILMS)
+def frames(key: str, _make: Callable[[], list[list[Layer]]]) -> list[list[Layer]]:  # noqa: ARG001
+    """Return the layers of each day of a season, kept together: they are more than maps are kept.
+
+    `key` stands for all that they show, their language too.
+    """
     return _make()
 
 

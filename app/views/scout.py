@@ -25,8 +25,8 @@ _STYLE = Path(__file__).with_name("scout.css")
 
 def show(choices: Choices) -> None:
     """Lead from plant to plant."""
-    field_map.want(map_layers.day_map(choices, first="state"))
     if choices.season is None:
+        field_map.want(map_layers.day_map(choices, first="state"))
         st.markdown(texts.SCOUT_NEEDS)
         return
     st.html(_STYLE)
@@ -35,6 +35,7 @@ def show(choices: Choices) -> None:
         scouting.ask_start(choices)
     plan, progress = choices.plan(), chosen_day.progress(choices)
     if not len(plan.route):
+        field_map.want(map_layers.day_map(choices, first="state"))
         st.markdown(texts.SCOUT_DONE.format(inspected=progress.inspected_today,
                                             found=progress.found_today))  # fmt: skip
         st.caption(texts.SCOUT_LONGER_NOTE)

@@ -190,15 +190,13 @@ class MapPage {
       this.hidden = new Set(kept.hidden ?? []);
       this.opacity = kept.opacity ?? 1;
       this.shaded = kept.shade;
-      this.folded = kept.folded;
     } catch {
       this.touched = new Set();
     }
   }
 
   keep() {
-    const kept = { touched: [...this.touched], hidden: [...this.hidden], opacity: this.opacity, shade: this.shaded,
-                   folded: this.folded };
+    const kept = { touched: [...this.touched], hidden: [...this.hidden], opacity: this.opacity, shade: this.shaded };
     try {
       sessionStorage.setItem("fieldmon map", JSON.stringify(kept));
     } catch { /* a browser that keeps nothing still shows everything */ }

@@ -7,7 +7,6 @@ const SWITCH = { leg: "numbers", stop: "numbers", row: "rows" };
 export class Labels {
   constructor(place) {
     this.place = place;
-    this.free = [];
     this.shown = [];
   }
 

@@ -146,7 +146,8 @@ def route_of(choices: Choices, route: Route) -> list:
 
 
 def _route_key(choices: Choices, route: Route) -> str:
-    shown = f"{choices.robot} {choices.sampler} {choices.dark} {route.end_s} {len(route)}"
+    shown = f"{choices.robot} {choices.sampler} {choices.dark} {choices.wishes}"
+    shown = f"{shown} {route.end_s} {len(route)}"
     return f"route {choices.key} {choices.revision} {choices.day} {shown}"
 
 

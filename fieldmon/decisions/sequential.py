@@ -278,6 +278,18 @@ def decided(plan: Plan, counts: Any) -> tuple[Verdict, int]:  # noqa: ANN401 - w
     return _CODES[verdict[0]], int(looks[0])
 
 
+def after(plan: Plan, looks: int, total: float) -> Verdict:
+    """Return the verdict after so many looks, 1 or more, that counted so much together.
+
+    Examples
+    --------
+    >>> after(IwaoPlan(0.22), 40, 20)
+    'treat'
+    """
+    lines = plan.lines(looks)
+    return LEAVE if total <= lines.low[-1] else TREAT if total >= lines.high[-1] else LOOK_ON
+
+
 def least_more(plan: Plan, looks: int, total: float) -> int:
     """Return after how many looks more a verdict can come at the earliest; 0: there is one.
 

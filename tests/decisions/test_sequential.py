@@ -11,6 +11,7 @@ from fieldmon.decisions.sequential import (
     TREAT,
     IwaoPlan,
     WaldPlan,
+    after,
     decided,
     least_more,
     tried,
@@ -153,6 +154,15 @@ def test_a_verdict_comes_no_sooner_than_said_and_can_come_then(looks, infested):
     for sooner in range(more):
         assert not clear(looks + sooner, infested)
         assert not clear(looks + sooner, infested + sooner)
+
+
+def test_a_total_is_judged_as_its_counts_are_one_by_one():
+    rng = np.random.default_rng(5)
+    for counts in rng.random((40, 25)) < 0.2:
+        for n in range(1, 26):
+            verdict, looks = decided(LEAVES, counts[:n])
+            if looks == n:
+                assert after(LEAVES, n, counts[:n].sum()) == verdict
 
 
 def test_iwaos_lines_are_a_confidence_interval_round_the_threshold():

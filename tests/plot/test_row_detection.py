@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from shapely import MultiLineString, MultiPolygon
 
@@ -37,7 +37,6 @@ def planted(n_rows, n_plants, row_spacing_m, plant_spacing_m):
 # --- from plants -----------------------------------------------------------------------------
 
 
-@settings(max_examples=60)
 @given(
     size=st.tuples(st.integers(5, 25), st.integers(8, 25)),
     spacing_m=st.tuples(st.floats(1.5, 5.0), st.floats(0.3, 0.8)),

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.decisions.thresholds import Threshold
-    from fieldmon.decisions.zones import Costs, Sprayer, Zones
+    from fieldmon.decisions.zones import Sprayer, TreatmentCosts, Zones
     from fieldmon.monitoring import Season
 
 Level = Annotated[
@@ -70,7 +70,7 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
     Example: fieldmon decide season.gpkg --threshold 5% --per-ha 120 -o zones.xml.zip
     """
     from fieldmon.decisions.thresholds import threshold_of  # noqa: PLC0415
-    from fieldmon.decisions.zones import Costs, Sprayer  # noqa: PLC0415
+    from fieldmon.decisions.zones import Sprayer, TreatmentCosts  # noqa: PLC0415
     from fieldmon.monitoring import Season  # noqa: PLC0415
 
     asked = threshold_of(threshold, _own(thresholds))
@@ -82,7 +82,7 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
     else:
         typer.echo(_of_leaves(asked, leaves, counted))
     sprayer = Sprayer(section_rows, least_on, least_off)
-    costs = Costs(per_ha, per_zone, loss, days, works)
+    costs = TreatmentCosts(per_ha, per_zone, loss, days, works)
     zones = _where(kept, when, sprayer, costs)
     if output:
         _write(kept, zones, _Files(tuple(output), rate, product))
@@ -112,7 +112,7 @@ def _of_leaves(asked: Threshold, leaves: int, counted: float) -> str:
     return f"{said} (Iwao's plan, 90 % sure)."
 
 
-def _where(kept: Season, when: date, sprayer: Sprayer, costs: Costs) -> Zones:
+def _where(kept: Season, when: date, sprayer: Sprayer, costs: TreatmentCosts) -> Zones:
     from fieldmon.decisions.zones import best_zones  # noqa: PLC0415
 
     zones = best_zones(kept.plot.grid, kept.evening(when), sprayer, costs)

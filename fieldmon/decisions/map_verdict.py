@@ -128,7 +128,7 @@ def map_verdict(  # noqa: PLR0913 - two of them have to be named
     pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
     shares = _drawn_shares(grid, (chance, pairs), asked, key)
     above = float(np.mean(shares >= level))
-    verdict = TREAT if above >= sure else LEAVE if above <= 1 - sure else LOOK_ON
+    verdict: Verdict = TREAT if above >= sure else LEAVE if above <= 1 - sure else LOOK_ON
     low, high = np.quantile(shares, [0.5 - sure / 2, 0.5 + sure / 2])
     share = float(chance[asked].mean())
     return MapVerdict(verdict, level, above, share, float(low), float(high), sure)

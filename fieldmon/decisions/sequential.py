@@ -7,7 +7,7 @@ not pay, above the upper one it does, and in between one looks on.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-TREAT, LEAVE, LOOK_ON = "treat", "do not treat", "look on"
+TREAT: Final = "treat"
+LEAVE: Final = "do not treat"
+LOOK_ON: Final = "look on"
 Verdict = Literal["treat", "do not treat", "look on"]
 Counts = Literal["presence", "poisson", "negative binomial"]
 
@@ -147,9 +149,9 @@ class WaldPlan:
         one_more, look = self.evidence
         below, above = self.limits
         looks = np.arange(1, n + 1)
-        return StopLines(
-            *(read_only((limit - look * looks) / one_more) for limit in (below, above))
-        )
+        low: Floats = (below - look * looks) / one_more
+        high: Floats = (above - look * looks) / one_more
+        return StopLines(read_only(low), read_only(high))
 
     def operating_curve(self, mean: Any) -> OperatingCurve:  # noqa: ANN401 - an array or a number
         """Return how often it ends without treatment, and after how many looks, by true mean.

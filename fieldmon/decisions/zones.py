@@ -58,7 +58,7 @@ class Sprayer:
 
 
 @dataclass(frozen=True)
-class Costs:
+class TreatmentCosts:
     """What treating costs, and what not treating does; in one currency.
 
     Parameters
@@ -159,7 +159,10 @@ class Zones:
 
 
 def best_zones(
-    grid: PlantGrid, chance: Floats, sprayer: Sprayer | None = None, costs: Costs | None = None
+    grid: PlantGrid,
+    chance: Floats,
+    sprayer: Sprayer | None = None,
+    costs: TreatmentCosts | None = None,
 ) -> Zones:
     """Return the zones whose spraying is expected to lose least.
 
@@ -181,13 +184,13 @@ def best_zones(
     >>> len(best_zones(plot.grid, chance))
     1
     """
-    sprayer, costs = sprayer or Sprayer(), costs or Costs()
+    sprayer, costs = sprayer or Sprayer(), costs or TreatmentCosts()
     once = grid.vine == np.arange(len(grid))
     m2 = grid.row_spacing_m * grid.plant_spacing_m
     gain = np.where(once, chance * costs.per_infested_plant - costs.per_ha * m2 / 10_000, 0.0)
     strips = _strips(grid, sprayer.rows)
     on = np.zeros(len(strips.start_m), bool)
-    per_step = np.bincount(strips.step, gain, len(on))
+    per_step = np.bincount(strips.step, gain, len(on)).astype(np.float64)
     _switch(
         (strips.first, strips.start_m, per_step),
         (sprayer.least_on_m, sprayer.least_off_m, costs.per_zone),

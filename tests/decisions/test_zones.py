@@ -8,13 +8,13 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.decisions.zones import Costs, Sprayer, Zones, best_zones, outlines
+from fieldmon.decisions.zones import Sprayer, TreatmentCosts, Zones, best_zones, outlines
 from fieldmon.errors import SettingError
 from fieldmon.plot.layout import Planting, rectangle
 from tests.crooked import crooked_grids
 
 ROW = rectangle(1, 9, Planting(90.0, 4.0, 2.0))
-CHEAP = Costs(per_ha=500.0, per_zone=0.3, infested_plant_day=0.2, days=10.0, works=1.0)
+CHEAP = TreatmentCosts(per_ha=500.0, per_zone=0.3, infested_plant_day=0.2, days=10.0, works=1.0)
 
 
 def value(on, gain, sprayer, per_zone, step_m=2.0):
@@ -53,7 +53,7 @@ def test_no_other_switching_of_a_row_is_worth_more(chance, least_on_m, least_off
 @given(crooked_grids(60), st.integers(0, 4), st.integers(0, 1000))
 def test_areas_and_plants_add_up_on_any_plot(grid, rows, seed):
     chance = np.random.default_rng(seed).random(len(grid)) ** 8
-    zones = best_zones(grid, chance, Sprayer(rows), Costs(per_ha=300.0))
+    zones = best_zones(grid, chance, Sprayer(rows), TreatmentCosts(per_ha=300.0))
     once = grid.vine == np.arange(len(grid))
     assert zones.inside + zones.outside == pytest.approx(chance[once].sum())
     assert zones.plot_m2 == pytest.approx(once.sum() * grid.row_spacing_m * grid.plant_spacing_m)
@@ -67,7 +67,7 @@ def test_areas_and_plants_add_up_on_any_plot(grid, rows, seed):
 def test_a_stretch_is_one_section_and_long_enough(grid, seed):
     chance = np.random.default_rng(seed).random(len(grid)) ** 6
     sprayer = Sprayer(2, least_on_m=7.0, least_off_m=5.0)
-    zones = best_zones(grid, chance, sprayer, Costs(per_ha=200.0))
+    zones = best_zones(grid, chance, sprayer, TreatmentCosts(per_ha=200.0))
     line = grid.row_line[grid.row]
     for k in range(len(zones)):
         mine = zones.zone == k
@@ -92,7 +92,9 @@ def test_clusters_are_treated_with_less_than_two_fifths_of_the_area():
     """The goal: at most 40 % of the whole field, where infested plants stand in clusters."""
     grid = rectangle(60, 60, Planting(90.0, 4.0, 3.0))
     chance = clustered(grid)
-    zones = best_zones(grid, chance, Sprayer(2, 6.0, 6.0), Costs(per_ha=10.0, per_zone=0.1))
+    zones = best_zones(
+        grid, chance, Sprayer(2, 6.0, 6.0), TreatmentCosts(per_ha=10.0, per_zone=0.1)
+    )
     assert zones.inside > 0.8 * chance.sum()
     assert zones.m2 < 0.4 * zones.plot_m2
 
@@ -128,7 +130,8 @@ def test_outlines_hold_their_plants_and_no_other():
 
 
 @pytest.mark.parametrize(
-    "made", [lambda: Sprayer(-1), lambda: Costs(per_ha=-2.0), lambda: Costs(works=0.0)]
+    "made",
+    [lambda: Sprayer(-1), lambda: TreatmentCosts(per_ha=-2.0), lambda: TreatmentCosts(works=0.0)],
 )
 def test_what_cannot_be_is_refused(made):
     with pytest.raises(SettingError, match="must be"):

@@ -148,7 +148,7 @@ class WaldPlan:
         """Return the stop lines for 1 to n looks: straight and parallel."""
         one_more, look = self.evidence
         below, above = self.limits
-        looks = np.arange(1, n + 1)
+        looks = np.arange(1.0, n + 1.0)
         low: Floats = (below - look * looks) / one_more
         high: Floats = (above - look * looks) / one_more
         return StopLines(read_only(low), read_only(high))

@@ -120,6 +120,7 @@ def page_prior() -> None:
 
 # a click may end the first run of a page before its boxes are there
 plot_source.begin_from_address()
+rooms.begin_from_address()
 field_map.clear()
 map_place = st.container(key="map_place")
 ROOM_PAGES = {name: page_of(name) for name in rooms.ROOMS}

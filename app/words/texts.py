@@ -90,7 +90,6 @@ BOUND_HELP = (
     "Whichever plants it visits, no route fixed in the morning can expect more finds. Who plans "
     "again after each find may find more."
 )
-DOWNLOAD = "Download the route (GeoJSON)"
 NO_STOPS = (
     "The working day is too short to reach a plant and come back. Give more hours below, under "
     "Who inspects."
@@ -214,9 +213,26 @@ BEGIN_NOTE = (
 )
 SEASON_NAME, BEGIN = "Name of the season", "Begin the season"
 BEGUN = "Season {name} has begun. Its file is {path}."
-START_SCOUTING, GIVE_OUT = "Start scouting", "Give this route out"
-GIVEN_OUT = "This route is kept with the season as given out for {day}."
-GIVE_OUT_HELP = "Keeps the route with the season, so that the report can hold it to what was done."
+START_SCOUTING = "Start scouting"
+YESTERDAY = "Yesterday"
+STEPS = {"look_back": "Day before", "plan": "Plan", "begin": "Keep it", "send": "Take along",
+         "record": "Record", "report": "Report", "next_day": "Next day"}  # fmt: skip
+STEP_BUTTONS = {"look_back": "Look back", "plan": "Use this plan", "begin": "Begin a season",
+                "send": "Send to phone", "record": "Record finds", "report": "Print (PDF)",
+                "next_day": "Plan the next day"}  # fmt: skip
+STEP_NOTHING = "nothing recorded"
+STEP_FOUND = Plural(
+    "{found} found on {inspected} plant", "{found} found on {inspected} plants", by="inspected"
+)
+PLAN_USED = "This is the plan for {day}: it is kept with the season."
+SEND_TITLE = "Take the route along"
+SEND_SCAN = "**Point the phone's camera here.** It opens the day's work, in the phone's language."
+SEND_ALT = "Picture with the address of the day's work, for a phone's camera."
+SEND_ALONE = (
+    "This page can be seen on this computer only, so a phone cannot open it. Take the route along "
+    "as a file; or let others in, as the documentation says, and come here by that address."
+)
+SEND_FILE = "**Or as a file**, for phones, robots and paper:"
 WHY, WHY_TODAY = "Why there", "today"
 CHANGED = "Since yesterday"
 CHANGED_FIRST = "This is the first day of the season; from tomorrow, changes stand here."
@@ -240,7 +256,7 @@ TODAY_DONE = Plural(
     "{inspected} plants inspected today so far, {found} found. The route shows the rest.",
     by="inspected",
 )
-OTHER_FORMATS, FORMAT, DOWNLOAD_AS = "Robot, phone, paper", "Format", "Download for {reader}"
+FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
 #: as `fieldmon.io.writers.handoff` says them, which takes long to load
 READERS = {
     "nav2": "robots with Nav2 (ROS 2)", "waypoints": "robots of any kind",

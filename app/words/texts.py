@@ -40,6 +40,7 @@ PLOT_FROM = "Plot or season"
 PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
 RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
 PLANT_FILE = "Measured plant positions (optional)"
+FILES = "Files: the plot, pest records, measured plants"
 KEPT_FILE = "In use: {name}"
 FORGET_FILE = "Take it out"
 WHICH_PLOT = "Which plot"
@@ -98,7 +99,11 @@ MESSAGES = "What the import found"
 MESSAGES_NONE = "Nothing to report: the files were read as they are."
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
-CHOOSE_QUICK = "Most likely:"
+CHOOSE_ON_MAP = "Which of these is your plot? Click it on the map, or choose here."
+CHOOSE_OTHER, CHOOSE_NOWHERE = "Another answer", "leads nowhere"
+LEGEND_ZONE = "border of a time zone"
+ANSWERS_ALT = Plural("Map of {n} place where the plot could lie.",
+                     "Map of {n} places where the plot could lie.")  # fmt: skip
 LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
 UNDO_ANSWER = "Take back: {option} = {value}"
 SEVERITIES = {
@@ -202,7 +207,13 @@ PLOTS_TIP_NEW = "{name}: no season yet"
 PLOTS_SEEN = {0: "seen today", None: "never seen",
               "n": Plural("seen {n} day ago", "seen {n} days ago")}  # fmt: skip
 PLOTS_PICK = "Click a plot on the map, or a row here."
-WAYS_IN = {"sample": "Try the sample estate", "file": "Bring a plot of mine"}
+WAYS_IN = {"sample": "Try the sample", "file": "My plot", "season": "Open a season"}
+NO_SEASONS = (
+    "There is no season here yet. One begins with a plot: bring yours or try the sample, then "
+    "press Begin a season on Today. Seasons are files in the folder {folder}: one that was made "
+    "elsewhere is opened by putting it there."
+)
+TO_ROUTE = "Show today's route"
 
 # -- today
 PLANTS_COUNTED = Plural("{n} plant", "{n} plants")
@@ -278,6 +289,8 @@ TIP_INFESTED, TIP_CORNER = "infested", "corner"
 # -- plot and records
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
 BEARING_IS, SPACING_IS = "Row bearing", "Rows / plants apart"
+BEFORE_NOTE = "The plot as it was before the last change is drawn in orange."
+BEFORE_DROP = "It is right now"
 FOUND_ROWS = "Leave a box empty to take what was found. Plants are laid again at once."
 FIXED = "The plants of a season are laid once and for all: its plant numbers stay valid."
 DRAW, DRAW_KIND = "Gate, paths, no-go areas", "A click on the map sets"
@@ -322,8 +335,9 @@ UNDATED = "Records without a date are always shown."
 # -- the map of the field
 SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspected",
           "age": "days since inspected"}  # fmt: skip
-MAP_LAYERS = {"route": "route", "numbers": "stop numbers", "hot": "hot spots",
-              "records": "records", "rows": "row numbers", "backdrop": "picture"}  # fmt: skip
+MAP_LAYERS = {"before": "as it was before", "route": "route", "numbers": "stop numbers",
+              "hot": "hot spots", "records": "records", "rows": "row numbers",
+              "backdrop": "picture"}  # fmt: skip
 BACKDROP_TITLE, HOT_TITLE = "Picture of the ground", "Hot spots"
 BACKDROP = "Picture of the ground (GeoTIFF)"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."

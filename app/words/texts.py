@@ -177,7 +177,7 @@ LANGUAGE = "Language"
 MACHINE_MADE = "Translated by a machine; no native speaker has read it yet."
 UNITS = {"m": "m", "km": "km", "ft": "ft", "mi": "mi", "ha": "ha", "dunam": "dunam",
          "acre": "acre"}  # fmt: skip
-IN_UNIT, IN_HOURS = "{value} {unit}", "{hours} h"
+IN_HOURS = "{hours} h"
 IN_PERCENT = "{value} %"
 STOP_NUMBER = "stop"
 

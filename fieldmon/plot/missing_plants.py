@@ -30,7 +30,8 @@ def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
     if len(missing) != len(grid):
         raise PlotError(
             worded(
-                "Missing plants must be marked for each of {n} plants, but {given} marks were given.",
+                "Missing plants must be marked for each of {n} plants, "
+                "but {given} marks were given.",
                 n=len(grid),
                 given=len(missing),
             )

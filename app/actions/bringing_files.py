@@ -117,7 +117,7 @@ def _ask(error: ChoiceNeeded, asking: str, tried: dict[str, TriedAnswer]) -> Non
     label, widget = texts.CHOOSE_OTHER, f"ask {asking} {error.option}"
     with st.container(horizontal=True, vertical_alignment="bottom"):
         if error.choices:
-            st.selectbox(label, offered, None, key=widget, accept_new_options=True)
+            st.selectbox(label, offered, key=widget, accept_new_options=True)
         else:
             st.text_input(label, key=widget)
         st.button(texts.CHOOSE_BUTTON, key=f"use {asking} {error.option}",

@@ -14,8 +14,9 @@ import pytest
 from rasterio.io import MemoryFile
 from rasterio.transform import from_bounds
 
-from app.state import rooms
+from app.state import chosen_language, rooms
 from app.words import texts
+from app.words.language import LANGUAGES
 from fieldmon.monitoring import Season
 from tests.app.driving import PAGES, begun, go, opened
 
@@ -61,6 +62,7 @@ FILES = {
 
 # what can be chosen, by key; other boxes are chosen from by place
 CHOICES = {
+    chosen_language.KEY: list(LANGUAGES),
     "who": [texts.ROBOT, texts.SCOUT],
     "one_result": [0, 1, 2],
     "strategy_samplers": list(texts.SAMPLERS),
@@ -88,7 +90,7 @@ def poke(rng, kind, widget):
         value = rng.choice(FILES[key])
         widget.upload(*value)
         return f"upload {key} {value[0]}"
-    if kind == "selectbox":
+    if kind == "selectbox" and key not in CHOICES:
         place = rng.randrange(len(widget.options))
         widget.select_index(place)
         return f"choose {key} {widget.options[place]}"

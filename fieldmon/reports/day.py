@@ -203,7 +203,7 @@ def _stops(facts: DayFacts) -> Table:
             )
         )
     return Table(
-        words.STOPS, words.STOPS_COLUMNS, tuple(rows), (0.12, 0.17, 0.13, 0.58), flow=flow,
+        words.STOPS, words.STOPS_COLUMNS, tuple(rows), (0.15, 0.16, 0.17, 0.52), flow=flow,
         rest=words.STOPS_REST, left=(3,),
     )  # fmt: skip
 

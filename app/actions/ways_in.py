@@ -37,7 +37,7 @@ def _sample() -> None:
 
 
 def _file() -> None:
-    _choose(plot_source.FILES, "plot")
+    _choose(plot_source.FILES, "today")
 
 
 def _season() -> None:

@@ -27,6 +27,7 @@ def show(choices: Choices) -> None:
     content = map_layers.day_map(choices, above=picking.layers(choices))
     plant_history.want(choices, content, partial(picking.take, choices))
     picking.show(choices, plan)
+    plant_history.show_chosen(choices)
     day.route_figures(choices, plan)
     assuming.show(choices)
     if choices.season is None:
@@ -37,7 +38,6 @@ def show(choices: Choices) -> None:
             if said:
                 st.markdown(f"### {title}")
                 st.markdown("\n".join(f"- {sentence}" for sentence in said))
-    plant_history.show_chosen(choices)
     if len(plan.route):
         with st.expander(texts.STOPS):
             planned = DayRoute(plan.route, chosen_day.starts(choices, plan))

@@ -347,6 +347,8 @@ HISTORY_TREATED = (
     "It was found infested, and in this season plants found are taken as treated at once: from "
     "then on it counts as clean, and its chance grows again as insects come from its neighbours."
 )
+HISTORY_STOP = "Stop {n} of {all} on the day's route, at {time}."
+HISTORY_NO_STOP = "Not on the day's route."
 HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
 HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}

@@ -66,6 +66,17 @@ def read_backdrop(
     return picture
 
 
+def read_relief(
+    source: Source, options: RasterOptions | None = None, near: Field | None = None
+) -> Imported[Backdrop]:
+    """Return the relief that a raster of heights (metres) shows, lit from the north-west.
+
+    All of it, or what lies about a plot. How much steeper it is drawn than it is, is told.
+    """
+    picture: Imported[Backdrop] = _read("relief:relief", source, options, near)
+    return picture
+
+
 def _read(task: str, source: Source, options: RasterOptions | None, near: Field | None) -> Any:  # noqa: ANN401 - each door says
     options = options or RasterOptions()
     bounds = None
@@ -112,4 +123,4 @@ def _within(field: Field) -> NDArray[np.float64]:
     return np.stack([lon[inside], lat[inside]], axis=1)
 
 
-__all__ = ["Backdrop", "Raster", "RasterOptions", "read_backdrop", "read_raster"]
+__all__ = ["Backdrop", "Raster", "RasterOptions", "read_backdrop", "read_raster", "read_relief"]

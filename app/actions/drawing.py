@@ -13,7 +13,7 @@ from fieldmon.plot.layout import Planting
 
 from ..show import field_map, map_layers
 from ..show.map_view import Drawable, MapAnswers, MapContent
-from ..show.maps import colours, deck, labels, legends, marks, plant_layers
+from ..show.maps import colours, legends, marks, plant_layers
 from ..state import cached, notices, widget_memory
 from ..state.chosen_units import units
 from ..state.plot_edits import GATE, NO_GO, PATH, Edit, points_of
@@ -91,7 +91,7 @@ def content(choices: Choices, records: Observations) -> tuple[MapContent, MapAns
     """Return the map on which the gate, paths and no-go areas are drawn, and who hears of it."""
     field, kind = choices.plot.field, _kind()
     layers = [
-        deck.boundary(field, dark=choices.dark), *_plain_plants(choices), *marks.paths(field),
+        *map_layers.plan(choices), *_plain_plants(choices), *marks.paths(field),
         *marks.records(records, dark=choices.dark),
     ]  # fmt: skip
     if field.gate is not None:
@@ -104,8 +104,9 @@ def content(choices: Choices, records: Observations) -> tuple[MapContent, MapAns
         draw = Drawable(_SHAPES[kind], kind, texts.DRAW_HINTS[kind], _corners(field))
     made = MapContent(
         **field_map.of_plot(choices), layers=layers, switches=map_layers.switches(layers),
-        legend=legends.signs(dark=choices.dark)[2:], draw=draw,
-        labels=labels.rows(choices.plot.grid),
+        legend=[*legends.signs(dark=choices.dark)[2:], *legends.plan(field, dark=choices.dark)],
+        draw=draw,
+        labels=map_layers.words(choices),
     )  # fmt: skip
     return made, MapAnswers(drawn=partial(_drawn, choices))
 

@@ -26,13 +26,17 @@ if TYPE_CHECKING:
 _ROW, _PLANT, _TAPPED = "history row", "history plant", "history tapped"
 
 
-def want(choices: Choices, content: MapContent, selected: Selected | None = None) -> None:
+def want(
+    choices: Choices, content: MapContent, selected: Selected | None = None,
+    picked: tuple[int, ...] = (),
+) -> None:  # fmt: skip
     """Want a map on which a tap chooses the plant whose history is shown, with a ring round it.
 
-    `selected` hears of the plants that are selected on it.
+    `selected` hears of the plants that are selected on it; `picked` are those by now.
     """
     chosen = replace(content, layers=[*content.layers, *layers(choices)])
-    field_map.want(chosen, MapAnswers(partial(take_plant, choices), selected=selected))
+    taking = partial(take_plant, choices)
+    field_map.want(chosen, MapAnswers(taking, selected=selected, picked=picked))
 
 
 def take_plant(choices: Choices, layer: str, index: int) -> None:
@@ -76,6 +80,7 @@ def show(choices: Choices) -> None:
     if choices.season is not None:
         first = chosen_day.morning(choices, str(choices.season.settings.begins))
     st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
+    st.caption(texts.HISTORY_CHANCE)
     if _taken_as_treated(choices, plant):
         st.caption(texts.HISTORY_TREATED)
     for line in _inspections(choices, plant):

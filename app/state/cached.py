@@ -19,7 +19,8 @@ from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.infestation.spread import Spread
 from fieldmon.io import prepare, read
-from fieldmon.io.rasters.read import read_backdrop
+from fieldmon.io.rasters.read import looks_like_heights as _looks_like_heights
+from fieldmon.io.rasters.read import read_backdrop, read_relief
 from fieldmon.monitoring import Season, worked_route
 from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from
@@ -263,9 +264,21 @@ def season_report(
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
-def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Backdrop:  # noqa: ARG001
+def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Imported[Backdrop]:  # noqa: ARG001
     """Return a picture of the ground about a plot."""
-    return read_backdrop(_source, options, _near).value
+    return read_backdrop(_source, options, _near)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
+def relief(key: str, options: RasterOptions, _source: Source, _near: Field) -> Imported[Backdrop]:  # noqa: ARG001
+    """Return the relief about a plot, of a raster of heights."""
+    return read_relief(_source, options, _near)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
+def looks_like_heights(key: str, options: RasterOptions, _source: Source) -> bool:  # noqa: ARG001
+    """Return whether a raster is more likely heights than a picture."""
+    return _looks_like_heights(_source, options)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)

@@ -46,6 +46,21 @@ _EMPTY = 30  # opacity of a plant never inspected: an outline with next to nothi
 
 
 @dataclass(frozen=True)
+class PlanTones:
+    """What a plan is drawn in: quiet, so that plants and route stand out from it."""
+
+    headland: Colour
+    rows: Colour
+    aisle: Colour
+    no_go: Colour
+    hatch: Colour
+
+
+PLAN = PlanTones((243, 242, 235), (222, 228, 212), (240, 238, 228), (226, 214, 208), (120, 74, 60))
+PLAN_IN_DARK = PlanTones((28, 36, 39), (24, 34, 29), (34, 42, 44), (44, 34, 32), (196, 148, 130))
+
+
+@dataclass(frozen=True)
 class Shade:
     """A colour for every plant by its rank ``(n,)``; higher ranks win a pixel.
 

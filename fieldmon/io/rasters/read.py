@@ -77,6 +77,12 @@ def read_relief(
     return picture
 
 
+def looks_like_heights(source: Source, options: RasterOptions | None = None) -> bool:
+    """Return whether a raster is more likely heights than a picture: one band, of no colours."""
+    looks: bool = _read("relief:looks_like_heights", source, options, None)
+    return looks
+
+
 def _read(task: str, source: Source, options: RasterOptions | None, near: Field | None) -> Any:  # noqa: ANN401 - each door says
     options = options or RasterOptions()
     bounds = None
@@ -123,4 +129,12 @@ def _within(field: Field) -> NDArray[np.float64]:
     return np.stack([lon[inside], lat[inside]], axis=1)
 
 
-__all__ = ["Backdrop", "Raster", "RasterOptions", "read_backdrop", "read_raster", "read_relief"]
+__all__ = [
+    "Backdrop",
+    "Raster",
+    "RasterOptions",
+    "looks_like_heights",
+    "read_backdrop",
+    "read_raster",
+    "read_relief",
+]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from rasterio.enums import Resampling
+from rasterio.enums import ColorInterp, Resampling
 from scipy import ndimage
 
 from fieldmon.errors import FileProblem
@@ -73,6 +73,17 @@ def relief(
         )
         picture = Backdrop(*encoded(np.clip(grey, 0, 255).astype(np.uint8)[None], missing), corners)
         return Imported(picture, (*read.messages, said, *bent))
+
+
+def looks_like_heights(
+    folder: str, source: Source, options: RasterOptions, _bounds: Bounds | None
+) -> bool:
+    """Return whether a source holds one band of numbers that are neither colours nor classes."""
+    with open_raster(folder, source, options) as opened:
+        meaning = opened.tif.colorinterp
+        bands = [k for k, one in enumerate(meaning) if one != ColorInterp.alpha]
+        is_one = len(bands) == 1 and meaning[bands[0]] != ColorInterp.palette
+        return is_one and opened.tif.dtypes[bands[0]] != "uint8"
 
 
 def filled(heights: Float, missing: NDArray[np.bool_]) -> Float:

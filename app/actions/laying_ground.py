@@ -39,7 +39,7 @@ def _file(choices: Choices, made: Ground | None) -> None:
     if file is not None and ground.is_raster(file) and made is not None:
         widget_memory.show(
             st.selectbox, texts.GROUND_SHOWS, list(texts.GROUND_KINDS),
-            key=f"{ground.SHOWS} {file.key}", default=ground.shows(file, choices),
+            key=f"{ground.SHOWS} {file.key}", default=ground.shows(file),
             format_func=texts.GROUND_KINDS.__getitem__, filter_mode=None,
         )  # fmt: skip
     if (problem := ground.problem()) is not None and file is not None:

@@ -56,7 +56,8 @@ def content(
         **field_map.of_plot(choices, len(driven)), layers=layers,
         switches=map_layers.switches(layers),
         shades=(Switch("state", texts.SHADES["state"], ("plants-state",)),),
-        legend=[*map_layers.legend(choices), *more], labels=[*labels.stops(driven), *map_layers.words(choices)],
+        legend=[*map_layers.legend(choices), *more],
+        labels=[*labels.stops(driven), *map_layers.words(choices)],
     )  # fmt: skip
 
 

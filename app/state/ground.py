@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.io.options import Upload
 from fieldmon.io.rasters.tiles import is_tiles, read_tiles
 from fieldmon.io.rasters.values import RasterOptions
 
@@ -17,6 +16,8 @@ from .brought_files import brought, messages_of, settled, take_out
 from .kept_ground import Agreement, Ground, GroundPicture, GroundTiles
 
 if TYPE_CHECKING:
+    from fieldmon.io.options import Upload
+
     from .brought_files import File, FileMessage
     from .choices import Choices
 
@@ -69,7 +70,7 @@ def is_raster(file: File) -> bool:
     return not is_tiles(_head(file))
 
 
-def shows(file: File, choices: Choices) -> str:
+def shows(file: File) -> str:
     """Return what a raster shows: as it was said, else as it looks."""
     chosen: str | None = widget_memory.value(f"{SHOWS} {file.key}")
     if chosen is not None:
@@ -107,7 +108,7 @@ def _read(file: File, choices: Choices) -> Ground:
         return GroundTiles(file.name, read_tiles(path, choices.plot.field))
     options = settled(file, RasterOptions())
     key = f"{file.key} {options} {choices.key}"
-    is_relief = shows(file, choices) == HEIGHTS
+    is_relief = shows(file) == HEIGHTS
     read = cached.relief if is_relief else cached.backdrop
     imported = read(key, options, file.source, choices.plot.field)
     st.session_state[_SAID] = messages_of(file, imported)

@@ -43,8 +43,8 @@ def mbtiles(path, tiles, **said):
         db.execute("CREATE TABLE tiles (zoom_level INTEGER, tile_column INTEGER, tile_row INTEGER, "
                    "tile_data BLOB)")  # fmt: skip
         db.executemany("INSERT INTO metadata VALUES (?, ?)", {"name": "t", **said}.items())
-        db.executemany("INSERT INTO tiles VALUES (?, ?, ?, ?)",
-                       [(z, x, 2**z - 1 - y, data) for (z, x, y), data in tiles.items()])  # fmt: skip
+        from_south = [(z, x, 2**z - 1 - y, data) for (z, x, y), data in tiles.items()]
+        db.executemany("INSERT INTO tiles VALUES (?, ?, ?, ?)", from_south)
     return path
 
 

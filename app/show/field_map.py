@@ -53,4 +53,4 @@ def of_plot(choices: Choices, stops: int = 0) -> dict[str, object]:
     )
     return {"place": choices.place, "bounds": deck.of_grid(grid), "alt": alt,
             "ground": ground.of(choices),
-            "title": f"{choices.plot.field.name} · {choices.units.day(choices.day)}"}  # fmt: skip
+            "title": choices.plot.field.name, "when": choices.units.day(choices.day)}  # fmt: skip

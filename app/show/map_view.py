@@ -110,7 +110,7 @@ class MapContent:
         What clicks draw, or None.
     ground
         What lies under all of it.
-    title
+    title, when
         What a picture of it is headed with.
     """
 
@@ -127,6 +127,7 @@ class MapContent:
     draw: Drawable | None = None
     ground: GroundShown = field(default_factory=GroundShown)
     title: str = ""
+    when: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +183,7 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
         "select": answers.selected is not None,
         "picked": _runs(answers.picked),
         "title": content.title,
+        "when": content.when,
         "dark": browser.is_dark(),
         "lengths": chosen_units.units().lengths(),
         "words": texts.MAP_WORDS,

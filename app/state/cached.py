@@ -7,6 +7,7 @@ leaves out, beside a key that stands for them.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
@@ -23,7 +24,7 @@ from fieldmon.io.rasters.read import looks_like_heights as _looks_like_heights
 from fieldmon.io.rasters.read import read_backdrop, read_relief
 from fieldmon.monitoring import Season, worked_route
 from fieldmon.planning.day_bound import with_bound
-from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from
+from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from, plan_in
 from fieldmon.reports import season as reports
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
@@ -62,6 +63,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.reports.content import Report
+    from fieldmon.samplers.base import Scene
 
     from .comparison import ComparisonSettings
 
@@ -200,6 +202,19 @@ def season_plan(
 ) -> DayPlan:
     """Return what is left of a season's day."""
     return with_bound(_season.plan(np.datetime64(day).item(), keep=False, wishes=wishes))
+
+
+@st.cache_resource(max_entries=_FEW)
+def season_scene(path: str, revision: str, day: str, _season: Season) -> Scene:  # noqa: ARG001
+    """Return what is known and believed on a season's day before it is planned."""
+    return _season.plan(np.datetime64(day).item(), keep=False).scene
+
+
+@st.cache_resource(max_entries=_DAYS)
+def turn_plan(key: str, robot: Robot, sampler_name: str, _scene: Scene) -> DayPlan:  # noqa: ARG001
+    """Return the day of one who has only some hours for a plot; `key` stands for the scene."""
+    scene = replace(_scene, robot=robot, seconds_left=robot.day_s)
+    return plan_in(scene, sampler(sampler_name))
 
 
 @st.cache_resource(max_entries=_FEW)

@@ -208,6 +208,30 @@ PLOTS_TIP_NEW = "{name}: no season yet"
 PLOTS_SEEN = {0: "seen today", None: "never seen",
               "n": Plural("seen {n} day ago", "seen {n} days ago")}  # fmt: skip
 PLOTS_PICK = "Click a plot on the map, or a row here."
+PLAN_ALL = "Plan all that are due"
+PLAN_ALL_OFF = "Without the plan"
+PLAN_ALL_CREW = {"robots": "Robots", "robot_hours": "Hours of each robot", "scouts": "Scouts",
+                 "scout_hours": "Hours of each scout",
+                 "move_min": "Minutes from plot to plot"}  # fmt: skip
+ROBOT_NAMED, SCOUT_NAMED = "robot {n}", "scout {n}"
+PLAN_ALL_LEAD = Plural(
+    "{plants} plants on {n} plot; expect {finds:.0f} finds.",
+    "{plants} plants on {n} plots; expect {finds:.0f} finds.",
+)
+PLAN_ALL_NONE = "Nothing is due today: every plot was seen today."
+PLAN_ALL_RULE = (
+    "Plots come in the order of the infested plants expected there. Each goes to whoever then has "
+    "most time for it, and everybody shares his hours among his plots by what is expected. A plot "
+    "that would get less than a quarter of an hour waits. From plot to plot takes so many minutes, "
+    "wherever they lie."
+)
+PLAN_ALL_WAITING = "No time today: {names}."
+PLAN_ALL_FREE = "Free today: {names}."
+PLAN_ALL_WORKING = "Planning the plots ..."
+PLAN_ALL_DOWNLOAD = "Download all routes"
+PLAN_ALL_COLUMNS = {"who": "who", "from": "from", "to": "to", "plants": "plants to inspect",
+                    "finds": "finds expected"}  # fmt: skip
+PLOTS_LABEL = "{name}\n{who}, {start}-{end}"
 WAYS_IN = {"sample": "Try the sample estate", "file": "Bring a plot of mine"}
 
 # -- today

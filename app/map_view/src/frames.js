@@ -63,6 +63,11 @@ export class Frames {
     return this.made || this.filming ? ["route", "numbers"] : [];
   }
 
+  // Return the name of the day that is shown, where there are days.
+  get day() {
+    return this.data ? this.name.textContent : null;
+  }
+
   toggle() {
     if (this.timer) this.stop();
     else this.play();
@@ -114,7 +119,7 @@ export class Frames {
       await this.to(k);
       // a breath, so that the page is not frozen while it films
       await new Promise((done) => setTimeout(done));
-      yield this.shot(data.names[k]);
+      yield await this.shot(data.names[k]);
     }
   }
 

@@ -48,7 +48,7 @@ class MapPage {
     this.labels = new Labels(this.labelPlace);
     this.playback = new Playback(this.foot, () => this.drawLayers());
     this.frames = new Frames(this.foot, { changed: () => this.drawLayers(), save: (blob, name) => saved(blob, name),
-      shot: (day) => this.shot(day, FILM_PX) });
+      shot: async (day) => { await this.rendered(); return this.shot(day, FILM_PX); } });
     this.foot.append(this.credit);
     this.drawing = new Drawing(() => this.drawLayers(), (mode, points) => this.drawn(mode, points));
     this.jsons = [];
@@ -56,6 +56,7 @@ class MapPage {
     this.opacity = 1;
     this.groundOpacity = 1;
     this.signs = new Map();
+    this.waiting = [];
     this.shape = keepShape(() => this.data?.words);
     this.listen();
   }
@@ -141,7 +142,10 @@ class MapPage {
       _pickable: false,
       getCursor: ({ isDragging }) => (isDragging ? "grabbing" : this.drawing.mode ? "crosshair" : "grab"),
       onViewStateChange: ({ viewState }) => this.limited(viewState),
-      onAfterRender: () => this.follow(),
+      onAfterRender: () => {
+        this.follow();
+        for (const done of this.waiting.splice(0)) done();
+      },
       onLoad: () => {
         const canvas = this.canvasPlace.querySelector("canvas");
         canvas.setAttribute("role", "img");
@@ -344,7 +348,12 @@ class MapPage {
 
   shoot() {
     if (!this.deck) return;
-    this.shot(null, 4000).toBlob((blob) => saved(blob, this.data.words.picture_name));
+    this.shot(this.frames.day ?? this.data.when, 4000).toBlob((blob) => saved(blob, this.data.words.picture_name));
+  }
+
+  // Wait until what was set last is drawn; a page that nobody sees is not drawn, and not waited for.
+  rendered() {
+    return new Promise((done) => { this.waiting.push(done); setTimeout(done, 1500); });
   }
 
   // Return what is on the map now as a canvas; `said` follows the plot's name in its title.
@@ -359,7 +368,7 @@ class MapPage {
         route: colour("--route", "#1450c8"), onRoute: this.data.dark ? "#06202c" : "#fff" },
       title: [this.data.title, said].filter(Boolean).join(" · "), credit: this.credit.hidden ? "" : this.credit.textContent,
       legend: this.legendShown(), signs: (kind, c) => this.signs.get(`${kind} ${c}`), bar: this.scale.length,
-      labels: this.labels.placed, rtl: this.data.direction === "rtl",
+      labels: this.labels.placed, onPicture: this.root.classList.contains("over-picture"), rtl: this.data.direction === "rtl",
     });
   }
 

@@ -18,7 +18,8 @@ export class Labels {
       if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99)) continue;
       const [x, y] = viewport.project(p);
       if (x < -20 || y < -20 || x > viewport.width + 20 || y > viewport.height + 20) continue;
-      const half = 4 * t.length + 7, box = [x - half, y - 10, x + half, y + 10];
+      const lines = t.split("\n"), half = 4 * Math.max(...lines.map((one) => one.length)) + 7, tall = 10 * lines.length;
+      const box = [x - half, y - tall, x + half, y + tall];
       if (boxes.some((b) => box[0] < b[2] && box[2] > b[0] && box[1] < b[3] && box[3] > b[1])) continue;
       boxes.push(box);
       const one = (this.shown[this.placed.length] ??= this.place.appendChild(document.createElement("span")));

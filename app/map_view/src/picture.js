@@ -10,7 +10,7 @@ export function freePart({ width, height }, { left, right, bottom }) {
 // Draw the map with its words, legend and scale.
 //
 // `shot` is {canvas, size, part, colours: {ground, surface, ink, route}, title, credit, legend: [{title, scale, items}],
-// signs (sign and colour to image), labels: [{x, y, t, k}], bar: {px, text}, rtl, most}; returns a canvas.
+// signs (sign and colour to image), labels: [{x, y, t, k}], bar: {px, text}, rtl, most, onPicture}; returns a canvas.
 export function composed(shot) {
   const { canvas, size, part, colours } = shot;
   const ratio = Math.min(canvas.width / size.width, (shot.most ?? 4000) / part.width);
@@ -24,7 +24,9 @@ export function composed(shot) {
   const own = canvas.width / size.width;
   pen.drawImage(canvas, part.x * own, part.y * own, part.width * own, part.height * own, 0, 0, part.width, part.height);
   pen.textBaseline = "middle";
-  for (const label of shot.labels ?? []) word(pen, { ...label, x: label.x - part.x, y: label.y - part.y }, colours);
+  for (const label of shot.labels ?? []) {
+    word(pen, { ...label, x: label.x - part.x, y: label.y - part.y }, colours, shot.onPicture);
+  }
   if (shot.title) title(pen, shot, part);
   legend(pen, shot, part);
   foot(pen, shot, part);
@@ -38,13 +40,13 @@ function box(pen, x, y, width, height, colour) {
   pen.fill();
 }
 
-function word(pen, { x, y, t, k }, { surface, ink, route, onRoute }) {
+function word(pen, { x, y, t, k }, { surface, ink, route, onRoute }, onPicture) {
   pen.font = `600 12px ${FONT}`;
   pen.textAlign = "center";
-  const wide = pen.measureText(t).width + 10;
-  if (k !== "row") box(pen, x - wide / 2, y - 9, wide, 18, k === "leg" ? route : surface);
+  const lines = t.split("\n"), wide = Math.max(...lines.map((one) => pen.measureText(one).width)) + 10, tall = 18 * lines.length;
+  if (onPicture || !["row", "place", "block"].includes(k)) box(pen, x - wide / 2, y - tall / 2, wide, tall, k === "leg" ? route : surface);
   pen.fillStyle = k === "leg" ? onRoute : ink;
-  pen.fillText(t, x, y);
+  lines.forEach((one, n) => pen.fillText(one, x, y + (n - (lines.length - 1) / 2) * 18));
 }
 
 function title(pen, { title: said, colours, rtl }, part) {

@@ -66,9 +66,9 @@ export class PlantsLayer extends CompositeLayer {
     // over a picture of the ground, a dark rim in a white one: one of them stands out from any ground
     return [
       cased && new ScatterplotLayer(this.getSubLayerProps({ id: "halo" }), {
-        ...size, filled: false, getLineColor: [255, 255, 255], getLineWidth: 0.05, lineWidthMinPixels: 3 }),
+        ...size, filled: false, getLineColor: [255, 255, 255], getLineWidth: 0.05, lineWidthMinPixels: 2.4 }),
       new ScatterplotLayer(this.getSubLayerProps({ id: "points" }), {
-        ...size, getLineColor: cased ? [16, 20, 22] : rim, getLineWidth: 0.05, lineWidthMinPixels: cased ? 1 : 0.5 }),
+        ...size, getLineColor: cased ? [16, 20, 22] : rim, getLineWidth: 0.05, lineWidthMinPixels: cased ? 0.9 : 0.5 }),
     ];
   }
 }

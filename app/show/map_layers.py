@@ -102,7 +102,7 @@ def legend(choices: Choices) -> list[legends.LegendPart]:
     """Return the legend of a day's map."""
     dark = choices.dark
     return [legends.by_chance(dark=dark), legends.by_state(), legends.by_age(dark=dark),
-            *legends.signs(dark=dark)]  # fmt: skip
+            *legends.signs(dark=dark), *legends.plan(choices.plot.field, dark=dark)]  # fmt: skip
 
 
 def plan(choices: Choices) -> list:

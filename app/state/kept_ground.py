@@ -102,10 +102,11 @@ def keep(season: Path, new: Ground) -> None:
 def take_out(season: Path) -> None:
     """Keep nothing under the plants of a season."""
     before = _manifest(season).get("ground")
+    if before is None:
+        return
     _write(season, ground=None)
-    if before:
-        with suppress(OSError, KeyError):
-            (folder_of(season) / before["file"]).unlink()
+    with suppress(OSError, KeyError):
+        (folder_of(season) / before["file"]).unlink()
 
 
 def agreement(season: Path) -> Agreement | None:

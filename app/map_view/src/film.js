@@ -1,6 +1,9 @@
 // Pictures one after the other as a file: WebM as the browser records it, or GIF.
 
-import { applyPalette, GIFEncoder, quantize } from "gifenc";
+import * as gifenc from "gifenc";
+
+// bundled it is a module, in Node it is not
+const { applyPalette, GIFEncoder, quantize } = gifenc.GIFEncoder ? gifenc : gifenc.default;
 
 export const EACH_MS = 700, LAST_MS = 2000;
 const WEBM = "video/webm";

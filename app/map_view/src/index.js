@@ -12,7 +12,7 @@ import { Frames } from "./frames.js";
 import { asked, moved } from "./keys.js";
 import { Labels } from "./labels.js";
 import { layersOf } from "./layers.js";
-import { nearestPlant, plantsWithin, rowUnder } from "./pick.js";
+import { nearestPlant, plantsWithin, rowUnder, tipOf } from "./pick.js";
 import { composed, freePart } from "./picture.js";
 import { Playback } from "./playback.js";
 import { ofRuns, runsOf, withRow } from "./select.js";
@@ -171,7 +171,7 @@ class MapPage {
 
   drawLayers() {
     if (!this.deck) return;
-    const accent = this.data.dark ? [255, 220, 90] : [0, 110, 70];
+    const accent = this.data.dark || this.data.ground?.picture ? [255, 220, 90] : [0, 110, 70];
     const jsons = [...this.frames.of(this.jsons), ...this.playback.layers(this.data.dark), ...this.drawing.layers(accent)];
     const hidden = new Set(this.off().flatMap((name) => this.switchOf(name)?.layers ?? []));
     for (const name of this.data.shades?.flatMap((one) => (one.key === this.shade() ? [] : one.layers)) ?? []) hidden.add(name);
@@ -299,7 +299,8 @@ class MapPage {
   }
 
   legendShown() {
-    const off = new Set(this.off());
+    // the ground is not covered by a plan, so a plan needs no signs there
+    const off = new Set([...this.off(), ...(this.data.ground?.ids.length && !this.hidden.has("ground") ? ["plan"] : [])]);
     return (this.data.legend ?? []).filter(({ of }) =>
       !of || of === `shade:${this.shade()}` || (this.switchOf(of) && !off.has(of)));
   }
@@ -365,7 +366,7 @@ class MapPage {
     return composed({
       canvas: this.canvasPlace.querySelector("canvas"), size, part, most,
       colours: { ground: colour("--ground", "#e9ece4"), surface: colour("--surface", "#fff"), ink: colour("--ink", "#1b2a22"),
-        route: colour("--route", "#1450c8"), onRoute: this.data.dark ? "#06202c" : "#fff" },
+        route: colour("--route", "#0c3eaa"), onRoute: this.data.dark ? "#06202c" : "#fff" },
       title: [this.data.title, said].filter(Boolean).join(" · "), credit: this.credit.hidden ? "" : this.credit.textContent,
       legend: this.legendShown(), signs: (kind, c) => this.signs.get(`${kind} ${c}`), bar: this.scale.length,
       labels: this.labels.placed, onPicture: this.root.classList.contains("over-picture"), rtl: this.data.direction === "rtl",
@@ -620,14 +621,6 @@ class MapPage {
     this.deck?.finalize();
     this.root.remove();
   }
-}
-
-// Return what is said of a plant: where it stands, what is believed of it, and what is known of it.
-export function tipOf({ places, ranks, values, notes, tips }, k) {
-  const note = tips.values ? tips.values.replace("{chance}", `${(100 * values[k]).toFixed(1)} %`) : tips.ranks?.[ranks[k]] ?? "";
-  const known = { row: places.row[k], plant: places.number[k], note };
-  const said = tips.text.replace(/\{(\w+)\}/g, (_, name) => known[name]);
-  return notes && tips.notes?.[notes[k]] ? `${said}\n${tips.notes[notes[k]]}` : said;
 }
 
 function saved(blob, name) {

@@ -49,9 +49,9 @@ function propsOf(json) {
   return made.get(json);
 }
 
-const WHITE = [255, 255, 255, 235], INK = [16, 20, 22, 235];
+const WHITE = [255, 255, 255], INK = [0, 0, 0];
 // lines and rings that have a casing of their own, or lie on one that has
-const CASED = new Set(["casing", "route", "trail", "arrows", "drawing", "aisles", "rows-ground", "hatch"]);
+const CASED = new Set(["casing", "route", "trail", "arrows", "aisles", "rows-ground", "hatch"]);
 const FILLS = new Set(["headland", "rows-ground", "aisles", "no-go"]);
 const RINGED = new Set(["records", "picked", "truth"]);
 

@@ -68,7 +68,7 @@ export class PlantsLayer extends CompositeLayer {
       cased && new ScatterplotLayer(this.getSubLayerProps({ id: "halo" }), {
         ...size, filled: false, getLineColor: [255, 255, 255], getLineWidth: 0.05, lineWidthMinPixels: 2.4 }),
       new ScatterplotLayer(this.getSubLayerProps({ id: "points" }), {
-        ...size, getLineColor: cased ? [16, 20, 22] : rim, getLineWidth: 0.05, lineWidthMinPixels: cased ? 0.9 : 0.5 }),
+        ...size, getLineColor: cased ? [0, 0, 0] : rim, getLineWidth: 0.05, lineWidthMinPixels: cased ? 0.9 : 0.5 }),
     ];
   }
 }

@@ -115,7 +115,7 @@ def picked(grid: PlantGrid, which: NDArray[np.integer]) -> Layer:
     """Return a thin bright ring round plants that are selected."""
     here = np.round(grid.lonlat(which), 7).tolist()
     size = 0.7 * min(grid.plant_spacing_m, grid.row_spacing_m)
-    return _ring("picked", here, size, ((0, 160, 255), 2.5), 5.0)
+    return _ring("picked", here, size, ((0, 190, 255), 2.5), 5.0)
 
 
 def _ring(

@@ -29,7 +29,7 @@ export class Frames {
       oninput: () => { this.stop(); this.to(Number(this.slider.value)); } });
     this.name = element("span", { class: "clock" });
     this.films = film.kinds().map((kind) => element("button", { type: "button", class: "tool film", text: kind.toUpperCase(),
-      title: words.film, "aria-label": `${words.film} (${kind.toUpperCase()})`, onclick: () => this.record(kind, words) }));
+      title: words.film, "aria-label": `${kind.toUpperCase()} ${words.film}`, onclick: () => this.record(kind, words) }));
     this.root.replaceChildren(this.press, this.slider, this.name, ...this.films);
     this.tell(data.now);
   }

@@ -66,9 +66,10 @@ export class PlantsLayer extends CompositeLayer {
     // over a picture of the ground, a dark rim in a white one: one of them stands out from any ground
     return [
       cased && new ScatterplotLayer(this.getSubLayerProps({ id: "halo" }), {
-        ...size, filled: false, getLineColor: [255, 255, 255], getLineWidth: 0.05, lineWidthMinPixels: 2.4 }),
+        ...size, filled: false, getLineColor: [255, 255, 255], getLineWidth: 0.7 * radius, lineWidthMinPixels: 1, lineWidthMaxPixels: 2.6 }),
       new ScatterplotLayer(this.getSubLayerProps({ id: "points" }), {
-        ...size, getLineColor: cased ? [0, 0, 0] : rim, getLineWidth: 0.05, lineWidthMinPixels: cased ? 0.9 : 0.5 }),
+        ...size, ...(cased ? { getLineColor: [0, 0, 0], getLineWidth: 0.25 * radius, lineWidthMinPixels: 0.4, lineWidthMaxPixels: 1.1 }
+          : { getLineColor: rim, getLineWidth: 0.05, lineWidthMinPixels: 0.5 }) }),
     ];
   }
 }

@@ -1,5 +1,7 @@
 """The plan of a plot: rows and aisles where they are, a hatch on what is not driven through."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -51,19 +53,16 @@ def test_layers_are_those_of_the_plan_with_the_outline_above(plot):
     assert sum(light.get_color) > sum(dark.get_color)
 
 
-def test_rows_that_bend_are_drawn_bent():
-    x = np.linspace(0, 60, 40)
-    middle = [np.stack([x, 4 * k + 6 * np.sin(x / 30)], axis=1) for k in range(4)]
-    metre = 1 / 111_320.0
-    flat = metre / np.cos(np.deg2rad(LAT))
-    plants = np.concatenate(middle) * [flat, metre] + [LON, LAT]
-    around = shapely.MultiPoint(plants).convex_hull.buffer(8 * metre)
-    names = np.repeat([f"{k}" for k in range(4)], 40)
-    field = Field("bent", MultiPolygon([around]), plants=plants, plant_rows=names)
-    grid = Plot.of(field).grid
-    assert grid.aisles_m is not None, "rows of this plot bend"
-    rows = [*plan_layers.rows_m(grid)]
+def test_rows_that_bend_are_drawn_bent_and_their_aisles_as_they_run():
+    grid = a_plot().grid
+    bent_m = grid.xy_m + np.stack([np.zeros(len(grid)), 5 * np.sin(grid.xy_m[:, 0] / 15)], axis=1)
+    middles = np.array([[0.0, 0.0], [9.0, 3.0], [20.0, 1.0], [0.0, 8.0], [20.0, 9.0]])
+    bent = replace(grid, xy_m=bent_m, aisle_start=np.array([0, 3, 5]), aisle_m=middles)
+    rows = [*plan_layers.rows_m(bent)]
     assert max(len(row) for row in rows) > 3
+    assert len(np.concatenate(rows)) < len(bent)
     lines = shapely.MultiLineString(rows)
-    assert shapely.distance(lines, shapely.points(grid.xy_m)).max() < 0.2
-    assert len([*plan_layers.aisles_m(grid)]) == len(grid.aisles_m)
+    assert shapely.distance(lines, shapely.points(bent_m)).max() <= 0.1
+    assert [line.tolist() for line in plan_layers.aisles_m(bent)] == [
+        middles[:3].tolist(), middles[3:].tolist()
+    ]  # fmt: skip

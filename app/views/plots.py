@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..actions import sharing_plots
+from ..actions import sharing_plots, ways_in
 from ..show import estate_map, estate_table, field_map
 from ..show.map_view import MapAnswers
-from ..state import estate, plot_source, rooms
+from ..state import estate, rooms
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -23,11 +23,7 @@ def show() -> None:
     with st.container(key="head"):
         st.markdown(f"### {texts.PLOTS_TITLE.format(n=len(plots))}")
     if not sharing_plots.is_on():
-        with st.container(horizontal=True):
-            for name, icon, source in (("sample", "park", plot_source.SAMPLE),
-                                       ("file", "upload_file", plot_source.FILES)):  # fmt: skip
-                st.button(texts.WAYS_IN[name], icon=f":material/{icon}:", key=f"way_{name}",
-                          on_click=_begin, args=(source,))  # fmt: skip
+        ways_in.show()
     sharing_plots.show_button(plots)
     for problem in problems:
         st.warning(problem)
@@ -39,11 +35,6 @@ def show() -> None:
         table, hide_index=True, key="plots_table", selection_mode="single-row",
         on_select=partial(_picked, plots), column_config=config,
     )  # fmt: skip
-
-
-def _begin(source: str) -> None:
-    plot_source.open_season(source)
-    rooms.turn_to("today" if source == plot_source.SAMPLE else "plot")
 
 
 def _open(plot: PlotState) -> None:

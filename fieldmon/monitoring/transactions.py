@@ -99,12 +99,7 @@ class Store:
                 set_meta(db, "version", str(VERSION))
                 yield db
                 db.execute("COMMIT")
-            try:
-                os.link(draft, target)  # unlike a rename it never replaces
-            except FileExistsError:
-                raise FileProblem(f"{path} was made by someone else just now.") from None
-            except OSError:
-                draft.replace(target)  # a file system without links
+            _put(draft, target)
 
     @contextmanager
     def reading(self) -> Iterator[sqlite3.Connection]:
@@ -128,6 +123,20 @@ class Store:
             said = [row[0] for row in db.execute("PRAGMA quick_check(5)")]
         if said != ["ok"]:
             raise _damaged(self.path, said[0])
+
+
+def _put(draft: Path, target: Path) -> None:
+    """Give a draft its name, unless another file has it."""
+    try:
+        try:
+            os.link(draft, target)  # unlike a rename it never replaces
+        except FileExistsError:
+            raise
+        except OSError:  # a file system without links
+            target.touch(exist_ok=False)
+            draft.replace(target)
+    except FileExistsError:
+        raise FileProblem(f"{target} was made by someone else just now.") from None
 
 
 @contextmanager

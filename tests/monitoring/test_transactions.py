@@ -14,6 +14,7 @@ import pytest
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season, is_season
+from fieldmon.monitoring.transactions import Store
 from tests.monitoring.seasons import BEGINS, state
 from tests.monitoring.working import day_by_day, one_by_one
 
@@ -102,6 +103,35 @@ def test_a_file_held_by_another_program_is_a_sentence(path, monkeypatch):
         other.execute("BEGIN EXCLUSIVE")
         with pytest.raises(FileProblem, match="another program"):
             season.record(three_results(), "x")
+
+
+def test_who_writes_is_alone_from_the_first_moment(path):
+    """Or two who read first and then write would both write what only one of them has seen."""
+    with (
+        Season(path).store.writing(),
+        closing(sqlite3.connect(path, timeout=0, isolation_level=None)) as other,
+        pytest.raises(sqlite3.OperationalError, match="locked"),
+    ):
+        other.execute("BEGIN IMMEDIATE")
+
+
+def no_links(*_):
+    raise OSError(95, "Operation not supported")
+
+
+@pytest.mark.parametrize("link", [os.link, no_links], ids=["links", "a stick without links"])
+def test_a_season_begun_at_the_same_moment_by_another_is_not_overwritten(
+    tmp_path, monkeypatch, link
+):
+    monkeypatch.setattr(os, "link", link)
+    ours, theirs = tmp_path / "ours.gpkg", tmp_path / "theirs.gpkg"
+    with Store.new(ours):
+        pass
+    assert ours.read_bytes()[:6] == b"SQLite"
+    with pytest.raises(FileProblem, match="by someone else just now"), Store.new(theirs):
+        theirs.write_text("theirs")
+    assert theirs.read_text() == "theirs"
+    assert {file.name for file in tmp_path.iterdir()} == {"ours.gpkg", "theirs.gpkg"}
 
 
 def test_a_file_that_cannot_be_written_is_a_sentence(path):

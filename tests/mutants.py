@@ -26,6 +26,7 @@ import signal
 import sys
 import tempfile
 import time
+import traceback
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -40,8 +41,9 @@ ROOMS = {
     "writers": ("fieldmon/io/writers", ()),
     "simulation": ("fieldmon/simulation", ()),
 }
-_WARM = ("numpy", "numba", "scipy.sparse", "scipy.stats", "shapely", "pyproj", "pandas", "geopandas",
-         "hypothesis", "pytest", "pyogrio", "jinja2")  # fmt: skip
+_WARM = ("numpy", "numba", "scipy.sparse", "scipy.stats", "shapely", "pyproj", "pandas",
+         "geopandas", "hypothesis", "pytest", "pyogrio", "jinja2")  # fmt: skip
+_AS_WARM = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
 _SWAPPED = {
     ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq,
     ast.NotEq: ast.Eq, ast.In: ast.NotIn, ast.NotIn: ast.In, ast.Is: ast.IsNot, ast.IsNot: ast.Is,
@@ -50,8 +52,8 @@ _SWAPPED = {
     ast.BitOr: ast.BitAnd, ast.BitXor: ast.BitOr, ast.LShift: ast.RShift, ast.RShift: ast.LShift,
     ast.And: ast.Or, ast.Or: ast.And, ast.Break: ast.Continue, ast.Continue: ast.Break,
 }  # fmt: skip
-_NAMES = {"min": "max", "max": "min", "minimum": "maximum", "maximum": "minimum", "lesser": "greater",
-          "greater": "lesser", "all": "any", "any": "all", "argmin": "argmax", "argmax": "argmin"}  # fmt: skip
+_NAMES = {"min": "max", "minimum": "maximum", "lesser": "greater", "all": "any", "argmin": "argmax"}
+_NAMES |= {other: name for name, other in _NAMES.items()}
 
 
 @dataclass(frozen=True)
@@ -224,20 +226,30 @@ def own_tests(module):
     return beside if beside.is_file() else folder
 
 
-def _tests_in(child, tests, copied):
+def _tests_in(log, tests, copied):
     """Run tests in this process, a child that ends with their exit code."""
     os.setsid()
     os.chdir(copied)
     sys.path.insert(0, str(copied))
     sys.dont_write_bytecode = True
-    quiet = os.open(os.devnull if not child else child, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    quiet = os.open(log or os.devnull, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
     for stream in (1, 2):
         os.dup2(quiet, stream)
     import pytest
 
     loops = importlib.import_module("fieldmon.compute.jit")
     loops._KeptLoops.save_overload = lambda *_: None  # what a fault compiles to is not kept
-    words = ["-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--timeout=0", "-m", "not slow"]
+    words = [
+        "-x",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "-p",
+        "no:xdist",
+        "--timeout=0",
+        "-m",
+        "not slow",
+    ]
     os._exit(int(pytest.main([*words, *(str(copied / one.relative_to(ROOT)) for one in tests)])))
 
 
@@ -247,6 +259,8 @@ def run(tests, copied, seconds, log=None):
     if child == 0:
         try:
             _tests_in(log, tests, copied)
+        except BaseException:
+            traceback.print_exc()
         finally:
             os._exit(70)
     until = time.monotonic() + seconds
@@ -282,7 +296,7 @@ class Trial:
         for name, tests in lots.items():
             usual_s = self.takes_s(tests)
             if usual_s is None:
-                return "tests fail by themselves", said
+                return "", said
             path.write_text(text, "utf-8")
             try:
                 code = run(tests, self.copied, 60 + 4 * usual_s)
@@ -317,7 +331,9 @@ def main():
         importlib.import_module(name)
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder, told.output.open("a") as file:
         copied = Path(folder) / "tree"
-        shutil.copytree(ROOT, copied, ignore=shutil.ignore_patterns(".git", "node_modules", "_build"))
+        shutil.copytree(
+            ROOT, copied, ignore=shutil.ignore_patterns(".git", "node_modules", "_build")
+        )
         (Path(folder) / "shared").symlink_to(ROOT.parent / "shared")
         table, trial = csv.writer(file), Trial(copied)
         for room in told.rooms:
@@ -332,12 +348,17 @@ def main():
                     tests = ROOT / "tests" / module.parent.relative_to("fieldmon")
                     lots["room"] = (tests, *(ROOT / one for one in ROOMS[room][1]))
                 outcome, said = trial.outcome(mutant, lots)
+                if not outcome:
+                    sys.stdout.write(f"the tests of {module} fail without a fault\n")
+                    continue
                 counted[outcome] = counted.get(outcome, 0) + 1
                 table.writerow((room, outcome, module, mutant.line, said))
                 file.flush()
             n = sum(counted.values())
             noticed = n - counted.get("survived", 0)
-            print(f"{room}: {noticed} of {n} noticed ({n_all} there are): {counted}", flush=True)
+            said = f"{room}: {noticed} of {n} noticed ({n_all} there are): {counted}"
+            sys.stdout.write(f"{said}\n")
+            sys.stdout.flush()
 
 
 if __name__ == "__main__":

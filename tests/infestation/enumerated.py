@@ -21,7 +21,7 @@ def by_adjacency(grid, spread):
         near = neighbour[start[i] : start[i + 1]].tolist()
         rate = spread.rate_per_day if near else 0.0
         if spread.to == "each":
-            told.append(independently({j: rate for j in near}))
+            told.append(independently(dict.fromkeys(near, rate)))
         elif spread.to == "one":
             told.append({1 << j: rate / len(near) for j in near} | {0: 1.0 - rate})
         else:

@@ -42,8 +42,7 @@ ROOMS = {
     "simulation": ("fieldmon/simulation", ()),
 }
 _WARM = ("numpy", "numba", "scipy.sparse", "scipy.stats", "shapely", "pyproj", "pandas",
-         "geopandas", "hypothesis", "pytest", "pyogrio", "jinja2")  # fmt: skip
-_AS_WARM = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
+         "geopandas", "pytest", "pyogrio", "jinja2")  # fmt: skip
 _SWAPPED = {
     ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq,
     ast.NotEq: ast.Eq, ast.In: ast.NotIn, ast.NotIn: ast.In, ast.Is: ast.IsNot, ast.IsNot: ast.Is,
@@ -239,17 +238,7 @@ def _tests_in(log, tests, copied):
 
     loops = importlib.import_module("fieldmon.compute.jit")
     loops._KeptLoops.save_overload = lambda *_: None  # what a fault compiles to is not kept
-    words = [
-        "-x",
-        "-q",
-        "-p",
-        "no:cacheprovider",
-        "-p",
-        "no:xdist",
-        "--timeout=0",
-        "-m",
-        "not slow",
-    ]
+    words = ["-x", "-q", "-p", "no:cacheprovider", "--timeout=0", "--assert=plain"]
     os._exit(int(pytest.main([*words, *(str(copied / one.relative_to(ROOT)) for one in tests)])))
 
 

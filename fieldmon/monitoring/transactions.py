@@ -29,9 +29,9 @@ _WAL_AT, _WAL = 18, b"\x02\x02"
 
 def is_season(path: str | Path) -> bool:
     """Tell whether a file is a season of fieldmon, by its content; never raises."""
-    if not Path(path).is_file():  # opening a pipe waits until somebody writes into it
-        return False
     try:
+        if not Path(path).is_file():  # opening a pipe waits until somebody writes into it
+            return False
         # through SQLite: whoever else opens and closes a database takes away the locks that other
         # threads of the same program hold on it
         with closing(_connect(Path(path), _GLANCE_S)) as db:
@@ -40,6 +40,8 @@ def is_season(path: str | Path) -> bool:
     except sqlite3.Error as error:
         if "locked" in str(error):  # whoever opens it waits for longer and says so
             return True
+    except OSError:  # a name that is too long
+        return False
     with suppress(OSError), Path(path).open("rb") as file:
         head = file.read(1 << 16)
         return head.startswith(_MAGIC) and b"fieldmon" in head

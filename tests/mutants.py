@@ -33,11 +33,14 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 #: what each room's faults are looked for in, and tests of other rooms that hold promises about it
 ROOMS = {
-    "infestation": ("fieldmon/infestation", ()),
-    "samplers": ("fieldmon/samplers", ()),
+    "infestation": ("fieldmon/infestation", ("tests/infestation/test_enumerated.py",)),
+    "samplers": ("fieldmon/samplers", ("tests/samplers/test_promises.py",)),
     "planning": ("fieldmon/planning", ()),
     "travel": ("fieldmon/plot/travel.py", ()),
-    "monitoring": ("fieldmon/monitoring", ()),
+    "monitoring": (
+        "fieldmon/monitoring",
+        ("tests/monitoring/test_season_file.py", "tests/monitoring/test_outside_changes.py"),
+    ),
     "writers": ("fieldmon/io/writers", ()),
     "simulation": ("fieldmon/simulation", ()),
 }
@@ -248,7 +251,7 @@ def run(tests, copied, seconds, log=None):
     if child == 0:
         try:
             _tests_in(log, tests, copied)
-        except BaseException:
+        except Exception:  # noqa: BLE001 - whatever it is, this process ends
             traceback.print_exc()
         finally:
             os._exit(70)
@@ -333,9 +336,10 @@ def main():
                     break
                 module = mutant.path.relative_to(ROOT)
                 lots = {"module": (own_tests(module),)}
+                if ROOMS[room][1]:
+                    lots["others"] = tuple(ROOT / one for one in ROOMS[room][1])
                 if told.room_tests:
-                    tests = ROOT / "tests" / module.parent.relative_to("fieldmon")
-                    lots["room"] = (tests, *(ROOT / one for one in ROOMS[room][1]))
+                    lots["room"] = (ROOT / "tests" / module.parent.relative_to("fieldmon"),)
                 outcome, said = trial.outcome(mutant, lots)
                 if not outcome:
                     sys.stdout.write(f"the tests of {module} fail without a fault\n")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sqlite3
 import tempfile
 from contextlib import closing, contextmanager, suppress
@@ -11,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.monitoring import changes_beside
 from fieldmon.monitoring.geopackage import APPLICATION_ID
 from fieldmon.monitoring.schema import MIGRATIONS, NEEDS, OPEN, VERSION, lay_out, watch
 
@@ -23,8 +23,6 @@ _PATIENCE_S = 30.0
 # whether a file is a season at all is asked of many files in passing
 _GLANCE_S = 0.5
 _MAGIC = b"SQLite format 3\x00"
-# where a header says that changes lie in a file beside it for a while, and how
-_WAL_AT, _WAL = 18, b"\x02\x02"
 
 
 def is_season(path: str | Path) -> bool:
@@ -48,13 +46,6 @@ def is_season(path: str | Path) -> bool:
     return False
 
 
-_PARTED = (
-    "{path} was open in another program (QGIS?) that keeps changes in a file beside it, and that "
-    "file is not here. If this is a copy, what was done last may be missing: bring the other file "
-    "too, or copy the season after that program was closed."
-)
-
-
 class Store:
     """The file of a season.
 
@@ -66,15 +57,13 @@ class Store:
         self.path = Path(path).absolute()
         if not self.path.is_file():
             raise _no_file(path)
-        has_wal = _wal(self.path).is_file()
-        if has_wal:
-            _refuse_foreign_wal(self.path)
+        has_more = changes_beside.refuse_foreign(self.path)
         with self.reading() as db:
             version = _version(db)
-            is_parted = not has_wal and db.execute("PRAGMA journal_mode").fetchone()[0] == "wal"
+            is_parted = not has_more and db.execute("PRAGMA journal_mode").fetchone()[0] == "wal"
             needs = get_meta(db, "needs") if version else None
         #: what is to be doubted of the file, in a sentence, or None
-        self.doubt = _PARTED.format(path=self.path) if is_parted else None
+        self.doubt = changes_beside.PARTED.format(path=self.path) if is_parted else None
         if version is None:
             raise FileProblem(
                 f"{path} must be the file of a season, but it was not made by fieldmon init."
@@ -219,54 +208,6 @@ def _into_one_file(db: sqlite3.Connection) -> None:
         with suppress(sqlite3.OperationalError):
             db.execute("PRAGMA journal_mode = DELETE")
         db.execute(f"PRAGMA busy_timeout = {1000 * _PATIENCE_S:.0f}")
-
-
-def _wal(path: Path) -> Path:
-    """Return where SQLite keeps changes beside a file while a program like QGIS has it open."""
-    return path.with_name(f"{path.name}-wal")
-
-
-def _refuse_foreign_wal(path: Path) -> None:
-    """Refuse a file beside which lie changes that are not its own.
-
-    SQLite would read them as if they were, and write them into it. So the two are tried in a copy.
-    """
-    wal = _wal(path)
-    try:
-        with path.open("rb") as file:
-            is_wal = file.read(100)[_WAL_AT : _WAL_AT + 2] == _WAL
-        if not wal.stat().st_size or (is_wal and (_fits(path, wal) or _fits(path, wal))):
-            return  # twice: another program may have written between copying the one and the other
-    except OSError as error:
-        raise FileProblem(
-            f"{path} and {wal.name} must be readable, but they are not ({error.strerror}). Check "
-            "their permissions."
-        ) from error
-    raise FileProblem(
-        f"{path} and {wal.name} beside it must belong together, but they do not: they are of "
-        "different moments, as when a folder was synchronised while a program had the season "
-        "open. Close the season everywhere and let both synchronise; or move that file away to go "
-        "on without what is in it. Nothing was changed."
-    )
-
-
-def _fits(path: Path, wal: Path) -> bool:
-    """Tell whether a file is whole with the changes that lie beside it, and no older for them."""
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
-        copy = Path(folder) / "season.gpkg"
-        shutil.copyfile(path, copy)
-        try:
-            with closing(sqlite3.connect(f"{copy.as_uri()}?immutable=1", uri=True)) as db:
-                before = int(get_meta(db, "revision") or 0)
-        except sqlite3.Error:
-            before = 0  # what changed lies in both
-        shutil.copyfile(wal, _wal(copy))
-        try:
-            with closing(sqlite3.connect(copy)) as db:
-                said = db.execute("PRAGMA quick_check(1)").fetchone()[0]
-                return said == "ok" and int(get_meta(db, "revision") or 0) >= before
-        except sqlite3.Error:
-            return False
 
 
 def _version(db: sqlite3.Connection) -> int | None:

@@ -83,19 +83,22 @@ def test_a_correction_that_makes_no_sense_is_refused_and_nothing_is_taken(path):
         ("plant", "99999", "from another plot"),
         ("date", "soon", "soon"),
         ("date", "2020-01-01", "began on"),
-        ("result", "found", "says what row 3 says"),
     ):
         outside(
             path,
-            "UPDATE inspections SET (plant, date, result) = "
-            f"(SELECT plant, date, 'found' FROM inspections WHERE fid = {2 + (says[:5] == 'says ')})"
-            " WHERE fid = 1",
-            f"UPDATE inspections SET {column} = '{bad}' WHERE fid = 1",
+            "UPDATE inspections SET plant = 0, date = '2026-04-06', result = 'clean' WHERE fid = 1",
+            f"UPDATE inspections SET {column} = '{bad}' WHERE fid = 1",  # noqa: S608 - written above
         )
         season = Season(path)
         with pytest.raises(FileProblem, match=says):
             season.correct("Ann")
         assert len(season.batches()) == 1
+
+
+def test_a_correction_that_says_what_stands_there_already_is_refused_by_name(path):
+    outside(path, "UPDATE inspections SET plant = 1 + plant WHERE fid = 1")
+    with pytest.raises(FileProblem, match=r"row 1 of the layer .* says what row 2 says"):
+        Season(path).correct("Ann")
 
 
 @pytest.mark.parametrize(

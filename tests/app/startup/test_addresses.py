@@ -21,8 +21,8 @@ def proxied(monkeypatch):
 
 @pytest.mark.parametrize(
     "host",
-    ["localhost:8501", "127.0.0.1:8501", "[::1]:8501", "192.168.1.7", "Packing-House", "farm.example",
-     "localhost.:80"],
+    ["localhost:8501", "127.0.0.1:8501", "[::1]:8501", "192.168.1.7", "Packing-House",
+     "farm.example", "localhost.:80"],
 )  # fmt: skip
 def test_numbers_and_own_names_are_answered(host):
     assert asks(host) is None

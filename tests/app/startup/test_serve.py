@@ -10,7 +10,6 @@ import pytest
 from app.startup.serve import Server, page_files
 from app.state import map_file, map_store
 
-
 HOST = [(b"host", b"127.0.0.1:8501")]
 
 

@@ -90,7 +90,9 @@ def _reaches(log: bytes, n_pages: int) -> bool:
     ends a transaction, and two numbers that are the same in all that count.
     """
     size, salts = int.from_bytes(log[8:12]), log[16:24]
-    after, pages, told = n_pages, set(), set()
+    after = n_pages
+    pages: set[int] = set()
+    told: set[int] = set()
     for at in range(_HEADER, len(log) - size - _FRAME_HEADER + 1, size + _FRAME_HEADER):
         if log[at + 8 : at + 16] != salts:
             break

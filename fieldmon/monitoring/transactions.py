@@ -289,6 +289,6 @@ def _no_file(path: str | Path) -> FileProblem:
 
 def _damaged(path: Path, why: str) -> FileProblem:
     return FileProblem(
-        f"{path} is damaged ({why}). Save what can be saved into a new file with: "
-        f'fieldmon salvage "{path}" --output rescued.gpkg'
+        f"{path} is damaged ({' '.join(why.split())}). Save what can be saved into a new file "
+        f'with: fieldmon salvage "{path}" --output rescued.gpkg'
     )

@@ -21,7 +21,7 @@ import sys
 import tempfile
 from functools import cache
 from pathlib import Path
-from time import monotonic
+from time import process_time
 
 import typer
 
@@ -134,7 +134,7 @@ def standing(folder):
 
 def trouble(words, folder, *, certain=True):
     """Run a wrong line in this process; return what is wrong with how it ended, or ""."""
-    before, began = standing(folder), monotonic()
+    before, began = standing(folder), process_time()
     out, err, code = io.StringIO(), io.StringIO(), 0
     old = sys.argv, Path.cwd()
     try:
@@ -149,7 +149,7 @@ def trouble(words, folder, *, certain=True):
     finally:
         sys.argv = old[0]
         os.chdir(old[1])
-    seconds, said = monotonic() - began, err.getvalue().strip()
+    seconds, said = process_time() - began, err.getvalue().strip()
     last = said.splitlines()[-1].strip() if said else ""
     if code == 0 and not certain:
         return ""

@@ -146,6 +146,37 @@ def test_what_the_copies_tell_differently_is_listed_and_both_are_kept(path, othe
     assert sorted(season.history.on(1).result.tolist()) == [CLEAN, FOUND]
 
 
+@pytest.mark.parametrize("way", ["ours", "theirs"])
+def test_a_note_written_in_either_copy_is_kept(path, other, way):
+    noted, bare = (path, other) if way == "ours" else (other, path)
+    with closing(sqlite3.connect(noted)) as db:
+        db.execute("UPDATE inspections SET notes = 'webs' WHERE fid = 4")
+        db.commit()
+    season = Season(path)
+    season.merge(Season(other))
+    assert season.history.inspections.notes.tolist().count("webs") == 1
+    assert "webs" not in Season(bare).history.inspections.notes.tolist() or bare == path
+
+
+def test_routes_planned_in_both_copies_keep_their_order_and_the_last_one_counts(path, other):
+    for file, plants in ((path, [40, 41]), (other, [50])):
+        season = Season(file)
+        season.record(
+            Inspections.of(np.array(plants), np.zeros(len(plants), int), np.datetime64(BEGINS)),
+            "taps",
+        )
+        season.plan(BEGINS)
+    merged, again = Season(path), Season(other)
+    merged.merge(Season(other))
+    again.merge(Season(path))
+    with merged.store.reading() as db:
+        routes = db.execute("SELECT day, revision, fid, stops FROM routes ORDER BY fid").fetchall()
+        stops = dict(db.execute("SELECT route, count(*) FROM stops GROUP BY route").fetchall())
+    assert [row[1] for row in routes] == [1, 2, 3]  # one of before, one of each copy
+    assert all(stops[fid] == n for _, _, fid, n in routes)
+    np.testing.assert_array_equal(merged.kept_route(BEGINS), again.kept_route(BEGINS))
+
+
 def test_another_season_is_no_copy_of_this_one(path, tmp_path):
     stranger = a_season(tmp_path / "stranger.gpkg", a_plot(width=0.0009))
     before = path.read_bytes()

@@ -185,6 +185,17 @@ def test_a_copy_is_whole_and_one_file_whoever_works_on_the_season(path, tmp_path
         season.store.back_up(tmp_path / "nowhere" / "copy.gpkg")
 
 
+def test_a_damaged_season_is_not_copied_as_if_it_were_whole(path, tmp_path):
+    store = Season(path).store
+    data = bytearray(path.read_bytes())
+    last = len(data) // 4096 - 3
+    data[last * 4096 : (last + 2) * 4096] = b"\xff" * 8192
+    path.write_bytes(data)
+    with pytest.raises(FileProblem, match=r"is damaged.*salvage"):
+        store.back_up(tmp_path / "copy.gpkg")
+    assert not (tmp_path / "copy.gpkg").exists()
+
+
 def test_a_file_of_an_earlier_version_is_copied_before_it_is_changed(tmp_path):
     old = shutil.copy(SEASONS_OF_OLD / "adaptive.gpkg", tmp_path / "old.gpkg")
     before = old.read_bytes()

@@ -9,6 +9,7 @@ from fieldmon.cli.app import open_app
 from fieldmon.cli.backup import backup
 from fieldmon.cli.change import change
 from fieldmon.cli.correct import correct
+from fieldmon.cli.decide import decide
 from fieldmon.cli.init import init
 from fieldmon.cli.merge import merge
 from fieldmon.cli.plan import plan
@@ -38,6 +39,7 @@ app.command()(record)
 app.command()(status)
 app.command()(report)
 app.command()(undo)
+app.command()(decide)
 app.command()(treat)
 app.command()(change)
 app.command()(correct)

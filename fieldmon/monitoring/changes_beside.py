@@ -13,6 +13,7 @@ import tempfile
 from contextlib import closing
 from pathlib import Path
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 
 #: where a file says that changes may lie beside it, and how it says so
@@ -47,14 +48,21 @@ def refuse_foreign(path: Path) -> bool:
             return True
     except OSError as error:
         raise FileProblem(
-            f"{path} and {more.name} must be readable, but they are not ({error.strerror}). Check "
-            "their permissions."
+            worded(
+                "{path} must be readable, but it is not ({strerror}). Check its permissions.",
+                path=path,
+                strerror=error.strerror,
+            )
         ) from error
     raise FileProblem(
-        f"{path} and {more.name} beside it must belong together, but they do not: they are of "
-        "different moments, as when a folder was synchronised while a program had the season "
-        "open. Close the season everywhere and let both synchronise; or move that file away to go "
-        "on without what is in it. Nothing was changed."
+        worded(
+            "{path} and {beside} beside it must belong together, but they do not: they are of "
+            "different moments, as when a folder was synchronised while a program had the season "
+            "open. Close the season everywhere and let both synchronise; or move that file away "
+            "to go on without what is in it. Nothing was changed.",
+            path=path,
+            beside=more.name,
+        )
     )
 
 

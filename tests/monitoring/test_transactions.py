@@ -83,12 +83,12 @@ def test_a_file_of_a_newer_version_is_refused(path):
     with closing(sqlite3.connect(path)) as db:
         db.execute("UPDATE fieldmon SET value = '99' WHERE key = 'version'")
         db.commit()
-    with pytest.raises(FileProblem, match=r"format 99.*it needs fieldmon 0\.2 or newer"):
+    with pytest.raises(FileProblem, match=r"format 99.*it needs fieldmon >= 0\.2"):
         Season(path)
     with closing(sqlite3.connect(path)) as db:
         db.execute("UPDATE fieldmon SET value = '7.1' WHERE key = 'needs'")
         db.commit()
-    with pytest.raises(FileProblem, match=r"it needs fieldmon 7\.1 or newer"):
+    with pytest.raises(FileProblem, match=r"it needs fieldmon >= 7\.1"):
         Season(path)
 
 

@@ -15,8 +15,11 @@ from .language import Plural
 
 
 def isolated(name: str) -> str:
-    """Return a name that reads right inside any sentence, whatever its script and direction."""
-    return f"\u2068{name}\u2069"
+    """Return a name that reads right inside any sentence, whatever its script and direction.
+
+    Signs of its own that turn the direction end with it, and it leads nowhere.
+    """
+    return f"\u2068{language.leading_nowhere(name, turning=False)}\u2069"
 
 
 TITLE = "fieldmon"

@@ -177,6 +177,7 @@ def route_of(scene: Scene, work: Workday) -> Route:
     leave_s = work.arrive_s + work.stop_s
     line_m, leg_end = _line(scene, work)
     arrivals = np.append(work.arrive_s, work.end_s)[: len(leg_end)]
+    line_m, leg_end, line_s = _timed(scene, work, (line_m, leg_end), arrivals)
     return Route(
         aisles=scene.aisles,
         plant=work.plant,
@@ -186,7 +187,7 @@ def route_of(scene: Scene, work: Workday) -> Route:
         detects=work.detects,
         line_m=line_m,
         line_stop=leg_end[: len(work)],
-        line_s=_seconds(line_m, leg_end, np.append(0.0, leave_s)[: len(leg_end)], arrivals),
+        line_s=line_s,
         end_s=work.end_s,
     )
 
@@ -208,6 +209,36 @@ def _line(scene: Scene, work: Workday) -> tuple[NDArray[np.float64], NDArray[np.
         legs[leg] = scene.aisles.path(int(places[leg]), int(places[leg + 1]))[1:]
     start = scene.aisles.gate_m if scene.at < 0 else stop_m[scene.at]
     return np.concatenate([start[None], *legs]), np.cumsum([len(leg) for leg in legs])
+
+
+def _timed(
+    scene: Scene,
+    work: Workday,
+    line: tuple[NDArray[np.float64], NDArray[np.int64]],
+    arrive_s: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
+    """Return the line, where its legs end, and the seconds at each vertex on arrival.
+
+    Where one waits for others, there is a vertex twice: on coming to the end of the aisle (or at
+    the gate), and on driving on.
+    """
+    line_m, leg_end = line
+    depart_s = np.append(0.0, work.arrive_s + work.stop_s)[: len(leg_end)]
+    if work.wait_s is None or not work.wait_s.any():
+        return line_m, leg_end, _seconds(line_m, leg_end, depart_s, arrive_s)
+    wait_s = work.wait_s[: len(leg_end)]
+    line_s = _seconds(line_m, leg_end, depart_s, arrive_s - wait_s)
+    # from the gate one waits there; from an aisle at its end, the first corner of the leg
+    first = np.append(0, leg_end[:-1])
+    places = np.append(scene.at, work.plant)[: len(leg_end)]
+    corner = first + (places >= 0)
+    for leg in np.flatnonzero(wait_s)[::-1].tolist():
+        at = int(min(corner[leg], leg_end[leg]))
+        line_m = np.insert(line_m, at, line_m[at], axis=0)
+        line_s = np.insert(line_s, at, line_s[at])
+        line_s[at + 1 : leg_end[leg] + 2] += wait_s[leg]
+        leg_end = np.where(np.arange(len(leg_end)) >= leg, leg_end + 1, leg_end)
+    return line_m, leg_end, line_s
 
 
 def _seconds(

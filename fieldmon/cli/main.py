@@ -7,6 +7,7 @@ import typer
 from fieldmon.cli import problems, study
 from fieldmon.cli.app import open_app
 from fieldmon.cli.change import change
+from fieldmon.cli.compare import compare
 from fieldmon.cli.init import init
 from fieldmon.cli.plan import plan
 from fieldmon.cli.plots import plots
@@ -43,6 +44,7 @@ app.command()(plots)
 app.command()(plan)
 app.command()(init)
 app.command()(simulate)
+app.command()(compare)
 
 
 def main() -> None:

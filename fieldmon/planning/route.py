@@ -10,6 +10,7 @@ import numpy as np
 
 from fieldmon.compute.wording import counted
 from fieldmon.planning.bound_wording import told
+from fieldmon.plot.passing import legs_of
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -219,7 +220,7 @@ def _timed(
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
     """Return the line, where its legs end, and the seconds at each vertex on arrival.
 
-    Where one waits for others, there is a vertex twice: on coming to the end of the aisle (or at
+    Where one waits for others, a vertex is there twice: on coming to the end of the aisle (or at
     the gate), and on driving on.
     """
     line_m, leg_end = line
@@ -228,16 +229,20 @@ def _timed(
         return line_m, leg_end, _seconds(line_m, leg_end, depart_s, arrive_s)
     wait_s = work.wait_s[: len(leg_end)]
     line_s = _seconds(line_m, leg_end, depart_s, arrive_s - wait_s)
-    # from the gate one waits there; from an aisle at its end, the first corner of the leg
-    first = np.append(0, leg_end[:-1])
-    places = np.append(scene.at, work.plant)[: len(leg_end)]
-    corner = first + (places >= 0)
+    places = [scene.at, *work.plant.tolist(), GATE]
     for leg in np.flatnonzero(wait_s)[::-1].tolist():
-        at = int(min(corner[leg], leg_end[leg]))
-        line_m = np.insert(line_m, at, line_m[at], axis=0)
-        line_s = np.insert(line_s, at, line_s[at])
-        line_s[at + 1 : leg_end[leg] + 2] += wait_s[leg]
-        leg_end = np.where(np.arange(len(leg_end)) >= leg, leg_end + 1, leg_end)
+        first, end = int(leg_end[leg - 1]) if leg else 0, int(leg_end[leg])
+        way_m = np.append(0.0, np.cumsum(np.hypot(*np.diff(line_m[first : end + 1], axis=0).T)))
+        out_m = legs_of(scene.aisles).leg(places[leg], places[leg + 1]).out_m
+        v = first + 1 + int(np.searchsorted(way_m[1:-1], out_m, "right"))
+        here = np.array([np.interp(out_m, way_m, line_m[first : end + 1, k]) for k in range(2)])
+        begin_s = depart_s[leg] if leg else 0.0
+        drive_s = arrive_s[leg] - wait_s[leg] - begin_s
+        now_s = begin_s + drive_s * (out_m / way_m[-1] if way_m[-1] else 0.0)
+        line_m = np.insert(line_m, [v, v], here, axis=0)
+        line_s = np.insert(line_s, [v, v], now_s)
+        line_s[v + 1 : end + 3] += wait_s[leg]
+        leg_end = np.where(np.arange(len(leg_end)) >= leg, leg_end + 2, leg_end)
     return line_m, leg_end, line_s
 
 

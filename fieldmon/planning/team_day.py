@@ -18,7 +18,7 @@ from fieldmon.planning.sections import (
     worth_together,
 )
 from fieldmon.planning.workday import Workday, work_day
-from fieldmon.plot.passing import Legs
+from fieldmon.plot.passing import legs_of
 from fieldmon.plot.travel import GATE, travel_s
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
-    from fieldmon.plot.passing import Leg
+    from fieldmon.plot.passing import Leg, Legs
     from fieldmon.samplers.base import Sampler, Scene, WouldFind
 
     #: what is believed after inspections: plants, whether each was a find, and its detection
@@ -154,6 +154,7 @@ class _Worker:
     next: int = 0
     done: list[_Done] = field(default_factory=list)
     visit: int = 0
+    begun: int = 0
     told: int = 0
     version: int = 0
     anew: bool = True
@@ -203,9 +204,8 @@ class _Day:
         self.grid = team[0].scene.grid
         self.corridor = self.grid.corridor[self.grid.row]
         self.heights = aisle_heights(self.grid)
-        legs = {id(post.scene.aisles): Legs(post.scene.aisles) for post in team}
         self.workers = [
-            _Worker(k, post, legs[id(post.scene.aisles)], post.scene.at)
+            _Worker(k, post, legs_of(post.scene.aisles), post.scene.at)
             for k, post in enumerate(team)
         ]
         first = team[0].scene
@@ -230,7 +230,8 @@ class _Day:
             self._at(worker.post.starts_s, worker, self._ready)
         while self.events or self.waiting:
             if not self.events:
-                self._pass_by(self.waiting.pop(0))
+                # somebody stays there for the night
+                self._give_up(self.waiting[0], self.waiting[0].out_s)
                 continue
             now_s, _, version, k, event = heappop(self.events)
             worker = self.workers[k]
@@ -251,6 +252,7 @@ class _Day:
             self._walk(worker, now_s)
         if worker.target() < 0 and self._shared_anew(now_s):
             self._walk(worker, now_s)
+        self._pass_by(worker)
         target = worker.target()
         if target >= 0 and worker.spare_s(now_s + worker.seconds(worker.at, target)) < -_ROUNDING_S:
             target = self._homeward(worker)
@@ -267,6 +269,14 @@ class _Day:
         share = worker.leg.out_m / worker.leg.length_m if worker.leg.length_m > 0 else 0.0
         self._at(now_s + share * leg_s, worker, self._out)
 
+    def _pass_by(self, worker: _Worker) -> None:
+        """Leave out the next aisles if somebody stays in them for the night."""
+        while (target := worker.target()) >= 0:
+            holder = self.holder[self.corridor[target]]
+            if holder in (_NOBODY, worker.k) or not self.workers[holder].over:
+                return
+            worker.next += 1
+
     def _out(self, worker: _Worker, now_s: float) -> None:
         """Leave an aisle, or the gate."""
         self._release(worker, (worker.holds,), now_s)
@@ -279,18 +289,18 @@ class _Day:
             self._at(max(last_s, now_s), worker, self._give_up)
 
     def _give_up(self, worker: _Worker, now_s: float) -> None:
-        """Go home, as the aisle waited for comes free too late."""
+        """End a day, as the aisle waited for comes free too late, or not today."""
         if worker not in self.waiting:
             return
         self.waiting.remove(worker)
         self._homeward(worker)
+        worker.over = True
         if not worker.scene.robot.returns or worker.leg is None:
-            worker.over, worker.end_s = True, now_s
+            worker.end_s = worker.done[-1].leave_s if worker.done else worker.post.starts_s
             return
-        travel, gate_m = worker.scene.aisles.travel, worker.scene.clock.speed_m_s
-        home_m = float(travel.between_m[worker.leg.end, -1])
-        worker.over, worker.wait_home_s = True, now_s - worker.out_s
-        worker.end_s = now_s + home_m / gate_m
+        home_m = float(worker.scene.aisles.travel.between_m[worker.leg.end, -1])
+        worker.wait_home_s = now_s - worker.out_s
+        worker.end_s = now_s + home_m / worker.scene.clock.speed_m_s
 
     def _homeward(self, worker: _Worker) -> int:
         """Let a worker make no more stops; return where it goes."""
@@ -337,16 +347,6 @@ class _Day:
             self.holder[freed] = _NOBODY
             self.waiting = [each for each in self.waiting if not self._enter(each, now_s)]
 
-    def _pass_by(self, worker: _Worker) -> None:
-        """Leave out an aisle in which somebody stays for the night."""
-        now_s, aisle = worker.out_s, worker.claims
-        if worker.target() < 0 or worker.plan is None:
-            worker.over, worker.end_s = True, now_s
-            return
-        while worker.target() >= 0 and self.corridor[worker.target()] == aisle:
-            worker.next += 1
-        self._at(now_s, worker, self._ready)
-
     def _visit(self, worker: _Worker, arrive_s: float, wait_s: float) -> None:
         """Make the stops in the aisle that a worker is in."""
         plan, first = worker.plan, worker.next
@@ -364,7 +364,6 @@ class _Day:
             what = plant, at_s, leave_s, bool(plan.found[j]), float(plan.detects[j])
             worker.done.append(_Done(*what, wait_s if j == first else 0.0))
             worker.next, worker.at = j + 1, plant
-            self.today[plant] = True
             if plan.found[j]:
                 self._tell(worker, leave_s)
         ready_s = worker.done[-1].leave_s if len(worker.done) > worker.visit else arrive_s
@@ -421,7 +420,6 @@ class _Day:
         worker.anew = True
         for k in range(worker.visit + 1, len(worker.done)):
             if worker.done[k - 1].leave_s > now_s:
-                self.today[[stop.plant for stop in worker.done[k:]]] = False
                 del worker.done[k:]
                 worker.at = worker.done[-1].plant
                 worker.version += 1
@@ -432,7 +430,7 @@ class _Day:
 
     def _first_sections(self) -> NDArray[np.int64]:
         if self._by_worth():
-            return self._proposed([worker.post.starts_s for worker in self.workers])[0]
+            return self._proposed(-np.inf)[0]
         shares = np.array([worker.scene.robot.day_s for worker in self.workers])
         return self._with_claims(even_sections(self.grid, shares))
 
@@ -446,7 +444,7 @@ class _Day:
         """Give the aisles out anew if that gains enough; tell whether it was done."""
         if not self._hears():
             return False
-        section, gain = self._proposed([self._free_s(worker, now_s) for worker in self.workers])
+        section, gain = self._proposed(now_s)
         if gain < max(self.teamwork.least_gain, _ROUNDING_S):
             return False
         other = section != self.section
@@ -456,13 +454,13 @@ class _Day:
             self._interrupt(self.workers[k], now_s)
         return True
 
-    def _proposed(self, free_s: Sequence[float]) -> tuple[NDArray[np.int64], float]:
+    def _proposed(self, now_s: float) -> tuple[NDArray[np.int64], float]:
         """Return the best sections for the seconds left, and how much more they hold than now's."""
         robots = [worker.scene.robot for worker in self.workers]
-        open_ = np.where(self.today, 0.0, self.chance)
+        open_ = np.where(self._closed(now_s), 0.0, self.chance)
         worth = aisle_worth(self.workers[0].scene.aisles, robots, open_)
         left_s = np.array(
-            [0.0 if w.over else w.until_s - s for w, s in zip(self.workers, free_s, strict=True)]
+            [0.0 if w.over else w.until_s - self._free_s(w, now_s) for w in self.workers]
         )
         stands = np.array([self.grid.lane_y_m[self.grid.row[w.at]] if w.at >= 0 else -np.inf
                            for w in self.workers])  # fmt: skip
@@ -495,14 +493,27 @@ class _Day:
     def _free_s(self, worker: _Worker, now_s: float) -> float:
         """Return when a worker is done with the stop it is at, or has begun to drive to."""
         return min((s.leave_s for s in worker.done[worker.visit :] if s.leave_s > now_s),
-                   default=now_s)  # fmt: skip
+                   default=max(now_s, worker.post.starts_s))  # fmt: skip
+
+    def _closed(self, now_s: float) -> NDArray[np.bool_]:
+        """Return ``(n,)`` the plants inspected today, and those that somebody drives to.
+
+        Stops that others are yet to make in their aisles hang on what they will find.
+        """
+        for worker in self.workers:
+            for k in range(worker.begun, len(worker.done)):
+                if k > worker.visit and worker.done[k - 1].leave_s > now_s + _ROUNDING_S:
+                    break
+                self.today[worker.done[k].plant] = True
+                worker.begun = k + 1
+        return self.today
 
     def _walk(self, worker: _Worker, now_s: float) -> None:
         """Have the sampler plan the rest of a worker's day in its section."""
         scene, chance, pairs = worker.scene, self.chance, self.pair_chance
         if own := self._untold(worker, now_s) if self._hears() else []:
             chance, pairs = self._after(sorted([*self.known, *own]))
-        shut = self.today | (self.section[self.corridor] != worker.k)
+        shut = self._closed(now_s) | (self.section[self.corridor] != worker.k)
         last = np.where(shut, scene.day, scene.last_inspected).astype(np.int32)
         scene = replace(scene, chance=chance, pair_chance=pairs, last_inspected=last,
                         at=worker.at, seconds_left=worker.until_s - now_s)  # fmt: skip

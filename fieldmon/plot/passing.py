@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -29,13 +30,20 @@ class Leg(NamedTuple):
     end
         By which end it is left, as numbered in `TravelTable.between_m`.
     through
-        Aisles, as in `PlantGrid.corridor`, that are driven through between the two.
+        Aisles, as in `PlantGrid.corridor`, that are driven through after that; where a headland
+        opens half-way along an aisle, one's own may be among them.
     """
 
     out_m: float
     length_m: float
     end: int
     through: tuple[int, ...]
+
+
+@lru_cache(maxsize=8)
+def legs_of(aisles: Aisles) -> Legs:
+    """Return the legs of a plot; what was found of one is kept for its next day."""
+    return Legs(aisles)
 
 
 class Legs:
@@ -70,9 +78,7 @@ class Legs:
             for b, back_m in self._exits(j)
             for length_m in (out_m + float(between_m[a, b]) + back_m,)
         )
-        own = {self._corridor[self._row[k]] for k in (i, j) if k >= 0}
-        through = tuple(c for c in self._between(a, b) if c not in own)
-        return Leg(out_m, length_m, a, through)
+        return Leg(out_m, length_m, a, self._between(a, b))
 
     def _exits(self, i: int) -> list[tuple[int, float]]:
         if i < 0:

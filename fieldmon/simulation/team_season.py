@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
+from fieldmon.planning.team import team_of
 from fieldmon.planning.team_day import Posted, Teamwork, merged, team_day
 from fieldmon.planning.workday import draw_detections
 from fieldmon.samplers.base import resting_place
-from fieldmon.simulation.season import SeasonOnItsWay, check_start
+from fieldmon.simulation.season import SeasonOnItsWay, check_start, simulated_days
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -25,9 +26,48 @@ if TYPE_CHECKING:
     from fieldmon.planning.team_day import Learn
     from fieldmon.planning.workday import Workday
     from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler
     from fieldmon.simulation.season import SeasonSettings, SimulatedDay
     from fieldmon.simulation.start import Start
+
+
+@dataclass(frozen=True)
+class Team:
+    """So many robots of one kind, and how they work together.
+
+    Parameters
+    ----------
+    robots
+        How many.
+    teamwork
+        How aisles are given out among them, and when finds are heard of.
+    """
+
+    robots: int = 1
+    teamwork: Teamwork = field(default_factory=Teamwork)
+
+    def __post_init__(self) -> None:
+        if self.robots < 1:
+            raise SettingError(f"A team must have 1 robot or more, but it has {self.robots}.")
+
+    def days(
+        self,
+        works: tuple[Plot, Robot],
+        sampler: Sampler,
+        start: Start,
+        settings: SeasonSettings,
+        streams: RandomStreams,
+    ) -> Iterator[SimulatedDay]:
+        """Return the days of a season, as `simulated_team_days` or, for one, `simulated_days`."""
+        plot, robot = works
+        if self.robots == 1:
+            return simulated_days(plot.aisles, robot, sampler, start, settings, streams)
+        team = team_of(self.robots, robot), self.teamwork
+        return simulated_team_days(plot, team, sampler, start, settings, streams)
+
+
+ONE = Team()
 
 
 def simulated_team_days(

@@ -11,7 +11,9 @@ import typer
 from fieldmon.cli.messages import tell_unusable
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
+    Contact,
     Feature,
+    LeastGain,
     MaybePlotFile,
     PlotFiles,
     Records,
@@ -26,6 +28,10 @@ from fieldmon.cli.waiting import counting
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.plot import Plot
     from fieldmon.studies.teams.seasons import TeamOutcome, TeamScenario, TeamSetting
 
 _MOST_ROBOTS = 20
@@ -56,13 +62,8 @@ class CompareOptions:
             "--sections", help="Teams with even sections of rows, too, who hear of nothing."
         ),
     ] = False
-    contact: Annotated[
-        float, typer.Option(min=0.0, help="Minutes between contacts; 0: finds are heard of at once.")
-    ] = 30.0
-    least_gain: Annotated[
-        float,
-        typer.Option(min=0.0, help="Finds that must be gained for anyone to be sent elsewhere."),
-    ] = 0.5
+    contact: Contact = 30.0
+    least_gain: LeastGain = 0.5
     days: Annotated[int, typer.Option(help="Working days.")] = 25
     seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons of each.")] = 10
     infested: Annotated[float, typer.Option(help="Share of plants infested at the start.")] = 0.02
@@ -79,7 +80,7 @@ class CompareOptions:
 
 @with_options
 def compare(options: CompareOptions) -> None:
-    """Simulate seasons of one, two and more robots: what would each further one save?
+    """Simulate seasons of one, two and more robots, and say what each further one saves.
 
     All of them meet the same insects. On a plot of your own, or on square ones of several sizes.
     A comparison that was stopped goes on where its table ends.
@@ -138,7 +139,7 @@ def _scenarios(options: CompareOptions) -> list[TeamScenario]:
     ]  # fmt: skip
 
 
-def _own(options: CompareOptions):  # noqa: ANN202 - a plot and its chances
+def _own(options: CompareOptions) -> tuple[Plot, NDArray[np.float64]]:
     """Return the plot of the command's files, and what is believed of it."""
     import numpy as np  # noqa: PLC0415
 
@@ -157,7 +158,7 @@ def _settings(
     scenario: TeamScenario, sizes: list[int], options: CompareOptions
 ) -> list[TeamSetting]:
     """Return the teams that work in a scenario."""
-    from fieldmon.planning.team_day import Teamwork  # noqa: PLC0415
+    from fieldmon.planning.members import Teamwork  # noqa: PLC0415
     from fieldmon.simulation.team_season import Team  # noqa: PLC0415
     from fieldmon.studies.teams.seasons import TeamSetting  # noqa: PLC0415
 
@@ -168,7 +169,9 @@ def _settings(
         reads = _reads_chance(name)
         ways = [*([together] if reads else []), *([apart] if options.sections or not reads else [])]
         for k in sizes:
-            made += [TeamSetting(scenario, name.value, Team(k, way)) for way in ways[: k if k == 1 else None]]
+            # alone there is one way to work
+            own = ways[:1] if k == 1 else ways
+            made += [TeamSetting(scenario, name.value, Team(k, way)) for way in own]
     return made
 
 

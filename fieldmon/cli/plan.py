@@ -19,6 +19,7 @@ from fieldmon.cli.options import (
     Outputs,
     PlotFiles,
     Records,
+    Robots,
     StartTime,
     WorkDate,
     WorkerOptions,
@@ -38,13 +39,6 @@ if TYPE_CHECKING:
 Now = Annotated[
     str | None,
     typer.Option(help="Of a season: plan the rest of the day from this local time, HH:MM."),
-]
-Robots = Annotated[
-    str | None,
-    typer.Option(
-        help="How many robots, or a table of robots and scouts (CSV: name, who, hours, speed_km_h, "
-        "look_s, detection, start, lon, lat). Each has a route file of its own."
-    ),
 ]
 EveryPlot = Annotated[
     bool,
@@ -106,7 +100,8 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
     if options.plot is not None and is_season(options.plot):
         if options.robots is not None:
             raise SettingError(
-                "--robots plans a plot file, but this is a season: it has one robot."
+                "--robots goes with a plot file, but this is a season, which keeps who works. "
+                "Change that with: fieldmon change --robots"
             )
         plan_season(context, options, options.plot)
         return

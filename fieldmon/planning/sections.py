@@ -85,7 +85,7 @@ def aisle_worth(aisles: Aisles, robots: Sequence[Robot], chance: Float) -> Aisle
     """
     travel, grid = aisles.travel, aisles.grid
     dearest = max(robot.detects / robot.visit_s for robot in robots) * float(chance.max())
-    price = max(dearest, 1e-12) / _STEP ** np.arange(1, _PRICES + 1)
+    price = np.array([max(dearest, 1e-12) / _STEP**k for k in range(1, _PRICES + 1)])
     n_aisles = int(grid.corridor.max()) + 1
     made: dict[tuple[object, ...], tuple[Float, Float]] = {}
     for robot in robots:
@@ -97,8 +97,8 @@ def aisle_worth(aisles: Aisles, robots: Sequence[Robot], chance: Float) -> Aisle
                 _value(travel, clock, chance * robot.detects, price[p], (net[p], seconds[p]))
             made[key] = net, seconds
     keys = [(*robot_clock(robot, robot.day_s), robot.detects) for robot in robots]
-    net, seconds = (np.stack([made[key][k] for key in keys], axis=1) for k in range(2))
-    return AisleWorth(price, net, seconds)
+    net = np.stack([made[key][0] for key in keys], axis=1)
+    return AisleWorth(price, net, np.stack([made[key][1] for key in keys], axis=1))
 
 
 def worth_together(worth: AisleWorth, section: Int, left_s: Float) -> float:
@@ -157,9 +157,7 @@ def _value(
                 if gains - price * spent_s > best:
                     best, best_s = gains - price * spent_s, spent_s
         if n > 0:
-            spent_s = (
-                clock.row_change_s + n * clock.visit_s + (high_m - low_m) / clock.speed_m_s
-            )
+            spent_s = clock.row_change_s + n * clock.visit_s + (high_m - low_m) / clock.speed_m_s
             if gains - price * spent_s > best:
                 best, best_s = gains - price * spent_s, spent_s
             gains, n = 0.0, 0

@@ -1,4 +1,4 @@
-"""A day of a team as it goes: events in order of the clock, and finds that change what others do."""
+"""A day of a team: events in order of the clock, and finds that change what the others do."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from fieldmon.errors import SettingError
 from fieldmon.planning.sections import (
     aisle_heights,
     aisle_worth,
@@ -27,6 +26,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
+    from fieldmon.planning.members import Teamwork
+    from fieldmon.planning.sections import AisleWorth
     from fieldmon.plot.passing import Leg, Legs
     from fieldmon.samplers.base import Sampler, Scene, WouldFind
 
@@ -35,35 +36,6 @@ if TYPE_CHECKING:
 
 _NOBODY = _NOWHERE = -1
 _ROUNDING_S = 1e-6
-
-
-@dataclass(frozen=True)
-class Teamwork:
-    """How several work together.
-
-    Parameters
-    ----------
-    together
-        Whether aisles are given out by what is believed, each morning and after finds; if not,
-        each has the same even section of rows every day, and nobody hears of the others' finds
-        before the evening.
-    contact_s
-        How often they are in contact: a find is known to all at the next multiple of so many
-        seconds since the day began; 0: at once.
-    least_gain
-        Finds that must be expected beyond those of going on as before, for aisles to be given out
-        anew during a day: nobody is sent back and forth for less.
-    """
-
-    together: bool = True
-    contact_s: float = 0.0
-    least_gain: float = 0.5
-
-    def __post_init__(self) -> None:
-        for name in ("contact_s", "least_gain"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0):
-                raise SettingError(f"A team's {name} must be 0 or more, but it is {value}.")
 
 
 class Posted(NamedTuple):
@@ -85,7 +57,11 @@ class Posted(NamedTuple):
 
 
 def team_day(
-    team: Sequence[Posted], sampler: Sampler, teamwork: Teamwork, learn: Learn | None = None
+    team: Sequence[Posted],
+    sampler: Sampler,
+    teamwork: Teamwork,
+    learn: Learn | None = None,
+    before: NDArray[np.int64] | None = None,
 ) -> tuple[Workday, ...]:
     """Return the rest of a day of each of a team, given what inspections would find.
 
@@ -104,6 +80,8 @@ def team_day(
     learn
         What is believed after inspections of this day, in order of the clock; None: finds change
         nothing for the others.
+    before
+        ``(a,)`` who has each aisle so far today, -1: nobody; None: they are yet to be given out.
 
     Returns
     -------
@@ -113,7 +91,7 @@ def team_day(
     if len(team) == 1:
         (alone,) = team
         return (work_day(alone.scene, sampler, alone.would_find),)
-    return _Day(team, sampler, teamwork, learn).run()
+    return _Day(team, sampler, teamwork, learn, before).run()
 
 
 class _Done(NamedTuple):
@@ -198,7 +176,12 @@ class _Day:
     """A day on its way; events are calls in order of the clock."""
 
     def __init__(
-        self, team: Sequence[Posted], sampler: Sampler, teamwork: Teamwork, learn: Learn | None
+        self,
+        team: Sequence[Posted],
+        sampler: Sampler,
+        teamwork: Teamwork,
+        learn: Learn | None,
+        before: NDArray[np.int64] | None,
     ) -> None:
         self.sampler, self.teamwork, self.learn = sampler, teamwork, learn
         self.grid = team[0].scene.grid
@@ -209,9 +192,10 @@ class _Day:
             for k, post in enumerate(team)
         ]
         first = team[0].scene
-        self.today = first.last_inspected == first.day
+        self.today: NDArray[np.bool_] = first.last_inspected == first.day
         self.chance, self.pair_chance = first.chance, first.pair_chance
         self.known: list[_Told] = []
+        self.valued: tuple[tuple[float, int], AisleWorth] | None = None
         self.events: list[tuple[float, int, int, int, _Event]] = []
         self.count = 0
         self.waiting: list[_Worker] = []
@@ -222,8 +206,7 @@ class _Day:
                 worker.holds = worker.claims = int(self.corridor[worker.at])
                 if self.holder[worker.holds] == _NOBODY:
                     self.holder[worker.holds] = worker.k
-        self.section: NDArray[np.int64] | None = None
-        self.section = self._first_sections()
+        self.section = self._first_sections(before)
 
     def run(self) -> tuple[Workday, ...]:
         for worker in self.workers:
@@ -390,7 +373,7 @@ class _Day:
         self.chance, self.pair_chance = self._after(self.known)
         if not self._shared_anew(now_s):
             for other in self.workers:
-                near = self._beside([told.plant for told in news if told.found and told.k != other.k])
+                near = self._beside([t.plant for t in news if t.found and t.k != other.k])
                 if (self.section[self.corridor[near]] == other.k).any():
                     self._interrupt(other, now_s)
 
@@ -428,11 +411,19 @@ class _Day:
 
     # -- who goes where
 
-    def _first_sections(self) -> NDArray[np.int64]:
+    def _first_sections(self, before: NDArray[np.int64] | None) -> NDArray[np.int64]:
+        """Return who has each aisle; what is given out stays so, if no other way gains enough."""
         if self._by_worth():
-            return self._proposed(-np.inf)[0]
-        shares = np.array([worker.scene.robot.day_s for worker in self.workers])
-        return self._with_claims(even_sections(self.grid, shares))
+            best = self._proposed(-np.inf)
+        else:
+            shares = np.array([worker.scene.robot.day_s for worker in self.workers])
+            best = self._with_claims(even_sections(self.grid, shares))
+        if before is None:
+            return best
+        kept = self._with_claims(np.where(before >= 0, before, best))
+        if self._by_worth() and self._gain(best, kept, -np.inf) >= self.teamwork.least_gain:
+            return best
+        return kept
 
     def _by_worth(self) -> bool:
         return self.teamwork.together and self.sampler.reads_chance
@@ -444,8 +435,8 @@ class _Day:
         """Give the aisles out anew if that gains enough; tell whether it was done."""
         if not self._hears():
             return False
-        section, gain = self._proposed(now_s)
-        if gain < max(self.teamwork.least_gain, _ROUNDING_S):
+        section = self._proposed(now_s)
+        if self._gain(section, self.section, now_s) < max(self.teamwork.least_gain, _ROUNDING_S):
             return False
         other = section != self.section
         changed = {*section[other].tolist(), *self.section[other].tolist()}
@@ -454,27 +445,43 @@ class _Day:
             self._interrupt(self.workers[k], now_s)
         return True
 
-    def _proposed(self, now_s: float) -> tuple[NDArray[np.int64], float]:
-        """Return the best sections for the seconds left, and how much more they hold than now's."""
-        robots = [worker.scene.robot for worker in self.workers]
-        open_ = np.where(self._closed(now_s), 0.0, self.chance)
-        worth = aisle_worth(self.workers[0].scene.aisles, robots, open_)
-        left_s = np.array(
-            [0.0 if w.over else w.until_s - self._free_s(w, now_s) for w in self.workers]
-        )
-        stands = np.array([self.grid.lane_y_m[self.grid.row[w.at]] if w.at >= 0 else -np.inf
-                           for w in self.workers])  # fmt: skip
-        up = np.argsort(stands, kind="stable")
-        section = self._with_claims(best_sections(worth, self.heights, left_s, up))
-        if self.section is None:
-            return section, np.inf
-        held = [
-            worth_together(worth, one, left_s - self._way_s(one, stands))
-            for one in (section, self.section)
-        ]
-        return section, held[0] - held[1]
+    def _proposed(self, now_s: float) -> NDArray[np.int64]:
+        """Return the best sections for the seconds left."""
+        up = np.argsort(self._stands(), kind="stable")
+        worth, left_s = self._worth(now_s), self._left_s(now_s)
+        return self._with_claims(best_sections(worth, self.heights, left_s, up))
 
-    def _way_s(self, section: NDArray[np.int64], stands: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _gain(self, section: NDArray[np.int64], other: NDArray[np.int64], now_s: float) -> float:
+        """Return how many more finds are expected with some sections than with others."""
+        worth, left_s, stands = self._worth(now_s), self._left_s(now_s), self._stands()
+        held, less = (
+            worth_together(worth, one, left_s - self._way_s(one, stands))
+            for one in (section, other)
+        )
+        return held - less
+
+    def _worth(self, now_s: float) -> AisleWorth:
+        """Return what aisles hold now; worked out once for a moment."""
+        key = now_s, len(self.known)
+        if self.valued is None or self.valued[0] != key:
+            robots = [worker.scene.robot for worker in self.workers]
+            chance = np.where(self._closed(now_s), 0.0, self.chance)
+            self.valued = key, aisle_worth(self.workers[0].scene.aisles, robots, chance)
+        return self.valued[1]
+
+    def _left_s(self, now_s: float) -> NDArray[np.float64]:
+        """Return the seconds that each has left after what it has begun, ``(m,)``."""
+        left = (0.0 if w.over else w.until_s - self._free_s(w, now_s) for w in self.workers)
+        return np.array([*left])
+
+    def _stands(self) -> NDArray[np.float64]:
+        """Return where across the plot each is, ``(m,)`` metres; at the gate below all."""
+        lane_m, row = self.grid.lane_y_m, self.grid.row
+        return np.array([lane_m[row[w.at]] if w.at >= 0 else -np.inf for w in self.workers])
+
+    def _way_s(
+        self, section: NDArray[np.int64], stands: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
         """Return about how long each takes to the nearest of its aisles, ``(m,)``."""
         way_s = np.zeros(len(self.workers))
         for k, worker in enumerate(self.workers):
@@ -536,24 +543,29 @@ class _Day:
 
 
 def merged(works: Sequence[Workday], starts_s: Sequence[float]) -> Workday:
-    """Return the days of a team as one: its stops in order of the clock, since the team's day began.
+    """Return the days of a team as one: stops in order of the clock since the team's day began.
 
     Examples
     --------
     >>> import numpy as np
     >>> one, other = (
-    ...     Workday(np.array([p], np.int32), np.zeros(1), np.ones(1, bool), np.ones(1), np.ones(1), 1.0)
-    ...     for p in (7, 3)
+    ...     Workday(np.array([p], np.int32), *(np.ones(1),) * 4, 1.0) for p in (7, 3)
     ... )
     >>> merged([one, other], [10.0, 0.0]).plant.tolist()
     [3, 7]
     """
+
     def column(name: str) -> NDArray[Any]:
         return np.concatenate([getattr(work, name) for work in works])
 
     arrive_s = np.concatenate([w.arrive_s + s for w, s in zip(works, starts_s, strict=True)])
     stop_s = column("stop_s")
     order = np.argsort(arrive_s + stop_s, kind="stable")
-    columns = (column("plant"), arrive_s, column("found"), stop_s, column("detects"))
-    end_s = max(work.end_s + start_s for work, start_s in zip(works, starts_s, strict=True))
-    return Workday(*(values[order] for values in columns), end_s)
+    return Workday(
+        column("plant")[order],
+        arrive_s[order],
+        column("found")[order],
+        stop_s[order],
+        column("detects")[order],
+        max(work.end_s + start_s for work, start_s in zip(works, starts_s, strict=True)),
+    )

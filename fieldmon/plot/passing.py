@@ -100,9 +100,10 @@ class Legs:
         grid = self._aisles.grid
         if known is not None or grid.aisles_m is not None:
             return -1 if known is None else known
-        ways = self._aisles.roads.xy_m[[u, v]]
-        (x, y), (across, up) = ways.mean(axis=0), np.abs(ways[1] - ways[0])
+        (ax, ay), (bx, by) = self._aisles.roads.xy_m[[u, v]].tolist()
+        x, y, across, up = (ax + bx) / 2, (ay + by) / 2, abs(bx - ax), abs(by - ay)
         near = np.abs(grid.lane_y_m - y) <= _SAME_AISLE * grid.row_spacing_m
-        low_m, high_m = grid.lane_x_m.T
-        inside = np.flatnonzero(near & (low_m < x) & (x < high_m)) if up < across else ()
-        return int(grid.corridor[inside[0]]) if len(inside) else -1
+        near &= (grid.lane_x_m[:, 0] < x) & (x < grid.lane_x_m[:, 1])
+        if up > across or not near.any():
+            return -1
+        return int(grid.corridor[np.argmax(near)])

@@ -84,4 +84,5 @@ def season_metrics(days: Iterable[SimulatedDay]) -> SeasonMetrics:
     columns = np.array(rows, dtype=np.float64).reshape(-1, 7).T
     found, ever, left = columns[3:6].astype(np.int64)
     new = np.diff(ever, prepend=0)
-    return SeasonMetrics(*columns[:3], found, new, left, columns[6])
+    detection, visited, ever_visited = columns[:3]
+    return SeasonMetrics(detection, visited, ever_visited, found, new, left, columns[6])

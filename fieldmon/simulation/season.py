@@ -274,6 +274,7 @@ def morning_beliefs(
 
 
 def check_start(aisles: Aisles, start: Start) -> None:
+    """Raise `PlotError` if a start is of another plot."""
     n = len(aisles.grid)
     for name, values in (("infested", start.infested), ("chance", start.chance)):
         if len(values) != n:

@@ -9,8 +9,8 @@ import numpy as np
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
-from fieldmon.planning.team import team_of
-from fieldmon.planning.team_day import Posted, Teamwork, merged, team_day
+from fieldmon.planning.members import Teamwork, team_of
+from fieldmon.planning.team_day import Posted, merged, team_day
 from fieldmon.planning.workday import draw_detections
 from fieldmon.samplers.base import resting_place
 from fieldmon.simulation.season import SeasonOnItsWay, check_start, simulated_days
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.infestation.belief import Belief
-    from fieldmon.planning.team import TeamMember
+    from fieldmon.planning.members import TeamMember
     from fieldmon.planning.team_day import Learn
     from fieldmon.planning.workday import Workday
     from fieldmon.plot.plot import Plot

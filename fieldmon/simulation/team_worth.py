@@ -76,7 +76,7 @@ def told(gains: Sequence[MarginalGain]) -> str:
     """
     if not gains:
         return ""
-    parts = []
+    parts: list[str] = []
     for gain in gains:
         saved = _interval(gain.saved)
         first = not parts

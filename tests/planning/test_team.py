@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.planning.team import TeamMember, plan_team, team_of
+from fieldmon.planning.members import TeamMember, team_of
+from fieldmon.planning.team import plan_team
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.plot import Plot

@@ -11,8 +11,9 @@ from shapely import MultiPolygon, Polygon
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.planning.members import Teamwork
 from fieldmon.planning.route import route_of
-from fieldmon.planning.team_day import Posted, Teamwork, merged, team_day
+from fieldmon.planning.team_day import Posted, merged, team_day
 from fieldmon.planning.workday import work_day
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle

@@ -23,7 +23,8 @@ def outcomes(scenario, seed):
 def test_a_table_is_read_back_as_it_was_written():
     made = outcomes("A, spread 30% to one", 0) + outcomes("B", 7)
     assert outcomes_from(csv_text(made, SeasonOutcome), "samplers.csv") == made
-    assert csv_text(made, SeasonOutcome).startswith("cell,seed,who,infested_plant_days,d50,d80,inspected,found,")
+    begin = "cell,seed,who,infested_plant_days,d50,d80,inspected,found,"
+    assert csv_text(made, SeasonOutcome).startswith(begin)
 
 
 @pytest.mark.parametrize("text", ["", "a,b\n1,2\n", "cell,seed,who\n"])
@@ -64,7 +65,8 @@ def test_rows_stand_in_the_order_asked_for_whatever_was_done_first(tmp_path):
                 table.keep(key, outcomes(*key))
         texts.append((tmp_path / f"{k}.csv").read_text())
     assert texts[0] == texts[1] == texts[2]
-    assert [o.scenario for o in outcomes_from(texts[0], "", SeasonOutcome)][::2] == ["A", "B", "A", "B"]
+    made = outcomes_from(texts[0], "", SeasonOutcome)
+    assert [o.scenario for o in made][::2] == ["A", "B", "A", "B"]
 
 
 def test_what_the_file_holds_is_not_done_again_and_others_stay(tmp_path):

@@ -217,7 +217,7 @@ class Bounded(NamedTuple):
     visits: Float
 
 
-def bounded(plot: Plot, reward: Float, robot: Robot) -> Bounded:
+def bounded(plot: Plot | Aisles, reward: Float, robot: Robot) -> Bounded:
     """Return what no route of a robot's day can hold, and what the drives behind it visit.
 
     Two drives at about one price fill the hours, the one more, the other less: as much of each as

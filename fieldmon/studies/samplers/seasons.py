@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import night
@@ -46,8 +46,8 @@ class SeasonOutcome:
     visited_pct: float
 
     # the first and third column are a scenario and a contender, named as in the tables made first
-    columns: ClassVar = ("cell", "seed", "who", *MEASURES)
-    kinds: ClassVar = (str, int, str, *(float,) * len(MEASURES))
+    columns: ClassVar[tuple[str, ...]] = ("cell", "seed", "who", *MEASURES)
+    kinds: ClassVar[tuple[type[Any], ...]] = (str, int, str, *(float,) * len(MEASURES))
 
     @property
     def key(self) -> tuple[str, int]:

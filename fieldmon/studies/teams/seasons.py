@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -24,12 +24,13 @@ from fieldmon.simulation.experiment import Experiment
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import SeasonSettings
 from fieldmon.simulation.start import season_start
-from fieldmon.simulation.team_season import Team
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
+
+    from fieldmon.simulation.team_season import Team
 
 _DIGITS = 8
 
@@ -112,11 +113,11 @@ class TeamOutcome:
     worked_h: float
     found: float
 
-    columns: ClassVar = (
+    columns: ClassVar[tuple[str, ...]] = (
         *("scenario", "who", "robots", "seed", "hectares", "spread"),
         *("infested_plant_days", "d80", "worked_h", "found"),
     )
-    kinds: ClassVar = (str, str, int, int, *(float,) * 6)
+    kinds: ClassVar[tuple[type[Any], ...]] = (str, str, int, int, *(float,) * 6)
 
     @property
     def key(self) -> tuple[str, str, int, int]:

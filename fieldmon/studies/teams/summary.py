@@ -52,7 +52,7 @@ def rows(outcomes: Sequence[TeamOutcome]) -> list[TeamRow]:
         ways = dict.fromkeys(one.who for one in here if one.robots > 1) or {"": None}
         for way in ways:
             sampler = way.partition(",")[0]
-            alone = [o for o in here if o.robots == 1 and o.who in (sampler, way) or not way]
+            alone = [o for o in here if o.robots == 1 and (not way or o.who in (sampler, way))]
             made += _of_way([*alone, *(o for o in here if o.who == way and o.robots > 1)], way)
     return made
 

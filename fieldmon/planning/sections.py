@@ -116,17 +116,20 @@ def worth_together(worth: AisleWorth, section: Int, left_s: Float) -> float:
 def best_sections(worth: AisleWorth, heights: Float, left_s: Float, up: Int) -> Int:
     """Return who has each aisle, ``(a,)``: beside each other, each with work for its seconds.
 
-    Work is what pays at the price of a second at which all are just busy. `up` ``(m,)`` is the
-    order of members across the plot.
+    Work is what pays at a price of a second; of the prices at which all are about busy that one
+    counts whose sections hold most. `up` ``(m,)`` is the order of members across the plot.
     """
     demand = worth.seconds.mean(axis=1).sum(axis=1)
     left_s = np.maximum(left_s, 0.0)
     # prices fall, so demand rises; with time for everything the cheapest is left
-    p = min(int(np.searchsorted(demand, left_s.sum())), len(demand) - 1)
+    busy = min(int(np.searchsorted(demand, left_s.sum())), len(demand) - 1)
     order = np.argsort(heights, kind="stable")
     shares = left_s[up] if left_s.sum() > 0 else np.ones(len(up))
-    work = worth.seconds[p].mean(axis=0) + 1e-9
-    return up[_cut(work, shares, order)]
+    tried = []
+    for p in range(max(busy - 1, 0), min(busy + 2, len(demand))):
+        section = up[_cut(worth.seconds[p].mean(axis=0) + 1e-9, shares, order)]
+        tried.append((worth_together(worth, section, left_s), -p, section))
+    return max(tried, key=lambda each: each[:2])[2]
 
 
 @loop

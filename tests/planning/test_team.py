@@ -1,5 +1,7 @@
 """A day of several: no plant twice, no two in one aisle at once, and a bound for all together."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,7 +9,7 @@ from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.planning.members import TeamMember, team_of
-from fieldmon.planning.team import plan_team
+from fieldmon.planning.team import bound_of_days, plan_team
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.plot import Plot
@@ -135,8 +137,10 @@ def test_a_team_that_cannot_work_is_refused(members, says):
         plan_team(plot, chances(plot), members)
 
 
-def test_a_team_of_none_or_a_start_on_another_day_is_refused():
-    with pytest.raises(SettingError, match="1 member or more"):
-        team_of(0)
-    with pytest.raises(SettingError, match="must start within a day"):
-        TeamMember("late", starts_s=1e6)
+def test_the_days_of_a_team_have_a_bound_as_long_as_they_are_whole():
+    plot = plot_of()
+    plan = plan_team(plot, chances(plot), team_of(2, Robot(hours=0.6)))
+    said = bound_of_days(plan.days)
+    assert said.startswith(f"{plan.expected_found:.1f} finds expected; no routes of these hours ")
+    begun = replace(plan.days[0], scene=replace(plan.days[0].scene, seconds_left=60.0))
+    assert bound_of_days([begun, plan.days[1]]) == ""

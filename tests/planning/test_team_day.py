@@ -1,14 +1,12 @@
 """A day of several as it goes: the clock, the aisles, and what finds change."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.errors import PlotError, SettingError
+from fieldmon.errors import PlotError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.planning.members import Teamwork
@@ -184,10 +182,3 @@ def test_days_of_a_team_are_one_in_order_of_the_clock():
     assert sorted(whole.plant) == sorted(np.concatenate([work.plant for work in works]))
     assert whole.found.sum() == finds(works)
     assert whole.end_s == max(w.end_s + s for w, s in zip(works, day.starts_s, strict=True))
-
-
-@pytest.mark.parametrize("name", ["contact_s", "least_gain"])
-def test_teamwork_must_be_possible(name):
-    for value in (-1.0, np.nan, np.inf):
-        with pytest.raises(SettingError, match=f"{name} must be 0 or more"):
-            replace(AT_ONCE, **{name: value})

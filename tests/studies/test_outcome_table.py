@@ -22,7 +22,7 @@ def outcomes(scenario, seed):
 
 def test_a_table_is_read_back_as_it_was_written():
     made = outcomes("A, spread 30% to one", 0) + outcomes("B", 7)
-    assert outcomes_from(csv_text(made, SeasonOutcome), "samplers.csv") == made
+    assert outcomes_from(csv_text(made, SeasonOutcome), "samplers.csv", SeasonOutcome) == made
     begin = "cell,seed,who,infested_plant_days,d50,d80,inspected,found,"
     assert csv_text(made, SeasonOutcome).startswith(begin)
 

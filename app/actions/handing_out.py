@@ -26,7 +26,8 @@ def show(choices: Choices, plan: DayPlan) -> None:
     """Show the buttons, if there is a route."""
     if not len(plan.route):
         return
-    notes = RouteNotes(choices.plot.field.name, choices.sampler, chosen_day.starts(choices, plan))
+    starts = chosen_day.starts(choices, plan)
+    notes = RouteNotes(choices.plot.field.name, choices.sampler, starts, choices.who)
     with st.container(horizontal=True):
         st.download_button(
             texts.DOWNLOAD, partial(route_geojson, plan.route, notes),

@@ -239,7 +239,7 @@ class History:
         last = self.last_inspected(day)
         last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
         trail = self._trail(day, who)
-        today = _by(today, who)
+        today = made_by(today, who)
         resting = resting_place(robot, trail)
         return Scene(
             aisles=aisles,
@@ -256,13 +256,13 @@ class History:
 
     def _trail(self, day: int, who: str | None) -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the last day before `day` on which any was inspected."""
-        earlier = _by(self.until(day - 1).inspected, who)
+        earlier = made_by(self.until(day - 1).inspected, who)
         if not len(earlier):
             return earlier.plant
         return earlier.take(earlier.date == earlier.date[-1]).plant
 
 
-def _by(inspections: Inspections, who: str | None) -> Inspections:
+def made_by(inspections: Inspections, who: str | None) -> Inspections:
     """Return those that somebody made; None: all."""
     if who is None:
         return inspections

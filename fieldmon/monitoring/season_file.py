@@ -98,7 +98,7 @@ class Season:
         self._lock = threading.RLock()
         self._last: _Contents | None = None
         self._prior: tuple[object, Floats] | None = None
-        self._aisles: dict[tuple[float, float] | None, Aisles] = {}
+        self._aisles: dict[tuple[float, float], Aisles] = {}
         with self.store.reading() as db:
             self.plot: Plot = tables.read_plot(db)
             self.observations: Observations = tables.read_observations(db)
@@ -283,10 +283,15 @@ class Season:
         starts_s, streams = seconds(settings.starts), RandomStreams(settings.seed)
         if member is None:
             return Shift(self.plot.aisles, robot, starts_s, streams)
-        if member.gate not in self._aisles:
-            own = self.plot if member.gate is None else self.plot.with_gate(member.gate)
-            self._aisles[member.gate] = own.aisles
-        return Shift(self._aisles[member.gate], robot, starts_s + member.starts_s, streams)
+        return Shift(self.aisles_from(member.gate), robot, starts_s + member.starts_s, streams)
+
+    def aisles_from(self, gate: tuple[float, float] | None) -> Aisles:
+        """Return the ways on the plot with another gate; None: its own."""
+        if gate is None:
+            return self.plot.aisles
+        if gate not in self._aisles:
+            self._aisles[gate] = self.plot.with_gate(gate).aisles
+        return self._aisles[gate]
 
     def _team_days(
         self, contents: _Contents, day: int, now_s: float | None, wishes: Wishes | None

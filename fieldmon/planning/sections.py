@@ -73,8 +73,7 @@ class AisleWorth(NamedTuple):
     seconds: Float
 
     def __repr__(self) -> str:
-        _, members, aisles = self.net.shape
-        return f"<AisleWorth: {counted(aisles, 'aisle')} for {counted(members, 'member')}>"
+        return f"<AisleWorth: {counted(self.net.shape[1], 'member')}>"
 
 
 def aisle_worth(aisles: Aisles, robots: Sequence[Robot], chance: Float) -> AisleWorth:

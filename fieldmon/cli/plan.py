@@ -40,6 +40,14 @@ Now = Annotated[
     str | None,
     typer.Option(help="Of a season: plan the rest of the day from this local time, HH:MM."),
 ]
+Passing = Annotated[
+    float | None,
+    typer.Option(
+        min=0.0,
+        help="With --robots: metres of headland that two need to pass each other; where it is "
+        "narrower nobody meets another head-on. They pass each other anywhere if not given.",
+    ),
+]
 EveryPlot = Annotated[
     bool,
     typer.Option("--all", help="Every plot of the file; --output is the folder of routes then."),
@@ -65,6 +73,7 @@ class PlanOptions:
     every_plot: EveryPlot = False
     bound: Bounded = True
     robots: Robots = None
+    passing: Passing = None
 
     def starts(self) -> WorkStart:
         """Return when the work starts, as it was told."""
@@ -107,6 +116,8 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
         return
     if options.now is not None:
         raise SettingError("--now needs a season (see fieldmon init), but this is a plot file.")
+    if options.passing is not None and options.robots is None:
+        raise SettingError("--passing goes with --robots: one alone meets nobody.")
     if options.robots is not None:
         plan_team(context, options, options.robots)
     elif options.every_plot:

@@ -46,7 +46,9 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     tell_unusable(known.records, on)
     chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
     with counting("Routes") as count:
-        planned = team.plan_team(plot, chance, members, progress=count)
+        planned = team.plan_team(
+            plot, chance, members, progress=count, passing_m=options.passing or 0.0
+        )
     _tell(planned, begins)
     assumed = (one for member in members for one in assumed_by((), prior, member.robot))
     tell_assumed({str(one): one for one in assumed}.values())

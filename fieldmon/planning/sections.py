@@ -43,8 +43,12 @@ def even_sections(grid: PlantGrid, shares: Float) -> Int:
     >>> even_sections(rectangle(6, 10), np.ones(2)).tolist()
     [0, 0, 0, 1, 1, 1]
     """
-    plants = np.bincount(grid.corridor[grid.row]).astype(np.float64)
-    return _cut(plants, shares, np.argsort(aisle_heights(grid), kind="stable"))
+    return sections_of(grid, np.bincount(grid.corridor[grid.row]).astype(np.float64), shares)
+
+
+def sections_of(grid: PlantGrid, work: Float, shares: Float) -> Int:
+    """Return who has each aisle, ``(a,)``: beside each other, work ``(a,)`` as `shares` say."""
+    return _cut(work, shares, np.argsort(aisle_heights(grid), kind="stable"))
 
 
 def _cut(work: Float, shares: Float, order: Int) -> Int:

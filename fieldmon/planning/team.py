@@ -12,12 +12,14 @@ import numpy as np
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.planning.bound_wording import PROVED, told
+from fieldmon.planning.headlands import HeadOn, head_on
 from fieldmon.planning.meetings import Meeting, meetings
 from fieldmon.planning.members import must_differ
 from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.routes import best, bound
 from fieldmon.planning.routes.best_route import bounded
+from fieldmon.planning.sections import sections_of
 from fieldmon.planning.workday import Workday
 from fieldmon.plot.travel import GATE, travel_s
 from fieldmon.samplers.base import NEVER, Scene
@@ -37,6 +39,8 @@ if TYPE_CHECKING:
 
 # who must wait starts so much later than the other leaves
 _PAUSE_S = 1.0
+# and so much later where two would meet in a headland
+_LATER_S = 20.0
 # each route is looked for again so often in what the others leave, and so often where they meet
 _ROUNDS, _TRIES = 2, 3
 # so many prices of plants are tried for a bound, for so long; a step that gained nothing so often
@@ -58,12 +62,15 @@ class TeamPlan:
         ``(m,)`` seconds that each begins later than its start, so that nobody is met in an aisle.
     bound
         No routes of these members and hours can expect more finds together.
+    passing_m
+        Metres of headland that two need to pass each other; 0: they pass anywhere.
     """
 
     members: tuple[TeamMember, ...]
     days: tuple[DayPlan, ...]
     late_s: Float
     bound: float
+    passing_m: float = 0.0
 
     def __repr__(self) -> str:
         stops = sum(len(day.route) for day in self.days)
@@ -88,6 +95,10 @@ class TeamPlan:
         """Return where two are in one aisle at once: nowhere, if the plan is right."""
         return meetings([day.route for day in self.days], self.starts_s)
 
+    def head_on(self) -> list[HeadOn]:
+        """Return where two meet head-on in a headland too narrow to pass: nowhere, likewise."""
+        return head_on([day.route for day in self.days], self.starts_s, self.passing_m)
+
 
 class _Task(NamedTuple):
     """What one member's route is looked for in."""
@@ -104,6 +115,7 @@ def plan_team(
     members: Sequence[TeamMember],
     done: NDArray[np.bool_] | None = None,
     progress: Callable[[int, int], None] | None = None,
+    passing_m: float = 0.0,
 ) -> TeamPlan:
     """Plan a day of a team: no plant twice, and no two in one aisle at once.
 
@@ -121,6 +133,9 @@ def plan_team(
         ``(n,)`` plants that are not visited again today; None: none.
     progress
         Told how many routes were looked for, and of how many.
+    passing_m
+        Metres of headland that two need to pass each other: where it is narrower nobody meets
+        another head-on, but begins later. 0: they pass each other anywhere.
 
     Raises
     ------
@@ -139,6 +154,8 @@ def plan_team(
     (2, [], True)
     """
     must_differ(members)
+    if not 0.0 <= passing_m < np.inf:
+        raise SettingError(f"Two must need 0 m or more to pass, but passing_m is {passing_m}.")
     left = np.ones(len(chance)) if done is None else np.where(done, 0.0, 1.0)
     tasks = [
         _Task(
@@ -154,7 +171,10 @@ def plan_team(
     exclusive = search.aisle_by_aisle(in_turn)
     shared = search.apart(search.plant_by_plant(exclusive))
     found = [search.turned(stops) for stops in (in_turn, exclusive, shared)]
-    timed = max((_kept_apart(tasks, days) for days in found), key=lambda each: _expected(each.days))
+    timed = max(
+        (_kept_apart(tasks, days, passing_m) for days in found),
+        key=lambda each: _expected(each.days),
+    )
     if not _expected(timed.days):
         raise SettingError(
             "The hours of some member must be long enough to reach a plant and come back, but "
@@ -164,7 +184,7 @@ def plan_team(
     days = tuple(replace(day, route=route_of(day.scene, day.work)) for day in days)
     held = _expected(days)
     most = max(team_bound(tasks, held), held)
-    return TeamPlan(tuple(members), days, timed.late_s, most)
+    return TeamPlan(tuple(members), days, timed.late_s, most, passing_m)
 
 
 def _expected(days: Sequence[DayPlan]) -> float:
@@ -365,14 +385,8 @@ def _sections(plot: Plot, tasks: Sequence[_Task], known: Sequence[Int]) -> Int:
     work = np.full(len(corridor), 1e-9)
     for task, own in zip(tasks, known, strict=True):
         work[own] += task.robot.visit_s
-    up = np.zeros(int(corridor.max()) + 1)
-    up[corridor] = plot.grid.lane_y_m[plot.grid.row]
-    order = np.argsort(up, kind="stable")
-    done = np.cumsum(np.bincount(corridor, work)[order])
-    shares = np.cumsum([task.robot.day_s for task in tasks])
-    of_aisle = np.empty(len(order), np.int64)
-    of_aisle[order] = np.searchsorted(shares / shares[-1], (done - 1e-12) / done[-1], "left")
-    return np.minimum(of_aisle, len(tasks) - 1)[corridor]
+    shares = np.array([task.robot.day_s for task in tasks])
+    return sections_of(plot.grid, np.bincount(corridor, work).astype(np.float64), shares)[corridor]
 
 
 def _day(task: _Task, stops: Int) -> DayPlan:
@@ -415,16 +429,30 @@ class _Timed(NamedTuple):
     late_s: Float
 
 
-def _kept_apart(tasks: Sequence[_Task], days: Sequence[DayPlan]) -> _Timed:
-    """Let whoever would still meet another in an aisle begin later, with fewer stops if need be."""
+def _kept_apart(tasks: Sequence[_Task], days: Sequence[DayPlan], passing_m: float) -> _Timed:
+    """Let whoever would still meet another begin later, with fewer stops if need be."""
     kept, late_s = [*days], np.zeros(len(days))
     own_s = np.array([task.starts_s for task in tasks])
-    while met := meetings([day.route for day in kept], own_s + late_s):
-        # of two the later in the team waits: the first keeps its day
-        k = max(met[0].who)
-        late_s[k] += met[0].until_s - met[0].since_s + _PAUSE_S
+    while (wait := _first_wait(kept, own_s + late_s, passing_m)) is not None:
+        k, seconds = wait
+        late_s[k] += seconds
         kept[k] = _shortened(tasks[k], kept[k], tasks[k].robot.day_s - float(late_s[k]))
     return _Timed(kept, late_s)
+
+
+def _first_wait(
+    days: Sequence[DayPlan], starts_s: Float, passing_m: float
+) -> tuple[int, float] | None:
+    """Return who must begin later, and by how much; None: nobody meets another.
+
+    Of two the later in the team waits: the first keeps its day.
+    """
+    driven = [day.route for day in days]
+    if met := meetings(driven, starts_s):
+        return max(met[0].who), met[0].until_s - met[0].since_s + _PAUSE_S
+    if passing_m and (met_head_on := head_on(driven, starts_s, passing_m)):
+        return max(met_head_on[0].who), _LATER_S
+    return None
 
 
 def _shortened(task: _Task, day: DayPlan, seconds: float) -> DayPlan:

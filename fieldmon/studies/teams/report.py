@@ -21,10 +21,28 @@ def report_html(made: Sequence[TeamRow]) -> str:
     return page(
         "fieldmon/studies/teams/report.html.j2",
         sentences=sentences(made),
-        charts=charts(made),
+        charts=[*of_sizes(made), *charts(made)],
         heads=HEADS,
         rows=[cells(row) for row in made],
     )
+
+
+def of_sizes(made: Sequence[TeamRow]) -> list[Markup]:
+    """Return a chart of what a hectare loses by the hectares a robot has, over several sizes."""
+    if len({row.hectares for row in made}) < 2:
+        return []
+    lines = []
+    for who, spread in dict.fromkeys((row.who, row.spread) for row in made):
+        of = [row for row in made if (row.who, row.spread) == (who, spread)]
+        # where several sizes share a robot's hectares, they are taken together
+        by: dict[float, list[float]] = {}
+        for row in of:
+            share = round(row.hectares / row.robots, 1)
+            by.setdefault(share, []).append(row.loss.mean / row.hectares)
+        x = sorted(by)
+        lines.append(Line(f"{spread:.0%} a night", x, [sum(by[k]) / len(by[k]) for k in x]))
+    title, up = "Infested plant-days a hectare", "infested plant-days a hectare"
+    return [line_chart(title, lines, ("hectares a robot", up), powers=True)]
 
 
 def charts(made: Sequence[TeamRow]) -> list[Markup]:

@@ -25,6 +25,8 @@ class TeamRow(NamedTuple):
         Where, how, and how many.
     loss, d80, worked_h
         Infested plant-days, days to 80 %, and hours worked of a season.
+    hectares, spread
+        How large the plot is, and the chance a night.
     gain
         What they save beyond the next lesser team, on the seeds that both met; None for the least.
     """
@@ -35,6 +37,8 @@ class TeamRow(NamedTuple):
     loss: SummaryStatistics
     d80: SummaryStatistics
     worked_h: SummaryStatistics
+    hectares: float
+    spread: float
     gain: MarginalGain | None
 
     def __repr__(self) -> str:
@@ -72,6 +76,7 @@ def _of_way(outcomes: Sequence[TeamOutcome], way: str) -> list[TeamRow]:
             summary_statistics(losses[k]),
             summary_statistics(np.array([o.d80 for o in by[k]])),
             summary_statistics(np.array([o.worked_h for o in by[k]])),
+            by[k][0].hectares, by[k][0].spread,
             gains.get(k),
         )
         for k in sizes if by[k]

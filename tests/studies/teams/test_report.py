@@ -1,6 +1,8 @@
 """The comparison of teams as a page."""
 
-from fieldmon.studies.teams.report import charts, report_html
+from dataclasses import replace
+
+from fieldmon.studies.teams.report import charts, of_sizes, report_html
 from fieldmon.studies.teams.summary import rows
 from tests.studies.teams.test_summary import outcomes
 
@@ -11,6 +13,16 @@ def test_the_report_draws_every_scenario_and_says_every_sentence():
     assert page.count("<svg") == len(charts(made)) == 2
     assert page.count("A second robot would save") == 4
     assert ">nan" not in page
+
+
+def test_sizes_are_drawn_by_the_hectares_a_robot_has():
+    other = [
+        replace(one, scenario="4 ha", hectares=4.0, infested_plant_days=90.0) for one in outcomes()
+    ]
+    (chart,) = of_sizes(rows([*outcomes(), *other]))
+    assert "hectares a robot" in chart
+    assert "10% a night" in chart
+    assert of_sizes(rows(outcomes())) == []
 
 
 def test_of_one_season_there_is_a_line_without_a_band():

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _SAVED_EVERY_S = 15.0
 
 
-class Outcome(Protocol):
+class StudyOutcome(Protocol):
     """A row of a study's table: a dataclass of texts, whole numbers and numbers.
 
     Attributes
@@ -38,7 +38,7 @@ class Outcome(Protocol):
         ...
 
 
-Row = TypeVar("Row", bound=Outcome)
+Row = TypeVar("Row", bound=StudyOutcome)
 
 
 class OutcomeTable(Generic[Row]):

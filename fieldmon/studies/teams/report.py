@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from statistics import fmean
 from typing import TYPE_CHECKING
 
 from fieldmon.io.html import page
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
     from fieldmon.studies.teams.summary import TeamRow
+
+# hectares a robot that differ by less are drawn as one
+_ALIKE = 1.04
 
 
 def report_html(made: Sequence[TeamRow]) -> str:
@@ -34,15 +38,22 @@ def of_sizes(made: Sequence[TeamRow]) -> list[Markup]:
     lines = []
     for who, spread in dict.fromkeys((row.who, row.spread) for row in made):
         of = [row for row in made if (row.who, row.spread) == (who, spread)]
-        # where several sizes share a robot's hectares, they are taken together
-        by: dict[float, list[float]] = {}
-        for row in of:
-            share = round(row.hectares / row.robots, 1)
-            by.setdefault(share, []).append(row.loss.mean / row.hectares)
-        x = sorted(by)
-        lines.append(Line(f"{spread:.0%} a night", x, [sum(by[k]) / len(by[k]) for k in x]))
+        points = sorted((row.hectares / row.robots, row.loss.mean / row.hectares) for row in of)
+        x, y = zip(*_together(points), strict=True)
+        lines.append(Line(f"{spread:.0%} a night", x, y))
     title, up = "Infested plant-days a hectare", "infested plant-days a hectare"
     return [line_chart(title, lines, ("hectares a robot", up), powers=True)]
+
+
+def _together(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return points in order, those of nearly one x taken together: plots of several sizes."""
+    groups: list[list[tuple[float, float]]] = []
+    for point in points:
+        if groups and point[0] < _ALIKE * groups[-1][0][0]:
+            groups[-1].append(point)
+        else:
+            groups.append([point])
+    return [(fmean(x for x, _ in group), fmean(y for _, y in group)) for group in groups]
 
 
 def charts(made: Sequence[TeamRow]) -> list[Markup]:

@@ -34,6 +34,8 @@ HOT: Colour = (20, 26, 30)
 HOT_IN_DARK: Colour = (255, 255, 255)
 OUTLINE: Colour = (70, 80, 70)
 OUTLINE_IN_DARK: Colour = (190, 200, 190)
+ROWS: Colour = (60, 130, 90)
+BEFORE: Colour = (230, 120, 0)
 # days since a plant was inspected: fresh is pale green, long ago is dark
 AGE_FROM = (0, 1, 3, 7, 14)
 AGE_COLOURS: tuple[Colour, ...] = (

@@ -10,7 +10,7 @@ import streamlit as st
 
 from fieldmon.errors import ChoiceNeeded, PlotError
 
-from ..actions import bringing_files, drawing, rasters
+from ..actions import bringing_files, drawing, laying_ground, rasters
 from ..show import answers_map, field_map, plot_figures
 from ..show.assumed import sentence
 from ..show.map_view import MapAnswers
@@ -75,6 +75,7 @@ def show(choices: Choices) -> None:
         rasters.show_risk()
     else:
         st.info(texts.FIXED)
+    laying_ground.show(choices)
     with st.expander(texts.MESSAGES, expanded=True):
         bringing_files.show_messages(choices.messages)
         for message in chosen_day.messages_on_records(choices):

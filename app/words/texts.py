@@ -15,8 +15,11 @@ from .language import Plural
 
 
 def isolated(name: str) -> str:
-    """Return a name that reads right inside any sentence, whatever its script and direction."""
-    return f"\u2068{name}\u2069"
+    """Return a name that reads right inside any sentence, whatever its script and direction.
+
+    Signs of its own that turn the direction end with it, and it leads nowhere.
+    """
+    return f"\u2068{language.leading_nowhere(name, turning=False)}\u2069"
 
 
 TITLE = "fieldmon"
@@ -130,8 +133,13 @@ MAP_WORDS = {
     "draw_hint": "Click on the map.", "draw_back": "Back", "draw_drop": "Drop",
     "draw_done": "Finish",
     "play_season": "Play the season", "day": "Day", "film": "Save the season as a film",
-    "film_name": "season.webm",
-    "lasso_hint": "Draw round the plants.", "corners": "{n} point(s)",
+    "film_name": "season",
+    "lasso_hint": "Draw round the plants; with Shift, to those selected before.",
+    "select_rows": "Select rows", "rows_hint": "Tap plants or row numbers: a whole row each.",
+    "too_many": "At most {most} plants can be selected at once.",
+    "keys": "Map. Arrow keys move it, plus and minus zoom, Enter opens what is under the cross, "
+            "Escape leaves.", "corners": "{n} point(s)",
+    "ground": "Ground", "ground_away": "The ground's pictures cannot be reached.",
     "scale": "The scale bar is {bar} long; the arrow points north.",
 }  # fmt: skip
 SEASON_INTRO = (
@@ -207,6 +215,30 @@ PLOTS_TIP_NEW = "{name}: no season yet"
 PLOTS_SEEN = {0: "seen today", None: "never seen",
               "n": Plural("seen {n} day ago", "seen {n} days ago")}  # fmt: skip
 PLOTS_PICK = "Click a plot on the map, or a row here."
+PLAN_ALL = "Plan all that are due"
+PLAN_ALL_OFF = "Without the plan"
+PLAN_ALL_CREW = {"robots": "Robots", "robot_hours": "Hours of each robot", "scouts": "Scouts",
+                 "scout_hours": "Hours of each scout",
+                 "move_min": "Minutes from plot to plot"}  # fmt: skip
+ROBOT_NAMED, SCOUT_NAMED = "robot {n}", "scout {n}"
+PLAN_ALL_LEAD = Plural(
+    "{plants} plants on {n} plot; expect {finds:.0f} finds.",
+    "{plants} plants on {n} plots; expect {finds:.0f} finds.",
+)
+PLAN_ALL_NONE = "Nothing is due today: every plot was seen today."
+PLAN_ALL_RULE = (
+    "Plots come in the order of the infested plants expected there. Each goes to whoever then has "
+    "most time for it, and everybody shares his hours among his plots by what is expected. A plot "
+    "that would get less than a quarter of an hour waits. From plot to plot takes so many minutes, "
+    "wherever they lie."
+)
+PLAN_ALL_WAITING = "No time today: {names}."
+PLAN_ALL_FREE = "Free today: {names}."
+PLAN_ALL_WORKING = "Planning the plots ..."
+PLAN_ALL_DOWNLOAD = "Download all routes"
+PLAN_ALL_COLUMNS = {"who": "who", "from": "from", "to": "to", "plants": "plants to inspect",
+                    "finds": "finds expected"}  # fmt: skip
+PLOTS_LABEL = "{name}\n{who}, {start}-{end}"
 WAYS_IN = {"sample": "Try the sample", "file": "My plot", "season": "Open a season"}
 NO_SEASONS = (
     "There is no season here yet. One begins with a plot: bring yours or try the sample, then "
@@ -282,9 +314,15 @@ MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {fin
 # -- what stands beside a thing on the map that is pointed at
 TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start and end", "path"
 TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
+TIP_SEEN_TODAY, TIP_NEVER = "{result} today", "never inspected"
+TIP_SEEN_BEFORE = Plural("{result} {n} day ago", "{result} {n} days ago")
+TIP_LOOKS = Plural(", inspected {n} time", ", inspected {n} times")
+TIP_FINDS = Plural(", found {n} time", ", found {n} times")
 TIP_HOT = "hot spot: {found} found of {inspected} inspected"
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
-TIP_INFESTED, TIP_CORNER = "infested", "corner"
+TIP_INFESTED, TIP_CORNER, TIP_NO_GO = "infested", "corner", "no-go area: not driven through"
+LABEL_GATE, LABEL_NO_GO, LABEL_BLOCK = "gate", "no-go", "block {n}"
+LEGEND_HEADLAND, LEGEND_AISLE, LEGEND_NO_GO = "headland", "aisle", "no-go area"
 
 # -- plot and records
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
@@ -337,12 +375,15 @@ SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspe
           "age": "days since inspected"}  # fmt: skip
 MAP_LAYERS = {"before": "as it was before", "route": "route", "numbers": "stop numbers",
               "hot": "hot spots", "records": "records", "rows": "row numbers",
-              "backdrop": "picture"}  # fmt: skip
-BACKDROP_TITLE, HOT_TITLE = "Picture of the ground", "Hot spots"
-BACKDROP = "Picture of the ground (GeoTIFF)"
+              "plan": "plan of the plot", "ground": "ground"}  # fmt: skip
+HOT_TITLE = "Hot spots"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
 HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
 HISTORY_NOW = "Chance of infestation now: **{now:.1%}** (first morning: {first:.1%})."
+HISTORY_CHANCE = (
+    "A chance says all that is believed of one plant, so it has no interval of its own; sums of "
+    "many plants have one, see Season."
+)
 HISTORY_TREATED = (
     "It was found infested, and in this season plants found are taken as treated at once: from "
     "then on it counts as clean, and its chance grows again as insects come from its neighbours."
@@ -352,6 +393,38 @@ HISTORY_NO_STOP = "Not on the day's route."
 HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
 HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}
+
+# -- the ground under the plot
+GROUND = "Ground under the plot"
+GROUND_NOTE = (
+    "So that the plot is recognised at a glance. A file stays on this machine; nothing is asked of "
+    "the internet for it."
+)
+GROUND_FILE = "Picture or heights (GeoTIFF), or a map in tiles (MBTiles, PMTiles)"
+GROUND_SHOWS = "The file shows"
+GROUND_KINDS = {"picture": "a picture of the ground", "heights": "heights, drawn as relief"}
+GROUND_KEPT = "Kept with the season: {name}"
+WEB_MAP = "Map from the internet"
+WEB_MAPS = {"": "none", "osm": "OpenStreetMap", "other": "another, by its address"}
+WEB_MAP_ADDRESS = "Address of its tiles"
+WEB_MAP_HELP = (
+    "As a provider of aerial pictures writes it, with {z}, {x} and {y} ({-y} where rows count from "
+    "the south). Whether you may use it, the provider says."
+)
+WEB_MAP_LIKE = (
+    "The address of a map must begin with https:// and hold {{z}}, {{x}} and {{y}} after the "
+    "server's name, but it is {address!r}. Copy it as the provider writes it."
+)
+WEB_MAP_ASK = (
+    "**Ask {host} for pictures?** Each browser that shows this plot then asks {host} for pictures "
+    "of the area in view. {host} learns that browser's internet address, and which area is looked "
+    "at and when. It is told nothing else: no plants, no finds, no names."
+)
+WEB_MAP_SEASON = "This holds for this season on this machine, until you take it back."
+WEB_MAP_SESSION = "This holds until you close this page, or take it back."
+WEB_MAP_AGREE = "Agree: show pictures from {host}"
+WEB_MAP_AGREED = "Pictures come from {host}, as agreed on {day}: it sees which area is looked at."
+WEB_MAP_BACK = "Stop asking {host}"
 
 # -- the season
 NEEDS_SEASON = (

@@ -14,7 +14,11 @@ from fieldmon.monitoring.tables import utc_now
 if TYPE_CHECKING:
     import sqlite3
 
-_TABLE_OF = {"findings": "inspections", "treatment": "treatments"}
+_TABLE_OF = {
+    "findings": "inspections",
+    "corrections": "inspections",
+    "treatment": "treatments",
+}
 
 
 @dataclass(frozen=True)
@@ -28,7 +32,7 @@ class Batch:
     at
         When it was recorded, UTC.
     kind
-        ``"findings"`` or ``"treatment"``.
+        ``"findings"``, ``"treatment"``, or ``"corrections"`` of what another program changed.
     source, who
         File or screen it came from, and the person.
     rows

@@ -40,12 +40,7 @@ def keep(
 ) -> bool:
     """Keep a day's route, of one of a team, unless it is the one kept last; tell whether it was."""
     day, route = today.scene.day, today.route
-    mark = _digest(today)
-    last = db.execute(
-        "SELECT revision, digest FROM routes WHERE day = ? AND who = ? "
-        "ORDER BY revision DESC LIMIT 1",
-        (day, who),
-    ).fetchone()
+    mark, last = _digest(today), _last(db, today, who)
     if last is not None and last[1] == mark:
         return False
     begin, line = begins(settings, today, who), route.line_lonlat()
@@ -87,6 +82,22 @@ def keep(
         for table in (schema.ROUTES, schema.STOPS):
             touch(db, table.name, bounds)
     return True
+
+
+def is_kept(db: sqlite3.Connection, today: DayPlan, who: str = "") -> bool:
+    """Tell whether a day's route, of one of a team, is the one kept last."""
+    last = _last(db, today, who)
+    return last is not None and last[1] == _digest(today)
+
+
+def _last(db: sqlite3.Connection, today: DayPlan, who: str) -> tuple[int, str] | None:
+    """Return revision and digest of the last route kept for a day."""
+    row: tuple[int, str] | None = db.execute(
+        "SELECT revision, digest FROM routes WHERE day = ? AND who = ? "
+        "ORDER BY revision DESC LIMIT 1",
+        (today.scene.day, who),
+    ).fetchone()
+    return row
 
 
 def plants(db: sqlite3.Connection, day: int, who: str = "") -> NDArray[np.int32]:

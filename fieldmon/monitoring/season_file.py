@@ -24,6 +24,8 @@ from fieldmon.monitoring import (
     day_figures,
     derived_layers,
     inspection_table,
+    merging,
+    outside_changes,
     routes,
     settings_log,
     tables,
@@ -32,6 +34,7 @@ from fieldmon.monitoring import (
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
+from fieldmon.monitoring.merging import Merged
 from fieldmon.monitoring.recorded_before import Contradictions, contradictions, said_before
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.status import Status
@@ -263,16 +266,24 @@ class Season:
                 self._noted(settings, today, who)
                 for today, who in zip(days, _names(settings), strict=True)
             )
-            if keep and any(len(today.route) for today in noted):
-                with self.store.writing() as db:
-                    kept = [
-                        routes.keep(db, settings, self.label, today, who)
-                        for today, who in zip(noted, _names(settings), strict=True)
-                        if len(today.route)
-                    ]
-                    if any(kept):
-                        self._refresh(db, day)
+            if keep:
+                self._keep(settings, noted)
         return noted
+
+    def _keep(self, settings: MonitoringSettings, noted: tuple[DayPlan, ...]) -> None:
+        """Keep routes; those that are kept already are not written: that would wait for readers."""
+        named = [
+            (today, who)
+            for today, who in zip(noted, _names(settings), strict=True)
+            if len(today.route)
+        ]
+        with self.store.reading() as db:
+            if all(routes.is_kept(db, today, who) for today, who in named):
+                return
+        with self.store.writing() as db:
+            kept = [routes.keep(db, settings, self.label, today, who) for today, who in named]
+            if any(kept):
+                self._refresh(db, named[0][0].scene.day)
 
     def _noted(self, settings: MonitoringSettings, today: DayPlan, who: str) -> DayPlan:
         begins = routes.begins(settings, today, who)
@@ -417,6 +428,36 @@ class Season:
             self._refresh(db)
         return said
 
+    def correct(self, who: str) -> int:
+        """Take what another program changed of inspections as corrections; return how many.
+
+        They are a batch of their own, of this person; undoing it takes the corrected rows out.
+        Raise `FileProblem` if more than inspections was changed, or what makes no sense.
+        """
+        with self._lock, self.store.writing() as db:
+            outside_changes.refuse_more(db)
+            settings, plot = _settings(db), (self.plot.grid, self.label)
+            n = outside_changes.correct(db, plot, settings, who)
+            if n:
+                self._refresh(db)
+        return n
+
+    def merge(self, other: Season) -> Merged:
+        """Take in what another copy of this season holds: all that is in either, once each.
+
+        The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
+        """
+        with self._lock, self.store.writing() as db:
+            contradict = contradictions(
+                other.history.inspections, self._read(db).history.inspections
+            )
+            before = inspection_table.n_counting(db)
+            with other.store.reading() as theirs:
+                chosen = merging.merge(db, theirs)
+            self._refresh(db)
+            new = inspection_table.n_counting(db) - before
+        return Merged(new, (*contradict.sentences(self.label), *chosen))
+
     # -- what is known
 
     def morning(self, on: date) -> Floats:
@@ -495,7 +536,8 @@ class Season:
             contents = self._now()
             with self.store.reading() as db:
                 kept = db.execute("SELECT day, date, digest FROM days ORDER BY day").fetchall()
-            return tuple(
+            doubt = () if self.store.doubt is None else (self.store.doubt,)
+            return doubt + tuple(
                 f"The chance map of {on} comes out differently from the one used then: it was "
                 "made by another version of fieldmon, or the file was changed by other hands."
                 for day, on, then in kept
@@ -515,6 +557,7 @@ class Season:
 
     def _read(self, db: sqlite3.Connection) -> _Contents:
         """Return what the file says; nothing is read again that did not change."""
+        outside_changes.refuse(db)
         revision = _revision(db)
         if self._last is None or self._last.revision != revision:
             settings = _settings(db)

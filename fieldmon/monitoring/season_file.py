@@ -167,7 +167,7 @@ class Season:
     def assumed(self) -> tuple[Assumed, ...]:
         """Return what the season's figures rest on though nobody said it."""
         settings = self.settings
-        made = assumed_by(self.plot.assumed, settings.prior, settings.robot)
+        made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
         rate = settings.belief.spread.rate_per_day
         if rate != BeliefSettings().spread.rate_per_day:
             return made

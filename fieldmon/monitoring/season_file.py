@@ -266,6 +266,7 @@ class Season:
         who: str = "",
         *,
         confirmed: bool = False,
+        into: int | None = None,
     ) -> Recorded:
         """Add inspections; those that the season holds already change nothing.
 
@@ -277,6 +278,8 @@ class Season:
             File or screen it comes from; the person, where the inspections name none.
         confirmed
             Whether results count that contradict what is recorded of the same plant and day.
+        into
+            Batch to add them to, as `Recorded` numbers it; None: a new one.
 
         Raises
         ------
@@ -292,12 +295,14 @@ class Season:
             if not confirmed:
                 contradictions(inspections, held).refuse(self.label)
             news = inspections.take(~said_before(inspections, held))
-            batch = batches.begin(db, "findings", source, who)
+            batch = batches.begin(db, "findings", source, who) if into is None else into
+            if into is not None:
+                batches.must_count(db, into)
             made = inspection_table.rows(
                 news, self.plot.grid, self.label, _settings(db), (batch, who)
             )
             new = inspection_table.store(db, made)
-            batches.end(db, batch, new)
+            batches.end(db, batch, new, grows=into is not None)
             if new:
                 self._refresh(db, _settings(db).day(inspections.date.min().item()))
         return Recorded(batch if new else None, new, len(inspections) - new)

@@ -7,6 +7,7 @@ import typer
 from fieldmon.cli import problems, study
 from fieldmon.cli.app import open_app
 from fieldmon.cli.change import change
+from fieldmon.cli.drive import drive
 from fieldmon.cli.init import init
 from fieldmon.cli.plan import plan
 from fieldmon.cli.plots import plots
@@ -14,6 +15,7 @@ from fieldmon.cli.record import record
 from fieldmon.cli.report import report
 from fieldmon.cli.salvage import salvage
 from fieldmon.cli.simulate import simulate
+from fieldmon.cli.stand_in import stand_in
 from fieldmon.cli.status import status
 from fieldmon.cli.treat import treat
 from fieldmon.cli.undo import undo
@@ -43,6 +45,8 @@ app.command()(plots)
 app.command()(plan)
 app.command()(init)
 app.command()(simulate)
+app.command()(drive)
+app.command("stand-in")(stand_in)
 
 
 def main() -> None:

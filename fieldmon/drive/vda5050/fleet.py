@@ -5,17 +5,19 @@ from __future__ import annotations
 import json
 import queue
 import time
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.vda5050.messages import decoded, encoded, header_of, home_order, order_of
+from fieldmon.drive.vda5050.wire import Wire
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from fieldmon.drive.errand import Errand, Float
-    from fieldmon.drive.vda5050.wire import Wire
+    from fieldmon.drive.vda5050.wire import Broker
     from fieldmon.plot.travel import Aisles
 
 # an order that nobody acknowledged is sent again; robots take the same one once
@@ -188,6 +190,18 @@ class Vda5050Robot:
 
     def _now_s(self) -> float:
         return self._gone_s + time.monotonic() - self._begun
+
+
+@contextmanager
+def live_robot(
+    broker: Broker, robot: tuple[str, str], on: str, say: Callable[[str], None]
+) -> Iterator[Vda5050Robot]:
+    """Yield a robot on its wire; the order's name holds the day and when it was made."""
+    wire = Wire(broker, f"fieldmon-{robot[1]}", robot, ("state", "connection"))
+    try:
+        yield Vda5050Robot(wire, robot, f"{on}-{time.time_ns() // 10**6}", say)
+    finally:
+        wire.close()
 
 
 def _finished(state: dict[str, Any], action: str) -> dict[str, Any] | None:

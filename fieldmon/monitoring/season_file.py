@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from fieldmon.monitoring import (
     day_figures,
     derived_layers,
     inspection_table,
+    qgis_project,
     routes,
     settings_log,
     tables,
@@ -45,7 +47,6 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable
     from datetime import date, time
-    from pathlib import Path
 
     from numpy.typing import NDArray
     from shapely import MultiPolygon
@@ -141,6 +142,7 @@ class Season:
             settings_log.write(db, as_json(settings))
             set_meta(db, "revision", "0")
             derived_layers.refresh(db, plot, history, first.morning)
+            qgis_project.keep(db, Path(path).name)
         return cls(path)
 
     @property
@@ -460,6 +462,7 @@ class Season:
         self._last = None
         now = self._read(db)
         derived_layers.refresh(db, self.plot, now.history, now.morning, since)
+        qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
 
 

@@ -161,7 +161,7 @@ def rover() -> Robot:
     >>> fm.rover().width_m
     0.58
     """
-    return Robot(row_change_s=7.0, turn_180_s=0.0, stop_s=1.13, width_m=0.58, length_m=0.8)
+    return Robot(row_change_s=9.0, turn_180_s=0.0, stop_s=1.13, width_m=0.58, length_m=0.8)
 
 
 def _must(name: str, value: float, rule: str, holds: bool) -> None:  # noqa: FBT001 - one check

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.observations import usable
 from fieldmon.monitoring import day_was_worked
 
@@ -100,6 +100,15 @@ def ages(choices: Choices) -> cached.Array:
     day = choices.season.settings.day(choices.on)
     last = choices.season.history.last_inspected(day)
     return np.where(last < 0, recorded, day - last)
+
+
+def counts(choices: Choices) -> tuple[cached.Array, cached.Array]:
+    """Return how often each plant was inspected, and found, in a season up to the day, ``(n,)``."""
+    done = choices.season.history.inspections
+    here = (done.date <= np.datetime64(choices.day)) & (done.result != SKIPPED)
+    n = len(choices.plot.grid)
+    finds = here & (done.result == FOUND)
+    return np.bincount(done.plant[here], minlength=n), np.bincount(done.plant[finds], minlength=n)
 
 
 def progress(choices: Choices) -> Progress:

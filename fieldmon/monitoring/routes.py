@@ -34,10 +34,7 @@ def keep(
 ) -> bool:
     """Keep a day's route, unless it is the one kept last; tell whether it was."""
     day, route = today.scene.day, today.route
-    mark = _digest(today)
-    last = db.execute(
-        "SELECT revision, digest FROM routes WHERE day = ? ORDER BY revision DESC LIMIT 1", (day,)
-    ).fetchone()
+    mark, last = _digest(today), _last(db, today)
     if last is not None and last[1] == mark:
         return False
     begin, line = begins(settings, today), route.line_lonlat()
@@ -78,6 +75,21 @@ def keep(
         for table in (schema.ROUTES, schema.STOPS):
             touch(db, table.name, bounds)
     return True
+
+
+def is_kept(db: sqlite3.Connection, today: DayPlan) -> bool:
+    """Tell whether a day's route is the one kept last."""
+    last = _last(db, today)
+    return last is not None and last[1] == _digest(today)
+
+
+def _last(db: sqlite3.Connection, today: DayPlan) -> tuple[int, str] | None:
+    """Return revision and digest of the last route kept for a day."""
+    row: tuple[int, str] | None = db.execute(
+        "SELECT revision, digest FROM routes WHERE day = ? ORDER BY revision DESC LIMIT 1",
+        (today.scene.day,),
+    ).fetchone()
+    return row
 
 
 def plants(db: sqlite3.Connection, day: int) -> NDArray[np.int32]:

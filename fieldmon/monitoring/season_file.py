@@ -13,6 +13,7 @@ import shapely
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import worded
+from fieldmon.decisions.map_verdict import map_verdict
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.hotspots import record_states
 from fieldmon.infestation.observations import Observations, usable
@@ -24,6 +25,8 @@ from fieldmon.monitoring import (
     day_figures,
     derived_layers,
     inspection_table,
+    merging,
+    outside_changes,
     qgis_project,
     routes,
     settings_log,
@@ -33,6 +36,7 @@ from fieldmon.monitoring import (
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
+from fieldmon.monitoring.merging import Merged
 from fieldmon.monitoring.recorded_before import Contradictions, contradictions, said_before
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.status import Status
@@ -51,6 +55,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
+    from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.batches import Batch
@@ -246,10 +251,17 @@ class Season:
             notes = RouteNotes(self.plot.field.name, settings.sampler, begins)
             today = replace(today, route=replace(today.route, notes=notes))
             if keep and len(today.route):
-                with self.store.writing() as db:
-                    if routes.keep(db, settings, self.label, today):
-                        self._refresh(db, day)
+                self._keep(today)
         return today
+
+    def _keep(self, today: DayPlan) -> None:
+        """Keep a route; one that is kept already is not written, which would wait for readers."""
+        with self.store.reading() as db:
+            if routes.is_kept(db, today):
+                return
+        with self.store.writing() as db:
+            if routes.keep(db, self.settings, self.label, today):
+                self._refresh(db, today.scene.day)
 
     def kept_route(self, on: date) -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none."""
@@ -345,6 +357,36 @@ class Season:
             self._refresh(db)
         return said
 
+    def correct(self, who: str) -> int:
+        """Take what another program changed of inspections as corrections; return how many.
+
+        They are a batch of their own, of this person; undoing it takes the corrected rows out.
+        Raise `FileProblem` if more than inspections was changed, or what makes no sense.
+        """
+        with self._lock, self.store.writing() as db:
+            outside_changes.refuse_more(db)
+            settings, plot = _settings(db), (self.plot.grid, self.label)
+            n = outside_changes.correct(db, plot, settings, who)
+            if n:
+                self._refresh(db)
+        return n
+
+    def merge(self, other: Season) -> Merged:
+        """Take in what another copy of this season holds: all that is in either, once each.
+
+        The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
+        """
+        with self._lock, self.store.writing() as db:
+            contradict = contradictions(
+                other.history.inspections, self._read(db).history.inspections
+            )
+            before = inspection_table.n_counting(db)
+            with other.store.reading() as theirs:
+                chosen = merging.merge(db, theirs)
+            self._refresh(db)
+            new = inspection_table.n_counting(db) - before
+        return Merged(new, (*contradict.sentences(self.label), *chosen))
+
     # -- what is known
 
     def morning(self, on: date) -> Floats:
@@ -359,6 +401,19 @@ class Season:
             contents = self._now()
             day = contents.settings.day(on)
             return contents.history.evening(contents.morning(day), day).chance
+
+    def verdict(self, on: date, level: float, sure: float = 0.9) -> MapVerdict:
+        """Return whether treating pays after a day's work; see `fieldmon.decisions`.
+
+        Plants that were found and not treated count: they are infested.
+        """
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            evening = contents.history.evening(contents.morning(day), day)
+        return map_verdict(
+            contents.history.grid, evening.chance, level, evening.pair_chance, sure=sure
+        )
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""
@@ -410,7 +465,8 @@ class Season:
             contents = self._now()
             with self.store.reading() as db:
                 kept = db.execute("SELECT day, date, digest FROM days ORDER BY day").fetchall()
-            return tuple(
+            doubt = () if self.store.doubt is None else (self.store.doubt,)
+            return doubt + tuple(
                 f"The chance map of {on} comes out differently from the one used then: it was "
                 "made by another version of fieldmon, or the file was changed by other hands."
                 for day, on, then in kept
@@ -430,6 +486,7 @@ class Season:
 
     def _read(self, db: sqlite3.Connection) -> _Contents:
         """Return what the file says; nothing is read again that did not change."""
+        outside_changes.refuse(db)
         revision = _revision(db)
         if self._last is None or self._last.revision != revision:
             settings = _settings(db)

@@ -27,6 +27,7 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -189,8 +190,10 @@ def graph_of(plan: HandoffPlan) -> RouteGraph:
     steps = [_steps(part) for part in noded if shapely.length(part) > 0]
     if not steps:
         raise SettingError(
-            "A route graph must have a way between two places, but this day drives nowhere. "
-            "Give it more hours."
+            worded(
+                "A route graph must have a way between two places, but this "
+                "day drives nowhere. Give it more hours."
+            )
         )
     ends = np.concatenate(steps)
     places, pair = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
@@ -204,8 +207,13 @@ def graph_of(plan: HandoffPlan) -> RouteGraph:
     both = np.stack([there, there[:, ::-1]], axis=1).reshape(-1, 2)
     if len(order) + len(both) > _MOST_IDS:
         raise SettingError(
-            f"A route graph can have {_MOST_IDS} nodes and edges at most, but this day has "
-            f"{len(order)} nodes and {len(both)} edges. Hand off a shorter day."
+            worded(
+                "A route graph can have {most} nodes and edges at most, but this day has {nodes} "
+                "nodes and {edges} edges. Hand off a shorter day.",
+                most=_MOST_IDS,
+                nodes=len(order),
+                edges=len(both),
+            )
         )
     xy_m = _east_north(plan.grid.frame, places[order])
     return RouteGraph(xy_m, both, rank[of_vertex])

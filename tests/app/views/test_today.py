@@ -33,7 +33,7 @@ def test_the_first_sentence_says_what_to_do_in_the_route_s_own_figures(app):
 
 def test_layers_can_be_switched_and_records_are_there_but_off_at_first(app):
     off = {one["key"]: one["off"] for one in map_of(app)["switches"]}
-    assert set(off) == {"route", "hot", "records", "numbers", "rows"}
+    assert set(off) == {"route", "hot", "records", "numbers", "rows", "plan"}
     assert [name for name in off if off[name]] == ["records"]
     assert len(layer(app, "records")["data"]) > 100
 

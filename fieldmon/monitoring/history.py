@@ -302,5 +302,6 @@ def _gone_s(shift: Shift, today: Inspections, resting: int, now_s: float | None)
         return max(0.0, float(today.second[-1]) - shift.starts_s)
     robot = shift.robot
     clock = robot_clock(robot, robot.day_s)
-    drive_s = driven_s(shift.aisles.travel, clock, np.append(np.int64(resting), today.plant))
+    travel = shift.aisles.for_robot(robot).travel
+    drive_s = driven_s(travel, clock, np.append(np.int64(resting), today.plant))
     return drive_s + robot.visit_s * len(today)

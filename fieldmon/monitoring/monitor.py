@@ -214,6 +214,7 @@ class MonitorDay:
         self._told: list[tuple[PlantToInspect, bool | None]] = []
         self._asked: PlantToInspect | None = None
         self._stops: Stops | None = None
+        self._gone_s = 0.0
         self._would_find: WouldFind
         self._begin(scene, 0.0)
 
@@ -250,6 +251,24 @@ class MonitorDay:
     def detects(self) -> NDArray[np.float64]:
         """Chance with which each of `plants` was inspected to find what is there, ``(k,)``."""
         return np.array([stop.detects for stop, seen in self._told if seen is not None])
+
+    @property
+    def at(self) -> int:
+        """Where the robot stands: the last plant told of, or where the day began (-1: gate)."""
+        return self._told[-1][0].plant if self._told else self._scene.at
+
+    @property
+    def gone_s(self) -> float:
+        """Seconds of the day that are gone, as charged or as told."""
+        return self._gone_s
+
+    def ahead(self, n: int) -> list[int]:
+        """Return up to n plants that follow the one asked for if nothing is found."""
+        if self._stops is None or self._asked is None:
+            return []
+        after = self._stops.plant[self._next + 1 : self._next + 1 + n]
+        plants: list[int] = after.tolist()
+        return plants
 
     def ask(self) -> PlantToInspect | None:
         """Return the plant to inspect next; None where the day's hours allow no other.
@@ -291,6 +310,7 @@ class MonitorDay:
             )
         self._told.append((stop, found))
         self._asked = None
+        self._gone_s = done_s if at_s is None else at_s
         late = at_s is not None and abs(at_s - done_s) > _SAME_S
         if found is None or late:
             self._plan_on(stop.plant, done_s if at_s is None else at_s)

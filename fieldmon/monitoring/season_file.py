@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +27,7 @@ from fieldmon.monitoring import (
     inspection_table,
     merging,
     outside_changes,
+    qgis_project,
     routes,
     settings_log,
     tables,
@@ -51,7 +53,6 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable
     from datetime import date, time
-    from pathlib import Path
 
     from numpy.typing import NDArray
     from shapely import MultiPolygon
@@ -151,6 +152,7 @@ class Season:
             settings_log.write(db, as_json(settings))
             set_meta(db, "revision", "0")
             derived_layers.refresh(db, plot, history, first.morning)
+            qgis_project.keep(db, Path(path).name)
         return cls(path)
 
     @property
@@ -177,7 +179,7 @@ class Season:
     def assumed(self) -> tuple[Assumed, ...]:
         """Return what the season's figures rest on though nobody said it."""
         settings = self.settings
-        made = assumed_by(self.plot.assumed, settings.prior, settings.robot)
+        made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
         rate = settings.belief.spread.rate_per_day
         if rate != BeliefSettings().spread.rate_per_day:
             return made
@@ -356,6 +358,7 @@ class Season:
         who: str = "",
         *,
         confirmed: bool = False,
+        into: int | None = None,
     ) -> Recorded:
         """Add inspections; those that the season holds already change nothing.
 
@@ -367,6 +370,8 @@ class Season:
             File or screen it comes from; the person, where the inspections name none.
         confirmed
             Whether results count that contradict what is recorded of the same plant and day.
+        into
+            Batch to add them to, as `Recorded` numbers it; None: a new one.
 
         Raises
         ------
@@ -382,12 +387,14 @@ class Season:
             if not confirmed:
                 contradictions(inspections, held).refuse(self.label)
             news = inspections.take(~said_before(inspections, held))
-            batch = batches.begin(db, "findings", source, who)
+            batch = batches.begin(db, "findings", source, who) if into is None else into
+            if into is not None:
+                batches.must_count(db, into)
             made = inspection_table.rows(
                 news, self.plot.grid, self.label, _settings(db), (batch, who)
             )
             new = inspection_table.store(db, made)
-            batches.end(db, batch, new)
+            batches.end(db, batch, new, grows=into is not None)
             if new:
                 self._refresh(db, _settings(db).day(inspections.date.min().item()))
         return Recorded(batch if new else None, new, len(inspections) - new)
@@ -590,6 +597,7 @@ class Season:
         self._last = None
         now = self._read(db)
         derived_layers.refresh(db, self.plot, now.history, now.morning, since)
+        qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
 
 

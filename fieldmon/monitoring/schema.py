@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 2
+VERSION = 3
 
 META = GeoPackageTable(
     "fieldmon", ("key TEXT NOT NULL UNIQUE", "value TEXT"), None, "What this file is."
@@ -182,6 +182,12 @@ HOT_SPOTS = GeoPackageTable(
     "MULTIPOLYGON",
     "Where finds cluster more than chance allows, as of now.",
 )
+LEARNT = GeoPackageTable(
+    "learnt",
+    ("name TEXT NOT NULL UNIQUE", "value REAL", "low REAL", "high REAL"),
+    None,
+    "What the inspections so far tell of the insects: best guess and interval of 90 %.",
+)
 CHANCE = GeoPackageTable(
     "chance",
     (),
@@ -192,7 +198,7 @@ CHANCE = GeoPackageTable(
 TABLES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
     *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
-    *(ROUTES, STOPS, HOT_SPOTS),
+    *(ROUTES, STOPS, HOT_SPOTS, LEARNT),
 )
 #: layers from which everything else follows: what must be saved from a damaged file
 CAUSES = (
@@ -236,5 +242,13 @@ def _treatments_come(db: sqlite3.Connection) -> None:
     db.execute("ALTER TABLE routes ADD COLUMN seconds_left REAL")
 
 
+def _estimates_come(db: sqlite3.Connection) -> None:
+    """Version 2 did not keep what inspections tell of the insects."""
+    create(db, LEARNT)
+
+
 #: what makes a file of version k one of version k + 1
-MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {1: _treatments_come}
+MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
+    1: _treatments_come,
+    2: _estimates_come,
+}

@@ -113,7 +113,8 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
         robot, season, chooses = plain["robot"], plain["season"], plain["sampler"]
         steps = tuple((float(s), float(p)) for s, p in robot["viewpoints"]["steps"])
         viewpoints = Viewpoints(steps, robot["viewpoints"]["longer"])
-        belief = plain["beliefs"]
+        # before finds were traced, seasons knew of neighbours only, and go on so
+        belief = {"traces": False, **plain["beliefs"]}
         return MonitoringSettings(
             begins=date.fromisoformat(season["begins"]),
             starts=time.fromisoformat(season["starts"]),

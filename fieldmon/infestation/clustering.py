@@ -24,7 +24,7 @@ _NEXT = np.uint64(1)
 # across, is infested too; side by side, in rows, across rows, apart; and how likely each is before
 # anything was inspected (our choice: insects that jump are seen within a day's finds)
 _BESIDE = np.array([[0.5, 0.5], [0.75, 0.1], [0.1, 0.75], [0.15, 0.15]])
-_LIKELY = np.log(np.array([0.6, 0.12, 0.08, 0.2]))
+_LIKELY = np.log(np.array([0.64, 0.14, 0.1, 0.12]))
 _STANDS, _APART = 4, 3
 # neighbours of one find share their fate, so each counts half; and nothing is settled for good
 _TEMPER, _SETTLED = 0.5, 6.0
@@ -106,8 +106,7 @@ def update_clusters(
             clusters.finds[0] += clusters.outcome[j] - clusters.detects[j] * chance[j]
             clusters.finds[1] += clusters.detects[j] * (pair_chance[e] / chance[i] - chance[j])
         if clusters.outcome[j] == 1:
-            if not found:
-                _update_evidence(morning, clusters, (j, i, e), detects)
+            _update_evidence(morning, clusters, (j, i, e), detects)
             clusters.finds[0] += found - detects * chance[i]
             clusters.finds[1] += detects * (pair_chance[e] / chance[j] - chance[i])
 

@@ -37,15 +37,20 @@ class Learnt:
     low: float
     high: float
 
+    @property
+    def is_share(self) -> bool:
+        """Tell whether it is a chance or a share, not a number of plants."""
+        return self.name in _SHARES
+
     def sentence(self) -> str:
         """Return it in words."""
-        form = ".0%" if self.name in _PERCENT else ".1f"
+        form = ".0%" if self.is_share else ".1f"
         if self.low == self.high:
             return f"{self.name} {self.value:{form}}"
         return f"{self.name} {self.value:{form}} ({self.low:{form}} to {self.high:{form}})"
 
 
-_PERCENT = ("detection", "jumps beyond neighbours")
+_SHARES = ("detection", "jumps beyond neighbours")
 
 
 def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:

@@ -53,8 +53,8 @@ if TYPE_CHECKING:
 # than so many unseen: clusters of eight (our choice)
 _SENT, _MOST_SENT = 3.5, 7.0
 #: share of the plants infested from outside in a night, at least, anywhere and by the edge, before
-#: anything was found (our choice: one of 2 000)
-ARRIVE, ARRIVE_BY_EDGE = 0.0003, 0.0002
+#: anything was found (our choice)
+ARRIVE, ARRIVE_BY_EDGE = 0.0002, 0.0001
 # a plant found and left where it is; only another inspection can say otherwise
 _KNOWN, _UNKNOWN = 0.99, 0.95
 # what was inspected around a plant never lowers it by more in a day (as an exponent)
@@ -186,9 +186,9 @@ class TracedPairs:
         ratio = counts.scale / before.counts.scale
         ratio[JUMPED:] *= self.jumps / before.jumps
         scaled = self.shares * ratio.astype(np.float32)
-        total = scaled.sum(axis=1)
-        shares = scaled / np.maximum(total, np.float32(LEAST_CHANCE))[:, None]
-        return replace(self.times(total.astype(np.float64)), shares=shares, counts=counts)
+        total = np.maximum(scaled.sum(axis=1, dtype=np.float64), LEAST_CHANCE)
+        shares = scaled / total[:, None].astype(np.float32)
+        return replace(self.times(total), shares=shares, counts=counts)
 
     def times(self, scale: Floats) -> TracedPairs:
         """Return the same with all chances ``(n,)`` times a scale, but those of known finds."""

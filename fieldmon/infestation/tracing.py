@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.infestation.belief import bounded_chance, lesser
 from fieldmon.infestation.cells import Cells
 from fieldmon.infestation.clustering import no_evidence
@@ -117,7 +117,7 @@ def trace(
     return n
 
 
-@part
+@inlined
 def _raise(believed: tuple[Floats, Floats], linked: Linked, j: int, more: float) -> None:
     """Raise a plant's chance by an infestation that concerns no other."""
     chance, pair_chance = believed

@@ -81,6 +81,8 @@ def test_a_file_of_version_1_becomes_one_of_today(path):
         db.execute("DROP TABLE treatments")
         db.execute("DELETE FROM gpkg_geometry_columns WHERE table_name = 'treatments'")
         db.execute("DELETE FROM gpkg_contents WHERE table_name = 'treatments'")
+        db.execute("DROP TABLE learnt")
+        db.execute("DELETE FROM gpkg_contents WHERE table_name = 'learnt'")
         db.execute("ALTER TABLE routes DROP COLUMN at_plant")
         db.execute("ALTER TABLE routes DROP COLUMN seconds_left")
         db.execute("UPDATE fieldmon SET value = '1' WHERE key = 'version'")

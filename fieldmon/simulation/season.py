@@ -94,15 +94,23 @@ class SimulatedDay:
         Infestations so far, this morning's included (a plant infested again counts again).
     ever_found
         Finds so far, today's included.
+    each
+        The working day of each of a team; of one alone it is `work`.
     """
 
     number: int
     work: Workday
     infested: NDArray[np.bool_]
-    mornings: _MorningBeliefs
+    mornings: MorningBeliefs
     last_inspected: NDArray[np.int32]
     ever_infested: int
     ever_found: int
+    each: tuple[Workday, ...] = ()
+
+    @property
+    def worked_s(self) -> float:
+        """Return the seconds worked today, of all together."""
+        return sum(one.end_s for one in self.each or (self.work,))
 
     @property
     def belief(self) -> Belief:
@@ -140,7 +148,7 @@ class SimulatedDay:
         return 100.0 * float(np.mean(self.last_inspected >= 0))
 
 
-class _MorningBeliefs:
+class MorningBeliefs:
     """What is believed on every morning of a season, worked out when somebody asks.
 
     Most of a season's time goes into it, and half of the samplers do not read it.
@@ -149,7 +157,7 @@ class _MorningBeliefs:
     def __init__(
         self, first: Callable[[], Belief], learning: Callable[[Workday], Learning], spread: Spread
     ) -> None:
-        self._first, self._learning, self._spread = first, learning, spread
+        self._first, self.learning, self._spread = first, learning, spread
         self._works: list[Workday] = []
         self._last: tuple[int, Belief] | None = None
 
@@ -168,7 +176,7 @@ class _MorningBeliefs:
         if day > number:
             day, belief = 0, self._first()
         for work in self._works[day:number]:
-            evening = belief.learn(work.plant, work.found, self._learning(work))
+            evening = belief.learn(work.plant, work.found, self.learning(work))
             belief = evening.overnight(self._spread)
         self._last = number, belief
         return belief
@@ -188,8 +196,8 @@ def simulated_days(
     ``inspect/day``, ``spread/day`` and ``sampler/day``, so that every sampler meets the same
     insects, and would find the same ones on a plant.
     """
-    _check(aisles, start)
-    season = _Season(aisles, robot, sampler, start, settings)
+    check_start(aisles, start)
+    season = SeasonOnItsWay(aisles, robot, sampler, start, settings)
     keys = zip(*(streams.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
     for number, (own, inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
         day = season.work(number, own, inspect)
@@ -197,7 +205,7 @@ def simulated_days(
         season.pass_night(day.work, overnight)
 
 
-class _Season:
+class SeasonOnItsWay:
     """A season on its way: what a day changes, and how."""
 
     def __init__(
@@ -211,7 +219,7 @@ class _Season:
         self.aisles, self.robot, self.sampler, self.settings = aisles, robot, sampler, settings
         self.first_chance, self.infested = start.chance, start.infested.copy()
         self.detects = sampler.inspection_times(robot).detects
-        self.mornings = _mornings(
+        self.mornings = morning_beliefs(
             aisles.grid, robot, start, settings, chooses_time=len(self.detects) > 1
         )
         self.last_inspected = np.full(len(self.infested), NEVER, np.int32)
@@ -221,9 +229,16 @@ class _Season:
 
     def work(self, number: int, own_key: np.uint64, inspect_key: np.uint64) -> SimulatedDay:
         """Work for a day; return what came of it."""
-        showing = self.infested & (self.shows_on <= number)
-        would_find = draw_detections(showing, self.detects, inspect_key)
-        work = work_day(self._scene(number, own_key), self.sampler, would_find)
+        would_find = draw_detections(self.showing(number), self.detects, inspect_key)
+        return self.worked(number, work_day(self.scene(number, own_key), self.sampler, would_find))
+
+    def showing(self, number: int) -> NDArray[np.bool_]:
+        """Return where an inspection may find something on a day, ``(n,)``."""
+        showing: NDArray[np.bool_] = self.infested & (self.shows_on <= number)
+        return showing
+
+    def worked(self, number: int, work: Workday, each: tuple[Workday, ...] = ()) -> SimulatedDay:
+        """Note what was done on a day; return it."""
         self.last_inspected = self.last_inspected.copy()
         self.last_inspected[work.plant] = number
         self.ever_found += int(np.count_nonzero(work.found))
@@ -235,6 +250,7 @@ class _Season:
             self.last_inspected,
             self.ever_infested,
             self.ever_found,
+            each,
         )
 
     def pass_night(self, work: Workday, key: np.uint64) -> None:
@@ -249,7 +265,8 @@ class _Season:
         self.ever_infested += int(np.count_nonzero(self.infested) - np.count_nonzero(evening))
         self.trail = work.plant if len(work) else self.trail
 
-    def _scene(self, number: int, key: np.uint64) -> Scene:
+    def scene(self, number: int, key: np.uint64) -> Scene:
+        """Return the scene of a morning."""
         belief = self.mornings.on(number) if self.sampler.reads_chance else None
         return Scene(
             aisles=self.aisles,
@@ -266,14 +283,14 @@ class _Season:
         )
 
 
-def _mornings(
+def morning_beliefs(
     grid: PlantGrid,
     robot: Robot,
     start: Start,
     settings: SeasonSettings,
     *,
     chooses_time: bool,
-) -> _MorningBeliefs:
+) -> MorningBeliefs:
     """Return what will be believed on the mornings of a season."""
     usual = settings.learning or Learning(detection=robot.detects)
 
@@ -283,10 +300,11 @@ def _mornings(
     def learning(work: Workday) -> Learning:
         return replace(usual, detection=work.detects) if chooses_time else usual
 
-    return _MorningBeliefs(first, learning, settings.believed_spread or settings.spread)
+    return MorningBeliefs(first, learning, settings.believed_spread or settings.spread)
 
 
-def _check(aisles: Aisles, start: Start) -> None:
+def check_start(aisles: Aisles, start: Start) -> None:
+    """Raise `PlotError` if a start is of another plot."""
     n = len(aisles.grid)
     for name, values in (("infested", start.infested), ("chance", start.chance)):
         if len(values) != n:

@@ -497,6 +497,17 @@ ROW_NEVER, ROW_TODAY = "never", "today"
 NEVER_ROWS = Plural(
     "{n} of {all} rows was never inspected.", "{n} of {all} rows were never inspected."
 )
+LEARNT_TITLE = "What the inspections tell of the insects"
+LEARNT = {
+    "detection": "An inspection finds {value} of what is there ({low} to {high}).",
+    "infested at the start": "{value} plants were infested at the start ({low} to {high}).",
+    "arrivals a night": "{value} plants a night are infested from outside ({low} to {high}).",
+    "jumps beyond neighbours": (
+        "They jump farther than to the next plant: with a chance of {value}."
+    ),
+    "length of jumps": "If so, jumps go {value} plants on average ({low} to {high}).",
+}
+NOT_LEARNT = "This season traces finds to the plants next to them only, as it did when it began."
 
 # -- scouting
 SCOUT_NEEDS = (

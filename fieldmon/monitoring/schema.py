@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 4
+VERSION = 5
 #: the first fieldmon that reads files of this version
 NEEDS = "0.2"
 #: what the settings say of a team where there is none
@@ -187,6 +187,12 @@ HOT_SPOTS = GeoPackageTable(
     "MULTIPOLYGON",
     "Where finds cluster more than chance allows, as of now.",
 )
+LEARNT = GeoPackageTable(
+    "learnt",
+    ("name TEXT NOT NULL UNIQUE", "value REAL", "low REAL", "high REAL"),
+    None,
+    "What the inspections so far tell of the insects: best guess and interval of 90 %.",
+)
 OUTSIDE_CHANGES = GeoPackageTable(
     "outside_changes",
     (
@@ -210,7 +216,7 @@ CHANCE = GeoPackageTable(
 TABLES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
     *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
-    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES),
+    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT),
 )
 #: layers from which everything else follows: what must be saved from a damaged file
 CAUSES = (
@@ -318,9 +324,15 @@ def _teams_come(db: sqlite3.Connection) -> None:
     )
 
 
+def _estimates_come(db: sqlite3.Connection) -> None:
+    """Version 4 did not keep what inspections tell of the insects."""
+    create(db, LEARNT)
+
+
 #: what makes a file of version k one of version k + 1; `watch` follows the last
 MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     1: _treatments_come,
     2: _changes_are_noticed,
     3: _teams_come,
+    4: _estimates_come,
 }

@@ -17,7 +17,6 @@ from fieldmon.decisions.map_verdict import map_verdict
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.hotspots import record_states
 from fieldmon.infestation.observations import Observations, usable
-from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.monitoring import (
@@ -60,6 +59,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.tables import KeptMessage
     from fieldmon.planning.members import TeamMember
@@ -500,6 +500,13 @@ class Season:
             day = contents.settings.day(on)
             return Status.of(contents.history, contents.morning(day), day)
 
+    def learnt(self, on: date) -> tuple[Learnt, ...]:
+        """Return what the inspections up to the evening of a day tell of the insects."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.learnt(contents.morning(day), day)
+
     def progress(self, on: date) -> Progress:
         """Return how far the inspections are after a day's work; nothing is estimated for it."""
         now = self._now()
@@ -604,7 +611,7 @@ class Season:
 def _nothing_yet(
     plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
 ) -> History:
-    belief = PairApproximation.of(plot.grid, prior)
+    belief = settings.belief.first_morning(plot.grid, prior)
     known = usable(records, np.datetime64(settings.begins, "D")).observations
     return History(
         plot.grid,

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
 from fieldmon.errors import PlotError
 
-from ..actions import bringing_files, drawing, laying_ground, rasters
-from ..show import answers_map, field_map, plot_figures
+from ..actions import answering, bringing_files, drawing, laying_ground, rasters
+from ..show import field_map, plot_figures
 from ..show import records as records_shown
 from ..show.assumed import sentence
-from ..show.map_view import MapAnswers
-from ..state import browser, chosen_day, plot_before, plot_files, plot_source, rooms
+from ..state import chosen_day, plot_before, plot_files, plot_source, rooms
 from ..state.row_settings import row_settings
-from ..state.tried_answers import tried
 from ..words import texts
 from ..words.language import in_words
 
@@ -34,12 +31,7 @@ def bring(problem: FieldmonError | None) -> None:
     if plot_source.chosen() == plot_source.FILES:
         bringing_files.show()
     if problem is not None:
-        answers = tried(problem)
-        bringing_files.say(problem, tried=answers)
-        looked_at = answers_map.content(answers, browser.is_dark())
-        if looked_at is not None:
-            tapped = partial(bringing_files.take_tapped, problem, answers)
-            field_map.want(looked_at, MapAnswers(tapped=tapped))
+        answering.show(problem)
         laying = plot_files.laying()
         # what was set by hand may be what is wrong: it must stay within reach
         if isinstance(problem, PlotError) and any(row_settings(laying).values()):

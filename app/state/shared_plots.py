@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import FieldmonError
+from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.shared_day import PlotNeed, share_day
-from fieldmon.planning.team import TeamMember
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.samplers import USUAL, sampler

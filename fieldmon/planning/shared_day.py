@@ -92,7 +92,7 @@ def share_day(
     Examples
     --------
     >>> from fieldmon.planning.shared_day import PlotNeed, share_day
-    >>> from fieldmon.planning.team import team_of
+    >>> from fieldmon.planning.members import team_of
     >>> needs = [PlotNeed(10, 40_000), PlotNeed(30, 40_000)]
     >>> [(turn.plot, round(turn.seconds / 3600, 2)) for turn in share_day(needs, team_of(1))]
     [(1, 8.81), (0, 2.94)]

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.errors import SettingError
+from fieldmon.planning.members import TeamMember, team_of
 from fieldmon.planning.shared_day import PlotNeed, share_day
-from fieldmon.planning.team import TeamMember, team_of
 from fieldmon.plot.robot import Robot
 
 needs = st.lists(

@@ -25,6 +25,7 @@ FLAGS = {
     "plot": "--plot-option",
     "plants": "--plants-option",
     "rows": "--rows-option",
+    "blocks": "--blocks-option",
     "contours": "--contours-option",
     "paths": "--paths-option",
     "records": "--record-option",

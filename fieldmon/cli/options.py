@@ -28,7 +28,7 @@ PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
 PlotFile = Annotated[Path, typer.Argument(help=PLOT_HELP, show_default=False)]
 MaybePlotFile = Annotated[
     Path | None,
-    typer.Argument(help=f"{PLOT_HELP} Not needed if --plants are given.", show_default=False),
+    typer.Argument(help=f"{PLOT_HELP} Not needed if --plants or --rows are.", show_default=False),
 ]
 SeasonFile = Annotated[Path, typer.Argument(help="The season's file, made by fieldmon init.")]
 Feature = Annotated[
@@ -82,6 +82,22 @@ Rows = Annotated[
 RowsChoices = Annotated[
     list[str] | None,
     typer.Option("--rows-option", help="What the file of rows leaves open, as NAME=VALUE."),
+]
+Blocks = Annotated[
+    Path | None,
+    typer.Option(
+        help="Blocks with rows of their own: areas, or lines that part the plot into blocks."
+    ),
+]
+BlocksChoices = Annotated[
+    list[str] | None,
+    typer.Option("--blocks-option", help="What the file of blocks leaves open, as NAME=VALUE."),
+]
+GuessBlocks = Annotated[
+    bool,
+    typer.Option(
+        "--guess-blocks", help="Blocks where the outline asks for rows in several directions."
+    ),
 ]
 Contours = Annotated[
     Path | None,
@@ -209,15 +225,19 @@ class FileOptions:
     rows_option: RowsChoices = None
     contours: Contours = None
     contours_option: ContoursChoices = None
+    blocks: Blocks = None
+    blocks_option: BlocksChoices = None
+    guess_blocks: GuessBlocks = False
 
     def sources(self, plot: Path | None, feature: str | None) -> PlotSources:
         """Return the plot's files, given the first of them."""
-        from fieldmon.io.options import ReadOptions  # noqa: PLC0415
+        from fieldmon.io.options import PlotOptions, ReadOptions  # noqa: PLC0415
         from fieldmon.io.sources import PlotSources  # noqa: PLC0415
 
-        if plot is None and self.plants is None:
+        if plot is None and self.plants is None and self.rows is None:
             raise SettingError(
-                "Give a plot file, or the positions of its plants with --plants FILE."
+                "Give a plot file, or the positions of its plants with --plants FILE, or its rows "
+                "with --rows FILE."
             )
         return PlotSources(
             plot,
@@ -231,6 +251,9 @@ class FileOptions:
             chosen(ReadOptions(), self.rows_option),
             self.contours,
             _raster_options(self.contours_option),
+            self.blocks,
+            chosen(PlotOptions(), self.blocks_option),
+            self.guess_blocks,
         )
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 #: what a file is to a plot
 Role: TypeAlias = Literal[
-    "plot", "plants", "rows", "contours", "paths", "records", "canopy", "risk"
+    "plot", "plants", "rows", "blocks", "contours", "paths", "records", "canopy", "risk"
 ]
 
 
@@ -25,7 +25,7 @@ class PlotSources:
     Parameters
     ----------
     plot
-        File of plots; None: the plot is where its measured plants are.
+        File of plots; None: the plot is where its measured plants are, or its rows.
     plot_options
         How it is read; ``feature`` says which of its plots is meant, if it holds several.
     plants, plants_options
@@ -39,6 +39,10 @@ class PlotSources:
         single one.
     contours, contours_options
         Raster of heights: rows run along its contours.
+    blocks, blocks_options
+        File of blocks as areas, or of the lines that part a plot into blocks.
+    guess_blocks
+        Part a plot into blocks where its outline asks for rows in several directions.
     """
 
     plot: Source | None = None
@@ -52,6 +56,9 @@ class PlotSources:
     rows_options: ReadOptions = field(default_factory=ReadOptions)
     contours: Source | None = None
     contours_options: RasterOptions | None = None
+    blocks: Source | None = None
+    blocks_options: PlotOptions = field(default_factory=PlotOptions)
+    guess_blocks: bool = False
 
 
 @dataclass(frozen=True)

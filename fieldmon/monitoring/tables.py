@@ -193,7 +193,8 @@ def _field(db: sqlite3.Connection, arrays: dict[str, NDArray[Any]]) -> Field:
     boundary, name = db.execute("SELECT geom, name FROM plots").fetchone()
     places = {kind: geometry(geom) for kind, geom in db.execute("SELECT kind, geom FROM places")}
     gate = places.get("gate")
-    stated = dict(zip(_STATED, arrays["stated"].tolist(), strict=True))
+    values = zip(_STATED, arrays["stated"].tolist(), strict=True)
+    stated: dict[str, Any] = {name: None if np.isnan(value) else value for name, value in values}
     measured = arrays.get("measured_lonlat")
     return Field(
         name,
@@ -203,7 +204,7 @@ def _field(db: sqlite3.Connection, arrays: dict[str, NDArray[Any]]) -> Field:
         paths=places.get("path", MultiLineString()),
         plants=None if measured is None else measured.copy(),
         row_lines=places.get("row line", MultiLineString()),
-        **{name: None if np.isnan(value) else value for name, value in stated.items()},
+        **stated,
     )
 
 

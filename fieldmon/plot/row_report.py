@@ -43,6 +43,8 @@ class RowReport:
         Share of the plants that stand in another row than its name says; None without names.
     named
         Whether names decided.
+    of_trial
+        Whether the blocks that plants name run through rows, and were left aside.
     """
 
     how: str
@@ -52,6 +54,7 @@ class RowReport:
     others_deg: tuple[float, ...] = ()
     misnamed_share: float | None = None
     named: bool = False
+    of_trial: bool = False
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -73,6 +76,11 @@ class RowReport:
             said.append(
                 f"{self.misnamed_share:.0%} of the plants seem to stand in another row than the "
                 f"file names; {decided}. Look whether its rows are named rightly."
+            )
+        if self.of_trial:
+            said.append(
+                "The blocks that the file names change within rows without a gap, as those of a "
+                "trial do; they were left aside. Part the plot by areas or lines if they are not."
             )
         if self.others_deg:
             ways = " and ".join(f"{way:.0f}" for way in self.others_deg)
@@ -106,4 +114,5 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
         () if decided else found.others_deg,
         said.misnamed,
         said.label is not None,
+        said.of_trial,
     )

@@ -119,6 +119,10 @@ Headland = Annotated[float | None, typer.Option(help="Metres free of plants at b
 BothFaces = Annotated[
     bool, typer.Option("--both-faces", help="Inspect both faces of each row, each from its aisle.")
 ]
+NoRows = Annotated[
+    bool,
+    typer.Option("--no-rows", help="Measured plants stand in no rows: visit them by nearness."),
+]
 Gate = Annotated[str | None, typer.Option(help="Where the day starts and ends: LON,LAT.")]
 Scout = Annotated[bool, typer.Option("--scout", help="A person on foot instead of the robot.")]
 Hours = Annotated[float | None, typer.Option(help="Working hours a day.")]
@@ -198,6 +202,7 @@ class RowOptions:
     plant_spacing: PlantSpacing = None
     headland: Headland = None
     both_faces: BothFaces = False
+    no_rows: NoRows = False
 
     def choices(self) -> PlantingChoices:
         """Return what was said of the rows."""
@@ -205,7 +210,7 @@ class RowOptions:
 
         faces = 2 if self.both_faces else None
         spacings = self.row_spacing, self.plant_spacing, self.headland
-        return PlantingChoices(self.bearing, *spacings, faces)
+        return PlantingChoices(self.bearing, *spacings, faces, not self.no_rows)
 
 
 @dataclass(frozen=True)

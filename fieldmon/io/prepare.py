@@ -98,6 +98,8 @@ class Laid:
         """Return how measured plants stand in rows, and what is doubtful about it."""
         from fieldmon.io.import_report import doubtful, seen  # noqa: PLC0415
 
+        if not self.plot.grid.in_rows:
+            return (seen("Plants are taken to stand in no rows, and are visited by nearness."),)
         rows, drawn = self.plot.rows, self.plot.field.row_lines
         if rows is None and self.plot.field.plants is None and len(drawn.geoms) > 1:
             return (seen(f"Plants stand along the {len(drawn.geoms)} rows that were drawn."),)
@@ -284,7 +286,10 @@ def one_of(fields: tuple[Field, ...]) -> Field:
 
 def lay(field: Field, choices: PlantingChoices | None = None) -> Laid:
     """Return a field with its plants: those measured, or laid as said, stated or usual."""
-    given = (choices or PlantingChoices()).given()
+    choices = choices or PlantingChoices()
+    if not choices.in_rows:
+        return Laid(Plot.of(replace(field, in_rows=False)))
+    given = choices.given()
     planting = planting_of(field, **given)
     missing = [name for name in _SPACINGS if name not in given and getattr(field, name) is None]
     if field.blocks:
@@ -301,8 +306,11 @@ def lay_around(
     sources: PlotSources, measured: Plants, choices: PlantingChoices | None = None
 ) -> Laid:
     """Return the plot of measured plants whose boundary nobody drew, called as their file."""
-    planting = Planting(**(choices or PlantingChoices()).given())  # type: ignore[arg-type]
+    choices = choices or PlantingChoices()
+    planting = Planting(**choices.given())  # type: ignore[arg-type]
     name = "plants" if sources.plants is None else Path(source_name(sources.plants)).stem
+    if not choices.in_rows:
+        return Laid(Plot.among(name, measured.lonlat.copy(), sources.gate))
     plants = measured.lonlat.copy()
     return Laid(Plot.around(name, plants, planting, sources.gate, measured.names))
 

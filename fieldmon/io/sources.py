@@ -63,17 +63,23 @@ class PlotSources:
 
 @dataclass(frozen=True)
 class PlantingChoices:
-    """What is said of a plot's rows by hand, as `Planting` has it; None: found, stated or usual."""
+    """What is said of a plot's rows by hand, as `Planting` has it; None: found, stated or usual.
+
+    ``in_rows`` is False for measured plants that stand in no rows, and are visited by nearness.
+    """
 
     row_bearing_deg: float | None = None
     row_spacing_m: float | None = None
     plant_spacing_m: float | None = None
     headland_m: float | None = None
     faces: int | None = None
+    in_rows: bool = True
 
     def given(self) -> dict[str, float]:
-        """Return what is said, by name."""
-        return {name: value for name, value in vars(self).items() if value is not None}
+        """Return what is said of a planting in rows, by name."""
+        said = {name: value for name, value in vars(self).items() if value is not None}
+        del said["in_rows"]
+        return said
 
 
 @dataclass(frozen=True)

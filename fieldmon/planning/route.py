@@ -161,9 +161,10 @@ class Route:
         from fieldmon.plot.frames import plant_frame  # noqa: PLC0415 - as above
 
         stops = plant_frame(self.aisles.grid, self.plant)
-        stops.insert(3, "arrive_s", self.arrive_s)
-        stops.insert(4, "leave_s", self.leave_s)
-        stops.insert(5, "chance", self.chance)
+        after = stops.columns.get_loc("number") + 1
+        columns = {"arrive_s": self.arrive_s, "leave_s": self.leave_s, "chance": self.chance}
+        for place, (name, values) in enumerate(columns.items(), after):
+            stops.insert(place, name, values)
         stops.index = stops.index.__class__(range(1, len(self) + 1), name="order")
         return stops
 

@@ -103,6 +103,33 @@ def across_aisles(
     return _either_way(over(1), over(0))
 
 
+def delaunay_sides(xy_m: Float) -> Index:
+    """Return the pairs ``(e, 2)`` of points beside each other in a net of triangles."""
+    from scipy.spatial import Delaunay, QhullError  # noqa: PLC0415 - half a second to import
+
+    try:
+        corners = np.asarray(Delaunay(xy_m).simplices, np.intp)
+        sides = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    except (QhullError, ValueError):  # fewer than three, or all in line
+        along = np.lexsort(xy_m.T)
+        sides = np.stack([along[:-1], along[1:]], axis=1)
+    return np.unique(np.sort(sides, axis=1), axis=0)
+
+
+def gabriel_pairs(xy_m: Float) -> Index:
+    """Return the pairs ``(e, 2)`` of points within whose common circle no other one lies."""
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - as above
+
+    sides = delaunay_sides(xy_m)
+    if not len(sides):
+        return sides
+    middle = xy_m[sides].mean(axis=1)
+    way = xy_m[sides[:, 0]] - xy_m[sides[:, 1]]
+    radius_m = np.hypot(way[:, 0], way[:, 1]) / 2
+    nearest_m = cKDTree(xy_m).query(middle)[0]
+    return sides[nearest_m >= radius_m * (1 - 1e-9)]
+
+
 def _either_way(above: Index, below: Index) -> Lists:
     """Return lists of neighbours from who is nearest above and who below each, -1 for nobody."""
     lower = np.flatnonzero(above != _NOBODY)

@@ -50,6 +50,8 @@ class Field:
         ``(n,)`` the name of each measured plant's block; None: not known, then blocks are found.
     blocks
         Parts of the plot with rows of their own; empty: the plot is one.
+    in_rows
+        Whether plants stand in rows. If not, measured ones are visited by nearness.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Field:
     plant_rows: NDArray[np.str_] | None = None
     plant_blocks: NDArray[np.str_] | None = None
     blocks: tuple[Block, ...] = ()
+    in_rows: bool = True
 
     def __post_init__(self) -> None:
         if self.boundary.is_empty or not self.boundary.is_valid:
@@ -92,6 +95,8 @@ class Field:
             if said[name] is None:
                 del said[name]
         del said["blocks"]
+        if self.in_rows:
+            del said["in_rows"]
         return (*said.values(), *(part for block in self.blocks for part in block.told))
 
     def frame(self, bearing_deg: float = 90.0) -> Frame:

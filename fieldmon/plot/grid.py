@@ -100,6 +100,9 @@ class PlantGrid:
         middle of its aisle; the aisle of each row ``(r,)``; and the corners of the aisles'
         middles: those of aisle a are ``aisle_m[aisle_start[a]:aisle_start[a + 1]]``. Then
         `lane_x_m` are places along the aisle too, and `lane_y_m` is 0.
+    in_rows
+        Whether plants stand in rows. If not, each is a row by itself here, and people count
+        plants only.
     """
 
     frame: Frame
@@ -123,6 +126,7 @@ class PlantGrid:
     aisle: NDArray[np.int32] | None = None
     aisle_start: NDArray[np.int64] | None = None
     aisle_m: NDArray[np.float64] | None = None
+    in_rows: bool = True
 
     def __post_init__(self) -> None:
         for value in vars(self).values():
@@ -139,6 +143,8 @@ class PlantGrid:
     @property
     def counts(self) -> str:
         """Return how many plants and rows there are, in words."""
+        if not self.in_rows:
+            return f"{counted(len(self), 'plant')} in no rows"
         blocks = f" of {counted(self.n_blocks, 'block')}" if self.n_blocks > 1 else ""
         return f"{counted(len(self), 'plant')} in {counted(self.n_rows, 'row')}{blocks}"
 

@@ -18,6 +18,7 @@ from fieldmon.plot.missing_plants import without
 from fieldmon.plot.row_detection import frame_around, rows_from_plants
 from fieldmon.plot.row_report import RowReport, row_report
 from fieldmon.plot.travel import Aisles
+from fieldmon.plot.trees import trees_grid
 
 if TYPE_CHECKING:
     import numpy as np
@@ -97,6 +98,8 @@ class Plot:
     @classmethod
     def of(cls, field: Field, planting: Planting | None = None) -> Plot:
         """Take a field's measured plants, or lay some, and find the ways between them."""
+        if not field.in_rows:
+            return cls.of_trees(field)
         if field.plants is not None:
             names = PlantNames(field.plant_rows, field.plant_blocks)
             grid, rows = _in_rows(field.plants, names, field, planting)
@@ -122,6 +125,30 @@ class Plot:
         row, block = names
         field = Field(name, boundary, gate=gate, plants=plants, plant_rows=row, plant_blocks=block)
         return replace(cls._with(field, grid), rows=rows)
+
+    @classmethod
+    def of_trees(cls, field: Field) -> Plot:
+        """Take a field's measured plants as they stand, in no rows, and the ways among them.
+
+        Raise `PlotError` where none were measured: what is laid stands in rows.
+        """
+        if field.plants is None:
+            raise PlotError(
+                f"Plants in no rows must be measured, but of plot {field.name!r} nobody gave their "
+                "positions. Give them, or let plants be laid in rows."
+            )
+        check_apart(field.plants)
+        return cls._with(field, trees_grid(field.plants, field))
+
+    @classmethod
+    def among(
+        cls, name: str, plants: NDArray[np.float64], gate: tuple[float, float] | None = None
+    ) -> Plot:
+        """Return the plot of measured plants in no rows whose boundary nobody drew."""
+        check_apart(plants)
+        grid = trees_grid(plants)
+        boundary = grid.frame.geometry_lonlat(grid.drivable_m)
+        return cls._with(Field(name, boundary, gate=gate, plants=plants, in_rows=False), grid)
 
     @classmethod
     def along(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,6 +18,7 @@ from fieldmon.compute.arrays import runs
 from fieldmon.compute.jit import kept, routine
 from fieldmon.compute.wording import counted
 from fieldmon.errors import PlotError
+from fieldmon.plot.adjacency import delaunay_sides
 from fieldmon.plot.bent_ways import Bends, bends_of, off_steps, row_end_places, row_steps
 
 if TYPE_CHECKING:
@@ -264,6 +265,8 @@ def find_roads(
     Raise `PlotError` if some row cannot be reached.
     """
     obstacles = Obstacles.of(grid, MultiPolygon() if no_go_m is None else no_go_m)
+    if not grid.in_rows:
+        return _find_from_tree_to_tree(grid, gate_xy_m, obstacles)
     if grid.aisles_m is not None:
         return _find_bent(grid, gate_xy_m, obstacles)
     xy_m, place = _merged(_row_end_places(grid))
@@ -281,6 +284,25 @@ def find_roads(
     needed = np.append(beside.ravel(), gate)
     net = _joined_outside(_chained(_joined_inside(net, needed, obstacles)), needed, obstacles)
     return _sorted(net, beside, gate)
+
+
+def _find_from_tree_to_tree(
+    grid: PlantGrid, gate_xy_m: tuple[float, float] | None, obstacles: Obstacles
+) -> RoadNetwork:
+    """Return straight ways from each tree to those about it: no row is in the way."""
+    xy_m = grid.stop_m
+    nobody = np.full((1, 4), np.inf)
+    obstacles = replace(obstacles, row_box_m=nobody)
+    n = len(xy_m)
+    tried = _each_once(np.concatenate([_nearest(xy_m), delaunay_sides(xy_m)]))
+    good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]])
+    net, gate = _Net(xy_m, tried[good]), 0
+    if gate_xy_m is not None:
+        gate = n
+        net = _with_gate(net, np.array([gate_xy_m]), obstacles, grid)
+    needed = np.append(np.repeat(np.arange(n), 2), gate)
+    net = _joined_outside(_joined_inside(net, needed, obstacles), needed, obstacles)
+    return _sorted(net, np.repeat(np.arange(n), 2).reshape(-1, 2), gate)
 
 
 def _find_bent(

@@ -64,7 +64,8 @@ class RowReport:
             said.append(
                 "No rows were found: the plants stand anyhow. The lines along which they would "
                 "be visited are none of theirs, and aisles between them may not be there. Give "
-                "the row bearing, name each plant's row, or draw the rows."
+                "the row bearing or name each plant's row; or say that they stand in no rows, and "
+                "they are visited by nearness."
             )
         elif self.off_share >= _WORTH_A_WORD:
             said.append(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -118,6 +118,12 @@ class Aisles:
 
     def __repr__(self) -> str:
         return f"<Aisles: {self.grid.counts}, {counted(len(self.roads.xy_m), 'node')}>"
+
+    def worked_by(self, robot: Robot) -> Robot:
+        """Return a robot as it works here: where plants stand in no rows, it changes none."""
+        if self.grid.in_rows or not robot.row_change_s:
+            return robot
+        return replace(robot, row_change_s=0.0)
 
     @property
     def gate_m(self) -> Float:

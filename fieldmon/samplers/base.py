@@ -112,6 +112,11 @@ class Scene:
     key: np.uint64 = np.uint64(0)  # noqa: RUF009 - a number, not a call with effects
     pair_chance: NDArray[np.float64] | None = None
 
+    def __post_init__(self) -> None:
+        robot = self.aisles.worked_by(self.robot)
+        if robot is not self.robot:
+            object.__setattr__(self, "robot", robot)
+
     def __repr__(self) -> str:
         hours = self.seconds_left / 3600
         return f"<Scene of day {self.day}: {self.grid.counts}, {hours:.2f} h left>"

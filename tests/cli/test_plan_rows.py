@@ -80,6 +80,27 @@ def test_trees_in_no_rows_are_said_and_not_called_rows(run, tmp_path):
     assert "trees: 60 plants in no rows." in out
 
 
+def test_trees_are_visited_by_nearness_where_it_is_said_that_they_stand_in_no_rows(run, tmp_path):
+    xy_m = np.random.default_rng(0).uniform(0, 120, (60, 2))
+    rows = [f"{lon:.9f},{lat:.9f}" for lon, lat in FRAME.lonlat(xy_m)]
+    (tmp_path / "trees.csv").write_text("\n".join(["lon,lat", *rows]))
+    words = ["--plants", "trees.csv", "--no-rows", "--hours", 1]
+    code, out, err, _ = run("plan", *words, "-o", "a.csv", "-o", "a.geojson", "-o", "a.html")
+    assert code == 0, err
+    assert "trees: 60 plants in no rows, visited by nearness." in out
+    table = list(csv.DictReader((tmp_path / "a.csv").read_text("utf-8-sig").splitlines()))
+    assert list(table[0])[:2] == ["stop", "number"]
+    stops = json.loads((tmp_path / "a.geojson").read_text())["features"][1:]
+    assert not any("row" in stop["properties"] for stop in stops)
+    assert "<th>row</th>" not in (tmp_path / "a.html").read_text()
+    assert "row" not in out.replace("no rows", "")
+    assert run("init", "trees.gpkg", *words[:3])[0] == 0
+    again = Season(tmp_path / "trees.gpkg").plot.grid
+    assert not again.in_rows
+    assert run("plan", "trees.gpkg", "-o", "b.csv")[0] == 0
+    assert run("plan", "trees.csv", "--all", "--no-rows")[0] != 0
+
+
 def test_plants_stand_between_end_posts(run, tmp_path):
     y = -24.0 + 3.5 * np.arange(14)
     ends = np.stack([np.stack([0.2 * y - 42, y], 1), np.stack([0.3 * y + 40, y], 1)], axis=1)

@@ -14,7 +14,7 @@ from ..show import field_map, plot_figures
 from ..show.assumed import sentence
 from ..show.records import records_until
 from ..state import chosen_day, plot_files, plot_source
-from ..state.row_settings import row_settings
+from ..state.row_settings import is_said
 from ..words import texts
 from ..words.language import in_words
 
@@ -35,8 +35,10 @@ def bring(problem: FieldmonError | None) -> None:
         bringing_files.say(problem)
         laying = plot_files.laying()
         # what was set by hand may be what is wrong: it must stay within reach
-        if isinstance(problem, PlotError) and any(row_settings(laying).values()):
+        if isinstance(problem, PlotError) and is_said(laying):
             drawing.rows(laying)
+        if isinstance(problem, PlotError):
+            drawing.undo_last(laying)
 
 
 def show(choices: Choices) -> None:
@@ -48,7 +50,8 @@ def show(choices: Choices) -> None:
     records, said = records_until(choices.records)
     if choices.season is None:
         drawing.tools(choices)
-        drawing.rows(choices.plot_key)
+        drawing.rows(choices.plot_key, measured=choices.plot.field.plants is not None)
+        drawing.blocks(choices)
         rasters.show_missing()
         rasters.show_risk()
     else:

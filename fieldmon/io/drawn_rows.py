@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from fieldmon.io.import_report import ImportMessage
     from fieldmon.io.options import Source
     from fieldmon.io.rasters.values import RasterOptions
+    from fieldmon.io.readers.points_and_lines import DrawnBlocks
     from fieldmon.io.sources import PlantingChoices, PlotSources, Role
     from fieldmon.plot.block import Block
     from fieldmon.plot.field import Field
@@ -131,15 +132,21 @@ def _with_blocks(fields: Fields, sources: PlotSources, hearing: Hearing) -> Fiel
     if file is not None and sources.guess_blocks:
         raise SettingError("Blocks are drawn or guessed: give a file of blocks, or let them be.")
     if file is not None:
-        drawn = hearing.read("blocks", file, partial(read_blocks, file, sources.blocks_options))
-        if len(drawn.areas):
-            read = partial(blocks_of_each, fields, drawn.areas)
-        else:
-            read = partial(cut_each, fields, drawn.cuts)
+
+        def read() -> Imported[Fields]:
+            return parted(fields, read_blocks(file, sources.blocks_options))
+
         return hearing.read("blocks", file, read)
     if sources.guess_blocks and plot is not None:
         return hearing.read("plot", plot, partial(guess_each, fields))
     return fields
+
+
+def parted(fields: Fields, drawn: Imported[DrawnBlocks]) -> Imported[Fields]:
+    """Return plots with the blocks that were drawn, as areas or as lines that part them."""
+    areas, cuts = drawn.value
+    made = blocks_of_each(fields, areas) if areas else cut_each(fields, cuts)
+    return drawn.having(made.value, made.messages)
 
 
 def blocks_of_each(fields: Fields, areas: tuple[Block, ...]) -> Imported[Fields]:
@@ -200,8 +207,8 @@ def blocks_on(
 
 
 def _areas(shape: shapely.Geometry) -> MultiPolygon:
-    parts = shapely.get_parts(shape)
-    parts = [part for part in parts if part.geom_type == "Polygon" and part.area > 0]
+    every = shapely.get_parts(shape)
+    parts = [part for part in every if part.geom_type == "Polygon" and part.area > 0]
     return MultiPolygon(parts)
 
 

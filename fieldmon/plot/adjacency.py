@@ -113,7 +113,8 @@ def delaunay_sides(xy_m: Float) -> Index:
     except (QhullError, ValueError):  # fewer than three, or all in line
         along = np.lexsort(xy_m.T)
         sides = np.stack([along[:-1], along[1:]], axis=1)
-    return np.unique(np.sort(sides, axis=1), axis=0)
+    pairs: Index = np.unique(np.sort(sides, axis=1), axis=0)
+    return pairs
 
 
 def gabriel_pairs(xy_m: Float) -> Index:
@@ -127,7 +128,8 @@ def gabriel_pairs(xy_m: Float) -> Index:
     way = xy_m[sides[:, 0]] - xy_m[sides[:, 1]]
     radius_m = np.hypot(way[:, 0], way[:, 1]) / 2
     nearest_m = cKDTree(xy_m).query(middle)[0]
-    return sides[nearest_m >= radius_m * (1 - 1e-9)]
+    pairs: Index = sides[nearest_m >= radius_m * (1 - 1e-9)]
+    return pairs
 
 
 def _either_way(above: Index, below: Index) -> Lists:

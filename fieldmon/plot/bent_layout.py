@@ -31,6 +31,8 @@ _LOWER, _UPPER = 1, -1
 # longer than any row
 _FAR_M = 1e6
 _RIGHT, _LEFT = 0, 1
+# a strip beside a row reaches to one aisle, or to both
+_ONE, _BOTH = 1, 2
 # a lane ends this far at least from the rows of another block, if there is room
 _CLEAR_M = 0.8
 # a lane may end on the boundary
@@ -200,12 +202,15 @@ def shut_stretches(
     aisles: RowAisles,
     planting: Planting,
     shut: Callable[[NDArray[np.object_]], NDArray[np.bool_]],
+    *,
+    whole: bool = False,
 ) -> Blocked:
     """Return the stretches of rows whose strip to the aisle is shut, headlands included.
 
     `shut` tells of shapes ``(k,)`` whether they are; it is asked of long strips first, and of
-    fine ones where these are.
+    fine ones where these are. The `whole` strip reaches to both aisles, whichever is needed.
     """
+    sides = _BOTH if whole or planting.faces == 2 else _ONE
     far_m = planting.headland_m + 1.0
     plant_m = float(rows.spacings(planting)[:, 1].min())
     coarse_m = 16 * plant_m
@@ -213,13 +218,13 @@ def shut_stretches(
     k, row = runs(np.zeros(len(n), np.int64), n)
     from_m = np.asarray(k * coarse_m - far_m, np.float64)
     to_m: Float = np.minimum(from_m + coarse_m, rows.lines.length_m[row] + far_m)
-    hit = np.flatnonzero(shut(_strips(rows, aisles, planting, (row, from_m, to_m), 8)))
+    hit = np.flatnonzero(shut(_strips(rows, aisles, sides, (row, from_m, to_m), 8)))
     m = int(np.ceil(coarse_m / (_FINE * plant_m)))
     j, of = runs(np.zeros(len(hit), np.int64), np.full(len(hit), m))
     row, step = row[hit][of], ((to_m - from_m)[hit] / m)[of]
     from_m = from_m[hit][of] + j * step
     to_m = from_m + step
-    shut_ones = np.flatnonzero(shut(_strips(rows, aisles, planting, (row, from_m, to_m), 1)))
+    shut_ones = np.flatnonzero(shut(_strips(rows, aisles, sides, (row, from_m, to_m), 1)))
     row, from_m, to_m = row[shut_ones], from_m[shut_ones], to_m[shut_ones]
     if not len(row):
         return Blocked.nowhere()
@@ -232,7 +237,7 @@ def shut_stretches(
 def _strips(
     rows: RowLines,
     aisles: RowAisles,
-    planting: Planting,
+    sides: int,
     stretches: tuple[Int, Float, Float],
     steps: int,
 ) -> NDArray[np.object_]:
@@ -243,7 +248,7 @@ def _strips(
     many = np.repeat(row, steps + 1)
     on_row = rows.lines.points(many, places.ravel())
     left = _foot(aisles, many, on_row, _LEFT)
-    right = _foot(aisles, many, on_row, _RIGHT) if planting.faces == 2 else on_row
+    right = _foot(aisles, many, on_row, _RIGHT) if sides == _BOTH else on_row
     shape = (len(row), steps + 1, 2)
     ring = np.concatenate([right.reshape(shape), left.reshape(shape)[:, ::-1]], axis=1)
     return np.asarray(shapely.polygons(np.concatenate([ring, ring[:, :1]], axis=1)), np.object_)

@@ -125,10 +125,12 @@ def _laid(field: Field, ground: _BlockGround, frame: Frame) -> LaidRows:
     if len(lines) == 1 and is_straight(lines[0], ground.planting.row_spacing_m):
         lines = []
     if lines:
-        if len(lines) == 1:
+        whole = len(lines) == 1
+        if whole:
             lines = copies(lines[0], area, ground.planting.row_spacing_m)
         there = [frame.xy_m(own.lonlat(line)) for line in lines]
-        laid, planting = rows_along(there, frame.geometry_m(ground.area), ground.planting)
+        there_m = frame.geometry_m(ground.area)
+        laid, planting = rows_along(there, there_m, ground.planting, whole=whole)
         spacing_m = laid.rows.spacings(planting)
         laid = laid._replace(rows=laid.rows._replace(spacing_m=spacing_m))
     else:

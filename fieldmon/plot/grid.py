@@ -291,6 +291,25 @@ def row_corners(grid: PlantGrid) -> list[NDArray[np.float64]]:
     ]
 
 
+def before_rows(
+    grid: PlantGrid, row: NDArray[np.integer], beyond_m: float | None = None
+) -> NDArray[np.float64]:
+    """Return a place ``(k, 2)`` in line with each row, before its first plant.
+
+    As far as its lane reaches, or `beyond_m` from that plant.
+    """
+    first = grid.row_start[row]
+    back_m = grid.lane_x_m[row, 0] - grid.along_m[first]
+    if beyond_m is not None:
+        back_m = np.full(len(row), -beyond_m)
+    if grid.aisles_m is None or grid.aisle is None:
+        straight: NDArray[np.float64] = grid.xy_m[first] + np.stack([back_m, 0 * back_m], axis=1)
+        return straight
+    ahead = grid.aisles_m.ahead(grid.aisle[row], grid.lane_x_m[row, 0])
+    before: NDArray[np.float64] = grid.xy_m[first] + back_m[:, None] * ahead
+    return before
+
+
 def nearest_plants(
     grid: PlantGrid, lonlat: NDArray[np.float64], max_m: float
 ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:

@@ -144,12 +144,14 @@ def _drawn_rows(field: Field, planting: Planting) -> PlantGrid | None:
     frame = field.frame(rows_from_lines(field).bearing_deg)
     lines = [shapely.get_coordinates(line) for line in frame.geometry_m(field.row_lines).geoms]
     area = frame.geometry_m(field.drivable())
-    if len(lines) == 1:
+    whole = len(lines) == 1
+    if whole:
         if is_straight(lines[0], planting.row_spacing_m):
             return None
         check_size(field.name, area, planting)
         lines = copies(lines[0], area, planting.row_spacing_m)
-    return lay_along(field.name, frame, lines, Ground(area, _obstacles(field, frame)), planting)
+    ground = Ground(area, _obstacles(field, frame))
+    return lay_along(field.name, frame, lines, ground, planting, whole=whole)
 
 
 def found_planting(lonlat: Float, planting: Planting | None = None) -> Planting:

@@ -91,7 +91,13 @@ class LaidRows(NamedTuple):
 
 
 def lay_along(
-    name: str, frame: Frame, lines_m: list[Float], ground: Ground, planting: Planting
+    name: str,
+    frame: Frame,
+    lines_m: list[Float],
+    ground: Ground,
+    planting: Planting,
+    *,
+    whole: bool = False,
 ) -> PlantGrid:
     """Return plants along rows, wherever row, aisle and headlands fit into an area.
 
@@ -107,13 +113,16 @@ def lay_along(
         The area; None: plants stand on the whole of each line.
     planting
         Spacing of the plants, headland and faces. Rows are as far apart as they are.
+    whole
+        Whether the strips on both sides of a row must fit, as where straight rows are laid. Rows
+        that somebody drew may run along the boundary.
 
     Raises
     ------
     PlotError
         If there is no room for a plant.
     """
-    laid, planting = rows_along(lines_m, ground.area, planting)
+    laid, planting = rows_along(lines_m, ground.area, planting, whole=whole)
     if not len(laid.plants[0]):
         raise PlotError(
             f"A plot must have room for one plant on its rows, but {name!r} has none: rows end "
@@ -125,7 +134,7 @@ def lay_along(
 
 
 def rows_along(
-    lines_m: list[Float], area: shapely.Geometry | None, planting: Planting
+    lines_m: list[Float], area: shapely.Geometry | None, planting: Planting, *, whole: bool
 ) -> tuple[LaidRows, Planting]:
     """Return plants along rows as `lay_along` does, and the planting with their distance."""
     drawn = sorted_rows(Polylines.each(lines_m), _REACH * planting.row_spacing_m)
@@ -133,14 +142,18 @@ def rows_along(
         planting = replace(planting, row_spacing_m=drawn.spacing_m)
     rows = RowLines(drawn.lines, drawn.block)
     aisles = row_aisles(rows, planting)
-    blocked = _outside(rows, aisles, area, planting)
+    blocked = _outside(rows, aisles, (area, whole), planting)
     return LaidRows(rows, aisles, blocked, _filled(rows.lines, blocked, planting)), planting
 
 
 def _outside(
-    rows: RowLines, aisles: RowAisles, area: shapely.Geometry | None, planting: Planting
+    rows: RowLines,
+    aisles: RowAisles,
+    ground: tuple[shapely.Geometry | None, bool],
+    planting: Planting,
 ) -> Blocked:
     """Return the stretches of rows that are not wholly on an area with their aisles."""
+    area, whole = ground
     if area is None:
         return Blocked.nowhere()
     area = shapely.buffer(area, _EDGE_M)
@@ -150,7 +163,7 @@ def _outside(
         out: NDArray[np.bool_] = ~np.asarray(shapely.covers(area, shapes))
         return out
 
-    return shut_stretches(rows, aisles, planting, shut)
+    return shut_stretches(rows, aisles, planting, shut, whole=whole)
 
 
 def _filled(lines: Polylines, blocked: Blocked, planting: Planting) -> tuple[Float, Int]:

@@ -576,7 +576,7 @@ def _round_corners(net: _Net, needed: Index, obstacles: Obstacles, where: Where)
     Each way has corners of its own: if two shared one, they would be a way off the plot between
     places of one part.
     """
-    corners_m = obstacles.corners(where)
+    corners_m = np.concatenate([obstacles.corners(where), _beside_stranded(net, needed)])
     while len(corners_m) and net.apart(needed):
         part = net.component()
         for own in np.unique(part[needed]):
@@ -592,6 +592,23 @@ def _round_corners(net: _Net, needed: Index, obstacles: Obstacles, where: Where)
         chain = np.concatenate([[first], new, [last]])
         net = net.plus(corners_m[between], np.stack([chain[:-1], chain[1:]], axis=1))
     return net
+
+
+def _beside_stranded(net: _Net, needed: Index) -> Float:
+    """Return the places at row ends that are off the plot, near those that cannot be reached.
+
+    A row along the boundary may be passed at its end only off the plot.
+    """
+    part = net.component()
+    idle = np.flatnonzero(~np.isin(part, part[needed]))
+    if not len(idle):
+        return np.empty((0, 2))
+    most = np.argmax(np.bincount(part[needed]))
+    stranded = needed[part[needed] != most]
+    far_m = cKDTree(net.xy_m[stranded]).query(net.xy_m[idle])[0]
+    near = idle[np.argsort(far_m, kind="stable")[:_MOST_CORNERS]]
+    places: Float = net.xy_m[near]
+    return places
 
 
 def _shortest_round(

@@ -114,7 +114,6 @@ def _ground(xy_m: Float, usual_m: float, field: Field | None) -> MultiPolygon:
             )
         if on_it.all():
             return area
-        beside = shapely.buffer(shapely.points(xy_m[~on_it]), _ABOUT * usual_m, quad_segs=4)
         no_go = frame.geometry_m(field.no_go)
-        about = shapely.difference(shapely.union_all([area, *beside]), no_go)
+        about = shapely.difference(shapely.union(area, about), no_go)
     return MultiPolygon([p for p in shapely.get_parts(about) if p.geom_type == "Polygon"])

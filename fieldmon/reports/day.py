@@ -220,10 +220,11 @@ def which(numbers: list[int], letters: int) -> str:
 
 
 def _found(facts: DayFacts) -> Table:
-    label = row_label(facts.route.aisles.grid, facts.found)
+    grid = facts.route.aisles.grid
+    label = row_label(grid, facts.found)
     rows = tuple(
         (
-            f"{line}" if facts.route.aisles.grid.in_rows else NO_ROW,
+            f"{line}" if grid.in_rows else NO_ROW,
             runs(label.number[label.line == line].tolist()),
         )
         for line in np.unique(label.line).tolist()

@@ -66,9 +66,8 @@ def test_neighbours_are_those_with_none_between_them(plot):
             radius_m = np.hypot(*(grid.xy_m[plant] - middle))
             others = np.delete(grid.xy_m, [plant, other], axis=0)
             assert np.hypot(*(others - middle).T).min() >= radius_m - 1e-9
-            assert (
-                plant in grid.across_plant[grid.across_start[other] : grid.across_start[other + 1]]
-            )
+            low, high = grid.across_start[other : other + 2]
+            assert plant in grid.across_plant[low:high]
     assert not len(grid.along_plant)
 
 

@@ -10,6 +10,7 @@ import shapely
 from pydeck import Layer
 
 from fieldmon.infestation.hotspots import outlines_m
+from fieldmon.plot.grid import row_corners
 
 from ...words import texts
 from .colours import GATE, HOT, HOT_IN_DARK, TRUTH, TRUTH_IN_DARK
@@ -49,6 +50,32 @@ def with_hot(layers: list[Layer], spots: list[Layer]) -> list[Layer]:
     points = [k for k, layer in enumerate(layers) if layer.type == "PlantsLayer"]
     under = min([*points, len(layers)])
     return [*layers[:under], *spots[:1], *layers[under:], *spots[1:]]
+
+
+def row_lines(grid: PlantGrid, name: str, *, dark: bool = False) -> list[Layer]:
+    """Return the rows as thin lines: those of the plot, or in the colour of drawing those tried."""
+    tried = name == "rows-tried"
+    plain = [230, 230, 230, 120] if dark else [60, 60, 60, 110]
+    rows = [
+        {"path": np.round(grid.frame.lonlat(corners), 7).tolist()} for corners in row_corners(grid)
+    ]
+    return [
+        Layer("PathLayer", rows, id=name, get_path="path", get_color=[*GATE] if tried else plain,
+              get_width=0.25, width_min_pixels=2 if tried else 1)
+    ]  # fmt: skip
+
+
+def blocks(field: Field, *, dark: bool = False) -> list[Layer]:
+    """Return the outlines of the blocks, if the plot has several."""
+    if len(field.blocks) < 2:
+        return []
+    rings = shapely.get_rings(shapely.get_parts([block.area for block in field.blocks]))
+    rows = [{"path": np.round(shapely.get_coordinates(ring), 7).tolist()} for ring in rings]
+    return [
+        Layer("PathLayer", rows, id="blocks", get_path="path",
+              get_color=[230, 230, 230] if dark else [40, 40, 40], get_width=0.4,
+              width_min_pixels=2)
+    ]  # fmt: skip
 
 
 def paths(field: Field) -> list[Layer]:

@@ -13,6 +13,7 @@ from fieldmon.plot.grid import row_corners
 
 from ..show.map_view import Drawable
 from ..show.maps import marks
+from ..show.maps.colours import GATE
 from ..state import cached, notices, widget_memory
 from ..state.plot_edits import ROW, Edit
 from ..state.plot_files import draw, drawn, laid
@@ -76,7 +77,7 @@ def layers(choices: Choices) -> list[Layer]:
     if plot is None:
         return []
     key = f"tried {choices.plot_key} {drawn(choices.plot_key)} {_points(choices)}"
-    return cached.layers(key, lambda: marks.row_lines(plot.grid, "rows-tried"))
+    return cached.layers(key, lambda: [marks.rows(plot.grid, "rows-tried", GATE)])
 
 
 def drop(choices: Choices) -> None:

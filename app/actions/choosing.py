@@ -193,7 +193,7 @@ def _which(file: File, names: list[str]) -> int:
 
 
 def _work() -> tuple[Robot, str]:
-    with st.expander(texts.WHO):
+    with st.expander(texts.WHO, expanded=True):
         who = widget_memory.show(
             st.segmented_control, texts.WHO, list(changing.WHO), key="who",
             default=changing.ROBOT, required=True, label_visibility="collapsed",

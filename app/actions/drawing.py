@@ -25,6 +25,7 @@ from . import bending
 if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
     from fieldmon.plot.field import Field
+    from fieldmon.plot.plot import Plot
 
     from ..state.choices import Choices
     from ..state.plot_edits import Points
@@ -122,12 +123,17 @@ def undo_last(plot_key: str) -> None:
                   args=(plot_key,))  # fmt: skip
 
 
-def content(choices: Choices, records: Observations) -> tuple[MapContent, MapAnswers]:
-    """Return the map on which the gate, paths and no-go areas are drawn, and who hears of it."""
+def content(
+    choices: Choices, records: Observations, before: Plot | None = None
+) -> tuple[MapContent, MapAnswers]:
+    """Return the map on which the gate, paths and no-go areas are drawn, and who hears of it.
+
+    The plot as it was `before` the last change lies under it.
+    """
     field, kind = choices.plot.field, _kind()
     layers = [
-        deck.boundary(field, dark=choices.dark), *_plain_plants(choices), *_row_lines(choices),
-        *marks.blocks(field, dark=choices.dark), *marks.paths(field),
+        *_as_it_was(before), deck.boundary(field, dark=choices.dark), *_plain_plants(choices),
+        *_row_lines(choices), *marks.blocks(field, dark=choices.dark), *marks.paths(field),
         *marks.records(records, dark=choices.dark),
     ]  # fmt: skip
     if field.gate is not None:
@@ -154,7 +160,8 @@ def _plain_plants(choices: Choices) -> list:
     grid = choices.plot.grid
 
     def make() -> list:
-        return [plant_layers.plants(grid, colours.plain(len(grid)))]
+        plants = plant_layers.plants(grid, colours.plain(len(grid)))
+        return [marks.rows(grid, "row-lines", colours.ROWS), plants]
 
     return cached.layers(f"plain {choices.key}", make)
 
@@ -164,11 +171,16 @@ def _row_lines(choices: Choices) -> list:
     grid = choices.plot.grid
     if not grid.in_rows:
         return []
+    colour = colours.ROWS_IN_DARK if choices.dark else colours.ROWS
+    key = f"row lines {choices.key} {choices.dark}"
+    return cached.layers(key, lambda: [marks.rows(grid, "row-lines", colour)])
 
-    def make() -> list:
-        return marks.row_lines(grid, "row-lines", dark=choices.dark)
 
-    return cached.layers(f"row lines {choices.key} {choices.dark}", make)
+def _as_it_was(before: Plot | None) -> list:
+    if before is None:
+        return []
+    outline = deck.outline(before.field, "boundary-before", colours.BEFORE)
+    return [marks.rows(before.grid, "rows-before", colours.BEFORE), outline]
 
 
 def _corners(field: Field) -> tuple[tuple[float, float], ...]:

@@ -26,7 +26,8 @@ PARTS = {
     "hot": ("hot", "hot-edge"),
     "records": ("records",),
     "numbers": (),
-    "rows": (),
+    "rows": ("row-lines",),
+    "before": ("rows-before", "boundary-before"),
     "backdrop": ("backdrop",),
 }
 # more days than these are a film in steps of several

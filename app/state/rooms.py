@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 import streamlit as st
 
-from . import widget_memory
-
 
 @dataclass(frozen=True)
 class Room:
@@ -27,7 +25,16 @@ ROOMS = {
 }
 
 
+#: the word in the address that names a part, as the one that a phone is sent to
+KEY = "part"
 _TURN = "turn to"
+
+
+def begin_from_address() -> None:
+    """Show the part that the address names, once."""
+    part = st.query_params.pop(KEY, None)
+    if any(part in room.parts for room in ROOMS.values()):
+        open_part(part)
 
 
 def turn_to(name: str) -> None:
@@ -49,13 +56,6 @@ def room_of(part: str) -> str:
 def key(name: str) -> str:
     """Return the key of the box that says which part of a room is shown."""
     return f"part {name}"
-
-
-def part_of(name: str) -> str:
-    """Return which part of a room is shown."""
-    parts = ROOMS[name].parts
-    chosen = widget_memory.value(key(name))
-    return chosen if chosen in parts else parts[0]
 
 
 def open_part(part: str) -> None:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import pandas as pd
 import streamlit as st
 
+from ..actions import ways_in
 from ..show import estate_map, field_map
 from ..show.map_view import MapAnswers
-from ..state import estate, plot_source, rooms
+from ..state import estate, rooms
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -22,11 +23,7 @@ def show() -> None:
     plots, problems = estate.plots()
     with st.container(key="lead"):
         st.markdown(texts.PLOTS_TITLE.format(n=len(plots)))
-    with st.container(horizontal=True):
-        for name, icon, source in (("sample", "park", plot_source.SAMPLE),
-                                   ("file", "upload_file", plot_source.FILES)):  # fmt: skip
-            st.button(texts.WAYS_IN[name], icon=f":material/{icon}:", key=f"way_{name}",
-                      on_click=_begin, args=(source,))  # fmt: skip
+    ways_in.show()
     for problem in problems:
         st.warning(problem)
     field_map.want(estate_map.content(plots), MapAnswers(tapped=partial(_tapped, plots)))
@@ -42,11 +39,6 @@ def show() -> None:
         on_select=partial(_picked, plots),
         column_config={names["expected"]: st.column_config.NumberColumn(format="%.0f")},
     )  # fmt: skip
-
-
-def _begin(source: str) -> None:
-    plot_source.open_season(source)
-    rooms.turn_to("today" if source == plot_source.SAMPLE else "plot")
 
 
 def _open(plot: PlotState) -> None:

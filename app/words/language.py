@@ -17,6 +17,8 @@ from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
 from fieldmon.compute.wording import Worded
+from fieldmon.reports.tongue import ENGLISH as ENGLISH_TONGUE
+from fieldmon.reports.tongue import Tongue
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -158,7 +160,7 @@ def _in_language(language: str, context: str, value: Any) -> Any:  # noqa: ANN40
 
 
 @cache
-def _catalogue(language: str) -> gettext.GNUTranslations:
+def _catalogue(language: str) -> _Catalogue:
     """Return a language's texts, read once."""
     from babel.messages.mofile import write_mo  # noqa: PLC0415 - who reads English needs none
     from babel.messages.pofile import read_po  # noqa: PLC0415
@@ -167,9 +169,18 @@ def _catalogue(language: str) -> gettext.GNUTranslations:
     with (FOLDER / f"{language}.po").open("rb") as file:
         write_mo(written, read_po(file, locale=language))
     written.seek(0)
-    found = gettext.GNUTranslations(written)
+    found = _Catalogue(written)
     found.add_fallback(_Unknown())
     return found
+
+
+class _Catalogue(gettext.GNUTranslations):
+    """A language's texts."""
+
+    def words(self) -> list[str]:
+        """Return all of them."""
+        texts_: dict[object, str] = self._catalog  # type: ignore[attr-defined]
+        return [*texts_.values()]
 
 
 class _Unknown(gettext.NullTranslations):
@@ -222,13 +233,38 @@ def _said(sentence: object, language: str) -> str | None:
         form = found.npgettext(LIBRARY, sentence.one, sentence.words, sentence.number)
     else:
         form = found.pgettext(LIBRARY, sentence.words)
+    if not form and _is_wordless(sentence.words):
+        form = sentence.words
     if not form:
         return None
+    if not sentence.values:  # whoever shows it fills its blanks
+        return form
     values = {
         name: value if (made := _said(value, language)) is None else made
         for name, value in sentence.values.items()
     }
     return _filled(form, language, (), values)
+
+
+def _is_wordless(words: str) -> bool:
+    """Return whether nothing is to be translated: numbers, signs, and other sentences."""
+    return not any(
+        letter.isalpha() for literal, *_ in Formatter().parse(words) for letter in literal
+    )
+
+
+@cache
+def tongue(language: str) -> Tongue:
+    """Return a language for reports."""
+    if language == ENGLISH:
+        return ENGLISH_TONGUE
+    found = _catalogue(language)
+
+    def say(sentence: str) -> str:
+        return _said(sentence, language) or str(sentence)
+
+    letters = "".join(sorted({*"".join(found.words()), *ENGLISH_TONGUE.letters}))
+    return Tongue(language, say, language in RIGHT_TO_LEFT, letters)
 
 
 # -- numbers and dates

@@ -42,6 +42,7 @@ RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
 PLANT_FILE = "Measured plant positions (optional)"
 ROWS_FILE = "Rows as lines, or their end posts (optional)"
 BLOCKS_FILE = "Blocks as areas, or lines that part the plot (optional)"
+FILES = "Files: the plot, pest records, measured plants"
 KEPT_FILE = "In use: {name}"
 FORGET_FILE = "Take it out"
 WHICH_PLOT = "Which plot"
@@ -92,7 +93,6 @@ BOUND_HELP = (
     "Whichever plants it visits, no route fixed in the morning can expect more finds. Who plans "
     "again after each find may find more."
 )
-DOWNLOAD = "Download the route (GeoJSON)"
 NO_STOPS = (
     "The working day is too short to reach a plant and come back. Give more hours below, under "
     "Who inspects."
@@ -101,7 +101,11 @@ MESSAGES = "What the import found"
 MESSAGES_NONE = "Nothing to report: the files were read as they are."
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
-CHOOSE_QUICK = "Most likely:"
+CHOOSE_ON_MAP = "Which of these is your plot? Click it on the map, or choose here."
+CHOOSE_OTHER, CHOOSE_NOWHERE = "Another answer", "leads nowhere"
+LEGEND_ZONE = "border of a time zone"
+ANSWERS_ALT = Plural("Map of {n} place where the plot could lie.",
+                     "Map of {n} places where the plot could lie.")  # fmt: skip
 LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
 UNDO_ANSWER = "Take back: {option} = {value}"
 SEVERITIES = {
@@ -175,7 +179,7 @@ LANGUAGE = "Language"
 MACHINE_MADE = "Translated by a machine; no native speaker has read it yet."
 UNITS = {"m": "m", "km": "km", "ft": "ft", "mi": "mi", "ha": "ha", "dunam": "dunam",
          "acre": "acre"}  # fmt: skip
-IN_UNIT, IN_HOURS = "{value} {unit}", "{hours} h"
+IN_HOURS = "{hours} h"
 IN_PERCENT = "{value} %"
 STOP_NUMBER = "stop"
 
@@ -205,7 +209,13 @@ PLOTS_TIP_NEW = "{name}: no season yet"
 PLOTS_SEEN = {0: "seen today", None: "never seen",
               "n": Plural("seen {n} day ago", "seen {n} days ago")}  # fmt: skip
 PLOTS_PICK = "Click a plot on the map, or a row here."
-WAYS_IN = {"sample": "Try the sample estate", "file": "Bring a plot of mine"}
+WAYS_IN = {"sample": "Try the sample", "file": "My plot", "season": "Open a season"}
+NO_SEASONS = (
+    "There is no season here yet. One begins with a plot: bring yours or try the sample, then "
+    "press Begin a season on Today. Seasons are files in the folder {folder}: one that was made "
+    "elsewhere is opened by putting it there."
+)
+TO_ROUTE = "Show today's route"
 
 # -- today
 PLANTS_COUNTED = Plural("{n} plant", "{n} plants")
@@ -216,9 +226,26 @@ BEGIN_NOTE = (
 )
 SEASON_NAME, BEGIN = "Name of the season", "Begin the season"
 BEGUN = "Season {name} has begun. Its file is {path}."
-START_SCOUTING, GIVE_OUT = "Start scouting", "Give this route out"
-GIVEN_OUT = "This route is kept with the season as given out for {day}."
-GIVE_OUT_HELP = "Keeps the route with the season, so that the report can hold it to what was done."
+START_SCOUTING = "Start scouting"
+YESTERDAY = "Yesterday"
+STEPS = {"look_back": "Day before", "plan": "Plan", "begin": "Keep it", "send": "Take along",
+         "record": "Record", "report": "Report", "next_day": "Next day"}  # fmt: skip
+STEP_BUTTONS = {"look_back": "Look back", "plan": "Use this plan", "begin": "Begin a season",
+                "send": "Send to phone", "record": "Record finds", "report": "Print (PDF)",
+                "next_day": "Plan the next day"}  # fmt: skip
+STEP_NOTHING = "nothing recorded"
+STEP_FOUND = Plural(
+    "{found} found on {inspected} plant", "{found} found on {inspected} plants", by="inspected"
+)
+PLAN_USED = "This is the plan for {day}: it is kept with the season."
+SEND_TITLE = "Take the route along"
+SEND_SCAN = "**Point the phone's camera here.** It opens the day's work, in the phone's language."
+SEND_ALT = "Picture with the address of the day's work, for a phone's camera."
+SEND_ALONE = (
+    "This page can be seen on this computer only, so a phone cannot open it. Take the route along "
+    "as a file; or let others in, as the documentation says, and come here by that address."
+)
+SEND_FILE = "**Or as a file**, for phones, robots and paper:"
 WHY, WHY_TODAY = "Why there", "today"
 CHANGED = "Since yesterday"
 CHANGED_FIRST = "This is the first day of the season; from tomorrow, changes stand here."
@@ -242,7 +269,7 @@ TODAY_DONE = Plural(
     "{inspected} plants inspected today so far, {found} found. The route shows the rest.",
     by="inspected",
 )
-OTHER_FORMATS, FORMAT, DOWNLOAD_AS = "Robot, phone, paper", "Format", "Download for {reader}"
+FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
 #: as `fieldmon.io.writers.handoff` says them, which takes long to load
 READERS = {
     "nav2": "robots with Nav2 (ROS 2)", "waypoints": "robots of any kind",
@@ -266,6 +293,8 @@ TIP_INFESTED, TIP_CORNER = "infested", "corner"
 # -- plot and records
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
 BEARING_IS, SPACING_IS = "Row bearing", "Rows / plants apart"
+BEFORE_NOTE = "The plot as it was before the last change is drawn in orange."
+BEFORE_DROP = "It is right now"
 FOUND_ROWS = "Leave a box empty to take what was found. Plants are laid again at once."
 FIXED = "The plants of a season are laid once and for all: its plant numbers stay valid."
 DRAW, DRAW_KIND = "Gate, paths, no-go areas, rows", "A click on the map sets"
@@ -324,8 +353,9 @@ UNDATED = "Records without a date are always shown."
 # -- the map of the field
 SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspected",
           "age": "days since inspected"}  # fmt: skip
-MAP_LAYERS = {"route": "route", "numbers": "stop numbers", "hot": "hot spots",
-              "records": "records", "rows": "row numbers", "backdrop": "picture"}  # fmt: skip
+MAP_LAYERS = {"before": "as it was before", "route": "route", "numbers": "stop numbers",
+              "hot": "hot spots", "records": "records", "rows": "row numbers",
+              "backdrop": "picture"}  # fmt: skip
 BACKDROP_TITLE, HOT_TITLE = "Picture of the ground", "Hot spots"
 BACKDROP = "Picture of the ground (GeoTIFF)"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
@@ -335,6 +365,8 @@ HISTORY_TREATED = (
     "It was found infested, and in this season plants found are taken as treated at once: from "
     "then on it counts as clean, and its chance grows again as insects come from its neighbours."
 )
+HISTORY_STOP = "Stop {n} of {all} on the day's route, at {time}."
+HISTORY_NO_STOP = "Not on the day's route."
 HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
 HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}

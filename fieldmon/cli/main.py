@@ -7,6 +7,7 @@ import typer
 from fieldmon.cli import problems, study
 from fieldmon.cli.app import open_app
 from fieldmon.cli.change import change
+from fieldmon.cli.decide import decide
 from fieldmon.cli.init import init
 from fieldmon.cli.plan import plan
 from fieldmon.cli.plots import plots
@@ -35,6 +36,7 @@ app.command()(record)
 app.command()(status)
 app.command()(report)
 app.command()(undo)
+app.command()(decide)
 app.command()(treat)
 app.command()(change)
 app.command()(salvage)

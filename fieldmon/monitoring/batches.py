@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import touch
@@ -99,8 +100,11 @@ def undo(db: sqlite3.Connection, number: int | None) -> str:
     if not waiting:
         what = "to undo" if number is None else f"called batch {number} that still counts"
         raise SettingError(
-            f"There must be something {what}, but there is nothing. "
-            "See what was recorded with: fieldmon status --batches"
+            worded(
+                "There must be something {what}, but there is nothing. See "
+                "what was recorded with: fieldmon status --batches",
+                what=what,
+            )
         )
     batch = waiting[0]
     table = _TABLE_OF[batch.kind]
@@ -119,8 +123,12 @@ def undo_one(db: sqlite3.Connection, inspection: int) -> str:
     ).fetchone()
     if row is None:
         raise SettingError(
-            f"There must be an inspection {inspection} that still counts, but there is none. "
-            "The layer inspections of the season's file shows their numbers (fid)."
+            worded(
+                "There must be an inspection {inspection} that still counts, "
+                "but there is none. The layer inspections of the season's "
+                "file shows their numbers (fid).",
+                inspection=inspection,
+            )
         )
     db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
     left = db.execute(

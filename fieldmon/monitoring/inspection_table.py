@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.compute.digest import digest
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
@@ -84,27 +85,44 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
     wrong = np.flatnonzero((plant < 0) | (plant >= len(grid)))
     if wrong.size:
         raise ObservationError(
-            f"A plant's number must be 0 to {len(grid) - 1} on this plot, but result "
-            f"{wrong[0] + 1} is of plant {plant[wrong[0]]}. Is it from another plot?"
+            worded(
+                "A plant's number must be 0 to {value} on this plot, but "
+                "result {found} is of plant {plant}. Is it from another "
+                "plot?",
+                value=len(grid) - 1,
+                found=wrong[0] + 1,
+                plant=plant[wrong[0]],
+            )
         )
     if np.isnat(inspections.date).any():
         first = int(np.flatnonzero(np.isnat(inspections.date))[0])
         raise ObservationError(
-            f"Every result must have a date, but result {first + 1} has none. "
-            "Give the day of the work."
+            worded(
+                "Every result must have a date, but result {value} has none. "
+                "Give the day of the work.",
+                value=first + 1,
+            )
         )
     if not np.isin(inspections.result, list(RESULT_NAMES)).all():
-        raise ObservationError(f"A result must be one of {', '.join(_CODES)}.")
+        raise ObservationError(worded("A result must be one of {names}.", names=", ".join(_CODES)))
     bad = np.flatnonzero(~(np.isnan(inspections.count) | (inspections.count >= 0)))
     if bad.size:
         raise ObservationError(
-            f"A count must be 0 or more, but result {bad[0] + 1} says {inspections.count[bad[0]]}."
+            worded(
+                "A count must be 0 or more, but result {value} says {found}.",
+                value=bad[0] + 1,
+                found=inspections.count[bad[0]],
+            )
         )
     late = np.flatnonzero(~(np.isnan(inspections.second) | (inspections.second < _DAY_S)))
     if late.size:
         raise ObservationError(
-            f"A time must lie within its day, but result {late[0] + 1} is "
-            f"{inspections.second[late[0]]} seconds after midnight."
+            worded(
+                "A time must lie within its day, but result {value} is "
+                "{found} seconds after midnight.",
+                value=late[0] + 1,
+                found=inspections.second[late[0]],
+            )
         )
 
 

@@ -12,6 +12,7 @@ import shapely
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import worded
+from fieldmon.decisions.map_verdict import map_verdict
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.hotspots import record_states
 from fieldmon.infestation.observations import Observations, usable
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
+    from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.batches import Batch
@@ -352,6 +354,19 @@ class Season:
             contents = self._now()
             day = contents.settings.day(on)
             return contents.history.evening(contents.morning(day), day).chance
+
+    def verdict(self, on: date, level: float, sure: float = 0.9) -> MapVerdict:
+        """Return whether treating pays after a day's work; see `fieldmon.decisions`.
+
+        Plants that were found and not treated count: they are infested.
+        """
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            evening = contents.history.evening(contents.morning(day), day)
+        return map_verdict(
+            contents.history.grid, evening.chance, level, evening.pair_chance, sure=sure
+        )
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.infestation.spread import Spread
@@ -57,8 +58,12 @@ class MonitoringSettings:
     def __post_init__(self) -> None:
         if len(self.decides().inspection_times(self.robot).detects) > 1:
             raise SettingError(
-                "The sampler of a season must look equally long at every plant, for that is what "
-                f"its findings are read by, but {self.sampler!r} chooses. Take another sampler."
+                worded(
+                    "The sampler of a season must look equally long at every "
+                    "plant, for that is what its findings are read by, but "
+                    "{sampler!r} chooses. Take another sampler.",
+                    sampler=self.sampler,
+                )
             )
 
     def decides(self) -> Sampler:
@@ -70,13 +75,24 @@ class MonitoringSettings:
         number = (on - self.begins).days
         if number < 0:
             raise SettingError(
-                f"The day must be of this season, which began on {self.begins}, but it is {on}. "
-                "Check the date."
+                worded(
+                    "The day must be of this season, which began on {begins}, "
+                    "but it is {on}. Check the date.",
+                    begins=self.begins,
+                    on=on,
+                )
             )
         if number > MOST_DAYS:
             raise SettingError(
-                f"A season lasts {MOST_DAYS} days at most, but {on} is {number} days after it "
-                f"began on {self.begins}. Check the date, or begin a new season."
+                worded(
+                    "A season lasts {most_days} days at most, but {on} is "
+                    "{number} days after it began on {begins}. Check the "
+                    "date, or begin a new season.",
+                    most_days=MOST_DAYS,
+                    on=on,
+                    number=number,
+                    begins=self.begins,
+                )
             )
         return number
 
@@ -126,6 +142,10 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
         )
     except (KeyError, TypeError, ValueError, FieldmonError) as error:
         raise FileProblem(
-            f"The season's settings must be as fieldmon wrote them, but they are not ({error}). "
-            "Was the file changed by hand? Save what can be saved with: fieldmon salvage"
+            worded(
+                "The season's settings must be as fieldmon wrote them, but "
+                "they are not ({error}). Was the file changed by hand? Save "
+                "what can be saved with: fieldmon salvage",
+                error=error,
+            )
         ) from error

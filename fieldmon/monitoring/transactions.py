@@ -9,6 +9,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.monitoring.geopackage import APPLICATION_ID
 from fieldmon.monitoring.schema import MIGRATIONS, VERSION, lay_out
@@ -52,24 +53,39 @@ class Store:
         self.path = Path(path).absolute()
         if not self.path.is_file():
             raise FileProblem(
-                f"{path} must be the file of a season, but there is none. "
-                "Check the name, or begin one with: fieldmon init"
+                worded(
+                    "{path} must be the file of a season, but there is none. "
+                    "Check the name, or begin one with: fieldmon init",
+                    path=path,
+                )
             )
         if not _begins_as_database(self.path):
             raise FileProblem(
-                f"{path} must be the file of a season (a GeoPackage), but it does not begin as "
-                "one. Check the name; if it was a season, go back to a copy of it."
+                worded(
+                    "{path} must be the file of a season (a GeoPackage), but "
+                    "it does not begin as one. Check the name; if it was a "
+                    "season, go back to a copy of it.",
+                    path=path,
+                )
             )
         with self.reading() as db:
             version = _version(db)
         if version is None:
             raise FileProblem(
-                f"{path} must be the file of a season, but it was not made by fieldmon init."
+                worded(
+                    "{path} must be the file of a season, but it was not made by fieldmon init.",
+                    path=path,
+                )
             )
         if version > VERSION:
             raise FileProblem(
-                f"{path} was made by a newer fieldmon (format {version}; this one reads up to "
-                f"{VERSION}). Update fieldmon."
+                worded(
+                    "{path} was made by a newer fieldmon (format {version}; "
+                    "this one reads up to {ours}). Update fieldmon.",
+                    path=path,
+                    version=version,
+                    ours=VERSION,
+                )
             )
         if version < VERSION:
             with self.writing() as db:
@@ -82,13 +98,21 @@ class Store:
         target = Path(path).absolute()
         if target.exists():
             raise FileProblem(
-                f"{path} must be a new file, but it exists already. A season is never overwritten: "
-                "choose another name, or move the old file away."
+                worded(
+                    "{path} must be a new file, but it exists already. A "
+                    "season is never overwritten: choose another name, or "
+                    "move the old file away.",
+                    path=path,
+                )
             )
         if not target.parent.is_dir():
             raise FileProblem(
-                f"The folder {target.parent} must exist before {target.name} can be made in it. "
-                "Make it, or choose another one."
+                worded(
+                    "The folder {parent} must exist before {name} can be made "
+                    "in it. Make it, or choose another one.",
+                    parent=target.parent,
+                    name=target.name,
+                )
             )
         with _beside(target) as folder:
             draft = Path(folder) / "season.gpkg"
@@ -102,7 +126,9 @@ class Store:
             try:
                 os.link(draft, target)  # unlike a rename it never replaces
             except FileExistsError:
-                raise FileProblem(f"{path} was made by someone else just now.") from None
+                raise FileProblem(
+                    worded("{path} was made by someone else just now.", path=path)
+                ) from None
             except OSError:
                 draft.replace(target)  # a file system without links
 
@@ -137,8 +163,12 @@ def _beside(target: Path) -> Iterator[str]:
         draft = tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent)
     except OSError as error:
         raise FileProblem(
-            f"{target.parent} must be a folder that can be written to, but it is not "
-            f"({error.strerror}). Choose another one."
+            worded(
+                "{parent} must be a folder that can be written to, but it is "
+                "not ({strerror}). Choose another one.",
+                parent=target.parent,
+                strerror=error.strerror,
+            )
         ) from error
     with draft as folder:
         yield folder
@@ -164,7 +194,11 @@ def _begins_as_database(path: Path) -> bool:
             head = file.read(len(_MAGIC))
     except OSError as error:
         raise FileProblem(
-            f"{path} must be readable, but it is not ({error.strerror}). Check its permissions."
+            worded(
+                "{path} must be readable, but it is not ({strerror}). Check its permissions.",
+                path=path,
+                strerror=error.strerror,
+            )
         ) from error
     return not head or head == _MAGIC
 
@@ -196,32 +230,53 @@ def _sentences(path: Path) -> Iterator[None]:
         yield
     except OverflowError as error:
         raise SettingError(
-            f"A number must be small enough for {path}, but one is too large ({error}). "
-            "Nothing was changed: give a smaller one."
+            worded(
+                "A number must be small enough for {path}, but one is too "
+                "large ({error}). Nothing was changed: give a smaller one.",
+                path=path,
+                error=error,
+            )
         ) from error
     except sqlite3.Error as error:
         text = str(error)
         if "locked" in text:
             raise FileProblem(
-                f"{path} must be free to be written, but another program has held it for "
-                f"{_PATIENCE_S:.0f} seconds. Close that program (QGIS, a backup?) and try again; "
-                "nothing was changed."
+                worded(
+                    "{path} must be free to be written, but another program "
+                    "has held it for {patience_s:.0f} seconds. Close that "
+                    "program (QGIS, a backup?) and try again; nothing was "
+                    "changed.",
+                    path=path,
+                    patience_s=_PATIENCE_S,
+                )
             ) from error
         if "full" in text:
             raise FileProblem(
-                f"There must be room on the disk for {path}, but it is full. Nothing was changed: "
-                "make room and try again."
+                worded(
+                    "There must be room on the disk for {path}, but it is "
+                    "full. Nothing was changed: make room and try again.",
+                    path=path,
+                )
             ) from error
         if "readonly" in text or "unable to open" in text:
             raise FileProblem(
-                f"{path} must be a file that can be written, but it cannot ({text}). "
-                "Check its permissions and those of its folder; nothing was changed."
+                worded(
+                    "{path} must be a file that can be written, but it cannot "
+                    "({text}). Check its permissions and those of its folder; "
+                    "nothing was changed.",
+                    path=path,
+                    text=text,
+                )
             ) from error
         raise _damaged(path, text) from error
 
 
 def _damaged(path: Path, why: str) -> FileProblem:
     return FileProblem(
-        f"{path} is damaged ({why}). Save what can be saved into a new file with: "
-        f'fieldmon salvage "{path}" --output rescued.gpkg'
+        worded(
+            "{path} is damaged ({why}). Save what can be saved into a new "
+            'file with: fieldmon salvage "{path}" --output rescued.gpkg',
+            path=path,
+            why=why,
+        )
     )

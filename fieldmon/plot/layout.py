@@ -91,8 +91,11 @@ class Planting:
         for name in ("row_spacing_m", "plant_spacing_m", "headland_m"):
             if not 0.05 <= getattr(self, name) <= 1000.0:
                 raise SettingError(
-                    f"A planting's {name} must be 0.05 to 1000 metres, "
-                    f"but it is {getattr(self, name)}."
+                    worded(
+                        "A planting's {name} must be 0.05 to 1000 metres, but it is {value}.",
+                        name=name,
+                        value=getattr(self, name),
+                    )
                 )
         if self.row_bearing_deg is not None and not np.isfinite(self.row_bearing_deg):
             raise SettingError(
@@ -247,8 +250,13 @@ def _held_area(field: Field, frame: Frame, xy_m: Float) -> MultiPolygon:
     area = frame.geometry_m(field.drivable())
     if not shapely.contains_xy(area, xy_m).any():
         raise PlotError(
-            f"Measured plants must stand on plot {field.name!r}, but none of {len(xy_m)} does. "
-            "Choose the plants' own plot, or check the coordinate systems."
+            worded(
+                "Measured plants must stand on plot {name!r}, but none of {n} "
+                "does. Choose the plants' own plot, or check the coordinate "
+                "systems.",
+                name=field.name,
+                n=len(xy_m),
+            )
         )
     return area
 
@@ -360,10 +368,13 @@ def _two_faced(frame: Frame, pieces: Pieces, area: MultiPolygon, planting: Plant
 
 def _corridors(lane_y: Float, lane_x: Float) -> NDArray[np.intp]:
     """Return a number for each row: the same where lanes of one aisle touch or overlap."""
-    order = np.lexsort((lane_x[:, 0], np.round(lane_y, 3)))
-    y, low, high = lane_y[order], lane_x[order, 0], lane_x[order, 1]
-    new_aisle = np.diff(y, prepend=-np.inf) > 1e-3
-    shift = np.cumsum(new_aisle) * (high.max() - low.min() + 1.0)
+    # the y of one aisle, come from the row on either side, may differ in its last digits
+    across = np.argsort(lane_y, kind="stable")
+    aisle = np.empty(len(across), np.intp)
+    aisle[across] = np.cumsum(np.diff(lane_y[across], prepend=-np.inf) > 1e-3)
+    order = np.lexsort((lane_x[:, 0], aisle))
+    low, high = lane_x[order, 0], lane_x[order, 1]
+    shift = aisle[order] * (high.max() - low.min() + 1.0)
     reached = np.maximum.accumulate(high + shift)
     apart = np.append(True, (low + shift)[1:] > reached[:-1] + SLACK_M)
     corridor = np.empty(len(order), np.intp)

@@ -11,6 +11,7 @@ from shapely import LineString, Point
 from shapely.ops import substring
 
 from fieldmon.compute.arrays import offsets, runs
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.bent_layout import (
     Blocked,
@@ -125,9 +126,14 @@ def lay_along(
     laid, planting = rows_along(lines_m, ground.area, planting, whole=whole)
     if not len(laid.plants[0]):
         raise PlotError(
-            f"A plot must have room for one plant on its rows, but {name!r} has none: rows end "
-            f"{planting.headland_m:g} m (the headland) before its boundary. Choose a smaller "
-            "headland, or check the rows and the boundary."
+            worded(
+                "A plot must have room for one plant on its rows, but "
+                "{name!r} has none: rows end {headland_m:g} m (the headland) "
+                "before its boundary. Choose a smaller headland, or check the "
+                "rows and the boundary.",
+                name=name,
+                headland_m=planting.headland_m,
+            )
         )
     known = ground._replace(blocked=laid.blocked, aisles=laid.aisles)
     return bent_grid(frame, laid.rows, laid.plants, known, planting)

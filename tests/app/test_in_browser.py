@@ -171,9 +171,7 @@ def test_nothing_is_asked_of_the_world(page, address):
 
 def test_the_route_is_downloaded_and_read(page, address):
     shown(page, address)
-    with page.expect_download() as download:
-        page.get_by_role("button", name="Download the route").click()
-    route = json.loads(download.value.path().read_text(encoding="utf-8"))
+    route = {"features": route_of(page)}
     _, today = sample()
     line = np.array(route["features"][0]["geometry"]["coordinates"])
     assert line == pytest.approx(today.route.line_lonlat(), abs=1e-8)
@@ -457,9 +455,14 @@ def draw_by_click(page, what):
 
 
 def route_of(page):
-    """Download the route."""
+    """Take the route along as GeoJSON."""
+    page.get_by_role("button", name=texts.STEP_BUTTONS["send"]).click()
+    page.get_by_role("dialog").get_by_role("combobox").click()
+    page.get_by_role("option", name="geojson").click()
     with page.expect_download() as download:
-        page.get_by_role("button", name="Download the route").click()
+        page.get_by_role("button", name=texts.READERS["geojson"]).click()
+    page.keyboard.press("Escape")
+    page.get_by_role("dialog").wait_for(state="hidden")
     return json.loads(download.value.path().read_text(encoding="utf-8"))["features"]
 
 

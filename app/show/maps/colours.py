@@ -30,10 +30,13 @@ ROUTE_IN_DARK: Colour = (110, 220, 255)
 CASING: Colour = (255, 255, 255)
 CASING_IN_DARK: Colour = (10, 20, 26)
 GATE: Colour = (0, 140, 90)
+ROWS, ROWS_IN_DARK = (60, 60, 60, 110), (230, 230, 230, 120)
 HOT: Colour = (20, 26, 30)
 HOT_IN_DARK: Colour = (255, 255, 255)
 OUTLINE: Colour = (70, 80, 70)
 OUTLINE_IN_DARK: Colour = (190, 200, 190)
+ROWS: Colour = (60, 130, 90)
+BEFORE: Colour = (230, 120, 0)
 # days since a plant was inspected: fresh is pale green, long ago is dark
 AGE_FROM = (0, 1, 3, 7, 14)
 AGE_COLOURS: tuple[Colour, ...] = (

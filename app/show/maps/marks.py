@@ -52,19 +52,6 @@ def with_hot(layers: list[Layer], spots: list[Layer]) -> list[Layer]:
     return [*layers[:under], *spots[:1], *layers[under:], *spots[1:]]
 
 
-def row_lines(grid: PlantGrid, name: str, *, dark: bool = False) -> list[Layer]:
-    """Return the rows as thin lines: those of the plot, or in the colour of drawing those tried."""
-    tried = name == "rows-tried"
-    plain = [230, 230, 230, 120] if dark else [60, 60, 60, 110]
-    rows = [
-        {"path": np.round(grid.frame.lonlat(corners), 7).tolist()} for corners in row_corners(grid)
-    ]
-    return [
-        Layer("PathLayer", rows, id=name, get_path="path", get_color=[*GATE] if tried else plain,
-              get_width=0.25, width_min_pixels=2 if tried else 1)
-    ]  # fmt: skip
-
-
 def blocks(field: Field, *, dark: bool = False) -> list[Layer]:
     """Return the outlines of the blocks, if the plot has several."""
     if len(field.blocks) < 2:
@@ -88,6 +75,16 @@ def paths(field: Field) -> list[Layer]:
         Layer("PathLayer", rows, id="paths", get_path="path", get_color=[150, 110, 60, 160],
               get_width=1.0, width_min_pixels=2)
     ]  # fmt: skip
+
+
+def rows(grid: PlantGrid, name: str, colour: Colour, note: str = "") -> Layer:
+    """Return the rows as lines."""
+    lines = [
+        {"path": np.round(grid.frame.lonlat(line_m), 7).tolist(), **({"t": note} if note else {})}
+        for line_m in row_corners(grid)
+    ]
+    return Layer("PathLayer", lines, id=name, get_path="path", get_color=list(colour),
+                 get_width=0.25, width_min_pixels=1.2)  # fmt: skip
 
 
 def records(observations: Observations, *, dark: bool = False) -> list[Layer]:

@@ -9,6 +9,7 @@ from rasterio.enums import ColorInterp, Resampling
 from rasterio.io import MemoryFile
 from rasterio.shutil import copy
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
 from fieldmon.io.rasters.opening import (
@@ -55,8 +56,12 @@ def backdrop(
         missing = read.missing | ~np.isfinite(raw).all(axis=0)
         if missing.all():
             raise FileProblem(
-                f"{opened.name} must show something, but there is no value in it"
-                f"{'' if bounds is None else ' about the plot'}. Choose another raster."
+                worded(
+                    "{name} must show something, but there is no value in "
+                    "it{value}. Choose another raster.",
+                    name=opened.name,
+                    value="" if bounds is None else " about the plot",
+                )
             )
         if colours is not None:
             image, missing = _coloured(raw[0], colours, missing)
@@ -73,7 +78,8 @@ def _shown(opened: OpenRaster, wanted: str | None) -> tuple[int, ...]:
         bands = tuple(band_named(opened, one) for one in wanted.split(","))
         if len(bands) not in {1, 3}:
             raise ChoiceNeeded(
-                f"A picture is made of one band or three, but {len(bands)} were named.", "band"
+                worded("A picture is made of one band or three, but {n} were named.", n=len(bands)),
+                "band",
             )
         return bands
     meaning = opened.tif.colorinterp
@@ -121,7 +127,9 @@ def _stretched(
         spans.append(f"{low:.4g} to {high:.4g}")
         span = high - low if high > low else 1.0
         bytes_[shown] = np.clip((band[shown] - low) / span * 255.0, 0.0, 255.0)
-    return image, [seen(f"Contrast is stretched over the middle 96 %: {'; '.join(spans)}.")]
+    return image, [
+        seen(worded("Contrast is stretched over the middle 96 %: {names}.", names="; ".join(spans)))
+    ]
 
 
 def _corners(opened: OpenRaster, part: RasterPart) -> tuple[Float, list[ImportMessage]]:
@@ -140,14 +148,22 @@ def _corners(opened: OpenRaster, part: RasterPart) -> tuple[Float, list[ImportMe
     lonlat = opened.transformation.lonlat(map_xy(to_map, np.concatenate([u, v], axis=1) * size))
     if not (np.isfinite(lonlat).all() and (np.abs(lonlat[:, 1]) < 85.0).all()):
         raise FileProblem(
-            f"{opened.name} must lie where a web map reaches, but it does not. Cut it to the plot."
+            worded(
+                "{name} must lie where a web map reaches, but it does not. Cut it to the plot.",
+                name=opened.name,
+            )
         )
     off = np.hypot(*(np.where(u <= v, lower, upper) - _mercator(lonlat)).T)
     off_m = float((off * np.cos(np.radians(lonlat[:, 1]))).max()) * M_PER_DEGREE
     if off_m < _VISIBLE_M:
         return corners, []
     return corners, [
-        doubtful(f"So large a picture is drawn up to {off_m:.3g} m off its place on the map.")
+        doubtful(
+            worded(
+                "So large a picture is drawn up to {off_m:.3g} m off its place on the map.",
+                off_m=off_m,
+            )
+        )
     ]
 
 

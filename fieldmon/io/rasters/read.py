@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.import_report import doubtful
 from fieldmon.io.options import Source, source_name
@@ -86,14 +87,23 @@ def _coverage(raster: Raster, field: Field, name: str) -> list[ImportMessage]:
     covered = float(np.mean(~np.isnan(raster.at(_within(field)))))
     if covered == 0.0:
         raise FileProblem(
-            f"{name} must hold values on plot {field.name}, but there it holds none: it ends "
-            "beside it or says nodata. Choose another raster, or name what stands for no value."
+            worded(
+                "{name} must hold values on plot {plot}, but there it holds "
+                "none: it ends beside it or says nodata. Choose another "
+                "raster, or name what stands for no value.",
+                name=name,
+                plot=field.name,
+            )
         )
     if covered >= _FULL:
         return []
     return [
         doubtful(
-            f"The raster covers {100 * covered:.3g} % of plot {field.name}; the rest has no value."
+            worded(
+                "The raster covers {value:.3g} % of plot {name}; the rest has no value.",
+                value=100 * covered,
+                name=field.name,
+            )
         )
     ]
 

@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from shapely import MultiLineString, MultiPolygon
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.io.import_report import Imported, doubtful, dropped, guessed, seen
 from fieldmon.io.read import read_blocks, read_rows
@@ -122,7 +123,9 @@ def contour_of(
         return read.value.at(lonlat, "bilinear")
 
     row = contour_row(field, height_m, row_spacing_m)
-    said = seen("Rows run along the contour through the middle of the plot, all others beside it.")
+    said = seen(
+        worded("Rows run along the contour through the middle of the plot, all others beside it.")
+    )
     return read.having(row, [said])
 
 
@@ -190,17 +193,23 @@ def blocks_on(
         return (), messages
     names = ", ".join(block.name for block in blocks[:_NAMED])
     more = ", ..." if len(blocks) > _NAMED else ""
-    messages.append(seen(f"Rows run in {len(blocks)} block(s) as drawn: {names}{more}."))
+    said = worded("Rows run in {n} block(s) as drawn: {names}.", n=len(blocks), names=names + more)
+    messages.append(seen(said))
     if doubled:
-        said = f"Block(s) {', '.join(doubled[:_NAMED])} lie over others; the first one counts."
+        over = ", ".join(doubled[:_NAMED])
+        said = worded("Block(s) {names} lie over others; the first one counts.", names=over)
         messages.append(doubtful(said))
     bare = left.area / field.boundary.area
     if bare > _WORTH_A_WORD:
         bare_m2 = frame.geometry_m(left).area
         messages.append(
             doubtful(
-                f"{bare:.0%} of the plot ({bare_m2:.0f} m2) lies in no block, and is left without "
-                "plants."
+                worded(
+                    "{share:.0%} of the plot ({area:.0f} m2) lies in no block, and is left without "
+                    "plants.",
+                    share=bare,
+                    area=bare_m2,
+                )
             )
         )
     return tuple(blocks), messages
@@ -231,7 +240,8 @@ def cut_each(fields: Fields, cuts: MultiLineString) -> Imported[Fields]:
             f"A cut must pass through its plot from one side to the other, but none of "
             f"{len(cuts.geoms)} lines does. Draw them across the plot."
         )
-    messages = [seen(f"{n_parted} line(s) part the plot into {n_blocks} blocks.")]
+    told = {"n": n_parted, "blocks": n_blocks}
+    messages = [seen(worded("{n} line(s) part the plot into {blocks} blocks.", **told))]
     if len(fields) > 1:
         messages = [seen(f"{n_parted} line(s) part plots into {n_blocks} blocks.")]
     if (idle := len(cuts.geoms) - n_parted) > 0:

@@ -100,7 +100,8 @@ class Laid:
         from fieldmon.io.import_report import doubtful, seen  # noqa: PLC0415
 
         if not self.plot.grid.in_rows:
-            return (seen("Plants are taken to stand in no rows, and are visited by nearness."),)
+            said = worded("Plants are taken to stand in no rows, and are visited by nearness.")
+            return (seen(said),)
         rows, drawn = self.plot.rows, self.plot.field.row_lines
         if rows is None and self.plot.field.plants is None and len(drawn.geoms) > 1:
             return (

@@ -10,6 +10,7 @@ import shapely
 from shapely import LineString, MultiLineString, MultiPolygon, Polygon
 from shapely.ops import split
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.row_detection import main_bearing
 
@@ -112,8 +113,11 @@ def cut_blocks(field: Field, line: LineString | MultiLineString) -> tuple[Block,
             made.append(Block(name, area, None, block.row_spacing_m, block.plant_spacing_m))
     if len(made) == n_before:
         raise PlotError(
-            f"A cut must pass through plot {field.name!r} from one side to the other, but this "
-            "line parts nothing. Draw it across the plot."
+            worded(
+                "A cut must pass through plot {name!r} from one side to the other, but this line "
+                "parts nothing. Draw it across the plot.",
+                name=field.name,
+            )
         )
     return tuple(made)
 

@@ -200,3 +200,29 @@ def test_a_block_of_a_plant_or_two_is_a_row():
     plot = Plot.around("few", FRAME.lonlat(xy_m), names=PlantNames(None, names))
     assert plot.grid.n_blocks == 3
     assert len(plot.grid) == n
+
+
+@pytest.mark.parametrize("across_m", [0.15, 0.35])
+@pytest.mark.parametrize("radius_m", [None, 80.0])
+def test_double_rows_are_right_or_doubted(radius_m, across_m):
+    k, j = np.divmod(np.arange(12 * 40), 40)
+    x, y = np.tile((j - 20) * 1.4, 2), np.concatenate([3.0 * k - across_m, 3.0 * k + across_m])
+    xy_m = np.stack([x, y], axis=1)
+    if radius_m is not None:
+        at = radius_m + y
+        xy_m = np.stack([at * np.sin(x / at), at * np.cos(x / at) - radius_m], axis=1)
+    xy_m += np.random.default_rng(0).normal(0, 0.02, xy_m.shape)
+    plot = Plot.around("double", FRAME.lonlat(xy_m))
+    shares = [
+        right_share(rows_of(plot.grid, xy_m), true)
+        for true in (np.tile(k, 2), np.concatenate([2 * k, 2 * k + 1]))
+    ]
+    assert max(shares) >= 0.95 or plot.rows.doubts != ()
+
+
+def test_two_plants_close_in_a_row_are_in_that_row():
+    xy_m, row = planted(noise_m=0.02)
+    both = np.concatenate([xy_m, xy_m[::3] + np.array([0.3, 0.0])])
+    plot = Plot.around("close", FRAME.lonlat(both))
+    found = rows_of(plot.grid, both)
+    assert right_share(found, np.concatenate([row, row[::3]])) == 1.0

@@ -13,7 +13,7 @@ from fieldmon.plot.layout import Planting
 
 from ..show import field_map, map_layers
 from ..show.map_view import Drawable, MapAnswers, MapContent
-from ..show.maps import colours, deck, labels, legends, marks, plant_layers
+from ..show.maps import colours, deck, legends, marks, plant_layers
 from ..state import cached, notices, widget_memory
 from ..state.chosen_units import units
 from ..state.plot_edits import GATE, NO_GO, PATH, Edit, points_of
@@ -97,9 +97,8 @@ def content(
     """
     field, kind = choices.plot.field, _kind()
     layers = [
-        *_as_it_was(before), deck.boundary(field, dark=choices.dark), *_plain_plants(choices),
-        *marks.paths(field),
-        *marks.records(records, dark=choices.dark),
+        *map_layers.plan(choices), *_as_it_was(before), *_plain_plants(choices),
+        *marks.paths(field), *marks.records(records, dark=choices.dark),
     ]  # fmt: skip
     if field.gate is not None:
         layers.append(marks.places([list(field.gate)], "gate", colours.GATE, texts.TIP_GATE))
@@ -111,8 +110,9 @@ def content(
         draw = Drawable(_SHAPES[kind], kind, texts.DRAW_HINTS[kind], _corners(field))
     made = MapContent(
         **field_map.of_plot(choices), layers=layers, switches=map_layers.switches(layers),
-        legend=legends.signs(dark=choices.dark)[2:], draw=draw,
-        labels=labels.rows(choices.plot.grid),
+        legend=[*legends.signs(dark=choices.dark)[2:], *legends.plan(field, dark=choices.dark)],
+        draw=draw,
+        labels=map_layers.words(choices),
     )  # fmt: skip
     return made, MapAnswers(drawn=partial(_drawn, choices))
 

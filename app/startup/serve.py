@@ -17,6 +17,7 @@ import socket
 import sys
 import threading
 import webbrowser
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack
 from importlib import import_module
 from importlib.util import find_spec
@@ -25,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.io.sandbox import process
 
-from ..state import map_file, map_store
+from ..state import map_file, map_store, map_tiles
 from . import addresses, preload
 from .upload_limits import Uploads, is_upload
 
@@ -58,6 +59,8 @@ _GOODBYE_S = 5
 _STREAMLITS_OWN = frozenset({"/static", "/media", "/component", "/app", "/healthz"})
 # as Python knows them: what a machine says of scripts may keep browsers from running them
 _KINDS = mimetypes.MimeTypes()
+# one reading process looks tiles up, one after the other: each takes a millisecond
+_TILES = ThreadPoolExecutor(1, "tiles")
 _LOG = logging.getLogger(__name__)
 
 
@@ -87,6 +90,8 @@ class Server:
             await self._hand_out(scope["path"], send)
         elif scope["type"] == "http" and scope["path"].startswith(map_store.PATH):
             await _hand_out_map(scope["path"], send)
+        elif scope["type"] == "http" and scope["path"].startswith(map_tiles.PATH):
+            await _hand_out_tile(scope["path"], send)
         else:
             await self._loaded.wait()
             await self._streamlit(scope, receive, send)
@@ -160,6 +165,15 @@ async def _hand_out_map(path: str, send: Send) -> None:
     found = map_store.STORE.get(path)
     if found is None:
         await _answer(send, 404, "text/plain", b"", [(b"cache-control", b"no-store")])
+        return
+    await _answer(send, 200, *found, [(b"cache-control", _OWN_FOR_GOOD)])
+
+
+async def _hand_out_tile(path: str, send: Send) -> None:
+    looked_up = asyncio.get_running_loop().run_in_executor(_TILES, map_tiles.SHELF.get, path)
+    if (found := await looked_up) is None:
+        # no picture there: the map knows, and need not ask again
+        await _answer(send, 204, "text/plain", b"", [(b"cache-control", b"private, max-age=600")])
         return
     await _answer(send, 200, *found, [(b"cache-control", _OWN_FOR_GOOD)])
 

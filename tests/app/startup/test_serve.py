@@ -8,7 +8,9 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from app.startup.serve import Server, page_files
-from app.state import map_file, map_store
+from app.state import map_file, map_store, map_tiles
+from fieldmon.io.rasters.tiles import read_tiles
+from tests.io.rasters.tile_maps import about, mbtiles
 
 HOST = [(b"host", b"127.0.0.1:8501")]
 
@@ -113,6 +115,18 @@ def test_the_outline_needs_no_tables_no_statistics_and_nothing_compiled():
         [sys.executable, "-c", code], check=True, capture_output=True, text=True
     )  # fmt: skip
     assert said.stdout.strip() == "[]"
+
+
+def test_a_tile_of_somebody_s_own_map_is_handed_out_and_where_there_is_none_nothing(tmp_path):
+    tiles = about(35.15, 30.36, [15])
+    address = map_tiles.SHELF.publish(read_tiles(mbtiles(tmp_path / "own.mbtiles", tiles)))
+    (z, x, y), data = next(iter(tiles.items()))
+    status, headers, body = asked(Server(), address.format(z=z, x=x, y=y), within_s=60.0)
+    assert (status, body) == (200, data)
+    assert headers[b"content-type"] == b"image/png"
+    assert headers[b"cache-control"].startswith(b"private, immutable")
+    status, _, body = asked(Server(), address.format(z=z, x=x + 7, y=y), within_s=60.0)
+    assert (status, body) == (204, b"")
 
 
 def test_who_asks_by_a_foreign_name_or_from_a_foreign_page_is_told_so_whatever_is_asked_for():

@@ -96,7 +96,7 @@ def _show_route(choices: Choices) -> None:
     label = row_label(choices.plot.grid, plants)
     table = pd.DataFrame(
         {
-            texts.COLUMN_ROW: label.line,
+            **({texts.COLUMN_ROW: label.line} if choices.plot.grid.in_rows else {}),
             texts.COLUMN_PLANT: label.number,
             texts.LEGEND_STATES["found"]: False,
         },
@@ -107,7 +107,7 @@ def _show_route(choices: Choices) -> None:
         st.caption(texts.RECORD_REST)
         st.number_input(texts.RECORD_STOPS, 0, len(plants), None, key="stops_done")
         with st.container(key="route_marks"):
-            marked = st.data_editor(table, height=230, disabled=list(table.columns[:2]),
+            marked = st.data_editor(table, height=230, disabled=list(table.columns[:-1]),
                                     key=f"marks {choices.day} {len(plants)}")  # fmt: skip
         pressed = st.form_submit_button(texts.RECORD_BUTTON, type="primary")
     if pressed:
@@ -158,7 +158,7 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
 def _recorded(choices: Choices, results: Inspections, source: str) -> str:
     """Record results; those that contradict what is recorded wait until somebody says so."""
     try:
-        done = choices.season.record(results, source)
+        done = choices.season.record(results, source, choices.who or "")
     except ContradictionError:
         unconfirmed.keep(Unconfirmed(choices.key, results, source))
         return ""
@@ -210,7 +210,8 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
     waiting = unconfirmed.of(choices.key)
     if waiting is None:
         return ""
-    done = choices.season.record(waiting.results.take(which), waiting.source, confirmed=True)
+    taken, who = waiting.results.take(which), choices.who or ""
+    done = choices.season.record(taken, waiting.source, who, confirmed=True)
     unconfirmed.drop()
     return texts.RECORDED.format(new=done.new, known=done.known)
 

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
 import streamlit as st
 
 from fieldmon.errors import PlotError
 
 from ..actions import answering, bringing_files, drawing, laying_ground, rasters
 from ..show import field_map, plot_figures
+from ..show import records as records_shown
 from ..show.assumed import sentence
-from ..show.records import records_until
 from ..state import chosen_day, plot_before, plot_files, plot_source, rooms
-from ..state.row_settings import row_settings
+from ..state.row_settings import is_said
 from ..words import texts
 from ..words.language import in_words
 
@@ -35,8 +34,10 @@ def bring(problem: FieldmonError | None) -> None:
         answering.show(problem)
         laying = plot_files.laying()
         # what was set by hand may be what is wrong: it must stay within reach
-        if isinstance(problem, PlotError) and any(row_settings(laying).values()):
+        if isinstance(problem, PlotError) and is_said(laying):
             drawing.rows(laying)
+        if isinstance(problem, PlotError):
+            drawing.undo_last(laying)
 
 
 def show(choices: Choices) -> None:
@@ -52,10 +53,11 @@ def show(choices: Choices) -> None:
     if plot_source.chosen() == plot_source.FILES:
         with st.expander(texts.FILES):
             bringing_files.show()
-    records, said = records_until(choices.records)
+    records, said = records_shown.records_until(choices.records)
     if choices.season is None:
         drawing.tools(choices)
-        drawing.rows(choices.plot_key)
+        drawing.rows(choices.plot_key, measured=choices.plot.field.plants is not None)
+        drawing.blocks(choices)
         rasters.show_missing()
         rasters.show_risk()
     else:
@@ -65,14 +67,5 @@ def show(choices: Choices) -> None:
         bringing_files.show_messages(choices.messages)
         for message in chosen_day.messages_on_records(choices):
             st.markdown(f"- {in_words(message)}")
-    _say_records(choices, said)
+    records_shown.say(choices, said)
     field_map.want(*drawing.content(choices, records, before))
-
-
-def _say_records(choices: Choices, said: str) -> None:
-    if not len(choices.records):
-        st.caption(texts.RECORDS_NONE)
-        return
-    st.caption(said)
-    if np.isnat(choices.records.day).any():
-        st.caption(texts.UNDATED)

@@ -43,6 +43,8 @@ PLOT_FROM = "Plot or season"
 PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
 RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
 PLANT_FILE = "Measured plant positions (optional)"
+ROWS_FILE = "Rows as lines, or their end posts (optional)"
+BLOCKS_FILE = "Blocks as areas, or lines that part the plot (optional)"
 FILES = "Files: the plot, pest records, measured plants"
 KEPT_FILE = "In use: {name}"
 FORGET_FILE = "Take it out"
@@ -78,6 +80,7 @@ ASSUMED = "\\* assumed: {what}."
 ASSUMED_WHAT = {
     "row_spacing_m": "rows {value} apart",
     "plant_spacing_m": "plants {value} apart",
+    "half_canopy_m": "plants reach {value} to each side",
     "background_chance": "{value} % of plants infested where nothing is known",
     "speed_m_s": "{value} km/h",
     "detects": "an inspection finds {value} % of what is there",
@@ -302,7 +305,8 @@ TODAY_DONE = Plural(
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
 #: as `fieldmon.io.writers.handoff` says them, which takes long to load
 READERS = {
-    "nav2": "robots with Nav2 (ROS 2)", "waypoints": "robots of any kind",
+    "nav2": "robots with Nav2 (ROS 2)", "nav2-pauses": "robots with Nav2 and a plugin for pauses",
+    "waypoints": "robots of any kind",
     "geojson": "QGIS, phones, web maps", "gpkg": "QGIS, QField, ArcGIS",
     "shapefile": "older map programs and consoles", "csv": "spreadsheets",
     "kml": "Google Earth, map apps on phones", "gpx": "GPS handhelds and hiking apps",
@@ -313,6 +317,8 @@ MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {fin
 
 # -- what stands beside a thing on the map that is pointed at
 TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start and end", "path"
+TIP_ALONE, NEXT_ALONE = "plant {plant}{note}", "Plant {plant}"
+SCOUT_LAST_ALONE = "Last: plant {plant}: {result}"
 TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
 TIP_SEEN_TODAY, TIP_NEVER = "{result} today", "never inspected"
 TIP_SEEN_BEFORE = Plural("{result} {n} day ago", "{result} {n} days ago")
@@ -331,18 +337,22 @@ BEFORE_NOTE = "The plot as it was before the last change is drawn in orange."
 BEFORE_DROP = "It is right now"
 FOUND_ROWS = "Leave a box empty to take what was found. Plants are laid again at once."
 FIXED = "The plants of a season are laid once and for all: its plant numbers stay valid."
-DRAW, DRAW_KIND = "Gate, paths, no-go areas", "A click on the map sets"
+DRAW, DRAW_KIND = "Gate, paths, no-go areas, rows", "A click on the map sets"
 DRAW_KINDS = {"": "nothing", "gate": "the gate", "path": "points of a path",
-              "no_go": "corners of a no-go area"}  # fmt: skip
+              "no_go": "corners of a no-go area", "row": "how rows bend",
+              "cut": "a cut into blocks"}  # fmt: skip
 DRAW_HINTS = {"gate": "Click where the gate is.", "path": "Click along the path.",
-              "no_go": "Click the corners, one way round."}  # fmt: skip
+              "no_go": "Click the corners, one way round.",
+              "row": "Drag a handle to bend the row; a click adds one.",
+              "cut": "Click from one side of the plot to the other."}  # fmt: skip
 DRAW_TYPED = "or type positions (lon,lat lon,lat ...)"
 DRAW_ADD, DRAW_DONE, DRAW_UNDO, DRAW_DROP = "Add", "Finish", "Undo the last one", "Drop points"
 DRAW_POINTS = Plural("{n} point so far.", "{n} points so far.")
 DRAW_LEAST = (
     "{what} needs {least} points or more, but {n} are given. Add points on the map, or type them."
 )
-DRAW_WHAT = {"gate": "A gate", "path": "A path", "no_go": "A no-go area"}
+DRAW_WHAT = {"gate": "A gate", "path": "A path", "no_go": "A no-go area", "row": "A row",
+             "cut": "A cut"}  # fmt: skip
 DRAW_CROSSED = (
     "The edge of a no-go area must not cross itself, but it does. Give its corners in order, one "
     "way round."
@@ -350,6 +360,16 @@ DRAW_CROSSED = (
 DRAW_WRITTEN = "A position must be written lon,lat such as 35.1503,30.3601, but it is {text!r}."
 DRAW_RANGE = "A longitude lies in -180..180 and a latitude in -90..90, but this is {text!r}."
 DRAW_NOTE = "Insects come in along paths; a no-go area carries no plants and is not driven through."
+BEND_ROW = "Row to bend; the others follow it"
+BEND_MAKES = "This makes {rows} rows with {plants} plants. They are drawn over the plot."
+BEND_USE, BEND_DROP = "Use these rows", "Drop them"
+BLOCKS = "Blocks"
+BLOCKS_NOTE = (
+    "Leave a box empty for rows along the block's longest side, as far apart as elsewhere."
+)
+BLOCK = "**Block {name}**"
+NO_ROWS = "The plants stand in no rows"
+NO_ROWS_HELP = "They are visited one by one, by nearness."
 RISK, RISK_FILE = "Risk from a raster", "GeoTIFF: NDVI, elevation, a risk map"
 RISK_NOTE = "One more reason for a plant to be infested, beside records, edges and paths."
 RISK_MEANS = "Its numbers are"
@@ -495,6 +515,17 @@ ROW_NEVER, ROW_TODAY = "never", "today"
 NEVER_ROWS = Plural(
     "{n} of {all} rows was never inspected.", "{n} of {all} rows were never inspected."
 )
+LEARNT_TITLE = "What the inspections tell of the insects"
+LEARNT = {
+    "detection": "An inspection finds {value} of what is there ({low} to {high}).",
+    "infested at the start": "{value} plants were infested at the start ({low} to {high}).",
+    "arrivals a night": "{value} plants a night are infested from outside ({low} to {high}).",
+    "jumps beyond neighbours": (
+        "They jump farther than to the next plant: with a chance of {value}."
+    ),
+    "length of jumps": "If so, jumps go {value} plants on average ({low} to {high}).",
+}
+NOT_LEARNT = "This season traces finds to the plants next to them only, as it did when it began."
 
 # -- scouting
 SCOUT_NEEDS = (
@@ -527,7 +558,12 @@ COMPARE_INTRO = (
     "strategy meets the same insects. Less loss (infested plants times days) is better."
 )
 STRATEGY_SAMPLERS, STRATEGY_HOURS = "Samplers", "Working hours"
-STRATEGY_INSPECTION_S = "Seconds at a plant"
+WHOSE_DAY = "Whose day"
+STRATEGY_INSPECTION_S, STRATEGY_ROBOTS = "Seconds at a plant", "Robots"
+STRATEGY_ROBOTS_HELP = (
+    "Several share the aisles out by what is believed, and hear of each other's finds every half "
+    "hour; who reads no chances keeps to a section of its own."
+)
 SEEDS, SEEDS_HELP = "Seasons each", "More seasons, narrower intervals."
 RUN, STOP, GO_ON = "Compare", "Stop", "Go on"
 COMPARE_PROGRESS = "{done} of {total} seasons simulated"
@@ -539,6 +575,7 @@ ONE_SEASON = "(one season: no interval)"
 COLUMN_STRATEGY, COLUMN_LOSS = "strategy", "infested plant-days"
 COLUMN_FOUND = "found at the end"
 COLUMN_VISITED, COLUMN_HALF, COLUMN_VERDICT = "inspected a day", "half found on day", "verdict"
+COLUMN_MOST, COLUMN_WORKED = "80 % found on day", "hours worked"
 STRATEGY = "Strategy"
 USE_THIS = "Use this strategy"
 VERDICT = (
@@ -551,6 +588,20 @@ VERDICT_TIED = (
 )
 NOW_USED = "{name} is in use now."
 STRATEGY_NAME = "{sampler} · {hours:g} h · {seconds:g} s"
+STRATEGY_TEAM = "{robots} × {strategy}"
+GAIN = (
+    "{robots} robots instead of {fewer} would save {saved:,.0f} ({low:,.0f} to {high:,.0f}) "
+    "infested plant-days."
+)
+GAIN_FIRST = (
+    "A second robot would save {saved:,.0f} ({low:,.0f} to {high:,.0f}) infested plant-days{more}."
+)
+GAIN_MORE = {
+    "3": "; a third {saved:,.0f} ({low:,.0f} to {high:,.0f})",
+    "4": "; a fourth {saved:,.0f} ({low:,.0f} to {high:,.0f})",
+    "5": "; a fifth {saved:,.0f} ({low:,.0f} to {high:,.0f})",
+}
+GAIN_NONE = "Of one season no interval is known: simulate more to see what a robot would save."
 
 # -- the report
 REPORT_ABOUT, REPORT_KINDS = "About", {"day": "the day", "season": "the season"}

@@ -28,7 +28,7 @@ PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
 PlotFile = Annotated[Path, typer.Argument(help=PLOT_HELP, show_default=False)]
 MaybePlotFile = Annotated[
     Path | None,
-    typer.Argument(help=f"{PLOT_HELP} Not needed if --plants are given.", show_default=False),
+    typer.Argument(help=f"{PLOT_HELP} Not needed if --plants or --rows are.", show_default=False),
 ]
 SeasonFile = Annotated[Path, typer.Argument(help="The season's file, made by fieldmon init.")]
 Feature = Annotated[
@@ -83,6 +83,22 @@ RowsChoices = Annotated[
     list[str] | None,
     typer.Option("--rows-option", help="What the file of rows leaves open, as NAME=VALUE."),
 ]
+Blocks = Annotated[
+    Path | None,
+    typer.Option(
+        help="Blocks with rows of their own: areas, or lines that part the plot into blocks."
+    ),
+]
+BlocksChoices = Annotated[
+    list[str] | None,
+    typer.Option("--blocks-option", help="What the file of blocks leaves open, as NAME=VALUE."),
+]
+GuessBlocks = Annotated[
+    bool,
+    typer.Option(
+        "--guess-blocks", help="Blocks where the outline asks for rows in several directions."
+    ),
+]
 Contours = Annotated[
     Path | None,
     typer.Option(help="GeoTIFF of heights: rows run along its contours, as on terraces."),
@@ -100,8 +116,16 @@ Bearing = Annotated[
 RowSpacing = Annotated[float | None, typer.Option(help="Metres from row to row.")]
 PlantSpacing = Annotated[float | None, typer.Option(help="Metres from plant to plant in a row.")]
 Headland = Annotated[float | None, typer.Option(help="Metres free of plants at both row ends.")]
+HalfCanopy = Annotated[
+    float | None,
+    typer.Option(help="Metres that plants reach to each side of their middle; for --width."),
+]
 BothFaces = Annotated[
     bool, typer.Option("--both-faces", help="Inspect both faces of each row, each from its aisle.")
+]
+NoRows = Annotated[
+    bool,
+    typer.Option("--no-rows", help="Measured plants stand in no rows: visit them by nearness."),
 ]
 Gate = Annotated[str | None, typer.Option(help="Where the day starts and ends: LON,LAT.")]
 Scout = Annotated[bool, typer.Option("--scout", help="A person on foot instead of the robot.")]
@@ -111,6 +135,35 @@ Speed = Annotated[float | None, typer.Option(help="Driving speed, km/h.")]
 RowChange = Annotated[float | None, typer.Option(help="Seconds added for changing rows.")]
 Turn = Annotated[
     float | None, typer.Option(help="Seconds to turn to the other side of the same aisle.")
+]
+Robots = Annotated[
+    str | None,
+    typer.Option(
+        help="How many robots, or a table of robots and scouts (CSV: name, who, hours, speed_km_h, "
+        "look_s, detection, start, lon, lat). Each has a route file of its own."
+    ),
+]
+Contact = Annotated[
+    float, typer.Option(min=0.0, help="Minutes between contacts; 0: finds are heard of at once.")
+]
+LeastGain = Annotated[
+    float,
+    typer.Option(min=0.0, help="Finds that must be gained for anyone to be sent elsewhere."),
+]
+Width = Annotated[
+    float | None,
+    typer.Option(
+        help="Width of the robot, metres: ways keep off canopies, narrow aisles are shut."
+    ),
+]
+Length = Annotated[
+    float | None, typer.Option(help="Length of the robot, metres, for its turns; as its width.")
+]
+Rover = Annotated[
+    bool,
+    typer.Option(
+        "--rover", help="A robot 0.58 m wide with the times of simulated drives (docs: drive)."
+    ),
 ]
 OneSampler = Annotated[SamplerName, typer.Option(help="Who chooses.")]
 Every = Annotated[
@@ -151,6 +204,9 @@ class WorkerOptions:
     row_change: RowChange = None
     turn: Turn = None
     scout: Scout = False
+    rover: Rover = False
+    width: Width = None
+    length: Length = None
 
     def given(self) -> dict[str, float]:
         """Return what was said, as settings of `Robot`."""
@@ -160,6 +216,8 @@ class WorkerOptions:
             "speed_m_s": None if self.speed is None else self.speed / 3.6,
             "row_change_s": self.row_change,
             "turn_180_s": self.turn,
+            "width_m": self.width,
+            "length_m": self.length,
         }
         return {name: value for name, value in said.items() if value is not None}
 
@@ -169,7 +227,9 @@ class WorkerOptions:
 
         from fieldmon.plot import robot  # noqa: PLC0415
 
-        base = robot.scout() if self.scout else robot.Robot()
+        if self.scout and self.rover:
+            raise SettingError("A scout is no rover: give one of --scout and --rover.")
+        base = robot.scout() if self.scout else robot.rover() if self.rover else robot.Robot()
         return replace(base, **self.given())  # type: ignore[arg-type]
 
 
@@ -181,7 +241,9 @@ class RowOptions:
     row_spacing: RowSpacing = None
     plant_spacing: PlantSpacing = None
     headland: Headland = None
+    half_canopy: HalfCanopy = None
     both_faces: BothFaces = False
+    no_rows: NoRows = False
 
     def choices(self) -> PlantingChoices:
         """Return what was said of the rows."""
@@ -189,7 +251,7 @@ class RowOptions:
 
         faces = 2 if self.both_faces else None
         spacings = self.row_spacing, self.plant_spacing, self.headland
-        return PlantingChoices(self.bearing, *spacings, faces)
+        return PlantingChoices(self.bearing, *spacings, faces, self.half_canopy, not self.no_rows)
 
 
 @dataclass(frozen=True)
@@ -209,15 +271,19 @@ class FileOptions:
     rows_option: RowsChoices = None
     contours: Contours = None
     contours_option: ContoursChoices = None
+    blocks: Blocks = None
+    blocks_option: BlocksChoices = None
+    guess_blocks: GuessBlocks = False
 
     def sources(self, plot: Path | None, feature: str | None) -> PlotSources:
         """Return the plot's files, given the first of them."""
-        from fieldmon.io.options import ReadOptions  # noqa: PLC0415
+        from fieldmon.io.options import PlotOptions, ReadOptions  # noqa: PLC0415
         from fieldmon.io.sources import PlotSources  # noqa: PLC0415
 
-        if plot is None and self.plants is None:
+        if plot is None and self.plants is None and self.rows is None:
             raise SettingError(
-                "Give a plot file, or the positions of its plants with --plants FILE."
+                "Give a plot file, or the positions of its plants with --plants FILE, or its rows "
+                "with --rows FILE."
             )
         return PlotSources(
             plot,
@@ -231,6 +297,9 @@ class FileOptions:
             chosen(ReadOptions(), self.rows_option),
             self.contours,
             _raster_options(self.contours_option),
+            self.blocks,
+            chosen(PlotOptions(), self.blocks_option),
+            self.guess_blocks,
         )
 
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.clustering import ClusterEstimate
+from fieldmon.infestation.clustering import ClusterEstimate, chance_apart
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances
+from fieldmon.infestation.tracing import Raised, Traces
 from fieldmon.samplers.adaptive.arrays import (
     LEAST,
     NOWHERE,
@@ -73,6 +74,11 @@ class Adaptive(Sampler):
 
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day."""
+        if not (scene.grid.in_rows or self.chooses_time):
+            # without rows there are no drives through rows to choose among
+            from fieldmon.samplers.dynamic import Dynamic  # noqa: PLC0415 - seldom asked for
+
+            return Dynamic().walk(scene, would_find)
         times = self.inspection_times(scene.robot)
         stops = scene.room(float(times.stop_s[0]))
         taken = np.zeros(len(stops.plant), np.uint8)
@@ -80,6 +86,7 @@ class Adaptive(Sampler):
         if pair_chance is None:
             pair_chance = pair_chances(scene.chance, scene.grid, self.beside_find)
         n, n_rows = len(scene.chance), scene.grid.n_rows
+        traces = Traces.none(n) if scene.traces is None else scene.traces.own()
         belief = BeliefArrays(
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),
@@ -88,8 +95,10 @@ class Adaptive(Sampler):
             np.full(n, NOWHERE),
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),
-            ClusterEstimate.none(n),
-            np.ones(1),
+            ClusterEstimate.none(n, traces.evidence),
+            np.array([1.0, chance_apart(traces.evidence)]),
+            traces,
+            Raised.of(n),
         )
         tours = BestTours.of(n_rows)
         measure_ways(scene.aisles.travel, scene.clock, tours.next_s, tours.home_s)

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from shapely import MultiLineString
 
     from fieldmon.compute.units import Units
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, Source
@@ -196,14 +197,18 @@ def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:  # n
 def season_plan(
     path: str,  # noqa: ARG001
     revision: str,  # noqa: ARG001
-    day: str,
+    of: tuple[str, str | None],
     _season: Season,
     wishes: Wishes,
 ) -> DayPlan:
-    """Return what is left of a season's day."""
-    return with_bound(_season.plan(np.datetime64(day).item(), keep=False, wishes=wishes))
+    """Return what is left of a season's day for one of its team, or for the one who works."""
+    day, who = of
+    planned = _season.plan(np.datetime64(day).item(), keep=False, wishes=wishes, who=who)
+    # what no route of one could exceed says little of one whose aisles others share
+    return planned if who else with_bound(planned)
 
 
+@st.cache_resource(max_entries=_FEW)
 @st.cache_resource(max_entries=_FEW)
 def season_scene(path: str, revision: str, day: str, _season: Season) -> Scene:  # noqa: ARG001
     """Return what is known and believed on a season's day before it is planned."""
@@ -218,15 +223,27 @@ def turn_plan(key: str, robot: Robot, sampler_name: str, _scene: Scene) -> DayPl
 
 
 @st.cache_resource(max_entries=_FEW)
-def kept_route(path: str, revision: str, day: str, _season: Season) -> Array:  # noqa: ARG001
+def kept_route(
+    path: str,  # noqa: ARG001
+    revision: str,  # noqa: ARG001
+    of: tuple[str, str | None],
+    _season: Season,
+) -> Array:
     """Return the plants of the route that was given out for a day; empty if none was."""
-    return _season.kept_route(np.datetime64(day).item())
+    day, who = of
+    return _season.kept_route(np.datetime64(day).item(), who or "")
 
 
 @st.cache_resource(max_entries=_FEW)
-def worked(path: str, revision: str, day: str, _season: Season) -> Route:  # noqa: ARG001
+def worked(
+    path: str,  # noqa: ARG001
+    revision: str,  # noqa: ARG001
+    of: tuple[str, str | None],
+    _season: Season,
+) -> Route:
     """Return a day's route as it was worked; empty if nothing was recorded."""
-    return worked_route(_season, np.datetime64(day).item())
+    day, who = of
+    return worked_route(_season, np.datetime64(day).item(), who)
 
 
 @st.cache_resource(max_entries=_FEW)
@@ -245,6 +262,12 @@ def day_figures(path: str, revision: str, day: str, _season: Season) -> DayFigur
 def progress(path: str, revision: str, day: str, _season: Season) -> Progress:  # noqa: ARG001
     """Return how far the inspections are after a day of a season."""
     return _season.progress(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def learnt(path: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:  # noqa: ARG001
+    """Return what the inspections up to a day of a season tell of the insects."""
+    return _season.learnt(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)

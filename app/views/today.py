@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..actions import assuming, beginning, morning, picking
+from ..actions import assuming, beginning, choosing, morning, picking
 from ..show import day, map_layers, plant_history
 from ..state import chosen_day, wishes
 from ..state.chosen_day import DayRoute
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 def show(choices: Choices) -> None:
     """Plan the day and show it."""
+    choosing.whose_day(choices)
     plan = choices.plan()
     with st.container(key="lead"):
         st.markdown(day.headline(choices, plan))

@@ -497,6 +497,17 @@ ROW_NEVER, ROW_TODAY = "never", "today"
 NEVER_ROWS = Plural(
     "{n} of {all} rows was never inspected.", "{n} of {all} rows were never inspected."
 )
+LEARNT_TITLE = "What the inspections tell of the insects"
+LEARNT = {
+    "detection": "An inspection finds {value} of what is there ({low} to {high}).",
+    "infested at the start": "{value} plants were infested at the start ({low} to {high}).",
+    "arrivals a night": "{value} plants a night are infested from outside ({low} to {high}).",
+    "jumps beyond neighbours": (
+        "They jump farther than to the next plant: with a chance of {value}."
+    ),
+    "length of jumps": "If so, jumps go {value} plants on average ({low} to {high}).",
+}
+NOT_LEARNT = "This season traces finds to the plants next to them only, as it did when it began."
 
 # -- scouting
 SCOUT_NEEDS = (
@@ -529,7 +540,12 @@ COMPARE_INTRO = (
     "strategy meets the same insects. Less loss (infested plants times days) is better."
 )
 STRATEGY_SAMPLERS, STRATEGY_HOURS = "Samplers", "Working hours"
-STRATEGY_INSPECTION_S = "Seconds at a plant"
+WHOSE_DAY = "Whose day"
+STRATEGY_INSPECTION_S, STRATEGY_ROBOTS = "Seconds at a plant", "Robots"
+STRATEGY_ROBOTS_HELP = (
+    "Several share the aisles out by what is believed, and hear of each other's finds every half "
+    "hour; who reads no chances keeps to a section of its own."
+)
 SEEDS, SEEDS_HELP = "Seasons each", "More seasons, narrower intervals."
 RUN, STOP, GO_ON = "Compare", "Stop", "Go on"
 COMPARE_PROGRESS = "{done} of {total} seasons simulated"
@@ -541,6 +557,7 @@ ONE_SEASON = "(one season: no interval)"
 COLUMN_STRATEGY, COLUMN_LOSS = "strategy", "infested plant-days"
 COLUMN_FOUND = "found at the end"
 COLUMN_VISITED, COLUMN_HALF, COLUMN_VERDICT = "inspected a day", "half found on day", "verdict"
+COLUMN_MOST, COLUMN_WORKED = "80 % found on day", "hours worked"
 STRATEGY = "Strategy"
 USE_THIS = "Use this strategy"
 VERDICT = (
@@ -553,6 +570,20 @@ VERDICT_TIED = (
 )
 NOW_USED = "{name} is in use now."
 STRATEGY_NAME = "{sampler} · {hours:g} h · {seconds:g} s"
+STRATEGY_TEAM = "{robots} × {strategy}"
+GAIN = (
+    "{robots} robots instead of {fewer} would save {saved:,.0f} ({low:,.0f} to {high:,.0f}) "
+    "infested plant-days."
+)
+GAIN_FIRST = (
+    "A second robot would save {saved:,.0f} ({low:,.0f} to {high:,.0f}) infested plant-days{more}."
+)
+GAIN_MORE = {
+    "3": "; a third {saved:,.0f} ({low:,.0f} to {high:,.0f})",
+    "4": "; a fourth {saved:,.0f} ({low:,.0f} to {high:,.0f})",
+    "5": "; a fifth {saved:,.0f} ({low:,.0f} to {high:,.0f})",
+}
+GAIN_NONE = "Of one season no interval is known: simulate more to see what a robot would save."
 
 # -- the report
 REPORT_ABOUT, REPORT_KINDS = "About", {"day": "the day", "season": "the season"}

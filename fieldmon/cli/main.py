@@ -8,6 +8,7 @@ from fieldmon.cli import problems, study
 from fieldmon.cli.app import open_app
 from fieldmon.cli.backup import backup
 from fieldmon.cli.change import change
+from fieldmon.cli.compare import compare
 from fieldmon.cli.correct import correct
 from fieldmon.cli.decide import decide
 from fieldmon.cli.drive import drive
@@ -53,6 +54,7 @@ app.command()(plots)
 app.command()(plan)
 app.command()(init)
 app.command()(simulate)
+app.command()(compare)
 app.command()(drive)
 app.command("stand-in")(stand_in)
 

@@ -13,7 +13,6 @@ import numpy as np
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.observations import Observations
-from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.planning.plan import plan_in
@@ -122,7 +121,8 @@ class Monitor:
         self.day_number = 0
         self._sampler = sampler_of(sampler) if isinstance(sampler, str) else sampler
         self._streams = RandomStreams(seed)
-        self._belief: Belief = PairApproximation.of(plot.grid, _first_chance(plot, chance))
+        first = _first_chance(plot, chance)
+        self._belief: Belief = self.belief_settings.first_morning(plot.grid, first)
         self._last_inspected = np.full(len(plot.grid), NEVER, np.int32)
         self._trail = np.empty(0, np.int32)
         self._day: MonitorDay | None = None
@@ -181,6 +181,7 @@ class Monitor:
             robot=self.robot,
             chance=self._belief.chance,
             pair_chance=self._belief.pair_chance,
+            traces=self._belief.traces,
             last_inspected=self._last_inspected,
             day=self.day_number,
             at=resting_place(self.robot, self._trail),
@@ -336,6 +337,7 @@ class MonitorDay:
             self._scene,
             chance=believed.chance,
             pair_chance=believed.pair_chance,
+            traces=believed.traces,
             last_inspected=last,
             at=at,
             seconds_left=max(0.0, monitor.robot.day_s - now_s),

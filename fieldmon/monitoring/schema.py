@@ -11,9 +11,11 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 3
+VERSION = 5
 #: the first fieldmon that reads files of this version
 NEEDS = "0.2"
+#: what the settings say of a team where there is none
+NO_TEAM = '{"members": []}'
 
 META = GeoPackageTable(
     "fieldmon", ("key TEXT NOT NULL UNIQUE", "value TEXT"), None, "What this file is."
@@ -151,9 +153,10 @@ ROUTES = GeoPackageTable(
         "at_plant INTEGER",
         "seconds_left REAL",
         "digest TEXT",
+        "who TEXT NOT NULL DEFAULT ''",
     ),
     "LINESTRING",
-    "The line to drive on each day; the highest revision of a day counts.",
+    "The line to drive on each day, for each of a team; the highest revision of a day counts.",
 )
 STOPS = GeoPackageTable(
     "stops",
@@ -184,6 +187,12 @@ HOT_SPOTS = GeoPackageTable(
     "MULTIPOLYGON",
     "Where finds cluster more than chance allows, as of now.",
 )
+LEARNT = GeoPackageTable(
+    "learnt",
+    ("name TEXT NOT NULL UNIQUE", "value REAL", "low REAL", "high REAL"),
+    None,
+    "What the inspections so far tell of the insects: best guess and interval of 90 %.",
+)
 OUTSIDE_CHANGES = GeoPackageTable(
     "outside_changes",
     (
@@ -207,7 +216,7 @@ CHANCE = GeoPackageTable(
 TABLES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
     *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
-    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES),
+    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT),
 )
 #: layers from which everything else follows: what must be saved from a damaged file
 CAUSES = (
@@ -246,7 +255,7 @@ CREATE VIEW chance AS
 _INDEXES = (
     "CREATE UNIQUE INDEX inspections_once ON inspections (digest) WHERE undone = 0",
     "CREATE UNIQUE INDEX treatments_once ON treatments (digest) WHERE undone = 0",
-    "CREATE UNIQUE INDEX routes_revision ON routes (day, revision)",
+    "CREATE UNIQUE INDEX routes_revision ON routes (day, who, revision)",
     "CREATE INDEX stops_route ON stops (route, stop)",
 )
 
@@ -302,8 +311,28 @@ def _changes_are_noticed(db: sqlite3.Connection) -> None:
     create(db, OUTSIDE_CHANGES)
 
 
+def _teams_come(db: sqlite3.Connection) -> None:
+    """Version 3 knew one who works: routes were nobody's, and settings said nothing of a team."""
+    db.execute("ALTER TABLE routes ADD COLUMN who TEXT NOT NULL DEFAULT ''")
+    db.execute("DROP INDEX routes_revision")
+    db.execute(_INDEXES[2])
+    # as if said when the season began, so that a team chosen later can be taken back
+    db.execute(
+        "INSERT OR IGNORE INTO settings (fid, name, value, changed) "
+        "SELECT 0, 'team', ?, changed FROM settings ORDER BY fid LIMIT 1",
+        (NO_TEAM,),
+    )
+
+
+def _estimates_come(db: sqlite3.Connection) -> None:
+    """Version 4 did not keep what inspections tell of the insects."""
+    create(db, LEARNT)
+
+
 #: what makes a file of version k one of version k + 1; `watch` follows the last
 MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     1: _treatments_come,
     2: _changes_are_noticed,
+    3: _teams_come,
+    4: _estimates_come,
 }

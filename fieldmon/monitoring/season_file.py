@@ -17,7 +17,6 @@ from fieldmon.decisions.map_verdict import map_verdict
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.hotspots import record_states
 from fieldmon.infestation.observations import Observations, usable
-from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.monitoring import (
@@ -42,7 +41,9 @@ from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json,
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
 from fieldmon.planning.assumptions import assumed_by
-from fieldmon.planning.plan import plan_in
+from fieldmon.planning.plan import DayPlan, plan_in
+from fieldmon.planning.route import route_of
+from fieldmon.planning.team_day import Posted, team_day
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.grid import RowLabel, row_label
 from fieldmon.plot.local_clock import local_clock
@@ -58,11 +59,14 @@ if TYPE_CHECKING:
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.tables import KeptMessage
-    from fieldmon.planning.plan import DayPlan
+    from fieldmon.planning.members import TeamMember
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot
+    from fieldmon.plot.travel import Aisles
 
     Floats = NDArray[np.float64]
 
@@ -100,6 +104,7 @@ class Season:
         self._lock = threading.RLock()
         self._last: _Contents | None = None
         self._prior: tuple[object, Floats] | None = None
+        self._aisles: dict[tuple[float, float], Aisles] = {}
         with self.store.reading() as db:
             self.plot: Plot = tables.read_plot(db)
             self.observations: Observations = tables.read_observations(db)
@@ -218,7 +223,7 @@ class Season:
 
     def plan(
         self, on: date, now: time | None = None, *, keep: bool = True,
-        wishes: Wishes | None = None,
+        wishes: Wishes | None = None, who: str | None = None,
     ) -> DayPlan:  # fmt: skip
         """Plan what is left of a day from all that is known.
 
@@ -233,41 +238,114 @@ class Season:
             whether the route is kept in the file: the same one once, an empty one never.
         wishes
             What people want of the day besides.
+        who
+            Whose day, of a team; None: the first one's. All are planned, see `plan_each`.
+        """
+        days = self.plan_each(on, now, keep=keep, wishes=wishes)
+        team = self.settings.team
+        return days[team.index(self.settings.member(who)) if who and team else 0]
+
+    def plan_each(
+        self, on: date, now: time | None = None, *, keep: bool = True,
+        wishes: Wishes | None = None,
+    ) -> tuple[DayPlan, ...]:  # fmt: skip
+        """Plan what is left of a day for each of the team, or for the one who works.
+
+        In the order of the team. Aisles that the routes kept of this day gave to one stay its own
+        unless another way to give them out gains enough, see `Teamwork`.
         """
         with self._lock:
             contents = self._now()
-            settings = contents.settings
-            day = settings.day(on)
-            shift = Shift(
-                self.plot.aisles,
-                settings.robot,
-                seconds(settings.starts),
-                RandomStreams(settings.seed),
-            )
+            settings, day = contents.settings, contents.settings.day(on)
             now_s = None if now is None else seconds(now)
-            scene = contents.history.scene(shift, day, contents.morning(day), now_s)
-            today = plan_in(scene, settings.decides(), wishes)
-            begins = routes.begins(settings, today)
-            notes = RouteNotes(self.plot.field.name, settings.sampler, begins)
-            today = replace(today, route=replace(today.route, notes=notes))
-            if keep and len(today.route):
-                self._keep(today)
-        return today
+            if settings.team:
+                days = self._team_days(contents, day, now_s, wishes)
+            else:
+                shift = self._shift(settings, settings.robot)
+                scene = contents.history.scene(shift, day, contents.morning(day), now_s)
+                days = (plan_in(scene, settings.decides(), wishes),)
+            noted = tuple(
+                self._noted(settings, today, who)
+                for today, who in zip(days, _names(settings), strict=True)
+            )
+            if keep:
+                self._keep(settings, noted)
+        return noted
 
-    def _keep(self, today: DayPlan) -> None:
-        """Keep a route; one that is kept already is not written, which would wait for readers."""
+    def _keep(self, settings: MonitoringSettings, noted: tuple[DayPlan, ...]) -> None:
+        """Keep routes; those that are kept already are not written: that would wait for readers."""
+        named = [
+            (today, who)
+            for today, who in zip(noted, _names(settings), strict=True)
+            if len(today.route)
+        ]
         with self.store.reading() as db:
-            if routes.is_kept(db, today):
+            if all(routes.is_kept(db, today, who) for today, who in named):
                 return
         with self.store.writing() as db:
-            if routes.keep(db, self.settings, self.label, today):
-                self._refresh(db, today.scene.day)
+            kept = [routes.keep(db, settings, self.label, today, who) for today, who in named]
+            if any(kept):
+                self._refresh(db, named[0][0].scene.day)
 
-    def kept_route(self, on: date) -> NDArray[np.int32]:
-        """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none."""
-        day = self.settings.day(on)
+    def _noted(self, settings: MonitoringSettings, today: DayPlan, who: str) -> DayPlan:
+        begins = routes.begins(settings, today, who)
+        notes = RouteNotes(self.plot.field.name, settings.sampler, begins, who or None)
+        return replace(today, route=replace(today.route, notes=notes))
+
+    def _shift(
+        self, settings: MonitoringSettings, robot: Robot, member: TeamMember | None = None
+    ) -> Shift:
+        starts_s, streams = seconds(settings.starts), RandomStreams(settings.seed)
+        if member is None:
+            return Shift(self.plot.aisles, robot, starts_s, streams)
+        return Shift(self.aisles_from(member.gate), robot, starts_s + member.starts_s, streams)
+
+    def aisles_from(self, gate: tuple[float, float] | None) -> Aisles:
+        """Return the ways on the plot with another gate; None: its own."""
+        if gate is None:
+            return self.plot.aisles
+        if gate not in self._aisles:
+            self._aisles[gate] = self.plot.with_gate(gate).aisles
+        return self._aisles[gate]
+
+    def _team_days(
+        self, contents: _Contents, day: int, now_s: float | None, wishes: Wishes | None
+    ) -> tuple[DayPlan, ...]:
+        settings, history = contents.settings, contents.history
+        scenes, posts = [], []
+        for member in settings.team:
+            shift = self._shift(settings, member.robot, member)
+            scene = history.scene(shift, day, contents.morning(day), now_s, member.name)
+            begun_s = member.starts_s + member.robot.day_s - scene.seconds_left
+            told = scene if wishes is None else wishes.told(scene)
+            scenes.append(scene)
+            posts.append(Posted(told, begun_s, np.zeros(len(scene.chance), np.bool_)))
+        before = self._given_out(settings, day)
+        works = team_day(posts, settings.decides(), settings.teamwork, before=before)
+        return tuple(
+            DayPlan(scene, work, route_of(scene, work))
+            for scene, work in zip(scenes, works, strict=True)
+        )
+
+    def _given_out(self, settings: MonitoringSettings, day: int) -> NDArray[np.int64] | None:
+        """Return who has each aisle by the routes kept of a day, -1: nobody; None: none is kept."""
+        aisle = self.plot.grid.corridor[self.plot.grid.row]
+        given = np.full(int(aisle.max()) + 1, -1)
         with self.store.reading() as db:
-            return routes.plants(db, day)
+            for k, member in enumerate(settings.team):
+                given[aisle[routes.plants(db, day, member.name)]] = k
+        return given if (given >= 0).any() else None
+
+    def kept_route(self, on: date, who: str = "") -> NDArray[np.int32]:
+        """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none.
+
+        Of a team it is that of the one named, or of the first.
+        """
+        settings = self.settings
+        if settings.team:
+            who = settings.member(who).name if who else settings.team[0].name
+        with self.store.reading() as db:
+            return routes.plants(db, settings.day(on), who)
 
     def contradictions(self, inspections: Inspections) -> Contradictions:
         """Return those that say otherwise than what is recorded of the same plant and day."""
@@ -422,6 +500,13 @@ class Season:
             day = contents.settings.day(on)
             return Status.of(contents.history, contents.morning(day), day)
 
+    def learnt(self, on: date) -> tuple[Learnt, ...]:
+        """Return what the inspections up to the evening of a day tell of the insects."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.learnt(contents.morning(day), day)
+
     def progress(self, on: date) -> Progress:
         """Return how far the inspections are after a day's work; nothing is estimated for it."""
         now = self._now()
@@ -526,7 +611,7 @@ class Season:
 def _nothing_yet(
     plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
 ) -> History:
-    belief = PairApproximation.of(plot.grid, prior)
+    belief = settings.belief.first_morning(plot.grid, prior)
     known = usable(records, np.datetime64(settings.begins, "D")).observations
     return History(
         plot.grid,
@@ -535,7 +620,13 @@ def _nothing_yet(
         belief=settings.belief,
         detection=settings.robot.detects,
         recorded=record_states(plot.grid, known) if len(known) else None,
+        detection_of={one.name.casefold(): one.robot.detects for one in settings.team},
     )
+
+
+def _names(settings: MonitoringSettings) -> tuple[str, ...]:
+    """Return who works: the names of the team, or nobody's for the one."""
+    return tuple(member.name for member in settings.team) or ("",)
 
 
 def _revision(db: sqlite3.Connection) -> str:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.tracing import Traces
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles, Clock
@@ -100,6 +101,8 @@ class Scene:
     pair_chance
         ``(e,)`` believed chance that two plants side by side are both infested, in the order of
         ``grid.adjacent``; None where nothing is believed of pairs.
+    traces
+        What is believed of how far insects jump; None where nothing is.
     """
 
     aisles: Aisles
@@ -112,6 +115,7 @@ class Scene:
     trail: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
     key: np.uint64 = np.uint64(0)  # noqa: RUF009 - a number, not a call with effects
     pair_chance: NDArray[np.float64] | None = None
+    traces: Traces | None = None
 
     def __post_init__(self) -> None:
         # whoever makes a scene need not think of it: its ways are those that its robot can drive

@@ -255,6 +255,7 @@ def test_rows_are_selected_by_their_numbers_and_the_map_is_driven_by_keys(page, 
         if "chance" in said.text_content():
             break
         page.keyboard.press("Shift+ArrowDown")
+        still(page)
     row, plant = re.search(r"row (\d+), plant (\d+)", said.text_content()).groups()
     page.keyboard.press("Enter")
     page.get_by_text(texts.HISTORY).first.wait_for(timeout=60_000)

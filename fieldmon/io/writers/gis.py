@@ -108,7 +108,8 @@ def _stops(plan: HandoffPlan) -> gpd.GeoDataFrame:
         )
     }
     for name, kind in (("found", object), ("count", "Int32"), ("who", object), ("notes", object)):
-        columns[name] = pd.Series([None] * len(stops), dtype=kind)
+        said = plan.notes.who if name == "who" else None
+        columns[name] = pd.Series([said] * len(stops), dtype=kind)
     points = [Point(stop.lon, stop.lat) for stop in stops]
     return gpd.GeoDataFrame(columns, geometry=points, crs=_WGS84)
 

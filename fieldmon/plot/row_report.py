@@ -25,7 +25,7 @@ _WORTH_A_WORD = 0.01
 # plants in no rows stray so far from any lines seen in them, in row spacings
 _NO_ROWS = 0.2
 # so much nearer to one other than to a third, a plant is in a pair; so many are worth a word
-_CLOSE, _PAIRED, _FEW = 0.4, 0.3, 6
+_CLOSE, _PAIRED, _FEW = 0.55, 0.4, 6
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from fieldmon.planning import routes
     from fieldmon.planning.plan import DayPlan, plan_day
     from fieldmon.planning.route import Route
+    from fieldmon.plot.block import Block, cut_blocks
     from fieldmon.plot.field import Field
     from fieldmon.plot.layout import Planting
     from fieldmon.plot.plot import Plot
@@ -71,6 +72,7 @@ _MODULES = {
     "monitoring.settings": ("MonitoringSettings",),
     "planning.plan": ("DayPlan", "plan_day"),
     "planning.route": ("Route",),
+    "plot.block": ("Block", "cut_blocks"),
     "plot.field": ("Field",),
     "plot.layout": ("Planting",),
     "plot.plot": ("Plot",),
@@ -89,6 +91,7 @@ _HOME = {name: module for module, names in _MODULES.items() for name in names}
 __all__ = [
     "SAMPLERS",
     "BeliefSettings",
+    "Block",
     "ChoiceNeeded",
     "ContradictionError",
     "DayPlan",
@@ -118,6 +121,7 @@ __all__ = [
     "Start",
     "Viewpoints",
     "__version__",
+    "cut_blocks",
     "draw_start",
     "hot_spots",
     "plan_day",

@@ -28,9 +28,12 @@ import shapely
 
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.io import read as reading
+from fieldmon.io.drawn_rows import parted
 from fieldmon.io.options import PlotOptions, RecordOptions, Upload
+from fieldmon.io.prepare import lay
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.sandbox import limits, process
+from fieldmon.plot.plot import Plot
 from tests import awkward
 
 #: what the clock of the reading process allows on a busy machine, and what ending it may take
@@ -314,8 +317,10 @@ _BY_ENDING = {
 # --- one input ---------------------------------------------------------------------------------
 
 
-#: everything that reads a file of plots, plants, lines, records or inspections
-DOORS = ("plots", "crews", "plants", "lines", "records", "reported", "layers")
+#: everything that reads a file of plots, plants, lines, rows, blocks, records or inspections
+DOORS = ("plots", "crews", "plants", "lines", "rows", "blocks", "records", "reported", "layers")
+#: the doors of which another option than that of their seed is asked for
+_OWN_OPTIONS = {"plots": PlotOptions, "blocks": PlotOptions}
 
 
 def door_of(seed: Seed, rng: np.random.Generator) -> Seed:
@@ -355,18 +360,36 @@ def _through(seed: Seed, source: Any) -> None:
         _check_places(reading.read_records(source, options, None, places).value.lonlat)
     elif seed.door == "crews":
         _check_shapes(reading.read_crews(source)[0].value)
+    elif seed.door == "rows":
+        rows = reading.read_rows(source).value
+        _check_shapes(rows)
+        _lay_along(rows)
+    elif seed.door == "blocks":
+        drawn = reading.read_blocks(source)
+        for block in drawn.value.areas:
+            assert block.area.is_valid
+            _check_places(shapely.get_coordinates(block.area))
+        _check_shapes(drawn.value.cuts)
+        for field in parted((awkward.HOME,), drawn).value:
+            lay(field)
     else:
-        options = seed.options or (PlotOptions() if seed.door == "plots" else None)
+        options = seed.options or _OWN_OPTIONS.get(seed.door, lambda: None)()
         _check_shapes(getattr(reading, f"read_{seed.door}")(source, options).value)
+
+
+def _lay_along(rows: shapely.MultiLineString) -> None:
+    """Lay plants along rows that came in, if they are on one plot and a few."""
+    west, south, east, north = rows.bounds
+    if len(rows.geoms) <= 200 and max(east - west, north - south) < 0.02:
+        Plot.along("rows", rows)
 
 
 def _check_question(seed: Seed, asked: ChoiceNeeded) -> None:
     """Hold that what a question offers can be chosen."""
     if asked.option in {"kind", "plots", "plants"}:
         return  # another file answers
-    options = {"plots": PlotOptions, "crews": PlotOptions, "records": RecordOptions}.get(
-        seed.door, InspectionOptions
-    )()
+    own = {"plots": PlotOptions, "crews": PlotOptions, "blocks": PlotOptions}
+    options = {**own, "records": RecordOptions}.get(seed.door, InspectionOptions)()
     for choice in asked.choices[:5]:
         options.choose(asked.option, choice)
 

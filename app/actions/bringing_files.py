@@ -9,7 +9,7 @@ import streamlit as st
 from fieldmon.errors import ChoiceNeeded
 
 from ..state import brought_files, rasters
-from ..state.brought_files import PLANTS, PLOT, RECORDS, answers, brought
+from ..state.brought_files import BLOCKS, PLANTS, PLOT, RECORDS, ROWS, answers, brought
 from ..words import texts
 from ..words.language import in_words, of_error
 
@@ -31,7 +31,8 @@ _MOST_BUTTONS = 12
 
 def show() -> None:
     """Show the boxes for a plot's files; what was dropped is kept while the session lasts."""
-    labels = {PLOT: texts.PLOT_FILE, RECORDS: texts.RECORD_FILE, PLANTS: texts.PLANT_FILE}
+    labels = {PLOT: texts.PLOT_FILE, RECORDS: texts.RECORD_FILE, PLANTS: texts.PLANT_FILE,
+              ROWS: texts.ROWS_FILE, BLOCKS: texts.BLOCKS_FILE}  # fmt: skip
     for kind, label in labels.items():
         dropped = st.file_uploader(label, key=_box(kind), accept_multiple_files=True,
                                    on_change=_take, args=(kind,))  # fmt: skip

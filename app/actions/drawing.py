@@ -16,10 +16,11 @@ from ..show.map_view import Drawable, MapAnswers, MapContent
 from ..show.maps import colours, deck, legends, marks, plant_layers
 from ..state import cached, notices, widget_memory
 from ..state.chosen_units import units
-from ..state.plot_edits import GATE, NO_GO, PATH, Edit, points_of
+from ..state.plot_edits import CUT, GATE, NO_GO, PATH, ROW, Edit, points_of
 from ..state.plot_files import draw, drawn, laid
 from ..words import texts
 from ..words.language import of_error
+from . import bending
 
 if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
@@ -29,16 +30,19 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
     from ..state.plot_edits import Points
 
-_NAMES = {GATE: "gate", PATH: "path", NO_GO: "no_go"}
-_SHAPES = {GATE: "point", PATH: "line", NO_GO: "area"}
+_NAMES = {GATE: "gate", PATH: "path", NO_GO: "no_go", ROW: "row", CUT: "cut"}
+_SHAPES = {GATE: "point", PATH: "line", NO_GO: "area", CUT: "line"}
 # more corners than this are no help
 _SNAPS = 2_000
 
 
-def rows(plot_key: str) -> None:
-    """Show what was found of a plot's rows, to be set by hand."""
+def rows(plot_key: str, *, measured: bool = False) -> None:
+    """Show what was found of a plot's rows, to be set by hand; measured plants may have none."""
     with st.expander(texts.ROWS, expanded=True):
         st.caption(texts.FOUND_ROWS)
+        if measured:
+            widget_memory.show(st.toggle, texts.NO_ROWS, key=f"no_rows {plot_key}", default=False,
+                               help=texts.NO_ROWS_HELP)  # fmt: skip
         widget_memory.show(st.number_input, texts.BEARING, 0.0, 360.0, step=0.5,
                         help=texts.BEARING_HELP, key=f"row_bearing {plot_key}")  # fmt: skip
         spacings(plot_key)
@@ -64,14 +68,40 @@ def spacings(plot_key: str) -> None:
         )  # fmt: skip
 
 
+def blocks(choices: Choices) -> None:
+    """Show how each block is planted, to be set by hand."""
+    field, now = choices.plot.field, units()
+    if len(field.blocks) < 2:
+        return
+    unit = texts.UNITS[now.length]
+    labels_ = (
+        ("block_bearing", texts.BEARING, (0.0, 360.0)),
+        ("block_row_spacing", texts.ROW_SPACING.format(unit=unit), now.limits(0.1, 50.0)),
+        ("block_plant_spacing", texts.PLANT_SPACING.format(unit=unit), now.limits(0.1, 50.0)),
+    )
+    with st.expander(texts.BLOCKS, expanded=True):
+        st.caption(texts.BLOCKS_NOTE)
+        for block in field.blocks:
+            st.markdown(texts.BLOCK.format(name=texts.isolated(block.name)))
+            with st.container(horizontal=True):
+                for name, label, limits in labels_:
+                    widget_memory.show(
+                        st.number_input, label, *limits, step=0.5,
+                        key=f"{name} {block.name} {choices.plot_key}",
+                    )  # fmt: skip
+
+
 def tools(choices: Choices) -> None:
     """Show what can be drawn, and undo."""
     with st.expander(texts.DRAW, expanded=bool(_kind() or drawn(choices.plot_key))):
         st.caption(texts.DRAW_NOTE)
-        st.selectbox(texts.DRAW_KIND, list(texts.DRAW_KINDS), key="draw_kind", filter_mode=None,
+        kinds = [kind for kind in texts.DRAW_KINDS if kind != ROW or bending.can_bend(choices)]
+        st.selectbox(texts.DRAW_KIND, kinds, key="draw_kind", filter_mode=None,
                      format_func=texts.DRAW_KINDS.__getitem__, on_change=_drop,
                      args=(choices,))  # fmt: skip
-        if _kind():
+        if _kind() == ROW:
+            bending.show(choices)
+        elif _kind():
             st.text_input(texts.DRAW_TYPED, key="draw_typed", placeholder="35.1503,30.3601")
             st.button(texts.DRAW_ADD, key="draw_add", on_click=_add, args=(choices,))
         if points := _points(choices):
@@ -83,9 +113,14 @@ def tools(choices: Choices) -> None:
         made = drawn(choices.plot_key)
         for edit in made:
             st.caption(f"{texts.DRAW_KINDS[_NAMES[edit.kind]]}: {len(edit.lonlat)}")
-        if made:
-            st.button(texts.DRAW_UNDO, key="draw_undo", icon=":material/undo:", on_click=_undo,
-                      args=(choices,))  # fmt: skip
+        undo_last(choices.plot_key)
+
+
+def undo_last(plot_key: str) -> None:
+    """Offer to take back what was drawn last, if anything was."""
+    if drawn(plot_key):
+        st.button(texts.DRAW_UNDO, key="draw_undo", icon=":material/undo:", on_click=_undo,
+                  args=(plot_key,))  # fmt: skip
 
 
 def content(
@@ -98,7 +133,8 @@ def content(
     field, kind = choices.plot.field, _kind()
     layers = [
         *map_layers.plan(choices), *_as_it_was(before), *_plain_plants(choices),
-        *marks.paths(field), *marks.records(records, dark=choices.dark),
+        *_row_lines(choices), *marks.blocks(field, dark=choices.dark), *marks.paths(field),
+        *marks.records(records, dark=choices.dark),
     ]  # fmt: skip
     if field.gate is not None:
         layers.append(marks.places([list(field.gate)], "gate", colours.GATE, texts.TIP_GATE))
@@ -106,7 +142,10 @@ def content(
     if typed:
         layers += marks.drawing(typed)
     draw = None
-    if kind:
+    if kind == ROW:
+        layers += bending.layers(choices)
+        draw = bending.bent_line(choices)
+    elif kind:
         draw = Drawable(_SHAPES[kind], kind, texts.DRAW_HINTS[kind], _corners(field))
     made = MapContent(
         **field_map.of_plot(choices), layers=layers, switches=map_layers.switches(layers),
@@ -128,6 +167,16 @@ def _plain_plants(choices: Choices) -> list:
     return cached.layers(f"plain {choices.key}", make)
 
 
+def _row_lines(choices: Choices) -> list:
+    """Return the rows as lines, as they were found or laid, made once."""
+    grid = choices.plot.grid
+    if not grid.in_rows:
+        return []
+    colour = colours.ROWS_IN_DARK if choices.dark else colours.ROWS
+    key = f"row lines {choices.key} {choices.dark}"
+    return cached.layers(key, lambda: [marks.rows(grid, "row-lines", colour)])
+
+
 def _as_it_was(before: Plot | None) -> list:
     if before is None:
         return []
@@ -145,7 +194,9 @@ def _corners(field: Field) -> tuple[tuple[float, float], ...]:
 
 def _drawn(choices: Choices, kind: str, points: Points) -> None:
     """Keep what was drawn on the map, after what was typed before."""
-    if kind == _kind():
+    if kind.split(" ", maxsplit=1)[0] == ROW == _kind():
+        bending.try_row(choices, points)
+    elif kind == _kind():
         _put(choices, points)
         if kind != GATE:
             _finish(choices)
@@ -188,8 +239,9 @@ def _finish(choices: Choices) -> None:
 
 
 def _drop(choices: Choices) -> None:
+    bending.drop(choices)
     st.session_state[f"drawing {choices.plot_key}"] = ()
 
 
-def _undo(choices: Choices) -> None:
-    draw(choices.plot_key, drawn(choices.plot_key)[:-1])
+def _undo(plot_key: str) -> None:
+    draw(plot_key, drawn(plot_key)[:-1])

@@ -96,7 +96,7 @@ def _show_route(choices: Choices) -> None:
     label = row_label(choices.plot.grid, plants)
     table = pd.DataFrame(
         {
-            texts.COLUMN_ROW: label.line,
+            **({texts.COLUMN_ROW: label.line} if choices.plot.grid.in_rows else {}),
             texts.COLUMN_PLANT: label.number,
             texts.LEGEND_STATES["found"]: False,
         },
@@ -107,7 +107,7 @@ def _show_route(choices: Choices) -> None:
         st.caption(texts.RECORD_REST)
         st.number_input(texts.RECORD_STOPS, 0, len(plants), None, key="stops_done")
         with st.container(key="route_marks"):
-            marked = st.data_editor(table, height=230, disabled=list(table.columns[:2]),
+            marked = st.data_editor(table, height=230, disabled=list(table.columns[:-1]),
                                     key=f"marks {choices.day} {len(plants)}")  # fmt: skip
         pressed = st.form_submit_button(texts.RECORD_BUTTON, type="primary")
     if pressed:

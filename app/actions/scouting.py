@@ -66,7 +66,8 @@ def last_said(choices: Choices) -> str:
         return ""
     label = row_label(choices.plot.grid, done.plant[-1:])
     result = texts.HISTORY_RESULTS[int(done.result[-1])]
-    return texts.SCOUT_LAST.format(row=label.line[0], plant=label.number[0], result=result)
+    said = texts.SCOUT_LAST if choices.plot.grid.in_rows else texts.SCOUT_LAST_ALONE
+    return said.format(row=label.line[0], plant=label.number[0], result=result)
 
 
 @notices.reporting

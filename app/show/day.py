@@ -35,7 +35,7 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
     starts = pd.Timestamp(shown.begins)
     columns = {
         texts.COLUMN_ARRIVE: (starts + gone).strftime("%H:%M:%S"),
-        texts.COLUMN_ROW: label.line,
+        **({texts.COLUMN_ROW: label.line} if choices.plot.grid.in_rows else {}),
         texts.COLUMN_PLANT: label.number,
         texts.COLUMN_CHANCE: (100 * route.chance).round(1),
     }

@@ -63,12 +63,16 @@ class Switch:
 
 @dataclass(frozen=True)
 class Drawable:
-    """What clicks draw: its kind (``point``, ``line``, ``area``), name, a hint, where it snaps."""
+    """What clicks draw: its kind (``point``, ``line``, ``area``), name, a hint, where it snaps.
+
+    Of the kind ``bent`` it is a line that is there, `points`, and each change of it is heard.
+    """
 
     kind: str
     name: str
     hint: str = ""
     snap: tuple[tuple[float, float], ...] = ()
+    points: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +182,8 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
         "play": content.play,
         "frames": None if content.frames is None else _sent(content.frames),
         "draw": draw and {"id": draw.name, "kind": draw.kind, "hint": draw.hint,
-                          "snap": [list(p) for p in draw.snap]},
+                          "snap": [list(p) for p in draw.snap],
+                          "points": [list(p) for p in draw.points]},
         "taps": answers.tapped is not None,
         "select": answers.selected is not None,
         "picked": _runs(answers.picked),

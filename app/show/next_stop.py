@@ -45,16 +45,22 @@ def next_stop(plan: DayPlan, done: int, units: UnitsInLanguage) -> NextStop:
     return NextStop(
         plant,
         lonlat,
-        texts.NEXT_PLACE.format(row=label.line[0], plant=label.number[0]),
+        (texts.NEXT_PLACE if grid.in_rows else texts.NEXT_ALONE).format(
+            row=label.line[0], plant=label.number[0]
+        ),
         texts.NEXT_WAY.format(
             metres=units.metres(drive_m), compass=texts.COMPASS[sector],
-            along=texts.NEXT_ALONG if same else texts.NEXT_AISLE,
+            along=_along(same=same) if grid.in_rows else "",
         ),
         texts.ARROWS[sector],
         texts.NEXT_CHANCE.format(
             chance=float(route.chance[0]), done=done, left=len(route), hours=str(left)[:-3],
         ),
     )  # fmt: skip
+
+
+def _along(*, same: bool) -> str:
+    return texts.NEXT_ALONG if same else texts.NEXT_AISLE
 
 
 def _heading(scene: Scene, plant: int) -> tuple[int, list[float]]:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from fieldmon.io.import_report import Imported, ImportMessage
 
 PLOT, RECORDS, PLANTS = "plot", "record", "plant"
+ROWS, BLOCKS = "rows", "blocks"
 _BROUGHT, _ASKING = "brought", "asking"
 
 

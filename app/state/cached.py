@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from fieldmon.io.options import PlotOptions, ReadOptions, Source
     from fieldmon.io.rasters.values import Backdrop, RasterOptions
     from fieldmon.io.readers.places import Plants
+    from fieldmon.io.readers.points_and_lines import DrawnBlocks
     from fieldmon.io.sources import (
         CanopySource,
         PlantingChoices,
@@ -104,9 +105,33 @@ def records(
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
-def measured_plants(key: str, options: ReadOptions, _source: Source) -> Plants:  # noqa: ARG001
+def measured_plants(
+    key: str,  # noqa: ARG001
+    options: ReadOptions,
+    _source: Source,
+) -> Imported[Plants]:
     """Return measured plants: positions, and labels if the file has any."""
-    return read.read_plants(_source, options).value
+    return read.read_plants(_source, options)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
+def drawn_rows(
+    key: str,  # noqa: ARG001
+    options: ReadOptions,
+    _source: Source,
+) -> Imported[MultiLineString]:
+    """Return rows that were drawn, or those of end posts."""
+    return read.read_rows(_source, options)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
+def drawn_blocks(
+    key: str,  # noqa: ARG001
+    options: PlotOptions,
+    _source: Source,
+) -> Imported[DrawnBlocks]:
+    """Return blocks as areas, or the lines that part a plot."""
+    return read.read_blocks(_source, options)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)

@@ -1,22 +1,25 @@
-"""What a person draws on a plot: gate, paths and no-go areas. No Streamlit in here."""
+"""What a person draws on a plot: gate, paths, no-go areas, rows and cuts. No Streamlit in here."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 import shapely
 from shapely import LineString, MultiLineString, MultiPolygon, Polygon
 
 from fieldmon.errors import SettingError
+from fieldmon.plot.block import cut_blocks
+from fieldmon.plot.row_drawing import smooth_row
 
 from ..words import texts
 
 if TYPE_CHECKING:
     from fieldmon.plot.field import Field
 
-GATE, PATH, NO_GO = "gate", "path", "no_go"
-NEEDED = {GATE: 1, PATH: 2, NO_GO: 3}
+GATE, PATH, NO_GO, ROW, CUT = "gate", "path", "no_go", "row", "cut"
+NEEDED = {GATE: 1, PATH: 2, NO_GO: 3, ROW: 2, CUT: 2}
 Points = tuple[tuple[float, float], ...]
 
 
@@ -27,7 +30,7 @@ class Edit:
     Parameters
     ----------
     kind
-        `GATE`, `PATH` or `NO_GO`.
+        `GATE`, `PATH`, `NO_GO`, `ROW` or `CUT`.
     lonlat
         Its corners in order.
     """
@@ -55,11 +58,29 @@ def edited(field: Field, edits: tuple[Edit, ...]) -> Field:
         elif edit.kind == PATH:
             lines = [*shapely.get_parts(field.paths), LineString(edit.lonlat)]
             field = replace(field, paths=MultiLineString(lines))
+        elif edit.kind == ROW:
+            field = _with_row(field, smooth_row(np.array(edit.lonlat)))
+        elif edit.kind == CUT:
+            field = replace(field, blocks=cut_blocks(field, LineString(edit.lonlat)))
         else:
             both = shapely.union_all([field.no_go, Polygon(edit.lonlat)])
             areas = [a for a in shapely.get_parts(both) if a.geom_type == "Polygon"]
             field = replace(field, no_go=MultiPolygon(areas))
     return field
+
+
+def _with_row(field: Field, row: LineString) -> Field:
+    """Return the field with a row of which the others are copies: all of them, or its block's."""
+    own = next((block for block in field.blocks if _mostly_in(row, block.area)), None)
+    others = [
+        line for line in field.row_lines.geoms
+        if own is not None and not _mostly_in(line, own.area)
+    ]  # fmt: skip
+    return replace(field, row_lines=MultiLineString([*others, row]))
+
+
+def _mostly_in(line: LineString, area: MultiPolygon) -> bool:
+    return bool(shapely.intersection(line, area).length > line.length / 2)
 
 
 def points_of(text: str) -> Points:

@@ -12,13 +12,15 @@ import streamlit as st
 
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.observations import Observations
+from fieldmon.io.drawn_rows import parted
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
+from fieldmon.io.prepare import Laid, with_plants
 from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
 
 from . import brought_files, cached, rasters, sample_estate
 from .brought_files import File, FileMessage, LeftOut, messages_of, settled
 from .plot_edits import Edit, edited
-from .row_settings import row_settings
+from .row_settings import block_settings, row_settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,11 +39,13 @@ _LAYING = "laying"
 
 @dataclass(frozen=True, eq=False)
 class Files:
-    """The files that make a plot: a boundary or measured plants or both, and records of pests."""
+    """The files that make a plot: a boundary or measured plants or both, records, rows, blocks."""
 
     plot: File | None
     records: File | None
     plants: File | None
+    rows: File | None = None
+    blocks: File | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +108,8 @@ def of_sample() -> Files:
 def of_session() -> Files | None:
     """Return the files that this session brought; None while they make no plot."""
     brought = brought_files.brought()
-    kinds = (brought_files.PLOT, brought_files.RECORDS, brought_files.PLANTS)
+    kinds = (brought_files.PLOT, brought_files.RECORDS, brought_files.PLANTS,
+             brought_files.ROWS, brought_files.BLOCKS)  # fmt: skip
     files = Files(*(brought.get(kind) for kind in kinds))
     return None if files.plot is None and files.plants is None else files
 
@@ -115,27 +120,48 @@ def _sample(kind: str, name: str) -> File:
 
 def outline(files: Files, which: Which) -> Outline:
     """Return the plot that `which` answers with, and its measured plants."""
-    measured, key = _measured(files.plants)
+    measured, heard, key = _measured(files.plants)
     if files.plot is None:
-        return Outline(key, None, (), measured, ())
+        return Outline(key, None, (), measured, heard)
     options = settled(files.plot, PlotOptions())
     read = cached.plots(files.plot.key, options, files.plot.source)
     number = which(files.plot, [field.name for field in read.value])
     field = read.value[number]
     if measured is not None:
-        field = replace(field, plants=measured.lonlat)
+        field = with_plants(field, measured)
+    field, drawn_there, longer = _with_drawn(files, field)
     if files.plot.key.startswith(_SAMPLE):
         field = replace(field, paths=cached.paths(_sample("path", sample_estate.PATHS).source))
     said = messages_of(files.plot, read)
     own = tuple(one for one in said if one.message.feature in (None, field.name))
-    return Outline(f"{key}{files.plot.key}{options}{number}", field, read.value, measured, own)
+    said = (*own, *heard, *drawn_there)
+    key = f"{key}{files.plot.key}{options}{number}{longer}"
+    return Outline(key, field, read.value, measured, said)
 
 
-def _measured(file: File | None) -> tuple[Plants | None, str]:
+def _measured(file: File | None) -> tuple[Plants | None, tuple[FileMessage, ...], str]:
     if file is None:
-        return None, ""
+        return None, (), ""
     options = settled(file, ReadOptions())
-    return cached.measured_plants(file.key, options, file.source), f"{file.key}{options}"
+    read = cached.measured_plants(file.key, options, file.source)
+    return read.value, messages_of(file, read), f"{file.key}{options}"
+
+
+def _with_drawn(files: Files, field: Field) -> tuple[Field, tuple[FileMessage, ...], str]:
+    """Return a field with the rows and blocks that were brought, what was said, and their key."""
+    said: tuple[FileMessage, ...] = ()
+    key = ""
+    if (file := files.rows) is not None and field.plants is None:
+        options = settled(file, ReadOptions())
+        rows = cached.drawn_rows(file.key, options, file.source)
+        field = replace(field, row_lines=rows.value)
+        said, key = messages_of(file, rows), f"{file.key}{options}"
+    if (file := files.blocks) is not None:
+        options = settled(file, PlotOptions())
+        blocks = parted((field,), cached.drawn_blocks(file.key, options, file.source))
+        (field,) = blocks.value
+        said, key = (*said, *messages_of(file, blocks)), f"{key}{file.key}{options}"
+    return field, said, key
 
 
 def prepared(files: Files, outline: Outline) -> PlotFromFiles:
@@ -145,8 +171,15 @@ def prepared(files: Files, outline: Outline) -> PlotFromFiles:
     records, read, left_out, key = _records(files.records, outline, plot, key)
     plot, missing, key = rasters.without_missing(plot, key)
     risk, said, key = rasters.risk(plot, key)
-    messages = (*outline.messages, *missing, *read, *said)
+    of_rows = _said_of_rows(files, plot)
+    messages = (*outline.messages, *of_rows, *missing, *read, *said)
     return PlotFromFiles(key, plot, records, risk, messages, left_out)
+
+
+def _said_of_rows(files: Files, plot: Plot) -> tuple[FileMessage, ...]:
+    """Return how plants stand in rows, as it is said of the file that tells of them."""
+    file = files.plants or files.rows or files.plot
+    return tuple(FileMessage(file.asked, message) for message in Laid(plot).messages)
 
 
 def _plot(files: Files, outline: Outline) -> tuple[Plot, str]:
@@ -174,8 +207,13 @@ def laid(
 ) -> tuple[Plot, str]:
     """Return the plot on which all `edits` are drawn, the `new` ones of them not yet on `field`."""
     choices = PlantingChoices(**row_settings(plot_key))
-    key = f"{plot_key}{edits}"
-    return cached.plot(key, choices, edited(field, new)), f"{key}{choices}"
+    field = edited(field, new)
+    by_hand = [block_settings(plot_key, block.name) for block in field.blocks]
+    planted = tuple(
+        replace(block, **said) for block, said in zip(field.blocks, by_hand, strict=True)
+    )
+    key = f"{plot_key}{edits}{by_hand if any(by_hand) else ''}"
+    return cached.plot(key, choices, replace(field, blocks=planted)), f"{key}{choices}"
 
 
 def drawn(plot_key: str) -> tuple[Edit, ...]:

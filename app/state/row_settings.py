@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 #: the boxes that hold lengths
 LENGTHS = ("row_spacing", "plant_spacing", "headland")
+BLOCK_LENGTHS = ("block_row_spacing", "block_plant_spacing")
 
 
 def row_settings(plot_key: str) -> dict[str, float | None]:
@@ -22,11 +23,30 @@ def row_settings(plot_key: str) -> dict[str, float | None]:
         said[f"{name}_m"] = None if shown is None else now.in_metres(shown)
     both = widget_memory.value(f"both_faces {plot_key}")
     bearing = widget_memory.value(f"row_bearing {plot_key}")
-    return {**said, "row_bearing_deg": bearing, "faces": 2 if both else None}
+    in_rows = not widget_memory.value(f"no_rows {plot_key}")
+    return {**said, "row_bearing_deg": bearing, "faces": 2 if both else None, "in_rows": in_rows}
+
+
+def is_said(plot_key: str) -> bool:
+    """Return whether anything was said of a plot's rows by hand."""
+    return row_settings(plot_key) != dict.fromkeys(row_settings(plot_key), None) | {"in_rows": True}
+
+
+def block_settings(plot_key: str, name: str) -> dict[str, float]:
+    """Return what was said of a block's rows by hand, as `fieldmon.plot.block.Block` has it."""
+    now = units()
+    said = {"row_bearing_deg": widget_memory.value(f"block_bearing {name} {plot_key}")}
+    for key in BLOCK_LENGTHS:
+        shown = widget_memory.value(f"{key} {name} {plot_key}")
+        setting = f"{key.removeprefix('block_')}_m"
+        said[setting] = None if shown is None else now.in_metres(shown)
+    return {setting: value for setting, value in said.items() if value is not None}
 
 
 def carry_over(before: UnitsInLanguage) -> None:
     """Carry lengths that boxes hold over into the unit that is now chosen (for callbacks)."""
     now = units()
     if now.length != before.length:
-        widget_memory.change(LENGTHS, lambda shown: now.shown(before.in_metres(shown)))
+        widget_memory.change(
+            (*LENGTHS, *BLOCK_LENGTHS), lambda shown: now.shown(before.in_metres(shown))
+        )

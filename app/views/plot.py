@@ -13,7 +13,7 @@ from ..show import field_map, plot_figures
 from ..show import records as records_shown
 from ..show.assumed import sentence
 from ..state import chosen_day, plot_before, plot_files, plot_source, rooms
-from ..state.row_settings import row_settings
+from ..state.row_settings import is_said
 from ..words import texts
 from ..words.language import in_words
 
@@ -34,8 +34,10 @@ def bring(problem: FieldmonError | None) -> None:
         answering.show(problem)
         laying = plot_files.laying()
         # what was set by hand may be what is wrong: it must stay within reach
-        if isinstance(problem, PlotError) and any(row_settings(laying).values()):
+        if isinstance(problem, PlotError) and is_said(laying):
             drawing.rows(laying)
+        if isinstance(problem, PlotError):
+            drawing.undo_last(laying)
 
 
 def show(choices: Choices) -> None:
@@ -54,7 +56,8 @@ def show(choices: Choices) -> None:
     records, said = records_shown.records_until(choices.records)
     if choices.season is None:
         drawing.tools(choices)
-        drawing.rows(choices.plot_key)
+        drawing.rows(choices.plot_key, measured=choices.plot.field.plants is not None)
+        drawing.blocks(choices)
         rasters.show_missing()
         rasters.show_risk()
     else:

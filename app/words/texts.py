@@ -43,6 +43,8 @@ PLOT_FROM = "Plot or season"
 PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
 RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
 PLANT_FILE = "Measured plant positions (optional)"
+ROWS_FILE = "Rows as lines, or their end posts (optional)"
+BLOCKS_FILE = "Blocks as areas, or lines that part the plot (optional)"
 FILES = "Files: the plot, pest records, measured plants"
 KEPT_FILE = "In use: {name}"
 FORGET_FILE = "Take it out"
@@ -315,6 +317,8 @@ MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {fin
 
 # -- what stands beside a thing on the map that is pointed at
 TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start and end", "path"
+TIP_ALONE, NEXT_ALONE = "plant {plant}{note}", "Plant {plant}"
+SCOUT_LAST_ALONE = "Last: plant {plant}: {result}"
 TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
 TIP_SEEN_TODAY, TIP_NEVER = "{result} today", "never inspected"
 TIP_SEEN_BEFORE = Plural("{result} {n} day ago", "{result} {n} days ago")
@@ -333,18 +337,22 @@ BEFORE_NOTE = "The plot as it was before the last change is drawn in orange."
 BEFORE_DROP = "It is right now"
 FOUND_ROWS = "Leave a box empty to take what was found. Plants are laid again at once."
 FIXED = "The plants of a season are laid once and for all: its plant numbers stay valid."
-DRAW, DRAW_KIND = "Gate, paths, no-go areas", "A click on the map sets"
+DRAW, DRAW_KIND = "Gate, paths, no-go areas, rows", "A click on the map sets"
 DRAW_KINDS = {"": "nothing", "gate": "the gate", "path": "points of a path",
-              "no_go": "corners of a no-go area"}  # fmt: skip
+              "no_go": "corners of a no-go area", "row": "how rows bend",
+              "cut": "a cut into blocks"}  # fmt: skip
 DRAW_HINTS = {"gate": "Click where the gate is.", "path": "Click along the path.",
-              "no_go": "Click the corners, one way round."}  # fmt: skip
+              "no_go": "Click the corners, one way round.",
+              "row": "Drag a handle to bend the row; a click adds one.",
+              "cut": "Click from one side of the plot to the other."}  # fmt: skip
 DRAW_TYPED = "or type positions (lon,lat lon,lat ...)"
 DRAW_ADD, DRAW_DONE, DRAW_UNDO, DRAW_DROP = "Add", "Finish", "Undo the last one", "Drop points"
 DRAW_POINTS = Plural("{n} point so far.", "{n} points so far.")
 DRAW_LEAST = (
     "{what} needs {least} points or more, but {n} are given. Add points on the map, or type them."
 )
-DRAW_WHAT = {"gate": "A gate", "path": "A path", "no_go": "A no-go area"}
+DRAW_WHAT = {"gate": "A gate", "path": "A path", "no_go": "A no-go area", "row": "A row",
+             "cut": "A cut"}  # fmt: skip
 DRAW_CROSSED = (
     "The edge of a no-go area must not cross itself, but it does. Give its corners in order, one "
     "way round."
@@ -352,6 +360,16 @@ DRAW_CROSSED = (
 DRAW_WRITTEN = "A position must be written lon,lat such as 35.1503,30.3601, but it is {text!r}."
 DRAW_RANGE = "A longitude lies in -180..180 and a latitude in -90..90, but this is {text!r}."
 DRAW_NOTE = "Insects come in along paths; a no-go area carries no plants and is not driven through."
+BEND_ROW = "Row to bend; the others follow it"
+BEND_MAKES = "This makes {rows} rows with {plants} plants. They are drawn over the plot."
+BEND_USE, BEND_DROP = "Use these rows", "Drop them"
+BLOCKS = "Blocks"
+BLOCKS_NOTE = (
+    "Leave a box empty for rows along the block's longest side, as far apart as elsewhere."
+)
+BLOCK = "**Block {name}**"
+NO_ROWS = "The plants stand in no rows"
+NO_ROWS_HELP = "They are visited one by one, by nearness."
 RISK, RISK_FILE = "Risk from a raster", "GeoTIFF: NDVI, elevation, a risk map"
 RISK_NOTE = "One more reason for a plant to be infested, beside records, edges and paths."
 RISK_MEANS = "Its numbers are"

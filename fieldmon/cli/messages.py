@@ -25,6 +25,7 @@ FLAGS = {
     "plot": "--plot-option",
     "plants": "--plants-option",
     "rows": "--rows-option",
+    "blocks": "--blocks-option",
     "contours": "--contours-option",
     "paths": "--paths-option",
     "records": "--record-option",
@@ -104,6 +105,9 @@ class Terminal:
 def describe(plot: Plot) -> None:
     """Print how a plot is planted."""
     grid, name = plot.grid, plot.field.name
+    if not grid.in_rows:
+        typer.echo(f"{name}: {len(grid)} plants in no rows, visited by nearness.")
+        return
     if plot.rows is not None and not plot.rows.in_rows:
         typer.echo(f"{name}: {len(grid)} plants in no rows.")
         return

@@ -28,7 +28,7 @@ PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
 PlotFile = Annotated[Path, typer.Argument(help=PLOT_HELP, show_default=False)]
 MaybePlotFile = Annotated[
     Path | None,
-    typer.Argument(help=f"{PLOT_HELP} Not needed if --plants are given.", show_default=False),
+    typer.Argument(help=f"{PLOT_HELP} Not needed if --plants or --rows are.", show_default=False),
 ]
 SeasonFile = Annotated[Path, typer.Argument(help="The season's file, made by fieldmon init.")]
 Feature = Annotated[
@@ -83,6 +83,22 @@ RowsChoices = Annotated[
     list[str] | None,
     typer.Option("--rows-option", help="What the file of rows leaves open, as NAME=VALUE."),
 ]
+Blocks = Annotated[
+    Path | None,
+    typer.Option(
+        help="Blocks with rows of their own: areas, or lines that part the plot into blocks."
+    ),
+]
+BlocksChoices = Annotated[
+    list[str] | None,
+    typer.Option("--blocks-option", help="What the file of blocks leaves open, as NAME=VALUE."),
+]
+GuessBlocks = Annotated[
+    bool,
+    typer.Option(
+        "--guess-blocks", help="Blocks where the outline asks for rows in several directions."
+    ),
+]
 Contours = Annotated[
     Path | None,
     typer.Option(help="GeoTIFF of heights: rows run along its contours, as on terraces."),
@@ -106,6 +122,10 @@ HalfCanopy = Annotated[
 ]
 BothFaces = Annotated[
     bool, typer.Option("--both-faces", help="Inspect both faces of each row, each from its aisle.")
+]
+NoRows = Annotated[
+    bool,
+    typer.Option("--no-rows", help="Measured plants stand in no rows: visit them by nearness."),
 ]
 Gate = Annotated[str | None, typer.Option(help="Where the day starts and ends: LON,LAT.")]
 Scout = Annotated[bool, typer.Option("--scout", help="A person on foot instead of the robot.")]
@@ -223,6 +243,7 @@ class RowOptions:
     headland: Headland = None
     half_canopy: HalfCanopy = None
     both_faces: BothFaces = False
+    no_rows: NoRows = False
 
     def choices(self) -> PlantingChoices:
         """Return what was said of the rows."""
@@ -230,7 +251,7 @@ class RowOptions:
 
         faces = 2 if self.both_faces else None
         spacings = self.row_spacing, self.plant_spacing, self.headland
-        return PlantingChoices(self.bearing, *spacings, faces, self.half_canopy)
+        return PlantingChoices(self.bearing, *spacings, faces, self.half_canopy, not self.no_rows)
 
 
 @dataclass(frozen=True)
@@ -250,15 +271,19 @@ class FileOptions:
     rows_option: RowsChoices = None
     contours: Contours = None
     contours_option: ContoursChoices = None
+    blocks: Blocks = None
+    blocks_option: BlocksChoices = None
+    guess_blocks: GuessBlocks = False
 
     def sources(self, plot: Path | None, feature: str | None) -> PlotSources:
         """Return the plot's files, given the first of them."""
-        from fieldmon.io.options import ReadOptions  # noqa: PLC0415
+        from fieldmon.io.options import PlotOptions, ReadOptions  # noqa: PLC0415
         from fieldmon.io.sources import PlotSources  # noqa: PLC0415
 
-        if plot is None and self.plants is None:
+        if plot is None and self.plants is None and self.rows is None:
             raise SettingError(
-                "Give a plot file, or the positions of its plants with --plants FILE."
+                "Give a plot file, or the positions of its plants with --plants FILE, or its rows "
+                "with --rows FILE."
             )
         return PlotSources(
             plot,
@@ -272,6 +297,9 @@ class FileOptions:
             chosen(ReadOptions(), self.rows_option),
             self.contours,
             _raster_options(self.contours_option),
+            self.blocks,
+            chosen(PlotOptions(), self.blocks_option),
+            self.guess_blocks,
         )
 
 

@@ -184,10 +184,11 @@ def _request_of_all(options: PlanOptions) -> PlotRequest:
     """Return what to prepare for every plot; refuse what is of one plot only."""
     files, rasters = options.files.files, options.files.rasters
     of_one = options.feature, files.plants, files.gate, rasters.risk, rasters.canopy
-    if options.plot is None or any((*of_one, options.chance_map)):
+    no_rows = options.files.rows.no_rows
+    if options.plot is None or any((*of_one, options.chance_map, no_rows)):
         raise SettingError(
             "--all plans every plot of one plot file: leave out --feature, --plants, --gate, "
-            "--risk, --canopy and --chance-map."
+            "--risk, --canopy, --chance-map and --no-rows."
         )
     return options.files.request(options.plot, None, options.observations)
 

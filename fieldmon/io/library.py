@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
 
+#: files of rows and blocks that a plot may have besides
+_DRAWN = ("rows", "blocks", "contours")
 _DOUBTS = (Severity.GUESSED, Severity.DROPPED, Severity.DOUBTFUL)
 
 
@@ -55,7 +57,9 @@ def read_plot(
         ``(lon, lat)`` where days start and end; None: the nearest row end.
     **options
         What else the file leaves open, as the messages name it: ``crs="EPSG:2039"``; and
-        ``doubles="one"`` of plants measured twice.
+        ``doubles="one"`` of plants measured twice. ``rows``, ``blocks`` and ``contours`` are more
+        files: rows or their end posts, areas of blocks or lines that part them, and a raster of
+        heights. ``guess_blocks="yes"`` parts the plot as its outline asks for.
 
     Returns
     -------
@@ -83,11 +87,13 @@ def read_plot(
     >>> plot.n_plants, plot.grid.n_rows
     (3825, 45)
     """
+    drawn: dict[str, Any] = {name: options.pop(name) for name in _DRAWN if name in options}
+    drawn["guess_blocks"] = options.pop("guess_blocks", "no") in {"yes", "true", "1"}
     chosen = _chosen(PlotOptions(), options)
     if feature is not None:
         chosen = chosen.choose("feature", str(feature))
     measured = ReadOptions(doubles=chosen.doubles)
-    sources = PlotSources(source, chosen, plants, measured, gate=gate)
+    sources = PlotSources(source, chosen, plants, measured, gate=gate, **drawn)
     ready = prepare(PlotRequest(sources, planting or PlantingChoices()))
     _warn(said.message for said in ready.messages)
     for assumed in ready.assumed:

@@ -30,6 +30,7 @@ ROLES = {
     "stage": "stage of life",
     "leaves": "leaves looked at",
     "plot": "name of the plot",
+    "block": "name of the block",
     "row": "number of the row",
     "plant": "number of the plant",
     "name": "name of the feature",

@@ -17,7 +17,8 @@ import shapely
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, PlotError, SettingError
 from fieldmon.infestation.observations import Observations
-from fieldmon.io.import_report import ImportMessage, doubtful
+from fieldmon.io.drawn_rows import with_rows
+from fieldmon.io.import_report import ImportMessage, doubtful, guessed
 from fieldmon.io.options import source_name
 from fieldmon.io.read import (
     read_crews,
@@ -41,11 +42,9 @@ if TYPE_CHECKING:
 
     import numpy as np
     from numpy.typing import NDArray
-    from shapely import MultiLineString
 
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import Source
-    from fieldmon.io.rasters.values import RasterOptions
     from fieldmon.io.readers.places import Plants
     from fieldmon.io.sources import (
         CanopySource,
@@ -100,6 +99,9 @@ class Laid:
         """Return how measured plants stand in rows, and what is doubtful about it."""
         from fieldmon.io.import_report import doubtful, seen  # noqa: PLC0415
 
+        if not self.plot.grid.in_rows:
+            said = worded("Plants are taken to stand in no rows, and are visited by nearness.")
+            return (seen(said),)
         rows, drawn = self.plot.rows, self.plot.field.row_lines
         if rows is None and self.plot.field.plants is None and len(drawn.geoms) > 1:
             return (
@@ -205,26 +207,16 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
     several plots, of which none is chosen, asks for ``"feature"`` and is no file's question.
     """
     hearing = _Hearing(listener)
-    sources, measured = request.sources, None
-    if sources.plants is not None and (sources.rows or sources.contours) is not None:
+    sources = request.sources
+    drawn = sources.rows, sources.contours
+    if sources.plants is not None and any(one is not None for one in drawn):
         raise SettingError(
             worded(
                 "Plants stand where they were measured, or along rows that "
                 "were drawn: give their positions or the rows, not both."
             )
         )
-    if sources.plot is None:
-        measured = _measured(sources, hearing)
-        laid = lay_around(sources, measured, request.planting)
-    else:
-        field = one_of(_fields(sources, hearing))
-        if sources.plants is not None:
-            measured = _measured(sources, hearing)
-            field = replace(field, plants=measured.lonlat.copy(), plant_rows=_row_names(measured))
-        field = _with_rows(field, sources, request.planting, hearing)
-        field = _with_paths((field,), sources, hearing)[0]
-        gate = field.gate if sources.gate is None else sources.gate
-        laid = lay(replace(field, gate=gate), request.planting)
+    laid, measured = _laid(request, hearing)
     if sources.plants is not None:
         hearing.say("plants", sources.plants, laid.messages)
     elif sources.rows is not None:
@@ -244,6 +236,24 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
     return Prepared(plot, records, risk, tuple(hearing.messages), laid.assumed)
 
 
+def _laid(request: PlotRequest, hearing: _Hearing) -> tuple[Laid, Plants | None]:
+    """Return the plot with its plants, and those measured on it."""
+    sources, measured = request.sources, None
+    if sources.plot is None and sources.plants is None and sources.rows is not None:
+        return _along_rows(request, hearing), None
+    if sources.plot is None:
+        measured = _measured(sources, hearing)
+        return lay_around(sources, measured, request.planting), measured
+    field = one_of(_fields(sources, hearing))
+    if sources.plants is not None:
+        measured = _measured(sources, hearing)
+        field = with_plants(field, measured)
+    field = with_rows((field,), sources, request.planting, hearing)[0]
+    field = _with_paths((field,), sources, hearing)[0]
+    gate = field.gate if sources.gate is None else sources.gate
+    return lay(replace(field, gate=gate), request.planting), measured
+
+
 def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Estate:
     """Return every plot of a file, or the one that is chosen, and the records of all of them.
 
@@ -261,6 +271,7 @@ def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Es
         return plots.having((plots.value, crews))
 
     fields, crews = hearing.read("plot", file, read)
+    fields = with_rows(fields, sources, request.planting, hearing)
     fields = _with_paths(fields, sources, hearing)
     if (asked := request.records) is not None:
         lay_one = partial(lay, choices=request.planting)
@@ -287,9 +298,15 @@ def one_of(fields: tuple[Field, ...]) -> Field:
 
 def lay(field: Field, choices: PlantingChoices | None = None) -> Laid:
     """Return a field with its plants: those measured, or laid as said, stated or usual."""
-    given = (choices or PlantingChoices()).given()
+    choices = choices or PlantingChoices()
+    if not choices.in_rows:
+        return Laid(Plot.of(replace(field, in_rows=False)))
+    given = choices.given()
     planting = planting_of(field, **given)
     missing = [name for name in _SPACINGS if name not in given and getattr(field, name) is None]
+    if field.blocks:
+        told = [[getattr(block, name) for block in field.blocks] for name in missing]
+        missing = [name for name, each in zip(missing, told, strict=True) if None in each]
     if len(field.row_lines.geoms) > 1:  # rows are as far apart as they were drawn
         missing = [name for name in missing if name != "row_spacing_m"]
     assumed = tuple(Assumed(name, getattr(planting, name)) for name in missing)
@@ -301,10 +318,35 @@ def lay_around(
     sources: PlotSources, measured: Plants, choices: PlantingChoices | None = None
 ) -> Laid:
     """Return the plot of measured plants whose boundary nobody drew, called as their file."""
-    planting = Planting(**(choices or PlantingChoices()).given())  # type: ignore[arg-type]
+    choices = choices or PlantingChoices()
+    planting = Planting(**choices.given())  # type: ignore[arg-type]
     name = "plants" if sources.plants is None else Path(source_name(sources.plants)).stem
-    plants, rows = measured.lonlat.copy(), _row_names(measured)
-    return Laid(Plot.around(name, plants, planting, sources.gate, rows))
+    if not choices.in_rows:
+        return Laid(Plot.among(name, measured.lonlat.copy(), sources.gate))
+    plants = measured.lonlat.copy()
+    return Laid(Plot.around(name, plants, planting, sources.gate, measured.names))
+
+
+def with_plants(field: Field, measured: Plants) -> Field:
+    """Return a field with the plants measured on it, and what their rows and blocks are called."""
+    plants, (row, block) = measured.lonlat.copy(), measured.names
+    return replace(field, plants=plants, plant_rows=row, plant_blocks=block)
+
+
+def _along_rows(request: PlotRequest, hearing: _Hearing) -> Laid:
+    """Return the plot of rows that were drawn, whose boundary nobody drew."""
+    sources = request.sources
+    if (file := sources.rows) is None or sources.contours is not None:
+        raise SettingError("Rows along contours need the plot on which they run.")
+    rows = hearing.read("rows", file, partial(read_rows, file, sources.rows_options))
+    name = Path(source_name(file)).stem
+    planting = Planting(**request.planting.given())  # type: ignore[arg-type]
+    plot = Plot.along(name, rows, planting, sources.gate)
+    said = "No boundary was given: the plot is where rows, aisles and headlands reach."
+    hearing.say("rows", file, (guessed(said),))
+    if "plant_spacing_m" in request.planting.given():
+        return Laid(plot)
+    return Laid(replace(plot, assumed=(Assumed("plant_spacing_m", planting.plant_spacing_m),)))
 
 
 def records_on(
@@ -438,45 +480,6 @@ def _measured(sources: PlotSources, hearing: _Hearing) -> Plants:
     if file is None:
         raise SettingError(worded("Give a file of plots, or the positions of a plot's plants."))
     return hearing.read("plants", file, partial(read_plants, file, sources.plants_options))
-
-
-def _with_rows(
-    field: Field, sources: PlotSources, choices: PlantingChoices, hearing: _Hearing
-) -> Field:
-    """Return a field with the rows that were drawn, or the contour along which rows run."""
-    if (file := sources.rows) is not None:
-        rows = hearing.read("rows", file, partial(read_rows, file, sources.rows_options))
-        field = replace(field, row_lines=rows)
-    if (raster := sources.contours) is not None:
-        spacing_m = planting_of(field, **choices.given()).row_spacing_m
-        read = partial(contour_of, field, raster, spacing_m, sources.contours_options)
-        field = replace(field, row_lines=hearing.read("contours", raster, read))
-    return field
-
-
-def contour_of(
-    field: Field, source: Source, row_spacing_m: float, options: RasterOptions | None = None
-) -> Imported[MultiLineString]:
-    """Return the contour through the middle of a plot, of which its rows are copies."""
-    from fieldmon.io.import_report import seen  # noqa: PLC0415
-    from fieldmon.io.rasters.read import read_raster  # noqa: PLC0415 - half a second
-    from fieldmon.plot.row_drawing import contour_row  # noqa: PLC0415
-
-    read = read_raster(source, options, field)
-
-    def height_m(lonlat: NDArray[np.float64]) -> NDArray[np.float64]:
-        return read.value.at(lonlat, "bilinear")
-
-    row = contour_row(field, height_m, row_spacing_m)
-    said = seen(
-        worded("Rows run along the contour through the middle of the plot, all others beside it.")
-    )
-    return read.having(row, [said])
-
-
-def _row_names(measured: Plants) -> NDArray[np.str_] | None:
-    """Return the names of the rows of plants, where all have one."""
-    return None if (measured.row == "").any() else measured.row
 
 
 def _with_paths(

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_file.rows import InspectionRows
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.places import NamedPlaces, Plants
+    from fieldmon.io.readers.points_and_lines import DrawnBlocks
     from fieldmon.plot.field import Field
 
 
@@ -135,6 +136,12 @@ def read_rows(source: Source, options: ReadOptions | None = None) -> Imported[Mu
     """Return rows of plants in degrees WGS84, from lines or from end posts, two a row."""
     rows: Imported[MultiLineString] = _read("drawn_rows", source, options or ReadOptions())
     return rows
+
+
+def read_blocks(source: Source, options: PlotOptions | None = None) -> Imported[DrawnBlocks]:
+    """Return blocks of a plot in degrees WGS84, as areas or as the lines that part it."""
+    blocks: Imported[DrawnBlocks] = _read("drawn_blocks", source, options or PlotOptions())
+    return blocks
 
 
 def read_inspection_rows(source: Source, options: InspectionOptions) -> Imported[InspectionRows]:

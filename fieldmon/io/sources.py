@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 #: what a file is to a plot
 Role: TypeAlias = Literal[
-    "plot", "plants", "rows", "contours", "paths", "records", "canopy", "risk"
+    "plot", "plants", "rows", "blocks", "contours", "paths", "records", "canopy", "risk"
 ]
 
 
@@ -25,7 +25,7 @@ class PlotSources:
     Parameters
     ----------
     plot
-        File of plots; None: the plot is where its measured plants are.
+        File of plots; None: the plot is where its measured plants are, or its rows.
     plot_options
         How it is read; ``feature`` says which of its plots is meant, if it holds several.
     plants, plants_options
@@ -39,6 +39,10 @@ class PlotSources:
         single one.
     contours, contours_options
         Raster of heights: rows run along its contours.
+    blocks, blocks_options
+        File of blocks as areas, or of the lines that part a plot into blocks.
+    guess_blocks
+        Part a plot into blocks where its outline asks for rows in several directions.
     """
 
     plot: Source | None = None
@@ -52,11 +56,17 @@ class PlotSources:
     rows_options: ReadOptions = field(default_factory=ReadOptions)
     contours: Source | None = None
     contours_options: RasterOptions | None = None
+    blocks: Source | None = None
+    blocks_options: PlotOptions = field(default_factory=PlotOptions)
+    guess_blocks: bool = False
 
 
 @dataclass(frozen=True)
 class PlantingChoices:
-    """What is said of a plot's rows by hand, as `Planting` has it; None: found, stated or usual."""
+    """What is said of a plot's rows by hand, as `Planting` has it; None: found, stated or usual.
+
+    ``in_rows`` is False for measured plants that stand in no rows, and are visited by nearness.
+    """
 
     row_bearing_deg: float | None = None
     row_spacing_m: float | None = None
@@ -64,10 +74,13 @@ class PlantingChoices:
     headland_m: float | None = None
     faces: int | None = None
     half_canopy_m: float | None = None
+    in_rows: bool = True
 
     def given(self) -> dict[str, float]:
-        """Return what is said, by name."""
-        return {name: value for name, value in vars(self).items() if value is not None}
+        """Return what is said of a planting in rows, by name."""
+        said = {name: value for name, value in vars(self).items() if value is not None}
+        del said["in_rows"]
+        return said
 
 
 @dataclass(frozen=True)

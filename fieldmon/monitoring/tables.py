@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from fieldmon.io.import_report import ImportMessage
 
-_FRAME = "frame"
+_FRAME, _IN_ROWS = "frame", "in_rows"
 _SPACINGS = ("row_spacing_m", "plant_spacing_m")
 _ASSUMED = ("row_spacing_m", "plant_spacing_m")
 _STATED = ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
@@ -126,6 +126,8 @@ def _write_grid(db: sqlite3.Connection, grid: PlantGrid) -> None:
         value = getattr(grid, each.name)
         if isinstance(value, np.ndarray):
             write_array(db, f"grid.{each.name}", value)
+    if not grid.in_rows:
+        write_array(db, f"grid.{_IN_ROWS}", np.array([0], np.uint8))
     frame = grid.frame
     write_array(db, f"grid.{_FRAME}", np.array([frame.lon, frame.lat, frame.bearing_deg]))
     write_array(db, "grid.spacings", np.array([getattr(grid, name) for name in _SPACINGS]))
@@ -187,12 +189,16 @@ def _grid(arrays: dict[str, NDArray[Any]]) -> PlantGrid:
     }
     lon, lat, bearing_deg = values.pop(_FRAME).tolist()
     spacings = dict(zip(_SPACINGS, values.pop("spacings").tolist(), strict=True))
+    # a file of an earlier version does not say: all plants stood in rows then
+    in_rows = _IN_ROWS not in values
+    values.pop(_IN_ROWS, None)
     area: Any = shapely.from_wkb(values.pop("drivable_wkb").tobytes())
     if "half_canopy" in values:
         values["half_canopy_m"] = float(values.pop("half_canopy")[0])
     return PlantGrid(
         frame=Frame(lon, lat, bearing_deg),
         drivable_m=area,
+        in_rows=in_rows,
         **spacings,
         **values,
     )
@@ -202,7 +208,8 @@ def _field(db: sqlite3.Connection, arrays: dict[str, NDArray[Any]]) -> Field:
     boundary, name = db.execute("SELECT geom, name FROM plots").fetchone()
     places = {kind: geometry(geom) for kind, geom in db.execute("SELECT kind, geom FROM places")}
     gate = places.get("gate")
-    stated = dict(zip(_STATED, arrays["stated"].tolist(), strict=True))
+    values = zip(_STATED, arrays["stated"].tolist(), strict=True)
+    stated: dict[str, Any] = {name: None if np.isnan(value) else value for name, value in values}
     measured = arrays.get("measured_lonlat")
     return Field(
         name,
@@ -212,7 +219,7 @@ def _field(db: sqlite3.Connection, arrays: dict[str, NDArray[Any]]) -> Field:
         paths=places.get("path", MultiLineString()),
         plants=None if measured is None else measured.copy(),
         row_lines=places.get("row line", MultiLineString()),
-        **{name: None if np.isnan(value) else value for name, value in stated.items()},
+        **stated,
     )
 
 

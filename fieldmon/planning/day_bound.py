@@ -27,14 +27,16 @@ def found_bound(day: DayPlan, within_s: float = WITHIN_S) -> float | None:
     """Return the most finds that any route of a day's hours can expect.
 
     A route is fixed in the morning: whoever plans again after each find can expect more. None
-    where no bound is known: on the way, away from the gate, and where a sampler chooses at each
-    plant how long to inspect it.
+    where no bound is known: on the way, away from the gate, where a sampler chooses at each
+    plant how long to inspect it, and where plants stand in no rows.
     """
     # late: a day without a bound needs none of these loops
     from fieldmon.planning.routes import bound  # noqa: PLC0415
 
     scene = day.scene
-    if scene.at != GATE or scene.seconds_left <= 0 or _chooses_time(scene, day.work):
+    if scene.at != GATE or scene.seconds_left <= 0 or not scene.grid.in_rows:
+        return None
+    if _chooses_time(scene, day.work):
         return None
     finds = np.where(scene.last_inspected == scene.day, 0.0, scene.chance * scene.robot.detects)
     most = bound(scene.aisles, finds, scene.robot, scene.seconds_left, within_s)

@@ -67,7 +67,9 @@ def _told_finds(
         words: dict[str, Any] = {
             "plants": counted(around, "plant"), "row": line, "number": number,
         }  # fmt: skip
-        if len(found_on):
+        if not scene.grid.in_rows:
+            sentence = worded("{plants} around the find at plant {number}.", **words)
+        elif len(found_on):
             sentence = worded("{plants} around {day}'s find in row {row}, plant {number}.",
                               day=found_on[find], **words)  # fmt: skip
         else:
@@ -116,7 +118,9 @@ def _block(
     low, high = int(line.min()), int(line.max())
     plants_said = counted(len(plants), "plant")
     where = worded("in rows {low} to {high}", low=low, high=high)
-    if low == high:
+    if not scene.grid.in_rows:
+        where = worded("in no rows")
+    elif low == high:
         where = worded("in row {row}", row=low)
     last = scene.last_inspected[plants]
     unseen = last == NEVER

@@ -162,9 +162,10 @@ class Route:
         from fieldmon.plot.frames import plant_frame  # noqa: PLC0415 - as above
 
         stops = plant_frame(self.aisles.grid, self.plant)
-        stops.insert(3, "arrive_s", self.arrive_s)
-        stops.insert(4, "leave_s", self.leave_s)
-        stops.insert(5, "chance", self.chance)
+        after = stops.columns.get_loc("number") + 1
+        columns = {"arrive_s": self.arrive_s, "leave_s": self.leave_s, "chance": self.chance}
+        for place, (name, values) in enumerate(columns.items(), after):
+            stops.insert(place, name, values)
         stops.index = stops.index.__class__(range(1, len(self) + 1), name="order")
         return stops
 
@@ -199,17 +200,8 @@ def _line(scene: Scene, work: Workday) -> tuple[NDArray[np.float64], NDArray[np.
         return np.empty((0, 2)), np.empty(0, np.int64)
     back = [GATE] if scene.robot.returns else []
     places = np.concatenate([[scene.at], work.plant, back]).astype(np.int64)
-    stop_m, corridor = scene.aisles.stop_m, scene.grid.corridor[scene.grid.row]
-    known = (places[:-1] >= 0) & (places[1:] >= 0)
-    straight = known & (corridor[places[:-1]] == corridor[places[1:]])
-    bend = scene.aisles.bend
-    straight &= bend[places[:-1]] == bend[places[1:]]
-    # within an aisle a leg ends at its stop, straight ahead; only other legs have corners
-    legs = list(stop_m[places[1:]][:, None])
-    for leg in np.flatnonzero(~straight):
-        legs[leg] = scene.aisles.path(int(places[leg]), int(places[leg + 1]))[1:]
-    start = scene.aisles.gate_m if scene.at < 0 else stop_m[scene.at]
-    return np.concatenate([start[None], *legs]), np.cumsum([len(leg) for leg in legs])
+    line_m, leg_end = scene.aisles.line(places)
+    return line_m, leg_end
 
 
 def _timed(

@@ -526,9 +526,15 @@ class _Day:
         shut = self._closed(now_s) | (self.section[self.corridor] != worker.k)
         last = np.where(shut, scene.day, scene.last_inspected).astype(np.int32)
         chance, pairs, traces = believed
-        scene = replace(scene, chance=chance, pair_chance=pairs, traces=traces,
-                        last_inspected=last, at=worker.at,
-                        seconds_left=worker.until_s - now_s)  # fmt: skip
+        scene = replace(
+            scene,
+            chance=chance,
+            pair_chance=pairs,
+            traces=traces,
+            last_inspected=last,
+            at=worker.at,
+            seconds_left=worker.until_s - now_s,
+        )
         worker.plan = work_day(scene, self.sampler, worker.post.would_find)
         worker.plan_from_s, worker.next, worker.anew = now_s, 0, False
 

@@ -29,12 +29,14 @@ def lists(n: int, one: Index, other: Index) -> Lists:
     return offsets(n_neighbours).astype(np.int32), ordered.astype(np.int32)
 
 
-def along(x_m: Float, row: NDArray[np.integer], plant_spacing_m: float) -> Lists:
+def along(x_m: Float, row: NDArray[np.integer], plant_spacing_m: Float | float) -> Lists:
     """Return each plant's neighbours before and after it in its own row.
 
-    A gap of more than one and a half spacings parts neighbours: a plant is missing there.
+    A gap of more than one and a half spacings (one for all, or ``(n,)``) parts neighbours: a
+    plant is missing there.
     """
-    near = (row[1:] == row[:-1]) & (np.diff(x_m) <= _NEXT * plant_spacing_m)
+    reach_m = _NEXT * np.broadcast_to(plant_spacing_m, row.shape)[1:]
+    near = (row[1:] == row[:-1]) & (np.diff(x_m) <= reach_m)
     pair = np.flatnonzero(near)
     return lists(len(x_m), pair, pair + 1)
 
@@ -64,8 +66,8 @@ def across_aisles(
     aisle: NDArray[np.integer],
     place_m: Float,
     off_m: Float,
-    row_spacing_m: float,
-    plant_spacing_m: float,
+    row_spacing_m: Float,
+    plant_spacing_m: Float,
 ) -> Lists:
     """Return each plant's neighbours over the aisles on both sides, however the rows run.
 
@@ -79,9 +81,11 @@ def across_aisles(
         ``(n, 2)`` each plant's place along both, ascending in each aisle.
     off_m
         ``(n, 2)`` how far it stands from the middle of both.
+    row_spacing_m, plant_spacing_m
+        ``(n,)`` as its block is planted.
     """
     # one ascending axis for all aisles, as above
-    stretch = float(np.ptp(place_m)) + 4 * plant_spacing_m
+    stretch = float(np.ptp(place_m)) + 4 * float(plant_spacing_m.max())
     key = place_m + aisle * stretch
     reach_m = (0.5 + 1e-6) * plant_spacing_m
 
@@ -97,6 +101,35 @@ def across_aisles(
         return found
 
     return _either_way(over(1), over(0))
+
+
+def delaunay_sides(xy_m: Float) -> Index:
+    """Return the pairs ``(e, 2)`` of points beside each other in a net of triangles."""
+    from scipy.spatial import Delaunay, QhullError  # noqa: PLC0415 - half a second to import
+
+    try:
+        corners = np.asarray(Delaunay(xy_m).simplices, np.intp)
+        sides = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    except (QhullError, ValueError):  # fewer than three, or all in line
+        along = np.lexsort(xy_m.T)
+        sides = np.stack([along[:-1], along[1:]], axis=1)
+    pairs: Index = np.unique(np.sort(sides, axis=1), axis=0)
+    return pairs
+
+
+def gabriel_pairs(xy_m: Float) -> Index:
+    """Return the pairs ``(e, 2)`` of points within whose common circle no other one lies."""
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - as above
+
+    sides = delaunay_sides(xy_m)
+    if not len(sides):
+        return sides
+    middle = xy_m[sides].mean(axis=1)
+    way = xy_m[sides[:, 0]] - xy_m[sides[:, 1]]
+    radius_m = np.hypot(way[:, 0], way[:, 1]) / 2
+    nearest_m = cKDTree(xy_m).query(middle)[0]
+    pairs: Index = sides[nearest_m >= radius_m * (1 - 1e-9)]
+    return pairs
 
 
 def _either_way(above: Index, below: Index) -> Lists:

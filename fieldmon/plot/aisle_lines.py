@@ -42,7 +42,7 @@ class RowAisles(NamedTuple):
         return f"<RowAisles: {len(self.lines.start) - 1} aisles>"
 
 
-def aisles_of(rows: Polylines, block: Int, row_spacing_m: float, beyond_m: float) -> RowAisles:
+def aisles_of(rows: Polylines, block: Int, row_spacing_m: Float, beyond_m: float) -> RowAisles:
     """Return the aisles of rows, longer than these at both ends.
 
     Midway between neighbouring rows of a block; beside its outermost rows half their distance to
@@ -55,26 +55,27 @@ def aisles_of(rows: Polylines, block: Int, row_spacing_m: float, beyond_m: float
     block
         ``(r,)`` the block of each row, ascending without gaps.
     row_spacing_m
-        The usual distance between rows.
+        ``(r,)`` the usual distance from each row to the next.
     beyond_m
         How much longer than the rows.
     """
     right = np.arange(len(rows)) + block
-    line, place = sampled(rows, _step_m(rows, row_spacing_m))
+    line, place = sampled(rows, _step_m(rows, float(row_spacing_m.min())))
     start = offsets(np.bincount(line, minlength=len(rows)))
     thin = Polylines.of(start, rows.points(line, place))
     middles: list[Float] = []
     for row in range(len(rows)):
         first = row == 0 or block[row] != block[row - 1]
         last = row + 1 == len(rows) or block[row] != block[row + 1]
+        usual_m = float(row_spacing_m[row])
         if first:
-            gap_m = row_spacing_m if last else _apart(rows, thin, row, row + 1, row_spacing_m)
+            gap_m = usual_m if last else _apart(rows, thin, row, row + 1, usual_m)
             middles.append(_beside(thin.line(row), _RIGHT * gap_m / 2))
         if last:
-            gap_m = row_spacing_m if first else _apart(rows, thin, row, row - 1, row_spacing_m)
+            gap_m = usual_m if first else _apart(rows, thin, row, row - 1, usual_m)
             middles.append(_beside(thin.line(row), _LEFT * gap_m / 2))
         else:
-            middles.append(_between(rows, thin, row, row_spacing_m))
+            middles.append(_between(rows, thin, row, usual_m))
     lines = Polylines.each(middles).extended(beyond_m).simpler(_THIN_M)
     return RowAisles(lines, right, right + 1)
 

@@ -32,6 +32,8 @@ _LOWER, _UPPER = 1, -1
 # longer than any row
 _FAR_M = 1e6
 _RIGHT, _LEFT = 0, 1
+# a strip beside a row reaches to one aisle, or to both
+_ONE, _BOTH = 1, 2
 # a lane ends this far at least from the rows of another block, if there is room
 _CLEAR_M = 0.8
 # a lane may end on the boundary
@@ -49,13 +51,28 @@ class RowLines(NamedTuple):
         The rows, block by block, in each from right to left of their direction.
     block
         ``(r,)`` the block of each row, ascending from 0 without gaps.
+    spacing_m
+        ``(r, 2)`` from each row to the next and from plant to plant in it, where blocks are
+        planted differently; None: as the planting says.
+    called
+        ``(r,)`` the block that people mean, ascending, where it has several of these; None: each
+        is one.
     """
 
     lines: Polylines
     block: Int
+    spacing_m: Float | None = None
+    called: Int | None = None
 
     def __repr__(self) -> str:
         return f"<RowLines: {len(self.block)} rows>"
+
+    def spacings(self, planting: Planting) -> Float:
+        """Return ``(r, 2)`` from each row to the next and from plant to plant in it."""
+        if self.spacing_m is not None:
+            return self.spacing_m
+        each = [planting.row_spacing_m, planting.plant_spacing_m]
+        return np.tile(each, (len(self.block), 1))
 
 
 class Blocked(NamedTuple):
@@ -104,7 +121,8 @@ class BentPieces(NamedTuple):
     xy_m: Float
     row_start: Int
     row: Int  # (r,) the row of each piece
-    block: Int  # (r,)
+    block: Int  # (r,) as people call it
+    spacing_m: Float  # (r, 2) as in `RowLines`
     aisle: Int  # (r, 2)
     place_m: Float  # (n, 2)
     off_m: Float  # (n, 2)
@@ -148,7 +166,7 @@ def bent_grid(
 def row_aisles(rows: RowLines, planting: Planting) -> RowAisles:
     """Return the aisles of rows, out into their headlands."""
     beyond_m = 2 * planting.headland_m
-    return aisles_of(rows.lines, rows.block, planting.row_spacing_m, beyond_m)
+    return aisles_of(rows.lines, rows.block, rows.spacings(planting)[:, 0], beyond_m)
 
 
 def _around(
@@ -185,25 +203,29 @@ def shut_stretches(
     aisles: RowAisles,
     planting: Planting,
     shut: Callable[[NDArray[np.object_]], NDArray[np.bool_]],
+    *,
+    whole: bool = False,
 ) -> Blocked:
     """Return the stretches of rows whose strip to the aisle is shut, headlands included.
 
     `shut` tells of shapes ``(k,)`` whether they are; it is asked of long strips first, and of
-    fine ones where these are.
+    fine ones where these are. The `whole` strip reaches to both aisles, whichever is needed.
     """
+    sides = _BOTH if whole or planting.faces == 2 else _ONE
     far_m = planting.headland_m + 1.0
-    coarse_m = 16 * planting.plant_spacing_m
+    plant_m = float(rows.spacings(planting)[:, 1].min())
+    coarse_m = 16 * plant_m
     n = np.ceil((rows.lines.length_m + 2 * far_m) / coarse_m).astype(np.int64)
     k, row = runs(np.zeros(len(n), np.int64), n)
     from_m = np.asarray(k * coarse_m - far_m, np.float64)
     to_m: Float = np.minimum(from_m + coarse_m, rows.lines.length_m[row] + far_m)
-    hit = np.flatnonzero(shut(_strips(rows, aisles, planting, (row, from_m, to_m), 8)))
-    m = int(np.ceil(coarse_m / (_FINE * planting.plant_spacing_m)))
+    hit = np.flatnonzero(shut(_strips(rows, aisles, sides, (row, from_m, to_m), 8)))
+    m = int(np.ceil(coarse_m / (_FINE * plant_m)))
     j, of = runs(np.zeros(len(hit), np.int64), np.full(len(hit), m))
     row, step = row[hit][of], ((to_m - from_m)[hit] / m)[of]
     from_m = from_m[hit][of] + j * step
     to_m = from_m + step
-    shut_ones = np.flatnonzero(shut(_strips(rows, aisles, planting, (row, from_m, to_m), 1)))
+    shut_ones = np.flatnonzero(shut(_strips(rows, aisles, sides, (row, from_m, to_m), 1)))
     row, from_m, to_m = row[shut_ones], from_m[shut_ones], to_m[shut_ones]
     if not len(row):
         return Blocked.nowhere()
@@ -216,7 +238,7 @@ def shut_stretches(
 def _strips(
     rows: RowLines,
     aisles: RowAisles,
-    planting: Planting,
+    sides: int,
     stretches: tuple[Int, Float, Float],
     steps: int,
 ) -> NDArray[np.object_]:
@@ -227,7 +249,7 @@ def _strips(
     many = np.repeat(row, steps + 1)
     on_row = rows.lines.points(many, places.ravel())
     left = _foot(aisles, many, on_row, _LEFT)
-    right = _foot(aisles, many, on_row, _RIGHT) if planting.faces == 2 else on_row
+    right = _foot(aisles, many, on_row, _RIGHT) if sides == _BOTH else on_row
     shape = (len(row), steps + 1, 2)
     ring = np.concatenate([right.reshape(shape), left.reshape(shape)[:, ::-1]], axis=1)
     return np.asarray(shapely.polygons(np.concatenate([ring, ring[:, :1]], axis=1)), np.object_)
@@ -265,10 +287,12 @@ def _pieces(
         place[:, side] = _rising(at, piece)
         off[:, side] = np.abs(left)
     room = _room(on_row, of, (first, last), blocked)
-    clear = np.clip(room / 2, planting.plant_spacing_m / 4, planting.headland_m / 2)
+    spacing = rows.spacings(planting)[of]
+    clear = np.clip(room / 2, spacing[:, 1:] / 4, planting.headland_m / 2)
     lane = np.stack([place[first] - clear[:, :1], place[last] + clear[:, 1:]], axis=2)
     lane = _off_other_blocks(lane, rows, aisles, (of, aisle), (place[first], place[last]))
-    return BentPieces(xy_m, start, of, rows.block[of], aisle, place, off, lane)
+    called = rows.block if rows.called is None else rows.called
+    return BentPieces(xy_m, start, of, called[of], spacing, aisle, place, off, lane)
 
 
 def _key(row: Int, place_m: Float) -> Float:
@@ -338,7 +362,7 @@ def _assembled(
     plant, row = runs(pieces.row_start[piece], n_plants)
     xy_m, place_m = pieces.xy_m[plant], pieces.place_m[plant, upper[row]]
     aisle, lane_m = pieces.aisle[piece, upper], pieces.lane_m[piece, upper]
-    spacings = (planting.row_spacing_m, planting.plant_spacing_m)
+    row_m, plant_m = pieces.spacing_m[piece[row]].T
     if planting.faces == 2:
         twin = _twins(pieces, piece, upper, (start, plant, row))
         lower = np.flatnonzero(twin > np.arange(len(twin)))
@@ -346,7 +370,8 @@ def _assembled(
         across = adjacency.lists(len(twin), lower, twin[lower])
     else:
         twin, corridor = np.full(len(xy_m), -1), np.arange(len(piece))
-        across = adjacency.across_aisles(pieces.aisle[row], pieces.place_m, pieces.off_m, *spacings)
+        sides = pieces.aisle[row], pieces.place_m, pieces.off_m
+        across = adjacency.across_aisles(*sides, row_m, plant_m)
     return PlantGrid(
         frame,
         xy_m,
@@ -357,8 +382,9 @@ def _assembled(
         corridor.astype(np.int32),
         np.where(upper == 1, _UPPER, _LOWER).astype(np.int8),
         area,
-        *spacings,
-        *adjacency.along(place_m, row, planting.plant_spacing_m),
+        float(np.median(row_m)),
+        float(np.median(plant_m)),
+        *adjacency.along(place_m, row, plant_m),
         *across,
         twin.astype(np.int32),
         np.unique(pieces.block, return_inverse=True)[1][piece].astype(np.int32),
@@ -421,7 +447,8 @@ def _reach(rows: RowLines, planting: Planting) -> shapely.Geometry:
     """Return what rows, their aisles and headlands cover."""
     long = rows.lines.extended(planting.headland_m).simpler(0.05).shapes()
     # neighbours are at most 1.7 spacings apart
-    wide = shapely.buffer(long, 0.9 * planting.row_spacing_m, cap_style="flat", quad_segs=2)
+    half_m = 0.9 * rows.spacings(planting)[:, 0]
+    wide = shapely.buffer(long, half_m, cap_style="flat", quad_segs=2)
     return shapely.union_all(wide)
 
 

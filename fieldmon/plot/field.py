@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from fieldmon.plot.block import Block
+
 
 @dataclass(frozen=True, eq=False)
 class Field:
@@ -44,6 +46,12 @@ class Field:
         distances from row to row and from plant to plant.
     plant_rows
         ``(n,)`` the name of each measured plant's row; None: not known, then rows are found.
+    plant_blocks
+        ``(n,)`` the name of each measured plant's block; None: not known, then blocks are found.
+    blocks
+        Parts of the plot with rows of their own; empty: the plot is one.
+    in_rows
+        Whether plants stand in rows. If not, measured ones are visited by nearness.
     """
 
     name: str
@@ -57,6 +65,9 @@ class Field:
     row_spacing_m: float | None = None
     plant_spacing_m: float | None = None
     plant_rows: NDArray[np.str_] | None = None
+    plant_blocks: NDArray[np.str_] | None = None
+    blocks: tuple[Block, ...] = ()
+    in_rows: bool = True
 
     def __post_init__(self) -> None:
         if self.boundary.is_empty or not self.boundary.is_valid:
@@ -86,9 +97,13 @@ class Field:
         What later versions added counts only where it is said: digests of before stay valid.
         """
         said = dict(vars(self))
-        if self.plant_rows is None:
-            del said["plant_rows"]
-        return tuple(said.values())
+        for name in ("plant_rows", "plant_blocks"):
+            if said[name] is None:
+                del said[name]
+        del said["blocks"]
+        if self.in_rows:
+            del said["in_rows"]
+        return (*said.values(), *(part for block in self.blocks for part in block.told))
 
     def frame(self, bearing_deg: float = 90.0) -> Frame:
         """Return the plane in metres centred on this plot, x along ``bearing_deg``."""

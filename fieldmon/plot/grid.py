@@ -102,6 +102,9 @@ class PlantGrid:
         `lane_x_m` are places along the aisle too, and `lane_y_m` is 0.
     half_canopy_m
         How far plants reach to each side of their middle; None: nobody said.
+    in_rows
+        Whether plants stand in rows. If not, each is a row by itself here, and people count
+        plants only.
     """
 
     frame: Frame
@@ -126,6 +129,7 @@ class PlantGrid:
     aisle_start: NDArray[np.int64] | None = None
     aisle_m: NDArray[np.float64] | None = None
     half_canopy_m: float | None = None
+    in_rows: bool = True
 
     def __post_init__(self) -> None:
         for value in vars(self).values():
@@ -142,6 +146,8 @@ class PlantGrid:
     @property
     def counts(self) -> str:
         """Return how many plants and rows there are, in words."""
+        if not self.in_rows:
+            return f"{counted(len(self), 'plant')} in no rows"
         blocks = f" of {counted(self.n_blocks, 'block')}" if self.n_blocks > 1 else ""
         return f"{counted(len(self), 'plant')} in {counted(self.n_rows, 'row')}{blocks}"
 
@@ -286,6 +292,25 @@ def row_corners(grid: PlantGrid) -> list[NDArray[np.float64]]:
         else grid.xy_m[[a, a]]
         for a, b in ends
     ]
+
+
+def before_rows(
+    grid: PlantGrid, row: NDArray[np.integer], beyond_m: float | None = None
+) -> NDArray[np.float64]:
+    """Return a place ``(k, 2)`` in line with each row, before its first plant.
+
+    As far as its lane reaches, or `beyond_m` from that plant.
+    """
+    first = grid.row_start[row]
+    back_m = grid.lane_x_m[row, 0] - grid.along_m[first]
+    if beyond_m is not None:
+        back_m = np.full(len(row), -beyond_m)
+    if grid.aisles_m is None or grid.aisle is None:
+        straight: NDArray[np.float64] = grid.xy_m[first] + np.stack([back_m, 0 * back_m], axis=1)
+        return straight
+    ahead = grid.aisles_m.ahead(grid.aisle[row], grid.lane_x_m[row, 0])
+    before: NDArray[np.float64] = grid.xy_m[first] + back_m[:, None] * ahead
+    return before
 
 
 def nearest_plants(

@@ -4,20 +4,28 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.arrays import offsets, runs
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot import adjacency
 from fieldmon.plot.bent_layout import Ground
+from fieldmon.plot.block_layout import lay_blocks
 from fieldmon.plot.grid import PlantGrid
 from fieldmon.plot.line_layout import copies, is_straight, lay_along
-from fieldmon.plot.measured_rows import SaidRows, bent_rows, measured_grid, row_numbers
+from fieldmon.plot.measured_rows import (
+    PlantNames,
+    SaidRows,
+    bent_rows,
+    measured_grid,
+    rows_in_blocks,
+    said_rows,
+)
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import (
     distinct,
@@ -27,20 +35,27 @@ from fieldmon.plot.row_detection import (
     rows_from_plants,
     split_lines,
 )
+from fieldmon.plot.strips import (
+    SLACK_M,
+    Intervals,
+    Pieces,
+    best_strips,
+    check_size,
+    fill,
+    free_intervals,
+    no_room,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.field import Field
     from fieldmon.plot.row_detection import Rows
+    from fieldmon.plot.row_tracing import TracedRows
 
     Float = NDArray[np.float64]
 
 _PARAN = (35.15, 30.36)
-# rounding of coordinates must not cost a row or a plant where the plot fits exactly
-_SLACK_M = 1e-6
-_MOST_PLANTS = 20_000_000
-_PHASES = 8
 _LOWER, _UPPER = 1, -1
 
 
@@ -107,31 +122,6 @@ class Planting:
             )
 
 
-class Pieces(NamedTuple):
-    """Unbroken pieces of rows, by line, then along it: r pieces of n plants together."""
-
-    xy_m: Float
-    row_start: NDArray[np.int64]
-    row_line: NDArray[np.int32]
-    aisle_y_m: Float  # (r, 2): middle of the aisle below and of the aisle above
-    lane_x_m: Float  # (r, 2)
-
-    def __repr__(self) -> str:
-        plants = counted(len(self.xy_m), "plant")
-        return f"<Pieces: {plants} in {counted(len(self.row_line), 'row')}>"
-
-
-class Intervals(NamedTuple):
-    """Stretches of x, k in all, each on one of several horizontal strips."""
-
-    strip: NDArray[np.intp]
-    low_x: Float
-    high_x: Float
-
-    def __repr__(self) -> str:
-        return f"<Intervals: {counted(len(self.strip), 'piece')}>"
-
-
 def lay(field: Field, planting: Planting) -> PlantGrid:
     """Return plants in straight rows wherever a whole row and its headlands fit into the plot.
 
@@ -139,9 +129,12 @@ def lay(field: Field, planting: Planting) -> PlantGrid:
     and outside holes and no-go areas, plants stand at least a headland from its two ends, and
     lanes end in the middle of the headlands; so the row, its aisle and its row ends are all on
     the plot. Rows are placed across the plot, and plants along the rows, such that most fit.
+    Where rows were drawn, or the plot has blocks, plants stand along these, or in each of those.
     Raise `PlotError` if there is no room for a plant.
     """
     bearing_deg = planting.row_bearing_deg
+    if field.blocks:
+        return lay_blocks(field, planting, _obstacles)
     if (along := _drawn_rows(field, planting)) is not None:
         return along
     if bearing_deg is None:
@@ -149,11 +142,11 @@ def lay(field: Field, planting: Planting) -> PlantGrid:
         bearing_deg = found(field).bearing_deg
     frame = field.frame(bearing_deg)
     area = frame.geometry_m(field.drivable())
-    _check_size(field.name, area, planting)
-    y, free = _best_strips(area, planting)
+    check_size(field.name, area, planting)
+    y, free = best_strips(area, planting)
     if not len(free.strip):
-        raise _no_room(field.name, area, planting)
-    return assemble(frame, _fill(y, free, planting), area, planting)
+        raise no_room(field.name, area, planting)
+    return assemble(frame, fill(y, free, planting), area, planting)
 
 
 def _drawn_rows(field: Field, planting: Planting) -> PlantGrid | None:
@@ -163,12 +156,14 @@ def _drawn_rows(field: Field, planting: Planting) -> PlantGrid | None:
     frame = field.frame(rows_from_lines(field).bearing_deg)
     lines = [shapely.get_coordinates(line) for line in frame.geometry_m(field.row_lines).geoms]
     area = frame.geometry_m(field.drivable())
-    if len(lines) == 1:
+    whole = len(lines) == 1
+    if whole:
         if is_straight(lines[0], planting.row_spacing_m):
             return None
-        _check_size(field.name, area, planting)
+        check_size(field.name, area, planting)
         lines = copies(lines[0], area, planting.row_spacing_m)
-    return lay_along(field.name, frame, lines, Ground(area, _obstacles(field, frame)), planting)
+    ground = Ground(area, _obstacles(field, frame))
+    return lay_along(field.name, frame, lines, ground, planting, whole=whole)
 
 
 def found_planting(lonlat: Float, planting: Planting | None = None) -> Planting:
@@ -227,7 +222,8 @@ def grid_from_plants(
     check_apart(lonlat)
     if said is None:
         bearing = planting is not None and planting.row_bearing_deg is not None
-        said = SaidRows(row_numbers(None if field is None else field.plant_rows), bearing)
+        names = PlantNames() if field is None else PlantNames(field.plant_rows, field.plant_blocks)
+        said = said_rows(lonlat, names, field, bearing=bearing)
     if planting is None or planting.row_bearing_deg is None:
         planting = found_planting(lonlat, planting)
     frame = (field.frame() if field else frame_around(lonlat)).turned(
@@ -236,10 +232,15 @@ def grid_from_plants(
     xy_m = frame.xy_m(lonlat)
     line = split_lines(xy_m[:, 1], planting.row_spacing_m)
     obstacles = _obstacles(field, frame)
-    bent = bent_rows(xy_m, line, planting.row_spacing_m, said)
+    bent: TracedRows | None
+    called = None
+    if said.block is not None and said.block.any():
+        bent, called = rows_in_blocks(lonlat, frame, said)
+    else:
+        bent = bent_rows(xy_m, line, planting.row_spacing_m, said)
     if bent is not None:
         area = None if field is None else _held_area(field, frame, xy_m)
-        return measured_grid(frame, xy_m, bent, Ground(area, obstacles), planting)
+        return measured_grid(frame, xy_m, (bent, called), Ground(area, obstacles), planting)
     order = np.lexsort((xy_m[:, 0], line))
     xy_m, line = xy_m[order], line[order]
     pieces = _pieces(xy_m, line, _aisles(xy_m[:, 1], line, planting), obstacles, planting)
@@ -248,7 +249,7 @@ def grid_from_plants(
         return assemble(frame, pieces, _polygons(reach), planting)
     area = _held_area(field, frame, xy_m)
     lanes = _boxes(pieces.lane_x_m, pieces.aisle_y_m)
-    if not shapely.covers(shapely.buffer(area, 100 * _SLACK_M), lanes).all():
+    if not shapely.covers(shapely.buffer(area, 100 * SLACK_M), lanes).all():
         area = _polygons(shapely.union(area, reach))
     return assemble(frame, pieces, area, planting)
 
@@ -295,37 +296,7 @@ def rectangle(
     free = Intervals(np.arange(n_rows), np.full(n_rows, -half), np.full(n_rows, half))
     half_y = n_rows / 2 * planting.row_spacing_m
     area = MultiPolygon([shapely.box(-half, -half_y, half, half_y)])
-    return assemble(Frame(*centre, bearing_deg), _fill(y, free, planting), area, planting)
-
-
-def free_intervals(area: shapely.Geometry, low_y: Float, high_y: Float) -> Intervals:
-    """Return where whole horizontal strips are inside an area: ascending by strip, then x.
-
-    Strip k is ``low_y[k] < y < high_y[k]``; both ascend with k. An x is free if every point of
-    the strip there is in the area: the x where an edge runs through the strip are taken out, and
-    what is left between them is inside or outside as a whole.
-    """
-    x1, y1, x2, y2 = _edges(area)
-    first = np.searchsorted(high_y, y1, side="right")
-    n_met = np.maximum(np.searchsorted(low_y, y2, side="left") - first, 0)
-    strip, edge = runs(first, n_met)
-    x1, y1, x2, y2 = x1[edge], y1[edge], x2[edge], y2[edge]
-    low, high = low_y[strip], high_y[strip]
-    # parts of the edge's height, so that the flattest edge cannot overflow
-    height = np.where(y2 > y1, y2 - y1, 1.0)
-    enters = x1 + (np.maximum(low, y1) - y1) / height * (x2 - x1)
-    leaves = np.where(y2 <= high, x2, x1 + (np.minimum(high, y2) - y1) / height * (x2 - x1))
-    middle = (low + high) / 2
-    crosses = (y1 <= middle) & (middle < y2)
-    # sweep each strip from low to high x: an edge opens where it begins and closes where it
-    # ends; between edges, an odd number of crossings so far means inside
-    x = np.concatenate([np.minimum(enters, leaves), np.maximum(enters, leaves)])
-    opens = np.repeat([1, -1], len(edge))
-    order = np.lexsort((-opens, x, np.tile(strip, 2)))
-    inside = np.cumsum(np.concatenate([np.zeros(len(edge), int), crosses])[order]) % 2 == 1
-    before = np.flatnonzero((np.cumsum(opens[order]) == 0) & inside)
-    x = x[order]
-    return Intervals(np.tile(strip, 2)[order][before], x[before], x[before + 1])
+    return assemble(Frame(*centre, bearing_deg), fill(y, free, planting), area, planting)
 
 
 def assemble(frame: Frame, pieces: Pieces, area: MultiPolygon, planting: Planting) -> PlantGrid:
@@ -416,101 +387,10 @@ def _corridors(lane_y: Float, lane_x: Float) -> NDArray[np.intp]:
     low, high = lane_x[order, 0], lane_x[order, 1]
     shift = aisle[order] * (high.max() - low.min() + 1.0)
     reached = np.maximum.accumulate(high + shift)
-    apart = np.append(True, (low + shift)[1:] > reached[:-1] + _SLACK_M)
+    apart = np.append(True, (low + shift)[1:] > reached[:-1] + SLACK_M)
     corridor = np.empty(len(order), np.intp)
     corridor[order] = np.cumsum(apart) - 1
     return corridor
-
-
-def _check_size(name: str, area: MultiPolygon, planting: Planting) -> None:
-    about = area.area / (planting.row_spacing_m * planting.plant_spacing_m)
-    if about > _MOST_PLANTS:
-        raise PlotError(
-            worded(
-                "A plot may have {most} plants, but {name!r} ({area_ha:.0f} ha) would have "
-                "about {about:.0f} with rows {row_spacing_m} m and plants {plant_spacing_m} m "
-                "apart. Check the spacings and the boundary's units.",
-                most=_MOST_PLANTS,
-                name=name,
-                area_ha=area.area / 10000.0,
-                about=about,
-                row_spacing_m=planting.row_spacing_m,
-                plant_spacing_m=planting.plant_spacing_m,
-            )
-        )
-
-
-def _no_room(name: str, area: MultiPolygon, planting: Planting) -> PlotError:
-    low_x, low_y, high_x, high_y = area.bounds
-    return PlotError(
-        worded(
-            "A plot must have room for one plant: a strip {row_spacing_m:g} m wide (the "
-            "row spacing) and {headlands_m:g} m long (two headlands) along the rows. Plot "
-            "{name!r} ({area_m2:.0f} m2; {along_m:.1f} m along the rows, {across_m:.1f} m "
-            "across) has none. Choose a smaller headland or row spacing, another row "
-            "bearing, or check the boundary.",
-            row_spacing_m=planting.row_spacing_m,
-            headlands_m=2 * planting.headland_m,
-            name=name,
-            area_m2=area.area,
-            along_m=high_x - low_x,
-            across_m=high_y - low_y,
-        )
-    )
-
-
-def _best_strips(area: MultiPolygon, planting: Planting) -> tuple[Float, Intervals]:
-    """Return the rows' y and their free intervals for the placement that holds most plants."""
-    _, low, _, high = area.bounds
-    step = planting.row_spacing_m
-    left_over = (high - low + _SLACK_M) % step - _SLACK_M
-    best = (np.empty(0), Intervals(np.empty(0, np.intp), np.empty(0), np.empty(0)))
-    most = 0
-    # first the strips centred in the plot, which is best for a rectangle
-    for phase in range(_PHASES):
-        first = low + left_over / 2 + step / 2 - phase * step / _PHASES
-        y = np.arange(first, high, step)
-        free = free_intervals(area, y - step / 2 + _SLACK_M, y + step / 2 - _SLACK_M)
-        room = free.high_x - free.low_x - 2 * planting.headland_m + _SLACK_M
-        fits = room >= 0
-        n = int((room[fits] // planting.plant_spacing_m + 1).sum())
-        if n > most:
-            best = (y, Intervals(free.strip[fits], free.low_x[fits], free.high_x[fits]))
-            most = n
-    return best
-
-
-def _fill(y: Float, free: Intervals, planting: Planting) -> Pieces:
-    """Return pieces of rows with plants on one lattice along x, as many as fit the longest."""
-    step, half = planting.plant_spacing_m, planting.headland_m / 2
-    low, high = free.low_x + 2 * half, free.high_x - 2 * half
-    longest = np.argmax(high - low)
-    origin = low[longest] + ((high - low)[longest] + _SLACK_M) % step / 2
-    first = np.ceil((low - origin - _SLACK_M) / step).astype(np.int64)
-    n_plants = np.floor((high - origin + _SLACK_M) / step).astype(np.int64) - first + 1
-    planted = n_plants > 0
-    first, n_plants, strip = first[planted], n_plants[planted], free.strip[planted]
-    place, _ = runs(first, n_plants)
-    row_y = y[strip]
-    aisle = planting.row_spacing_m / 2
-    return Pieces(
-        np.stack([origin + place * step, np.repeat(row_y, n_plants)], axis=1),
-        offsets(n_plants),
-        np.unique(strip, return_inverse=True)[1].astype(np.int32),
-        np.stack([row_y - aisle, row_y + aisle], axis=1),
-        np.stack([free.low_x[planted] + half, free.high_x[planted] - half], axis=1),
-    )
-
-
-def _edges(area: shapely.Geometry) -> tuple[Float, Float, Float, Float]:
-    """Return all edges as ``x1, y1, x2, y2`` with y1 <= y2."""
-    rings = shapely.get_rings(shapely.get_parts(area))
-    corners, ring = shapely.get_coordinates(rings, return_index=True)
-    same = ring[1:] == ring[:-1]
-    start, end = corners[:-1][same], corners[1:][same]
-    falls = (start[:, 1] > end[:, 1])[:, None]
-    low, high = np.where(falls, end, start), np.where(falls, start, end)
-    return low[:, 0], low[:, 1], high[:, 0], high[:, 1]
 
 
 def check_apart(lonlat: Float) -> None:

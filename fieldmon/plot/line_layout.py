@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
@@ -15,7 +15,6 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.bent_layout import (
     Blocked,
-    Ground,
     RowLines,
     bent_grid,
     row_aisles,
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.aisle_lines import RowAisles
+    from fieldmon.plot.bent_layout import Ground
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.layout import Planting
     from fieldmon.plot.projection import Frame
@@ -76,8 +76,29 @@ def _within(line: LineString, area: shapely.Geometry) -> Float | None:
     return inner if len(inner) > 1 else None
 
 
+class LaidRows(NamedTuple):
+    """Rows with plants on them, before their neighbours and ways are found; as `bent_grid` has it.
+
+    ``plants`` are positions ``(n, 2)`` and the row of each, ``(n,)``.
+    """
+
+    rows: RowLines
+    aisles: RowAisles
+    blocked: Blocked
+    plants: tuple[Float, Int]
+
+    def __repr__(self) -> str:
+        return f"<LaidRows: {len(self.plants[0])} plants>"
+
+
 def lay_along(
-    name: str, frame: Frame, lines_m: list[Float], ground: Ground, planting: Planting
+    name: str,
+    frame: Frame,
+    lines_m: list[Float],
+    ground: Ground,
+    planting: Planting,
+    *,
+    whole: bool = False,
 ) -> PlantGrid:
     """Return plants along rows, wherever row, aisle and headlands fit into an area.
 
@@ -93,20 +114,17 @@ def lay_along(
         The area; None: plants stand on the whole of each line.
     planting
         Spacing of the plants, headland and faces. Rows are as far apart as they are.
+    whole
+        Whether the strips on both sides of a row must fit, as where straight rows are laid. Rows
+        that somebody drew may run along the boundary.
 
     Raises
     ------
     PlotError
         If there is no room for a plant.
     """
-    drawn = sorted_rows(Polylines.each(lines_m), _REACH * planting.row_spacing_m)
-    if np.isfinite(drawn.spacing_m):
-        planting = replace(planting, row_spacing_m=drawn.spacing_m)
-    rows = RowLines(drawn.lines, drawn.block)
-    aisles = row_aisles(rows, planting)
-    blocked = _outside(rows, aisles, ground, planting)
-    xy_m, row = _filled(rows.lines, blocked, planting)
-    if not len(xy_m):
+    laid, planting = rows_along(lines_m, ground.area, planting, whole=whole)
+    if not len(laid.plants[0]):
         raise PlotError(
             worded(
                 "A plot must have room for one plant on its rows, but "
@@ -117,22 +135,41 @@ def lay_along(
                 headland_m=planting.headland_m,
             )
         )
-    known = ground._replace(blocked=blocked, aisles=aisles)
-    return bent_grid(frame, rows, (xy_m, row), known, planting)
+    known = ground._replace(blocked=laid.blocked, aisles=laid.aisles)
+    return bent_grid(frame, laid.rows, laid.plants, known, planting)
 
 
-def _outside(rows: RowLines, aisles: RowAisles, ground: Ground, planting: Planting) -> Blocked:
+def rows_along(
+    lines_m: list[Float], area: shapely.Geometry | None, planting: Planting, *, whole: bool
+) -> tuple[LaidRows, Planting]:
+    """Return plants along rows as `lay_along` does, and the planting with their distance."""
+    drawn = sorted_rows(Polylines.each(lines_m), _REACH * planting.row_spacing_m)
+    if np.isfinite(drawn.spacing_m):
+        planting = replace(planting, row_spacing_m=drawn.spacing_m)
+    rows = RowLines(drawn.lines, drawn.block)
+    aisles = row_aisles(rows, planting)
+    blocked = _outside(rows, aisles, (area, whole), planting)
+    return LaidRows(rows, aisles, blocked, _filled(rows.lines, blocked, planting)), planting
+
+
+def _outside(
+    rows: RowLines,
+    aisles: RowAisles,
+    ground: tuple[shapely.Geometry | None, bool],
+    planting: Planting,
+) -> Blocked:
     """Return the stretches of rows that are not wholly on an area with their aisles."""
-    if ground.area is None:
+    area, whole = ground
+    if area is None:
         return Blocked.nowhere()
-    area = shapely.buffer(ground.area, _EDGE_M)
+    area = shapely.buffer(area, _EDGE_M)
     shapely.prepare(area)
 
     def shut(shapes: NDArray[np.object_]) -> NDArray[np.bool_]:
         out: NDArray[np.bool_] = ~np.asarray(shapely.covers(area, shapes))
         return out
 
-    return shut_stretches(rows, aisles, planting, shut)
+    return shut_stretches(rows, aisles, planting, shut, whole=whole)
 
 
 def _filled(lines: Polylines, blocked: Blocked, planting: Planting) -> tuple[Float, Int]:

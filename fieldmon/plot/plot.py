@@ -5,21 +5,32 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import shapely
+from shapely import MultiPolygon
+
+from fieldmon.errors import PlotError
+from fieldmon.plot.bent_layout import Ground
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, check_apart, grid_from_plants, lay, planting_in
-from fieldmon.plot.measured_rows import SaidRows, row_numbers
+from fieldmon.plot.line_layout import lay_along
+from fieldmon.plot.measured_rows import PlantNames, said_rows
 from fieldmon.plot.missing_plants import without
-from fieldmon.plot.row_detection import rows_from_plants
+from fieldmon.plot.row_detection import frame_around, rows_from_plants
 from fieldmon.plot.row_report import RowReport, row_report
 from fieldmon.plot.travel import Aisles
+from fieldmon.plot.trees import trees_grid
 
 if TYPE_CHECKING:
     import numpy as np
     from geopandas import GeoDataFrame
     from numpy.typing import NDArray
+    from shapely import MultiLineString
 
     from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.grid import PlantGrid
+
+
+_LEAST_ROWS = 2
 
 
 def planting_of(field: Field, **given: float | None) -> Planting:
@@ -43,7 +54,7 @@ def planting_of(field: Field, **given: float | None) -> Planting:
 
 def _in_rows(
     plants: NDArray[np.float64],
-    names: NDArray[np.str_] | None,
+    names: PlantNames,
     field: Field | None,
     planting: Planting | None,
 ) -> tuple[PlantGrid, RowReport]:
@@ -51,7 +62,8 @@ def _in_rows(
     planting = planting or Planting()
     check_apart(plants)
     rows = rows_from_plants(plants, planting.row_bearing_deg)
-    said = SaidRows(row_numbers(names), planting.row_bearing_deg is not None).checked(plants)
+    bearing = planting.row_bearing_deg is not None
+    said = said_rows(plants, names, field, bearing=bearing).checked(plants)
     grid = grid_from_plants(plants, planting_in(rows, planting), field, said)
     return grid, row_report(grid, rows, said)
 
@@ -86,8 +98,11 @@ class Plot:
     @classmethod
     def of(cls, field: Field, planting: Planting | None = None) -> Plot:
         """Take a field's measured plants, or lay some, and find the ways between them."""
+        if not field.in_rows:
+            return cls.of_trees(field)
         if field.plants is not None:
-            grid, rows = _in_rows(field.plants, field.plant_rows, field, planting)
+            names = PlantNames(field.plant_rows, field.plant_blocks)
+            grid, rows = _in_rows(field.plants, names, field, planting)
             return replace(cls._with(field, grid), rows=rows)
         return cls._with(field, lay(field, planting or planting_of(field)))
 
@@ -98,16 +113,66 @@ class Plot:
         plants: NDArray[np.float64],
         planting: Planting | None = None,
         gate: tuple[float, float] | None = None,
-        plant_rows: NDArray[np.str_] | None = None,
+        names: PlantNames | None = None,
     ) -> Plot:
         """Return the plot of measured plants ``(n, 2)`` lon/lat whose boundary nobody drew.
 
-        `plant_rows` ``(n,)`` names the row of each, where that is known.
+        `names` are those of the row and the block of each, where these are known.
         """
-        grid, rows = _in_rows(plants, plant_rows, None, planting)
+        names = names or PlantNames()
+        grid, rows = _in_rows(plants, names, None, planting)
         boundary = grid.frame.geometry_lonlat(grid.drivable_m)
-        field = Field(name, boundary, gate=gate, plants=plants, plant_rows=plant_rows)
+        row, block = names
+        field = Field(name, boundary, gate=gate, plants=plants, plant_rows=row, plant_blocks=block)
         return replace(cls._with(field, grid), rows=rows)
+
+    @classmethod
+    def of_trees(cls, field: Field) -> Plot:
+        """Take a field's measured plants as they stand, in no rows, and the ways among them.
+
+        Raise `PlotError` where none were measured: what is laid stands in rows.
+        """
+        if field.plants is None:
+            raise PlotError(
+                f"Plants in no rows must be measured, but of plot {field.name!r} nobody gave their "
+                "positions. Give them, or let plants be laid in rows."
+            )
+        check_apart(field.plants)
+        return cls._with(field, trees_grid(field.plants, field))
+
+    @classmethod
+    def among(
+        cls, name: str, plants: NDArray[np.float64], gate: tuple[float, float] | None = None
+    ) -> Plot:
+        """Return the plot of measured plants in no rows whose boundary nobody drew."""
+        check_apart(plants)
+        grid = trees_grid(plants)
+        boundary = grid.frame.geometry_lonlat(grid.drivable_m)
+        return cls._with(Field(name, boundary, gate=gate, plants=plants, in_rows=False), grid)
+
+    @classmethod
+    def along(
+        cls,
+        name: str,
+        rows: MultiLineString,
+        planting: Planting | None = None,
+        gate: tuple[float, float] | None = None,
+    ) -> Plot:
+        """Return the plot of rows drawn as lines, lon/lat, whose boundary nobody drew.
+
+        Raise `PlotError` of a single row: how far its copies reach is not known then.
+        """
+        if len(rows.geoms) < _LEAST_ROWS:
+            raise PlotError(
+                f"Rows without a plot must be two or more, but {name!r} has {len(rows.geoms)}. "
+                "Give the plot's boundary: it tells how far the copies of one row reach."
+            )
+        planting = planting or Planting()
+        frame = frame_around(shapely.get_coordinates(rows))
+        lines = [frame.xy_m(shapely.get_coordinates(line)) for line in rows.geoms]
+        grid = lay_along(name, frame, lines, Ground(None, MultiPolygon()), planting)
+        boundary = grid.frame.geometry_lonlat(grid.drivable_m)
+        return cls._with(Field(name, boundary, gate=gate, row_lines=rows), grid)
 
     @classmethod
     def from_geopandas(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,6 +18,7 @@ from fieldmon.compute.arrays import runs
 from fieldmon.compute.jit import kept, routine
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
+from fieldmon.plot.adjacency import delaunay_sides
 from fieldmon.plot.bent_ways import Bends, bends_of, off_steps, row_end_places, row_steps
 
 if TYPE_CHECKING:
@@ -275,6 +276,8 @@ def find_roads(
     """
     obstacles = Obstacles.of(grid, MultiPolygon() if no_go_m is None else no_go_m, clearance)
     narrow = _Narrow.of(grid, clearance)
+    if not grid.in_rows:
+        return _find_from_tree_to_tree(grid, gate_xy_m, obstacles)
     if grid.aisles_m is not None:
         return _find_bent(grid, gate_xy_m, obstacles, narrow)
     xy_m, place = _merged(_row_end_places(grid))
@@ -313,6 +316,25 @@ class _Narrow(NamedTuple):
         beyond_m = np.abs(grid.lane_x_m - grid.along_m[_end_plants(grid)])
         tight = clearance.tight_ends(grid)
         return cls(clearance.shut(grid), tight, (beyond_m >= clearance.way_m) & ~tight)
+
+
+def _find_from_tree_to_tree(
+    grid: PlantGrid, gate_xy_m: tuple[float, float] | None, obstacles: Obstacles
+) -> RoadNetwork:
+    """Return straight ways from each tree to those about it: no row is in the way."""
+    xy_m = grid.stop_m
+    nobody = np.full((1, 4), np.inf)
+    obstacles = replace(obstacles, row_box_m=nobody)
+    n = len(xy_m)
+    tried = _each_once(np.concatenate([_nearest(xy_m), delaunay_sides(xy_m)]))
+    good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]])
+    net, gate = _Net(xy_m, tried[good]), 0
+    if gate_xy_m is not None:
+        gate = n
+        net = _with_gate(net, np.array([gate_xy_m]), obstacles, grid)
+    needed = np.append(np.repeat(np.arange(n), 2), gate)
+    net = _joined_outside(_joined_inside(net, needed, obstacles), needed, obstacles)
+    return _sorted(net, np.repeat(np.arange(n), 2).reshape(-1, 2), gate)
 
 
 def _find_bent(
@@ -597,7 +619,7 @@ def _round_corners(net: _Net, needed: Index, obstacles: Obstacles, where: Where)
     Each way has corners of its own: if two shared one, they would be a way off the plot between
     places of one part.
     """
-    corners_m = obstacles.corners(where)
+    corners_m = np.concatenate([obstacles.corners(where), _beside_stranded(net, needed)])
     while len(corners_m) and net.apart(needed):
         part = net.component()
         for own in np.unique(part[needed]):
@@ -613,6 +635,23 @@ def _round_corners(net: _Net, needed: Index, obstacles: Obstacles, where: Where)
         chain = np.concatenate([[first], new, [last]])
         net = net.plus(corners_m[between], np.stack([chain[:-1], chain[1:]], axis=1))
     return net
+
+
+def _beside_stranded(net: _Net, needed: Index) -> Float:
+    """Return the places at row ends that are off the plot, near those that cannot be reached.
+
+    A row along the boundary may be passed at its end only off the plot.
+    """
+    part = net.component()
+    idle = np.flatnonzero(~np.isin(part, part[needed]))
+    if not len(idle):
+        return np.empty((0, 2))
+    most = np.argmax(np.bincount(part[needed]))
+    stranded = needed[part[needed] != most]
+    far_m = cKDTree(net.xy_m[stranded]).query(net.xy_m[idle])[0]
+    near = idle[np.argsort(far_m, kind="stable")[:_MOST_CORNERS]]
+    places: Float = net.xy_m[near]
+    return places
 
 
 def _shortest_round(

@@ -64,7 +64,7 @@ def rows_from_boundary(field: Field) -> Rows:
     parts = shapely.get_parts(field.boundary)
     main = parts[np.argmax(shapely.area(parts))]
     edge_m = np.diff(field.frame().xy_m(shapely.get_coordinates(main.exterior)), axis=0)
-    return Rows(_main_bearing(edge_m), None, None, "along the long side of the plot")
+    return Rows(main_bearing(edge_m), None, None, "along the long side of the plot")
 
 
 def rows_from_lines(field: Field) -> Rows:
@@ -80,7 +80,7 @@ def rows_from_lines(field: Field) -> Rows:
     points, line = shapely.get_coordinates(lines, return_index=True)
     frame = field.frame()
     edges_m = np.diff(frame.xy_m(points), axis=0)[line[1:] == line[:-1]]
-    bearing_deg = _main_bearing(edges_m)
+    bearing_deg = main_bearing(edges_m)
     middles = shapely.get_coordinates(shapely.line_interpolate_point(lines, 0.5, normalized=True))
     gaps = np.diff(np.sort(frame.turned(bearing_deg).xy_m(middles)[:, 1]))
     # pieces of one row lie on one line: their gap is no spacing
@@ -352,7 +352,7 @@ def _plant_spacing(x: Float, line: NDArray[np.intp], near_m: float) -> float | N
     return float(np.median(gaps[sure] / steps[sure]))
 
 
-def _main_bearing(edges_m: Float) -> float:
+def main_bearing(edges_m: Float) -> float:
     """Return the bearing (0..180) that most metres of edge share, within a few degrees."""
     length = np.hypot(*edges_m.T)
     bearing_deg = np.rad2deg(np.arctan2(edges_m[:, 0], edges_m[:, 1])) % 180.0

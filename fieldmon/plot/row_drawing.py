@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
-from shapely import MultiLineString
+from shapely import LineString, MultiLineString
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
@@ -25,6 +25,8 @@ _STEP_DEG, _FINE_DEG = 0.1, 0.01
 # posts of one row lie nearer to one line than this part of the distance to the next row
 _IN_LINE = 0.35
 _MOST_STEPS = 20_000
+# a row through places is looked at as finely; places nearer than that are one
+_SMOOTH_M, _SAME_M = 1.0, 0.01
 
 
 def rows_from_posts(lonlat: Float, names: NDArray[np.str_] | None = None) -> MultiLineString:
@@ -108,6 +110,28 @@ def _badness(xy_m: Float, angle_deg: float) -> float:
     pairs = xy_m[order].reshape(-1, 2, 2)
     length = float(np.hypot(*(pairs[:, 1] - pairs[:, 0]).T).mean())
     return float(within.mean() / max(between.min(), 1e-9) + 1e-3 * between.mean() / length)
+
+
+def smooth_row(lonlat: Float) -> LineString:
+    """Return a row that runs smoothly through some places ``(k, 2)``, in their order.
+
+    A cubic spline along the chords between them; two are a straight row.
+    """
+    from scipy.interpolate import CubicSpline  # noqa: PLC0415 - half a second to import
+
+    frame = frame_around(lonlat)
+    xy_m = frame.xy_m(lonlat)
+    step_m = np.hypot(*np.diff(xy_m, axis=0).T)
+    apart = np.append(True, step_m > _SAME_M)
+    xy_m, at_m = xy_m[apart], np.append(0.0, np.cumsum(step_m))[apart]
+    if len(xy_m) < 2:
+        raise PlotError("A row must lead somewhere, but all of its places are one. Draw it again.")
+    if len(xy_m) < 3:
+        return LineString(lonlat[apart])
+    n = int(np.clip(at_m[-1] / _SMOOTH_M, 2 * len(xy_m), _MOST_STEPS))
+    curve = CubicSpline(at_m, xy_m, bc_type="natural")(np.linspace(0.0, at_m[-1], n + 1))
+    thin = shapely.simplify(shapely.linestrings(curve), 0.02)
+    return LineString(frame.lonlat(shapely.get_coordinates(thin)))
 
 
 def contour_row(field: Field, height_m: Callable[[Float], Float], step_m: float) -> MultiLineString:

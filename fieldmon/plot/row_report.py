@@ -6,11 +6,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import counted, worded
 from fieldmon.plot.row_tracing import beside_their_rows
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.measured_rows import SaidRows
     from fieldmon.plot.row_detection import Rows
@@ -21,6 +24,8 @@ _OFF = 0.25
 _WORTH_A_WORD = 0.01
 # plants in no rows stray so far from any lines seen in them, in row spacings
 _NO_ROWS = 0.2
+# so much nearer to one other than to a third, a plant is in a pair; so many are worth a word
+_CLOSE, _PAIRED, _FEW = 0.55, 0.4, 6
 
 
 @dataclass(frozen=True)
@@ -43,6 +48,10 @@ class RowReport:
         Share of the plants that stand in another row than its name says; None without names.
     named
         Whether names decided.
+    of_trial
+        Whether the blocks that plants name run through rows, and were left aside.
+    paired_share
+        Share of the plants that stand much nearer to one other than to any third.
     """
 
     how: str
@@ -52,6 +61,8 @@ class RowReport:
     others_deg: tuple[float, ...] = ()
     misnamed_share: float | None = None
     named: bool = False
+    of_trial: bool = False
+    paired_share: float = 0.0
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -61,7 +72,8 @@ class RowReport:
             said.append(
                 "No rows were found: the plants stand anyhow. The lines along which they would "
                 "be visited are none of theirs, and aisles between them may not be there. Give "
-                "the row bearing, name each plant's row, or draw the rows."
+                "the row bearing or name each plant's row; or say that they stand in no rows, and "
+                "they are visited by nearness."
             )
         elif self.off_share >= _WORTH_A_WORD:
             said.append(
@@ -73,6 +85,17 @@ class RowReport:
             said.append(
                 f"{self.misnamed_share:.0%} of the plants seem to stand in another row than the "
                 f"file names; {decided}. Look whether its rows are named rightly."
+            )
+        if self.paired_share >= _PAIRED and not self.named and self.in_rows:
+            said.append(
+                f"{self.paired_share:.0%} of the plants stand in close pairs, as in double rows or "
+                "where two are planted in one place: rows may be seen where there are none. Look "
+                "at them, name each plant's row, or leave one of each pair out."
+            )
+        if self.of_trial:
+            said.append(
+                "The blocks that the file names change within rows without a gap, as those of a "
+                "trial do; they were left aside. Part the plot by areas or lines if they are not."
             )
         if self.others_deg:
             ways = " and ".join(f"{way:.0f}" for way in self.others_deg)
@@ -113,4 +136,14 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
         () if decided else found.others_deg,
         said.misnamed,
         said.label is not None,
+        said.of_trial,
+        _paired_share(xy_m),
     )
+
+
+def _paired_share(xy_m: NDArray[np.float64]) -> float:
+    """Return the share of plants that are much nearer to one other than to any third."""
+    if len(xy_m) < _FEW:
+        return 0.0
+    near_m = cKDTree(xy_m).query(xy_m, k=3)[0]
+    return float(np.mean(near_m[:, 1] < _CLOSE * near_m[:, 2]))

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import heapq
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -15,6 +13,7 @@ from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.wording import counted
 from fieldmon.plot.clearance import Clearance, told_shut
+from fieldmon.plot.driven_line import Lanes, driven_line, way_nodes
 from fieldmon.plot.road_network import RoadNetwork, find_roads, row_lines
 
 if TYPE_CHECKING:
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
 GATE = -1
 _TOUCH_M = 0.01
 _BLOCK = 64
-_STRAIGHT = 1e-9
 
 
 class TravelTable(NamedTuple):
@@ -167,6 +165,12 @@ class Aisles:
     def __repr__(self) -> str:
         return f"<Aisles: {self.grid.counts}, {counted(len(self.roads.xy_m), 'node')}>"
 
+    def worked_by(self, robot: Robot) -> Robot:
+        """Return a robot as it works here: where plants stand in no rows, it changes none."""
+        if self.grid.in_rows or not robot.row_change_s:
+            return robot
+        return replace(robot, row_change_s=0.0)
+
     @property
     def gate_m(self) -> Float:
         """Where a working day starts and ends, ``(2,)``."""
@@ -191,75 +195,35 @@ class Aisles:
 
         It is as long as `distance_m` says, and has two points or more.
         """
-        a, b = self._at(i), self._at(j)
-        rows = self.grid.row[[i, j]]
-        if min(i, j) >= 0 and self.grid.corridor[rows[0]] == self.grid.corridor[rows[1]]:
-            return np.concatenate([a[None], self._along(rows[0], i, j), b[None]])
-        out, out_m = self._exits(i)
-        back, back_m = self._exits(j)
-        way_m = out_m[:, None] + self.travel.between_m[out[:, None], back] + back_m
-        best = int(np.argmin(way_m))
-        first, last = out[best // len(back)], back[best % len(back)]
-        nodes = _trace(self.roads, self._stop_node[first], self._stop_node[last])
-        way = [a[None], self.roads.xy_m[nodes], b[None]]
-        if self.grid.aisles_m is not None:
-            way[1] = _with_corners(self.roads, nodes)
-            way.insert(1, self._to_end(i, first))
-            way.insert(3, self._to_end(j, last)[::-1])
-        line: Float = _plain(np.concatenate(way))
-        return line
+        return self.line(np.array([i, j], np.int64))[0]
 
-    def _along(self, row: int, i: int, j: int) -> Float:
-        """Return the corners of a lane between two of its plants."""
-        at_m = self.grid.along_m
-        return self._corners(row, float(at_m[i]), float(at_m[j]))
+    def line(self, places: NDArray[np.int64]) -> tuple[Float, NDArray[np.int64]]:
+        """Return the line ``(m, 2)`` driven from place to place ``(k,)``, and where each leg ends.
 
-    def _to_end(self, i: int, end: int) -> Float:
-        """Return the corners of a lane from a plant to an end of it, as in `TravelTable`."""
-        if i < 0:
-            return np.empty((0, 2))
-        row = end // 2
-        return self._corners(
-            row, float(self.grid.along_m[i]), float(self.grid.lane_x_m[row, end % 2])
-        )
-
-    def _corners(self, row: int, from_m: float, to_m: float) -> Float:
-        if self.grid.aisles_m is None or self.grid.aisle is None:
-            return np.empty((0, 2))
-        return self.grid.aisles_m.corners_between(int(self.grid.aisle[row]), from_m, to_m)
-
-    @cached_property
-    def bend(self) -> NDArray[np.int64]:
-        """The straight stretch of aisle at which each plant is inspected, ``(n,)``; 0 if all are.
-
-        Between plants of one stretch one drives straight ahead.
+        Legs are as `path` has them, one after the other; what is passed straight on is no corner.
         """
-        grid = self.grid
-        if grid.aisles_m is None or grid.aisle is None:
-            return read_only(np.zeros(len(grid), np.int64))
-        return read_only(grid.aisles_m.corner_before(grid.aisle[grid.row], grid.along_m))
+        return driven_line(self.travel, self.roads, self._lanes, places)
 
     @cached_property
-    def _stop_node(self) -> NDArray[np.int64]:
-        """Node of each lane end, and of the gate, as numbered in `TravelTable.between_m`."""
-        return np.append(self.roads.end.ravel(), self.roads.gate)
-
-    def _exits(self, i: int) -> tuple[NDArray[np.int64], Float]:
-        """Return the ends of the lane of plant i as in `TravelTable`, and the metres there."""
-        if i < 0:
-            return np.array([2 * self.grid.n_rows]), np.zeros(1)
-        row = int(self.grid.row[i])
-        return 2 * row + np.arange(2), np.abs(self.grid.along_m[i] - self.grid.lane_x_m[row])
-
-    def _at(self, i: int) -> Float:
-        here: Float = self.gate_m if i < 0 else self.stop_m[i]
-        return here
+    def _lanes(self) -> Lanes:
+        grid = self.grid
+        end_node = np.append(self.roads.end.ravel(), self.roads.gate)
+        stop_m = np.ascontiguousarray(self.stop_m)
+        if grid.aisles_m is None or grid.aisle is None:
+            nowhere = np.full(grid.n_rows, -1)
+            nothing = np.zeros(1, np.int64), np.empty((0, 2)), np.empty(0)
+            lanes = Lanes(stop_m, end_node, nowhere, *nothing)
+        else:
+            lanes = Lanes(stop_m, end_node, grid.aisle.astype(np.int64), *grid.aisles_m)
+        for values in lanes:
+            read_only(values)
+        return lanes
 
 
 def trace(aisles: Aisles, a: int, b: int) -> list[int]:
     """Return the nodes of the network on the way between two lane ends, as in `TravelTable`."""
     stops = np.append(aisles.roads.end.ravel(), aisles.roads.gate)
-    nodes: list[int] = _trace(aisles.roads, stops[a], stops[b]).tolist()
+    nodes: list[int] = way_nodes(aisles.roads, stops[a], stops[b]).tolist()
     return nodes
 
 
@@ -357,55 +321,6 @@ def _sweep(
         if nearer:
             for e in range(roads.start[node], roads.start[node + 1]):
                 stale[roads.to[e]] = True
-
-
-@routine
-def _trace(roads: RoadNetwork, a: int, b: int) -> NDArray[np.int64]:
-    """Return the nodes on the shortest way from node a to node b (Dijkstra's, from b)."""
-    near = np.full(roads.xy_m.shape[0], np.inf)
-    onward = np.full(near.size, -1)
-    near[b] = 0.0
-    queue = [(0.0, b)]
-    while queue[0][1] != a:
-        node_m, node = heapq.heappop(queue)
-        if node_m > near[node]:
-            continue
-        for e in range(roads.start[node], roads.start[node + 1]):
-            other, way_m = int(roads.to[e]), node_m + float(roads.length_m[e])
-            if way_m < near[other]:
-                near[other], onward[other] = way_m, node
-                heapq.heappush(queue, (way_m, other))
-    nodes = [a]
-    while nodes[-1] != b:
-        nodes.append(onward[nodes[-1]])
-    return np.array(nodes)
-
-
-def _with_corners(roads: RoadNetwork, nodes: NDArray[np.int64]) -> Float:
-    """Return the places of nodes on a way, with the corners of ways that bend between them."""
-    way = [roads.xy_m[nodes[:1]]]
-    for a, b in pairwise(nodes.tolist()):
-        first, end = roads.start[a], roads.start[a + 1]
-        e = int(first + np.searchsorted(roads.to[first:end], b))
-        way += [roads.via_m[roads.via_start[e] : roads.via_start[e + 1]], roads.xy_m[b : b + 1]]
-    return np.concatenate(way)
-
-
-@routine
-def _plain(line: Float) -> Float:
-    """Return a line without points that are passed straight on; its ends stay."""
-    k = 1
-    plain = line.copy()
-    for point in range(1, len(line) - 1):
-        back_x, back_y = line[point] - plain[k - 1]
-        on_x, on_y = line[point + 1] - line[point]
-        turn = abs(back_x * on_y - back_y * on_x)
-        reach = np.hypot(back_x, back_y) * np.hypot(on_x, on_y)
-        if turn > _STRAIGHT * reach or back_x * on_x + back_y * on_y < 0:
-            plain[k] = line[point]
-            k += 1
-    plain[k] = line[-1]
-    return plain[: k + 1]
 
 
 class Clock(NamedTuple):

@@ -187,6 +187,10 @@ def legend_block(*, route: bool = False, by_state: bool = False) -> Illustration
     )
 
 
+#: stands where plants have no row
+NO_ROW = "–"
+
+
 def _stops(facts: DayFacts) -> Table:
     """Return the rows in the order in which they are come to, with their plants."""
     label = row_label(facts.route.aisles.grid, facts.route.plant)
@@ -196,7 +200,7 @@ def _stops(facts: DayFacts) -> Table:
         own = label.number[label.line == line].tolist()
         rows.append(
             (
-                f"{line}",
+                f"{line}" if facts.route.aisles.grid.in_rows else NO_ROW,
                 _clock(facts, facts.route.arrive_s[k]),
                 f"{len(own)}",
                 which(own, _WHICH[flow]),
@@ -217,9 +221,13 @@ def which(numbers: list[int], letters: int) -> str:
 
 
 def _found(facts: DayFacts) -> Table:
-    label = row_label(facts.route.aisles.grid, facts.found)
+    grid = facts.route.aisles.grid
+    label = row_label(grid, facts.found)
     rows = tuple(
-        (f"{line}", runs(label.number[label.line == line].tolist()))
+        (
+            f"{line}" if grid.in_rows else NO_ROW,
+            runs(label.number[label.line == line].tolist()),
+        )
         for line in np.unique(label.line).tolist()
     )
     return Table(

@@ -11,6 +11,7 @@ import shapely
 
 from fieldmon.infestation.hotspots import outlines_m
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.plot.grid import before_rows
 from fieldmon.reports import colours, words
 from fieldmon.reports.drawing import (
     Areas,
@@ -307,10 +308,12 @@ def _gate(gate_m: Floats, placed: _Placed) -> list[Part]:
 
 def _row_numbers(grid: PlantGrid, placed: _Placed) -> list[Part]:
     """Return the numbers of the rows before their first plants, as many as have room."""
-    lines, first = np.unique(grid.row_line[grid.row], return_index=True)
+    if not grid.in_rows:
+        return []
+    lines, first = np.unique(grid.row_line, return_index=True)
     gap_mm = grid.row_spacing_m * placed.scale
     every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 10**9) if k * gap_mm >= 3.2)
-    before_m = grid.xy_m[first] - [0.5 * grid.plant_spacing_m + 2.4 / placed.scale, 0.0]
+    before_m = before_rows(grid, first, 0.5 * grid.plant_spacing_m + 2.4 / placed.scale)
     return [
         Lettering(x, y, f"{line + 1}", 6.0, colours.SOFT, "middle")
         for line, (x, y) in zip(lines.tolist(), placed(before_m).tolist(), strict=True)

@@ -25,7 +25,7 @@ from fieldmon.reports.content import (
     Sheet,
     Table,
 )
-from fieldmon.reports.day import legend_block, map_alt, which
+from fieldmon.reports.day import NO_ROW, legend_block, map_alt, which
 from fieldmon.reports.maps import PlotMap
 from fieldmon.reports.sentences import hot_spot_meanings, runs
 from fieldmon.reports.settings_rows import WorkSettings, assumed_sentence, settings_blocks
@@ -235,7 +235,8 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
     rows = []
     for line in np.unique(label.line).tolist():
         own = label.number[label.line == line].tolist()
-        rows.append((f"{line}", f"{len(own)}", which(own, _FINDS_LONG)))
+        row = f"{line}" if grid.in_rows else NO_ROW
+        rows.append((row, f"{len(own)}", which(own, _FINDS_LONG)))
     yield Table(
         words.FINDS_BY_ROW, words.FINDS_COLUMNS, tuple(rows), (0.12, 0.12, 0.76), flow=2,
         rest=words.FOUND_REST, left=(2,),

@@ -29,7 +29,9 @@ def headline(route: Route, day: str) -> str:
     line = row_label(route.aisles.grid, route.plant).line
     low, high = int(line.min()), int(line.max())
     rows = worded(words.ROW, low=low)
-    if low < high:
+    if not route.aisles.grid.in_rows:
+        rows = worded(words.NO_ROWS)
+    elif low < high:
         rows = worded(words.ROWS, low=low, high=high)
     return worded(
         words.HEADLINE, plants=counted(len(route), "plant"), rows=rows, day=day,
@@ -63,6 +65,8 @@ def _place(grid: PlantGrid, plants: NDArray[np.intp]) -> Worded:
     label = row_label(grid, plants)
     first, last = int(label.line.min()), int(label.line.max())
     low, high = int(label.number.min()), int(label.number.max())
+    if not grid.in_rows:
+        return worded(words.HOT_PLANTS, low=low, high=high)
     if first == last:
         return worded(words.HOT_ROW, first=first, low=low, high=high)
     return worded(words.HOT_ROWS, first=first, last=last, low=low, high=high)

@@ -22,6 +22,7 @@ HEADLINE = "Inspect {plants} in {rows} on {day}, {hours:.1f} h: about {finds} ex
 HEADLINE_NONE = "Nothing to inspect on {day}."
 WORKED = "Worked on {day}: {inspected} plants inspected, {found} found infested."
 ROW, ROWS, ROWS_NAMED = "row {low}", "rows {low}–{high}", "rows {low}"
+NO_ROWS = "no rows"
 LEGEND_CHANCE = "Chance that a plant is infested"
 LEGEND_FOUND, LEGEND_ROUTE = "found infested", "route, arrows show the way"
 LEGEND_STATES = ("never inspected", "looked clean")
@@ -84,6 +85,7 @@ HOT_MEANS = (
 )
 HOT_ROWS = "Rows {first} to {last}, plants {low} to {high}"
 HOT_ROW = "Row {first}, plants {low} to {high}"
+HOT_PLANTS = "Plants {low} to {high}"
 HOT_NONE = "No hot spots: finds cluster no more than chance allows."
 CHANCE_P_SMALL, CHANCE_P = "less than 1 in 10,000", "about 1 in {n:,}"
 FINDS_BY_ROW = "Plants found infested, by row"

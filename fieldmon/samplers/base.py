@@ -118,6 +118,9 @@ class Scene:
     traces: Traces | None = None
 
     def __post_init__(self) -> None:
+        robot = self.aisles.worked_by(self.robot)
+        if robot is not self.robot:
+            object.__setattr__(self, "robot", robot)
         # whoever makes a scene need not think of it: its ways are those that its robot can drive
         aisles = self.aisles.for_robot(self.robot)
         if aisles.shut.any():

@@ -555,7 +555,7 @@ def route_of(page):
     page.get_by_role("option", name="geojson").click()
     with page.expect_download() as download:
         page.get_by_role("button", name=texts.READERS["geojson"]).click()
-    page.keyboard.press("Escape")
+    page.get_by_role("dialog").get_by_label("Close").click()
     page.get_by_role("dialog").wait_for(state="hidden")
     return json.loads(download.value.path().read_text(encoding="utf-8"))["features"]
 

@@ -80,6 +80,27 @@ def test_trees_in_no_rows_are_said_and_not_called_rows(run, tmp_path):
     assert "trees: 60 plants in no rows." in out
 
 
+def test_trees_are_visited_by_nearness_where_it_is_said_that_they_stand_in_no_rows(run, tmp_path):
+    xy_m = np.random.default_rng(0).uniform(0, 120, (60, 2))
+    rows = [f"{lon:.9f},{lat:.9f}" for lon, lat in FRAME.lonlat(xy_m)]
+    (tmp_path / "trees.csv").write_text("\n".join(["lon,lat", *rows]))
+    words = ["--plants", "trees.csv", "--no-rows", "--hours", 1]
+    code, out, err, _ = run("plan", *words, "-o", "a.csv", "-o", "a.geojson", "-o", "a.html")
+    assert code == 0, err
+    assert "trees: 60 plants in no rows, visited by nearness." in out
+    table = list(csv.DictReader((tmp_path / "a.csv").read_text("utf-8-sig").splitlines()))
+    assert list(table[0])[:2] == ["stop", "number"]
+    stops = json.loads((tmp_path / "a.geojson").read_text())["features"][1:]
+    assert not any("row" in stop["properties"] for stop in stops)
+    assert "<th>row</th>" not in (tmp_path / "a.html").read_text()
+    assert "row" not in out.replace("no rows", "")
+    assert run("init", "trees.gpkg", *words[:3])[0] == 0
+    again = Season(tmp_path / "trees.gpkg").plot.grid
+    assert not again.in_rows
+    assert run("plan", "trees.gpkg", "-o", "b.csv")[0] == 0
+    assert run("plan", "trees.csv", "--all", "--no-rows")[0] != 0
+
+
 def test_plants_stand_between_end_posts(run, tmp_path):
     y = -24.0 + 3.5 * np.arange(14)
     ends = np.stack([np.stack([0.2 * y - 42, y], 1), np.stack([0.3 * y + 40, y], 1)], axis=1)
@@ -123,3 +144,38 @@ def test_measured_plants_and_drawn_rows_are_not_given_together(run, tmp_path, tw
     code, _, err, _ = run("plan", home, "--plants", two_blocks, "--rows", home)
     assert code != 0
     assert "not both" in err
+
+
+def test_an_estate_is_planned_with_the_rows_and_blocks_of_its_plots(run, tmp_path):
+    boxes = [shapely.box(-50, -30, -5, 30), shapely.box(5, -30, 50, 30)]
+    shapes = [FRAME.geometry_lonlat(box) for box in boxes]
+    estate = gpd.GeoDataFrame({"name": ["west", "east"]}, geometry=shapes, crs=4326)
+    estate.to_file(tmp_path / "estate.geojson")
+    bows = [shapely.LineString([(-48, y), (-27, y + 4), (-8, y)]) for y in range(-20, 21, 4)]
+    cut = FRAME.geometry_lonlat(shapely.LineString([(0, -2), (55, 3)]))
+    rows = gpd.GeoDataFrame(geometry=[FRAME.geometry_lonlat(bow) for bow in bows], crs=4326)
+    rows.to_file(tmp_path / "rows.geojson")
+    gpd.GeoDataFrame(geometry=[cut], crs=4326).to_file(tmp_path / "cut.geojson")
+    words = ["--rows", "rows.geojson", "--blocks", "cut.geojson", "--hours", 1, "--no-bound"]
+    code, out, err, _ = run("plan", "estate.geojson", "--all", *words, "-o", "routes")
+    assert code == 0, err
+    assert "2 of 2 plots planned" in out
+    assert "On 1 of 2 plots no rows were drawn; straight ones are laid." in err
+    assert "1 line(s) part plots into 2 blocks." in err
+    stops = {
+        name: json.loads((tmp_path / "routes" / f"{name}.geojson").read_text())["features"][1:]
+        for name in ("1-west", "2-east")
+    }
+    assert "block" not in stops["1-west"][0]["properties"]
+    assert {stop["properties"]["block"] for stop in stops["2-east"]} <= {1, 2}
+
+
+def test_a_plot_is_only_its_rows(run, tmp_path):
+    bows = [shapely.LineString([(-40, y), (0, y + 4), (40, y)]) for y in range(-12, 13, 3)]
+    rows = gpd.GeoDataFrame(geometry=[FRAME.geometry_lonlat(bow) for bow in bows], crs=4326)
+    rows.to_file(tmp_path / "rows.geojson")
+    code, out, err, _ = run("plan", "--rows", "rows.geojson", "--hours", 1)
+    assert code == 0, err
+    assert "rows: 477 plants in 9 rows" in out or "in 9 rows, which run as they bend" in out
+    assert "guessed: No boundary was given" in err
+    assert run("init", "bow.gpkg", "--rows", "rows.geojson")[0] == 0

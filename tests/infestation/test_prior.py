@@ -233,3 +233,11 @@ def test_more_chance_infests_the_same_plants_and_others_besides():
     few, many = (start_infested(chance, s, np.random.default_rng(7)) for s in (0.1, 0.3))
     assert (few <= many).all()
     assert few.sum() < many.sum()
+
+
+@pytest.mark.parametrize("odd", [-0.1, 1.1])
+def test_a_risk_that_is_no_chance_is_refused_below_as_above(odd):
+    risk = np.full(len(GRID), 0.5)
+    risk[7] = odd
+    with pytest.raises(ObservationError, match=r"chances in 0\.\.1"):
+        prior_chance(GRID, field_of(GRID), Observations.none(), TODAY, USUAL, risk)

@@ -13,6 +13,7 @@ from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, lay
 from fieldmon.plot.line_layout import copies, is_straight, lay_along
 from fieldmon.plot.projection import Frame
+from fieldmon.plot.travel import Aisles
 
 FRAME = Frame(8.0, 47.0)
 PLANTING = Planting(row_spacing_m=3.0, plant_spacing_m=1.5)
@@ -113,3 +114,15 @@ def test_what_is_straight_is_known_by_how_far_it_strays():
     bow = np.array([[0.0, 0.0], [10.0, 0.2], [20.0, 0.0]])
     assert is_straight(bow, 3.0)
     assert not is_straight(bow, 1.0)
+
+
+@pytest.mark.parametrize("bow_m", [4.0, 9.0, 15.0])
+def test_rows_drawn_along_the_boundary_can_be_reached(bow_m):
+    area = shapely.box(-130, -45, 130, 45)
+    middle = np.array([[-130.0, 0.0], [-60.0, 0.0], [0.0, bow_m], [60.0, 0.0], [130.0, 0.0]])
+    lines = copies(middle, area, 4.0)
+    grid = lay_along("bow", FRAME, lines, Ground(area, NOTHING), PLANTING)
+    aisles = Aisles.of(grid)
+    assert np.isfinite(aisles.travel.between_m).all()
+    whole = lay_along("bow", FRAME, lines, Ground(area, NOTHING), PLANTING, whole=True)
+    assert len(whole) < len(grid)

@@ -1,10 +1,17 @@
 """Which rows measured plants stand in: straight, bent, named; and what is doubtful about it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+import shapely
+from shapely import MultiPolygon
 
+from fieldmon.plot.block import Block
+from fieldmon.plot.field import Field
+from fieldmon.plot.grid import block_label
 from fieldmon.plot.layout import Planting, grid_from_plants
-from fieldmon.plot.measured_rows import SaidRows, row_numbers
+from fieldmon.plot.measured_rows import PlantNames, SaidRows, name_numbers
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import rows_from_plants
@@ -66,7 +73,7 @@ def test_names_of_rows_decide_where_they_tell_of_rows():
     far = xy_m[:, 0] > 10
     named[far & (row == 4)], named[far & (row == 5)] = 5, 4
     names = np.array([f"R{k}" for k in named])
-    plot = Plot.around("named", FRAME.lonlat(xy_m), plant_rows=names)
+    plot = Plot.around("named", FRAME.lonlat(xy_m), names=PlantNames(names))
     assert right_share(rows_of(plot.grid, xy_m), named) == 1.0
     (doubt,) = [said for said in plot.rows.doubts if "names" in said]
     assert "in another row than the file names; the names decided" in doubt
@@ -74,7 +81,7 @@ def test_names_of_rows_decide_where_they_tell_of_rows():
 
 def test_names_that_fit_are_checked_and_not_doubted():
     xy_m, row = planted(radius_m=60.0)
-    plot = Plot.around("named", FRAME.lonlat(xy_m), plant_rows=row.astype(np.str_))
+    plot = Plot.around("named", FRAME.lonlat(xy_m), names=PlantNames(row.astype(np.str_)))
     assert plot.rows.misnamed_share == 0.0
     assert plot.rows.doubts == ()
 
@@ -82,15 +89,15 @@ def test_names_that_fit_are_checked_and_not_doubted():
 def test_one_name_for_all_plants_is_no_name_of_a_row():
     xy_m, row = planted(radius_m=60.0)
     names = np.full(len(row), "Riesling")
-    plot = Plot.around("variety", FRAME.lonlat(xy_m), plant_rows=names)
+    plot = Plot.around("variety", FRAME.lonlat(xy_m), names=PlantNames(names))
     assert right_share(rows_of(plot.grid, xy_m), row) == 1.0
     assert "rows were found instead" in " ".join(plot.rows.doubts)
 
 
 def test_names_are_numbers_only_where_every_plant_has_one():
-    assert row_numbers(None) is None
-    assert row_numbers(np.array(["1", "", "2"])) is None
-    assert row_numbers(np.array(["b", "a", "b"])).tolist() == [1, 0, 1]
+    assert name_numbers(None) is None
+    assert name_numbers(np.array(["1", "", "2"])) is None
+    assert name_numbers(np.array(["b", "a", "b"])).tolist() == [1, 0, 1]
     assert SaidRows(None, bearing=False).checked(np.empty((0, 2))).misnamed is None
 
 
@@ -127,3 +134,95 @@ def test_a_triangular_planting_has_rows_three_ways():
     rows = rows_from_plants(Frame(8.0, 47.0, 10.0).lonlat(xy_m))
     ways = sorted(round(way) for way in (rows.bearing_deg, *rows.others_deg))
     assert ways == [10, 70, 130]
+
+
+def in_blocks(spacings_m):
+    """Return the plot of two straight blocks, each with its spacing, beside each other."""
+    parts, of = [], []
+    for number, spacing_m in enumerate(spacings_m):
+        k, j = np.divmod(np.arange(8 * 30), 30)
+        parts.append(np.stack([1.5 * j + 60.0 * number, spacing_m * k], axis=1))
+        of += [f"B{number}"] * len(k)
+    xy_m = np.concatenate(parts)
+    lonlat = FRAME.lonlat(xy_m)
+    blocks = np.array(of)
+    return Plot.around("blocks", lonlat, names=PlantNames(None, blocks)), blocks
+
+
+def test_named_blocks_have_rows_and_spacings_of_their_own():
+    plot, _ = in_blocks((2.5, 4.0))
+    grid = plot.grid
+    assert grid.n_blocks == 2
+    assert grid.n_rows == 16
+    block = block_label(grid)
+    assert np.bincount(block)[1:].tolist() == [240, 240]
+    n_across = np.diff(grid.across_start)
+    for number in (1, 2):  # but for the outer rows each has a neighbour on both sides
+        assert n_across[block == number].sum() == 2 * 7 * 30
+    assert plot.rows.doubts == ()
+
+
+def test_blocks_that_plants_name_within_rows_are_those_of_a_trial():
+    xy_m, row = planted()
+    names = np.where(xy_m[:, 0] > xy_m[:, 0].mean(), "I", "II")
+    plot = Plot.around("trial", FRAME.lonlat(xy_m), names=PlantNames(None, names))
+    assert plot.grid.n_blocks == 1
+    assert right_share(rows_of(plot.grid, xy_m), row) == 1.0
+    assert "as those of a trial do; they were left aside" in " ".join(plot.rows.doubts)
+
+
+def test_every_block_may_count_its_rows_from_one():
+    plot, named = in_blocks((2.5, 2.5))
+    lonlat = plot.field.plants
+    rows = np.array([str(k // 30 % 8) for k in range(480)])
+    again = Plot.around("both", lonlat, names=PlantNames(rows, named))
+    assert again.grid.n_rows == 16
+    assert again.rows.misnamed_share == 0.0
+
+
+def test_measured_plants_are_in_the_blocks_that_were_drawn():
+    xy_m = np.stack([*np.meshgrid(1.5 * np.arange(40), 2.5 * np.arange(16))], axis=-1)
+    xy_m = xy_m.reshape(-1, 2)
+    field = Field("drawn", FRAME.geometry_lonlat(MultiPolygon([shapely.box(-9, -9, 68, 47)])))
+    halves = [shapely.box(-9, -9, 68, 18.7), shapely.box(-9, 18.7, 68, 47)]
+    blocks = tuple(
+        Block(str(k), FRAME.geometry_lonlat(MultiPolygon([half]))) for k, half in enumerate(halves)
+    )
+    plot = Plot.of(replace(field, blocks=blocks, plants=FRAME.lonlat(xy_m)))
+    assert plot.grid.n_blocks == 2
+    assert np.bincount(block_label(plot.grid))[1:].tolist() == [320, 320]
+
+
+def test_a_block_of_a_plant_or_two_is_a_row():
+    xy_m = np.concatenate([planted()[0], [[200.0, 0.0]], [[300.0, 0.0], [302.0, 0.0]]])
+    n = len(xy_m)
+    names = np.array(["home"] * (n - 3) + ["one"] + ["two"] * 2)
+    plot = Plot.around("few", FRAME.lonlat(xy_m), names=PlantNames(None, names))
+    assert plot.grid.n_blocks == 3
+    assert len(plot.grid) == n
+
+
+@pytest.mark.parametrize("across_m", [0.15, 0.35])
+@pytest.mark.parametrize("radius_m", [None, 80.0])
+def test_double_rows_are_right_or_doubted(radius_m, across_m):
+    k, j = np.divmod(np.arange(12 * 40), 40)
+    x, y = np.tile((j - 20) * 1.4, 2), np.concatenate([3.0 * k - across_m, 3.0 * k + across_m])
+    xy_m = np.stack([x, y], axis=1)
+    if radius_m is not None:
+        at = radius_m + y
+        xy_m = np.stack([at * np.sin(x / at), at * np.cos(x / at) - radius_m], axis=1)
+    xy_m += np.random.default_rng(0).normal(0, 0.02, xy_m.shape)
+    plot = Plot.around("double", FRAME.lonlat(xy_m))
+    shares = [
+        right_share(rows_of(plot.grid, xy_m), true)
+        for true in (np.tile(k, 2), np.concatenate([2 * k, 2 * k + 1]))
+    ]
+    assert max(shares) >= 0.95 or plot.rows.doubts != ()
+
+
+def test_two_plants_close_in_a_row_are_in_that_row():
+    xy_m, row = planted(noise_m=0.02)
+    both = np.concatenate([xy_m, xy_m[::3] + np.array([0.3, 0.0])])
+    plot = Plot.around("close", FRAME.lonlat(both))
+    found = rows_of(plot.grid, both)
+    assert right_share(found, np.concatenate([row, row[::3]])) == 1.0

@@ -11,7 +11,7 @@ from fieldmon.errors import PlotError
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, lay
 from fieldmon.plot.projection import Frame
-from fieldmon.plot.row_drawing import contour_row, rows_from_posts
+from fieldmon.plot.row_drawing import contour_row, rows_from_posts, smooth_row
 
 FRAME = Frame(8.0, 47.0)
 
@@ -101,3 +101,21 @@ def test_level_ground_and_unknown_heights_are_refused():
         contour_row(vineyard(), lambda lonlat: np.full(len(lonlat), 7.0), 2.0)
     with pytest.raises(PlotError, match="shows none"):
         contour_row(vineyard(), lambda lonlat: np.full(len(lonlat), np.nan), 2.0)
+
+
+def test_a_row_through_places_is_smooth_and_passes_through_each():
+    frame = Frame(8.0, 47.0)
+    places = np.array([[0.0, 0.0], [30.0, 9.0], [60.0, 12.0], [90.0, 9.0], [120.0, 0.0]])
+    row = shapely.get_coordinates(smooth_row(frame.lonlat(places)))
+    xy_m = frame.xy_m(row)
+    line = shapely.linestrings(xy_m)
+    assert shapely.distance(line, shapely.points(places)).max() < 0.05
+    step = np.diff(xy_m, axis=0)
+    turn_deg = np.abs(np.diff(np.rad2deg(np.arctan2(step[:, 1], step[:, 0]))))
+    assert turn_deg.max() < 3.0
+    straight = smooth_row(frame.lonlat(places[[0, 4]]))
+    assert len(straight.coords) == 2
+    once = smooth_row(frame.lonlat(places[[0, 0, 4, 4]]))
+    assert len(once.coords) == 2
+    with pytest.raises(PlotError, match="must lead somewhere"):
+        smooth_row(frame.lonlat(places[[1, 1, 1]]))

@@ -11,16 +11,22 @@ export class Drawing {
     this.mode = null;
   }
 
-  // `mode` is null or {kind: "point" | "line" | "area" | "lasso", snap: [[lon, lat], ...], id}
+  // `mode` is null or {kind: "point" | "line" | "area" | "lasso", snap: [[lon, lat], ...], id};
+  // with `points` it begins with these, and each change of them is told at once (kind "bent")
   begin(mode) {
     if (mode?.id === this.mode?.id) return;
     this.mode = mode;
-    this.points = [];
+    this.points = this.bends ? mode.points : [];
     this.changed();
   }
 
+  // Whether a line that is there is bent, rather than a new one drawn.
+  get bends() {
+    return this.mode?.kind === "bent";
+  }
+
   get least() {
-    return { point: 1, line: 2 }[this.mode?.kind] ?? 3;
+    return { point: 1, line: 2, bent: 2 }[this.mode?.kind] ?? 3;
   }
 
   get ready() {
@@ -48,6 +54,12 @@ export class Drawing {
   }
 
   click(here, viewport) {
+    if (this.bends) {
+      this.points = this.points.toSpliced(this.place(here, viewport), 0, here);
+      this.changed();
+      this.told();
+      return;
+    }
     this.points = [...this.points, this.snapped(here, viewport)];
     this.changed();
     if (this.mode.kind === "point") this.finish();
@@ -58,6 +70,27 @@ export class Drawing {
     this.changed();
   }
 
+  // Return where in a line a new corner comes: in its nearest step, or on at an end.
+  place(here, viewport) {
+    const at = viewport.project(here), corners = this.points.map((p) => viewport.project(p));
+    let best = [Infinity, 0];
+    for (let k = 0; k + 1 < corners.length; k += 1) {
+      const [a, b] = [corners[k], corners[k + 1]];
+      const [x, y] = [b[0] - a[0], b[1] - a[1]];
+      const share = ((at[0] - a[0]) * x + (at[1] - a[1]) * y) / Math.max(x * x + y * y, 1e-9);
+      const near = Math.min(Math.max(share, 0), 1);
+      const off = Math.hypot(at[0] - a[0] - near * x, at[1] - a[1] - near * y);
+      const brink = share < 0 && k === 0 ? 0 : share > 1 && k + 2 === corners.length ? k + 2 : k + 1;
+      if (off < best[0]) best = [off, brink];
+    }
+    return best[1];
+  }
+
+  // Tell how the line runs now; it stays to be bent on.
+  told() {
+    if (this.bends && this.ready) this.tell(this.mode, this.points);
+  }
+
   trail(here) {
     this.points = [...this.points, here];
     this.changed();
@@ -66,15 +99,17 @@ export class Drawing {
   undo() {
     this.points = this.points.slice(0, -1);
     this.changed();
+    this.told();
   }
 
   drop() {
-    this.points = [];
+    this.points = this.bends ? this.mode.points : [];
     this.changed();
+    this.told();
   }
 
   finish() {
-    if (!this.ready) return;
+    if (!this.ready || this.bends) return;
     const done = this.points;
     this.points = [];
     this.changed();

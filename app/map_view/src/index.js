@@ -433,11 +433,11 @@ class MapPage {
     const press = (label, act, more = {}) => element("button", { type: "button", text: label, onclick: act, ...more });
     const hint = { lasso: words.lasso_hint, rows: words.rows_hint }[mode.kind] ?? mode.hint ?? words.draw_hint;
     this.bar.replaceChildren(
-      element("span", { text: points.length ? words.corners.replace("{n}", points.length) : hint }),
+      element("span", { text: points.length && mode.kind !== "bent" ? words.corners.replace("{n}", points.length) : hint }),
       ...(mode.kind === "rows" ? [press(words.draw_done, () => this.selecting("rows"), { class: "main" })] : [
         press(words.draw_back, () => this.drawing.undo(), { disabled: !points.length }),
         press(words.draw_drop, () => { this.drawing.drop(); if (mode.kind === "lasso") this.selecting("lasso"); })]),
-      ...(["point", "lasso", "rows"].includes(mode.kind) ? [] : [press(words.draw_done, () => this.drawing.finish(), { disabled: !ready, class: "main" })]),
+      ...(["point", "lasso", "rows", "bent"].includes(mode.kind) ? [] : [press(words.draw_done, () => this.drawing.finish(), { disabled: !ready, class: "main" })]),
     );
   }
 
@@ -557,7 +557,10 @@ class MapPage {
       this.drawing.finish();
       return;
     }
-    if (held >= 0) return;
+    if (held >= 0) {
+      this.drawing.told();
+      return;
+    }
     const near = (one) => Math.hypot(event.clientX - one.clientX, event.clientY - one.clientY);
     const here = this.at(event);
     if (!here || !from || event.button || near(from) > STILL_PX) return;

@@ -85,3 +85,23 @@ test("what is drawn so far is shown: closed from the third corner on, with a han
   }
   assert.deepEqual(drawing.layers([1, 2, 3])[0].data[0].p.at(-1), [0.3, -0.3]);
 });
+
+test("a row that is there is bent by dragging and by new corners, each change told at once", () => {
+  const row = { kind: "bent", id: "row 1", points: [[0.1, -0.5], [0.5, -0.5], [0.9, -0.5]] };
+  const { drawing, told } = begun(row);
+  assert.deepEqual(drawing.points, row.points);
+  assert.equal(drawing.grabbed([0.505, -0.505], view), 1);
+  drawing.move(1, [0.5, -0.6], view);
+  assert.equal(told.length, 0, "not before the pointer is let go");
+  drawing.told();
+  assert.deepEqual(told[0], [row, [[0.1, -0.5], [0.5, -0.6], [0.9, -0.5]]]);
+  drawing.click([0.7, -0.5], view);
+  assert.deepEqual(told[1][1].map(([x]) => x), [0.1, 0.5, 0.7, 0.9], "between the corners it lies beside");
+  drawing.click([0.02, -0.5], view);
+  drawing.click([0.97, -0.5], view);
+  assert.deepEqual(told[3][1].map(([x]) => x), [0.02, 0.1, 0.5, 0.7, 0.9, 0.97]);
+  drawing.finish();
+  assert.equal(told.length, 4, "it stays to be bent on");
+  drawing.drop();
+  assert.deepEqual(told[4][1], row.points, "dropped, it runs as it did");
+});

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
+from fieldmon.plot.grid import before_rows
+
 from ...words import texts
 
 if TYPE_CHECKING:
@@ -48,13 +50,14 @@ def stops(route: Route) -> list[Label]:
 
 def rows(grid: PlantGrid) -> list[Label]:
     """Return each row's number before its first plant, every tenth row before the others."""
-    line = grid.row_line[grid.row]
-    _, first = np.unique(line, return_index=True)
-    before_m = grid.xy_m[first] - [1.5 * grid.plant_spacing_m, 0.0]
+    if not grid.in_rows:
+        return []
+    line, first = np.unique(grid.row_line, return_index=True)
+    before_m = before_rows(grid, first, 1.5 * grid.plant_spacing_m)
     lonlat = np.round(grid.frame.lonlat(before_m), 7).tolist()
     made = [
         {"p": place, "t": f"{number + 1}", "k": "row", "row": number + 1}
-        for number, place in zip(line[first].tolist(), lonlat, strict=True)
+        for number, place in zip(line.tolist(), lonlat, strict=True)
     ]
     tens = {"0", "1"}
     return sorted(made, key=lambda one: (one["t"][-1] not in tens, one["t"][-1] != "5"))

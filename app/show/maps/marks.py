@@ -51,6 +51,19 @@ def with_hot(layers: list[Layer], spots: list[Layer]) -> list[Layer]:
     return [*layers[:under], *spots[:1], *layers[under:], *spots[1:]]
 
 
+def blocks(field: Field, *, dark: bool = False) -> list[Layer]:
+    """Return the outlines of the blocks, if the plot has several."""
+    if len(field.blocks) < 2:
+        return []
+    rings = shapely.get_rings(shapely.get_parts([block.area for block in field.blocks]))
+    rows = [{"path": np.round(shapely.get_coordinates(ring), 7).tolist()} for ring in rings]
+    return [
+        Layer("PathLayer", rows, id="blocks", get_path="path",
+              get_color=[230, 230, 230] if dark else [40, 40, 40], get_width=0.4,
+              width_min_pixels=2)
+    ]  # fmt: skip
+
+
 def paths(field: Field) -> list[Layer]:
     """Return the paths along which insects come in."""
     rows = [

@@ -52,7 +52,7 @@ def plants(
     """Return the plants: from near a point each, from far one picture (the browser knows when)."""
     notes = notes or PlantNotes()
     arrays = {"places": _places(grid), "ranks": shade.rank.tobytes()}
-    tips: dict[str, object] = {"text": texts.TIP_PLANT}
+    tips: dict[str, object] = {"text": texts.TIP_PLANT if grid.in_rows else texts.TIP_ALONE}
     if notes.chance is not None:
         arrays["values"] = notes.chance.astype("<f4").tobytes()
         tips["values"] = texts.TIP_CHANCE

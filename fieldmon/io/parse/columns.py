@@ -55,6 +55,8 @@ _NAMES = {
     "plot": "plot plotname plotid plotno fieldid field fieldname parcel parcelname block blockname "
     "parcela lote parcelle schlag feld flurstück flurstueck appezzamento campo locality site "
     "חלקה שםחלקה מגרש שדה orchard vineyard talhao talhão perceel",
+    "block": "block blockname blockno blocknr blockid bloc blok bloque blocco bloco cuartel "
+    "בלוק بلوك",
     "row": "row rowno rownumber rownr rowid reihe zeile fila hilera rang rangée rangee fileira "
     "filare linha שורה מספרשורה vinerow line rij",
     "plant": "plant plantno plantnumber plantid tree treeno treeid treenumber vine vineno vineid "

@@ -17,6 +17,7 @@ from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.parse.values import is_missing
 from fieldmon.plot.grid import row_label
+from fieldmon.plot.measured_rows import PlantNames
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -39,15 +40,25 @@ class Plants:
         ``(n, 2)`` degrees.
     row, plant
         ``(n,)`` labels of the row and of the plant; empty where the file has none.
+    block
+        ``(n,)`` labels of the block; None: the file has none.
     """
 
     lonlat: NDArray[np.float64]
     row: NDArray[np.str_]
     plant: NDArray[np.str_]
+    block: NDArray[np.str_] | None = None
 
     def __post_init__(self) -> None:
         for values in (self.lonlat, self.row, self.plant):
             values.setflags(write=False)
+
+    @property
+    def names(self) -> PlantNames:
+        """Return the names of rows, and of blocks, where all plants have one."""
+        row = None if (self.row == "").any() else self.row
+        block = None if self.block is None or (self.block == "").any() else self.block
+        return PlantNames(row, block)
 
     def __len__(self) -> int:
         """Return the number of plants."""

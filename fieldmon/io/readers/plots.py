@@ -28,6 +28,7 @@ from fieldmon.io.parse.geometry import boundaries, boundary, closed_lines, fille
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
 from fieldmon.io.readers.known_rows import KnownRows, known_rows
+from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 
 if TYPE_CHECKING:
@@ -41,6 +42,8 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     if layer.geometry is None:
         return _plot_of_corners(layer, options)
     areas, messages = _areas(layer)
+    if options.column("block") is not None:
+        return _with_blocks(areas, options, (*layer.messages, *messages))
     names, name_messages = plot_names(areas, options.name_column)
     number = _number(names, options.feature)
     chosen = np.arange(len(names)) if number else _chosen(names, options.feature)
@@ -51,6 +54,59 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
         fields, shape_messages = _numbered(fields, shape_messages, number)
     found = (*layer.messages, *messages, *name_messages, *place_messages, *shape_messages)
     return Imported(fields, gathered((*found, *row_messages)))
+
+
+def _with_blocks(
+    areas: Layer, options: PlotOptions, messages: tuple[ImportMessage, ...]
+) -> Imported[tuple[Field, ...]]:
+    """Return plots of which each feature is a block: those of one name are a plot."""
+    names, blocks = _block_names(areas, options)
+    placed, place_messages = place_geometry(_shapes(areas), areas.crs, options)
+    apart = _told_apart([f"{name} / {block}" for name, block in zip(names, blocks, strict=True)])
+    known, row_messages = known_rows(areas, apart)
+    parts, shape_messages = _fields(placed, apart, known)
+    called = dict(zip(apart, zip(names, blocks, strict=True), strict=True))
+    plots: dict[str, list[Block]] = {}
+    for part in parts:
+        name, block = called[part.name]
+        plots.setdefault(name, []).append(_block(part, block))
+    fields = [_of_blocks(name, own) for name, own in plots.items()]
+    said = seen(f"{len(parts)} features are the blocks of {len(fields)} plot(s).")
+    number = _number(list(plots), options.feature)
+    if number > len(fields):
+        raise _which_plot(list(plots), str(number))
+    chosen = [number - 1] if number else _chosen(list(plots), options.feature).tolist()
+    found = (*messages, *place_messages, *shape_messages, *row_messages, said)
+    return Imported(tuple(fields[k] for k in chosen), gathered(found))
+
+
+def _block_names(areas: Layer, options: PlotOptions) -> tuple[list[str], list[str]]:
+    """Return the plot and the block of each feature; without names all are of one plot."""
+    column = options.column("block") or ""
+    blocks = [text(value) for value in areas.column(column)]
+    others = {name: values for name, values in areas.columns.items() if name != column}
+    named = options.name_column or _name_column(replace(areas, columns=others))
+    if named is None:
+        return [areas.name] * len(areas), blocks
+    return [text(value) or areas.name for value in areas.column(named)], blocks
+
+
+def _block(part: Field, name: str) -> Block:
+    stated = part.row_bearing_deg, part.row_spacing_m, part.plant_spacing_m
+    return Block(name, part.boundary, *stated)
+
+
+def _of_blocks(name: str, blocks: list[Block]) -> Field:
+    """Return the plot that blocks make up."""
+    whole = shapely.union_all([block.area for block in blocks])
+    areas = [part for part in shapely.get_parts(whole) if part.geom_type == "Polygon"]
+    return Field(name, MultiPolygon(areas), blocks=tuple(blocks))
+
+
+def blocks_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Block, ...]]:
+    """Return the areas of a layer as blocks of a plot."""
+    read = plots_of(layer, options)
+    return read.having(tuple(_block(field, field.name) for field in read.value))
 
 
 def _number(names: list[str], feature: str | int | None) -> int:
@@ -75,6 +131,8 @@ def named_areas(layer: Layer, options: PlotOptions) -> tuple[Layer, list[str]]:
     if layer.geometry is None:
         return layer.take(np.arange(0)), []
     areas, _ = _areas(layer)
+    if options.column("block") is not None:
+        return areas, _block_names(areas, options)[0]
     return areas, plot_names(areas, options.name_column)[0]
 
 

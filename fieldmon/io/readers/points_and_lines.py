@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
@@ -13,17 +13,29 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import Imported, dropped, guessed, seen
 from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.geometry import geometry_kinds
+from fieldmon.io.parse.geometry import closed_lines, geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
 from fieldmon.io.readers.places import Plants
+from fieldmon.io.readers.plots import blocks_of
 from fieldmon.plot.row_detection import distinct
 from fieldmon.plot.row_drawing import rows_from_posts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.io.options import ReadOptions
+    from fieldmon.io.options import PlotOptions, ReadOptions
+    from fieldmon.plot.block import Block
+
+
+class DrawnBlocks(NamedTuple):
+    """Blocks as they were drawn: areas, or lines that part a plot into blocks, lon/lat."""
+
+    areas: tuple[Block, ...]
+    cuts: MultiLineString
+
+    def __repr__(self) -> str:
+        return f"<DrawnBlocks: {len(self.areas)} areas, {len(self.cuts.geoms)} lines>"
 
 
 def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
@@ -32,7 +44,7 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
     messages = list(found.messages)
     taken: set[str] = set()
     labels = []
-    for role in ("row", "plant"):
+    for role in ("block", "row", "plant"):
         named = options.column(role) or find(role, found.layer.columns, frozenset(taken))
         if named is None and role == "plant":
             named = find("name", found.layer.columns, frozenset(taken))
@@ -53,8 +65,10 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
             n=len(found.lonlat),
         )
         messages.append(dropped(said))
-    row, plant = (label[kept] for label in labels)
-    return Imported(Plants(found.lonlat[kept], row, plant), (*layer.messages, *messages))
+    block, row, plant = (label[kept] for label in labels)
+    named_blocks = block if (block != "").any() else None
+    plants = Plants(found.lonlat[kept], row, plant, named_blocks)
+    return Imported(plants, (*layer.messages, *messages))
 
 
 def _about_doubles(layer: Layer, kept: NDArray[np.intp]) -> ChoiceNeeded:
@@ -92,6 +106,17 @@ def drawn_rows_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineStrin
         worded("{n} points are the end posts of rows, paired {how}.", n=len(posts.value), how=how)
     )
     return posts.having(rows, [said])
+
+
+def drawn_blocks_of(layer: Layer, options: PlotOptions) -> Imported[DrawnBlocks]:
+    """Return the blocks of a layer of areas, or of lines that part a plot into blocks."""
+    if layer.geometry is not None:
+        areas, lines, _ = geometry_kinds(layer.geometry)
+        if lines.any() and not areas.any() and not closed_lines(layer.geometry).any():
+            cuts = lines_of(layer, options)
+            return cuts.having(DrawnBlocks((), cuts.value))
+    blocks = blocks_of(layer, options)
+    return blocks.having(DrawnBlocks(blocks.value, MultiLineString()))
 
 
 def lines_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:

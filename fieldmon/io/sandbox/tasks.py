@@ -9,7 +9,12 @@ from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.readers.crews import crews_of
 from fieldmon.io.readers.inspection_file.rows import InspectionRows, rows_of
 from fieldmon.io.readers.plots import named_areas, plots_of
-from fieldmon.io.readers.points_and_lines import drawn_rows_of, lines_of, plants_of
+from fieldmon.io.readers.points_and_lines import (
+    drawn_blocks_of,
+    drawn_rows_of,
+    lines_of,
+    plants_of,
+)
 from fieldmon.io.readers.records import records_by_plot, records_of
 from fieldmon.io.sandbox.unpack import Workroom
 
@@ -23,6 +28,7 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.crews import Crew
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.places import NamedPlaces, Plants
+    from fieldmon.io.readers.points_and_lines import DrawnBlocks
     from fieldmon.plot.field import Field
 
 
@@ -72,6 +78,11 @@ def lines(folder: str, source: Source, options: ReadOptions) -> Imported[MultiLi
 def drawn_rows(folder: str, source: Source, options: ReadOptions) -> Imported[MultiLineString]:
     """Return the rows of a source that holds lines, or end posts."""
     return drawn_rows_of(open_layer(source, options, Workroom(Path(folder))), options)
+
+
+def drawn_blocks(folder: str, source: Source, options: PlotOptions) -> Imported[DrawnBlocks]:
+    """Return the blocks of a source that holds areas, or lines that part a plot."""
+    return drawn_blocks_of(open_layer(source, options, Workroom(Path(folder))), options)
 
 
 def inspection_rows(

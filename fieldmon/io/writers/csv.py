@@ -30,7 +30,8 @@ def route_csv(plan: HandoffPlan) -> bytes:
     table = csv.writer(text, lineterminator="\r\n")
     face = ("face",) if plan.has_faces else ()
     block = ("block",) if plan.has_blocks else ()
-    table.writerow(("stop", *block, *_BEFORE, *face, *TO_FILL_IN, *_AFTER))
+    before = _BEFORE if plan.in_rows else _BEFORE[1:]
+    table.writerow(("stop", *block, *before, *face, *TO_FILL_IN, *_AFTER))
     table.writerows(_cells(stop, plan) for stop in plan.stops)
     return text.getvalue().encode("utf-8-sig")
 
@@ -39,7 +40,8 @@ def _cells(stop: Stop, plan: HandoffPlan) -> tuple[object, ...]:
     return (
         stop.order,
         *((stop.block,) if plan.has_blocks else ()),
-        *(stop.row, stop.number),
+        *((stop.row,) if plan.in_rows else ()),
+        stop.number,
         *((stop.face,) if plan.has_faces else ()),
         *(_safe(plan.notes.who or "") if name == "who" else "" for name in TO_FILL_IN),
         stop.plant,

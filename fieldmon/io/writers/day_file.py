@@ -57,7 +57,8 @@ class Stop(NamedTuple):
     @property
     def label(self) -> str:
         """Return a short name that a handheld shows, and that reads back: ``012 R3/17``."""
-        return f"{self.order:03d} R{self.row}/{self.plant_label}"
+        row = f"R{self.row}/" if self.row else ""
+        return f"{self.order:03d} {row}{self.plant_label}"
 
 
 class DrivenRoute(Protocol):
@@ -189,16 +190,21 @@ class HandoffPlan:
         """Return whether the plot has several blocks."""
         return self.grid.n_blocks > 1
 
+    @property
+    def in_rows(self) -> bool:
+        """Return whether plants stand in rows."""
+        return self.grid.in_rows
+
     @cached_property
     def stops(self) -> tuple[Stop, ...]:
-        """Stops in order; ``face`` is 0 where plants have but one."""
+        """Stops in order; ``face`` is 0 where plants have but one, ``row`` where there are none."""
         route = self.route
         label = row_label(self.grid, route.plant)
         lonlat = route.stops_lonlat().round(DECIMALS)
         columns = zip(
             range(1, len(route) + 1),
             route.plant.tolist(),
-            label.line.tolist(),
+            (label.line if self.in_rows else np.zeros_like(label.line)).tolist(),
             label.number.tolist(),
             faces(self.grid, route.plant).tolist(),
             lonlat[:, 0].tolist(),

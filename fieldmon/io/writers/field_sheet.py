@@ -14,13 +14,12 @@ from markupsafe import Markup
 from fieldmon.io.html import page
 from fieldmon.io.writers.day_file import plain_text
 from fieldmon.io.writers.geojson import summary
-from fieldmon.plot.grid import row_corners
+from fieldmon.plot.grid import before_rows, row_corners
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.writers.day_file import HandoffPlan
-    from fieldmon.plot.grid import PlantGrid
 
     Float = NDArray[np.float64]
 
@@ -111,7 +110,7 @@ def _row_numbers(plan: HandoffPlan, placed: _Map) -> Markup:
     lines, first = np.unique(grid.row_line, return_index=True)
     gap_mm = grid.row_spacing_m * placed.scale
     every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 10**9) if k * gap_mm >= 2.5)
-    ends = placed(_before_rows(grid, first))
+    ends = placed(before_rows(grid, first))
     texts = [
         Markup('<text x="{:.2f}" y="{:.2f}" text-anchor="middle">{}</text>').format(x, y, line + 1)
         for line, (x, y) in zip(lines.tolist(), ends.tolist(), strict=True)
@@ -120,17 +119,6 @@ def _row_numbers(plan: HandoffPlan, placed: _Map) -> Markup:
     return Markup(
         '<g font-size="2.4" font-family="sans-serif" fill="#363" dominant-baseline="central">{}</g>'
     ).format(Markup().join(texts))
-
-
-def _before_rows(grid: PlantGrid, row: NDArray[np.intp]) -> Float:
-    """Return a place in line with rows, before their first plants."""
-    plant_m = grid.xy_m[grid.row_start[row]]
-    if grid.aisles_m is None or grid.aisle is None:
-        return np.stack([grid.lane_x_m[row, 0], plant_m[:, 1]], axis=1)
-    back_m = grid.lane_x_m[row, 0] - grid.along_m[grid.row_start[row]]
-    ahead = grid.aisles_m.ahead(grid.aisle[row], grid.lane_x_m[row, 0])
-    before: Float = plant_m + back_m[:, None] * ahead
-    return before
 
 
 def _area(plan: HandoffPlan, placed: _Map) -> str:

@@ -134,7 +134,7 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
                 "order": order,
                 "plant": plant,
                 **({"block": block} if grid.n_blocks > 1 else {}),
-                "row": row,
+                **({"row": row} if grid.in_rows else {}),
                 "number": number,
                 "arrive_s": round(arrive_s, 3),
                 **({} if notes.start is None else {"arrive": _clock(notes.start, arrive_s)}),

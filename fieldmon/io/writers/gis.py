@@ -98,7 +98,7 @@ def _stops(plan: HandoffPlan) -> gpd.GeoDataFrame:
             ("stop", "order", "int32"),
             ("plant", "plant", "int32"),
             *((("block", "block", "int32"),) if plan.has_blocks else ()),
-            ("row", "row", "int32"),
+            *((("row", "row", "int32"),) if plan.in_rows else ()),
             ("number", "number", "int32"),
             *((("face", "face", "int32"),) if plan.has_faces else ()),
             ("arrive", "arrive", "object"),

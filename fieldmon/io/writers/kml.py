@@ -69,7 +69,7 @@ def _stop(placemark: ET.Element, stop: Stop, plan: HandoffPlan) -> None:
         "stop": stop.order,
         "plant": stop.plant,
         **({"block": stop.block} if plan.has_blocks else {}),
-        "row": stop.row,
+        **({"row": stop.row} if plan.in_rows else {}),
         "number": stop.number,
         **({"face": stop.face} if plan.has_faces else {}),
         "arrive_s": stop.arrive_s,

@@ -173,7 +173,7 @@ def waypoints_yaml(plan: HandoffPlan) -> bytes:
             f"    stop: {stop.order}",
             f"    node: {node + 1}",
             f"    plant: {stop.plant}",
-            f"    row: {stop.row}",
+            *([f"    row: {stop.row}"] if plan.in_rows else []),
             f"    number: {stop.number}",
             f"    arrive_s: {stop.arrive_s}",
             f"    pause_s: {stop.inspect_s}",

@@ -74,6 +74,11 @@ class Adaptive(Sampler):
 
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day."""
+        if not (scene.grid.in_rows or self.chooses_time):
+            # without rows there are no drives through rows to choose among
+            from fieldmon.samplers.dynamic import Dynamic  # noqa: PLC0415 - seldom asked for
+
+            return Dynamic().walk(scene, would_find)
         times = self.inspection_times(scene.robot)
         stops = scene.room(float(times.stop_s[0]))
         taken = np.zeros(len(stops.plant), np.uint8)

@@ -113,3 +113,33 @@ def test_an_area_that_crosses_itself_is_refused_in_a_sentence(app):
     press(app, "Add")
     press(app, "Finish")
     assert "must not cross itself" in app.error[0].value
+
+
+def test_a_block_is_cut_by_a_line_and_planted_by_itself(app):
+    go(app, "plot")
+    lonlat = plants(app, "plants").lonlat
+    (west, south), (east, north) = lonlat.min(axis=0), lonlat.max(axis=0)
+    app.selectbox(key="draw_kind").set_value("cut").run()
+    assert map_of(app)["draw"]["kind"] == "line"
+    middle = (west + east) / 2
+    line = f"{middle},{south - 0.001} {middle + 1e-4},{north + 0.001}"
+    app.text_input(key="draw_typed").set_value(line).run()
+    press(app, "Add")
+    press(app, "Finish")
+    assert not app.error
+    assert len(layer(app, "blocks")["data"]) == 2
+    boxes = [box for box in app.number_input if box.key.startswith("block_row_spacing")]
+    assert len(boxes) == 2
+    before = len(plants(app, "plants"))
+    boxes[0].set_value(8.0).run()
+    assert not app.exception
+    assert len(plants(app, "plants")) < before - 20
+    press(app, "Undo the last one")
+    assert plants(app, "plants").lonlat.tolist() == lonlat.tolist()
+
+
+def test_a_cut_that_parts_nothing_is_refused_in_a_sentence(drawn_on):
+    assert drawn_on("cut", AREA[:2]) == ()
+    kind, said = st.session_state["notice"]
+    assert kind == "error"
+    assert "this line parts nothing" in said

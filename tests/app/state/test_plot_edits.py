@@ -18,7 +18,7 @@ def test_a_no_go_area_leaves_the_plot_and_a_gate_moves():
     assert len(edited(field, (path, path)).paths.geoms) == 2
 
 
-@pytest.mark.parametrize("kind", ["gate", "path", "no_go"])
+@pytest.mark.parametrize("kind", ["gate", "path", "no_go", "row", "cut"])
 def test_too_few_points_are_refused(kind):
     with pytest.raises(SettingError, match="needs"):
         Edit(kind, ())
@@ -32,3 +32,16 @@ def test_typed_positions_that_are_none_are_refused(text):
 
 def test_typed_positions_are_read_in_any_layout():
     assert points_of("35.1,30.2 35.3,30.4;\n1, 2") == ((35.1, 30.2), (35.3, 30.4), (1.0, 2.0))
+
+
+def test_a_drawn_row_takes_the_place_of_the_one_before_in_its_block_only():
+    field = Field("square", SQUARE)
+    first = Edit("row", ((35.1501, 30.3601), (35.1505, 30.3602)))
+    again = Edit("row", ((35.1501, 30.3603), (35.1505, 30.3602)))
+    assert len(edited(field, (first, again)).row_lines.geoms) == 1
+    cut = Edit("cut", ((35.1503, 30.359), (35.1503, 30.362)))
+    west = Edit("row", ((35.1501, 30.3601), (35.15025, 30.3604)))
+    east = Edit("row", ((35.1504, 30.3601), (35.15055, 30.3604)))
+    made = edited(field, (cut, west, east, west))
+    assert len(made.blocks) == 2
+    assert len(made.row_lines.geoms) == 2

@@ -1,0 +1,263 @@
+"""Rows and blocks that are brought with plots: drawn, cut, guessed, or along contours."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Protocol, TypeVar
+
+import numpy as np
+import shapely
+from shapely import MultiLineString, MultiPolygon
+
+from fieldmon.compute.wording import worded
+from fieldmon.errors import PlotError, SettingError
+from fieldmon.io.import_report import Imported, doubtful, dropped, guessed, seen
+from fieldmon.io.read import read_blocks, read_rows
+from fieldmon.plot.block import blocks_from_outline, cut_blocks
+from fieldmon.plot.plot import planting_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from fieldmon.io.import_report import ImportMessage
+    from fieldmon.io.options import Source
+    from fieldmon.io.rasters.values import RasterOptions
+    from fieldmon.io.readers.points_and_lines import DrawnBlocks
+    from fieldmon.io.sources import PlantingChoices, PlotSources, Role
+    from fieldmon.plot.block import Block
+    from fieldmon.plot.field import Field
+
+T = TypeVar("T")
+Fields = tuple["Field", ...]
+
+# less of a block than this on a plot, of itself, is drawn beside the plot
+_ON_PLOT = 0.01
+# more of a plot than this in no block, or of a block in another, is worth a word
+_WORTH_A_WORD = 0.01
+_NAMED = 5
+
+
+class Hearing(Protocol):
+    """Reads what is brought, and hears what there is to say of it."""
+
+    def read(self, role: Role, source: Source, read: Callable[[], Imported[T]]) -> T:
+        """Return what is read, once what it has to say was heard."""
+
+    def say(self, role: Role, source: Source, messages: tuple[ImportMessage, ...]) -> None:
+        """Hear what there is to say of a file."""
+
+
+def with_rows(
+    fields: Fields, sources: PlotSources, choices: PlantingChoices, hearing: Hearing
+) -> Fields:
+    """Return plots with the rows and blocks that were brought with them."""
+    many = len(fields) > 1
+    if (file := sources.rows) is not None:
+        rows = hearing.read("rows", file, partial(read_rows, file, sources.rows_options))
+        if many:
+            fields = hearing.read("rows", file, partial(rows_of_each, fields, rows))
+        else:
+            fields = (replace(fields[0], row_lines=rows),)
+    if (raster := sources.contours) is not None:
+        contour = partial(_with_contour, sources=sources, choices=choices, many=many)
+        fields = tuple(
+            hearing.read("contours", raster, partial(contour, field)) for field in fields
+        )
+    return _with_blocks(fields, sources, hearing)
+
+
+def rows_of_each(fields: Fields, rows: MultiLineString) -> Imported[Fields]:
+    """Return plots with their own of many rows: each is of the plot in which most of it lies."""
+    lines = shapely.get_parts(rows)
+    tree = shapely.STRtree([field.boundary for field in fields])
+    line, plot = tree.query(lines, predicate="intersects")
+    inside = shapely.intersection(lines[line], tree.geometries[plot])
+    most = shapely.length(inside) > shapely.length(lines[line]) / 2
+    line, plot = line[most], plot[most]
+    messages = []
+    if left := len(lines) - len(np.unique(line)):
+        messages.append(dropped(f"{left} row(s) that lie on no plot were left out."))
+    if bare := len(fields) - len(np.unique(plot)):
+        messages.append(
+            seen(f"On {bare} of {len(fields)} plots no rows were drawn; straight ones are laid.")
+        )
+    found = tuple(
+        replace(field, row_lines=MultiLineString(list(lines[line[plot == k]])))
+        for k, field in enumerate(fields)
+    )
+    return Imported(found, tuple(messages))
+
+
+def _with_contour(
+    field: Field, sources: PlotSources, choices: PlantingChoices, *, many: bool
+) -> Imported[Field]:
+    """Return a plot with the contour along which its rows run; of many, one may do without."""
+    source = sources.contours
+    if source is None:
+        return Imported(field)
+    spacing_m = planting_of(field, **choices.given()).row_spacing_m
+    try:
+        read = contour_of(field, source, spacing_m, sources.contours_options)
+    except PlotError as problem:
+        if not many:
+            raise
+        several = "{n} plots have no contour, and straight rows are laid"
+        said = doubtful(f"{problem} Straight rows are laid.", field.name, many=several)
+        return Imported(field, (said,))
+    return read.having(replace(field, row_lines=read.value))
+
+
+def contour_of(
+    field: Field, source: Source, row_spacing_m: float, options: RasterOptions | None = None
+) -> Imported[MultiLineString]:
+    """Return the contour through the middle of a plot, of which its rows are copies."""
+    from fieldmon.io.rasters.read import read_raster  # noqa: PLC0415 - half a second
+    from fieldmon.plot.row_drawing import contour_row  # noqa: PLC0415
+
+    read = read_raster(source, options, field)
+
+    def height_m(lonlat: NDArray[np.float64]) -> NDArray[np.float64]:
+        return read.value.at(lonlat, "bilinear")
+
+    row = contour_row(field, height_m, row_spacing_m)
+    said = seen(
+        worded("Rows run along the contour through the middle of the plot, all others beside it.")
+    )
+    return read.having(row, [said])
+
+
+def _with_blocks(fields: Fields, sources: PlotSources, hearing: Hearing) -> Fields:
+    """Return plots with their blocks, as drawn, cut or guessed."""
+    file, plot = sources.blocks, sources.plot
+    if file is not None and sources.guess_blocks:
+        raise SettingError("Blocks are drawn or guessed: give a file of blocks, or let them be.")
+    if file is not None:
+
+        def read() -> Imported[Fields]:
+            return parted(fields, read_blocks(file, sources.blocks_options))
+
+        return hearing.read("blocks", file, read)
+    if sources.guess_blocks and plot is not None:
+        return hearing.read("plot", plot, partial(guess_each, fields))
+    return fields
+
+
+def parted(fields: Fields, drawn: Imported[DrawnBlocks]) -> Imported[Fields]:
+    """Return plots with the blocks that were drawn, as areas or as lines that part them."""
+    areas, cuts = drawn.value
+    made = blocks_of_each(fields, areas) if areas else cut_each(fields, cuts)
+    return drawn.having(made.value, made.messages)
+
+
+def blocks_of_each(fields: Fields, areas: tuple[Block, ...]) -> Imported[Fields]:
+    """Return plots with those of many blocks that lie on them."""
+    found, messages, used = [], [], 0
+    for field in fields:
+        blocks, said = blocks_on(field, areas)
+        used += len(blocks)
+        found.append(replace(field, blocks=blocks) if blocks else field)
+        messages += said
+    if not used:
+        raise PlotError(
+            f"Blocks must lie on a plot, but none of {len(areas)} does. Choose the plot's own "
+            "blocks, or check the coordinate systems."
+        )
+    if len(areas) > used:
+        messages.append(dropped(f"{len(areas) - used} block(s) lie on none of the plots."))
+    return Imported(tuple(found), tuple(messages))
+
+
+def blocks_on(
+    field: Field, areas: tuple[Block, ...]
+) -> tuple[tuple[Block, ...], list[ImportMessage]]:
+    """Return the blocks that lie on a plot, none over another, and what there is to say."""
+    frame, left = field.frame(), field.boundary
+    blocks: list[Block] = []
+    doubled: list[str] = []
+    for block in areas:
+        here = _areas(shapely.intersection(block.area, field.boundary))
+        if here.area <= _ON_PLOT * block.area.area:
+            continue
+        own = _areas(shapely.intersection(here, left))
+        if own.area < (1 - _WORTH_A_WORD) * here.area:
+            doubled.append(block.name)
+        if own.area <= _ON_PLOT * block.area.area:
+            continue
+        blocks.append(replace(block, area=own))
+        left = _areas(shapely.difference(left, own))
+    messages: list[ImportMessage] = []
+    if not blocks:
+        return (), messages
+    names = ", ".join(block.name for block in blocks[:_NAMED])
+    more = ", ..." if len(blocks) > _NAMED else ""
+    said = worded("Rows run in {n} block(s) as drawn: {names}.", n=len(blocks), names=names + more)
+    messages.append(seen(said))
+    if doubled:
+        over = ", ".join(doubled[:_NAMED])
+        said = worded("Block(s) {names} lie over others; the first one counts.", names=over)
+        messages.append(doubtful(said))
+    bare = left.area / field.boundary.area
+    if bare > _WORTH_A_WORD:
+        bare_m2 = frame.geometry_m(left).area
+        messages.append(
+            doubtful(
+                worded(
+                    "{share:.0%} of the plot ({area:.0f} m2) lies in no block, and is left without "
+                    "plants.",
+                    share=bare,
+                    area=bare_m2,
+                )
+            )
+        )
+    return tuple(blocks), messages
+
+
+def _areas(shape: shapely.Geometry) -> MultiPolygon:
+    every = shapely.get_parts(shape)
+    parts = [part for part in every if part.geom_type == "Polygon" and part.area > 0]
+    return MultiPolygon(parts)
+
+
+def cut_each(fields: Fields, cuts: MultiLineString) -> Imported[Fields]:
+    """Return plots parted into blocks by lines."""
+    found, n_parted = [], 0
+    for field in fields:
+        parted = field
+        for line in cuts.geoms:
+            try:
+                parted = replace(parted, blocks=cut_blocks(parted, line))
+                n_parted += 1
+            except PlotError:
+                if len(fields) == len(cuts.geoms) == 1:
+                    raise
+        found.append(parted)
+    n_blocks = sum(len(field.blocks) for field in found)
+    if not n_parted:
+        raise PlotError(
+            f"A cut must pass through its plot from one side to the other, but none of "
+            f"{len(cuts.geoms)} lines does. Draw them across the plot."
+        )
+    told = {"n": n_parted, "blocks": n_blocks}
+    messages = [seen(worded("{n} line(s) part the plot into {blocks} blocks.", **told))]
+    if len(fields) > 1:
+        messages = [seen(f"{n_parted} line(s) part plots into {n_blocks} blocks.")]
+    if (idle := len(cuts.geoms) - n_parted) > 0:
+        messages.append(dropped(f"{idle} line(s) pass through no plot and part nothing."))
+    return Imported(tuple(found), tuple(messages))
+
+
+def guess_each(fields: Fields) -> Imported[Fields]:
+    """Return plots with blocks guessed from their outlines."""
+    found, messages = [], []
+    for field in fields:
+        if blocks := blocks_from_outline(field):
+            field = replace(field, blocks=blocks)  # noqa: PLW2901 - the same plot, in blocks
+            said = f"{len(blocks)} blocks were guessed from the outline: look at the rows."
+            messages.append(guessed(said, field.name if len(fields) > 1 else None))
+        found.append(field)
+    if not messages:
+        messages.append(seen("The outline asks for no blocks: rows of one direction fill it well."))
+    return Imported(tuple(found), tuple(messages))

@@ -173,7 +173,7 @@ def _count(batches: dict[Hashable, Row], rows: list[Row]) -> None:
 
 
 def _write_routes(db: sqlite3.Connection, copies: list[dict[str, list[Row]]]) -> None:
-    """Keep the routes of both, those of a day in the order of their revisions, with their stops."""
+    """Keep the routes of both with their stops, those of a person and day by their revisions."""
     found: dict[Hashable, tuple[Row, list[Row]]] = {}
     for copied in copies:
         stops: dict[int, list[Row]] = {}
@@ -181,14 +181,15 @@ def _write_routes(db: sqlite3.Connection, copies: list[dict[str, list[Row]]]) ->
             stops.setdefault(stop["route"], []).append(stop)
         for route in copied["routes"]:
             kept = found.setdefault(
-                (route["day"], route["digest"]), (route, stops.get(route["fid"], []))
+                (route["day"], route["who"], route["digest"]), (route, stops.get(route["fid"], []))
             )
             kept[0]["revision"] = min(kept[0]["revision"], route["revision"])
-    ordered = sorted(found.values(), key=lambda r: _key(r[0], ("day", "revision", "digest")))
-    all_stops, last = [], (None, 0)
+    ordered = sorted(found.values(), key=lambda r: _key(r[0], ("day", "who", "revision", "digest")))
+    all_stops: list[Row] = []
+    last: tuple[object, int] = (None, 0)
     for number, (route, own) in enumerate(ordered, 1):
-        revision = last[1] + 1 if last[0] == route["day"] else 1
-        last, route["revision"] = (route["day"], revision), revision
+        revision = last[1] + 1 if last[0] == (route["day"], route["who"]) else 1
+        last, route["revision"] = ((route["day"], route["who"]), revision), revision
         all_stops += [{**stop, "route": number} for stop in own]
     _write(db, schema.ROUTES, [route for route, _ in ordered])
     _write(db, schema.STOPS, all_stops)

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fieldmon.monitoring import phone_tables
 from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create, found
-from fieldmon.monitoring.qgis_styles import add_styles
+from fieldmon.monitoring.qgis_styles import add_photo_styles, add_styles
 
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 2
+VERSION = 3
 
 META = GeoPackageTable(
     "fieldmon", ("key TEXT NOT NULL UNIQUE", "value TEXT"), None, "What this file is."
@@ -193,11 +194,13 @@ TABLES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
     *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
     *(ROUTES, STOPS, HOT_SPOTS),
+    *phone_tables.TABLES,
 )
 #: layers from which everything else follows: what must be saved from a damaged file
 CAUSES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, PLOTS, PLACES, ROWS, PLANTS),
     *(OBSERVATIONS, INSPECTIONS, TREATMENTS, ROUTES, STOPS),
+    *phone_tables.TABLES,
 )
 
 _CHANCE_VIEW = """
@@ -220,12 +223,14 @@ def lay_out(db: sqlite3.Connection) -> None:
     """Make an empty database the file of a season, without content."""
     found(db)
     for table in TABLES:
-        create(db, table)
+        if table not in phone_tables.TABLES:
+            create(db, table)
     db.execute(_CHANCE_VIEW)
     announce(db, CHANCE)
     for index in _INDEXES:
         db.execute(index)
     add_styles(db)
+    _phones_come(db)
 
 
 def _treatments_come(db: sqlite3.Connection) -> None:
@@ -236,5 +241,11 @@ def _treatments_come(db: sqlite3.Connection) -> None:
     db.execute("ALTER TABLE routes ADD COLUMN seconds_left REAL")
 
 
+def _phones_come(db: sqlite3.Connection) -> None:
+    """Version 2 knew of no phones."""
+    phone_tables.phones_come(db)
+    add_photo_styles(db)
+
+
 #: what makes a file of version k one of version k + 1
-MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {1: _treatments_come}
+MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {1: _treatments_come, 2: _phones_come}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -31,7 +32,12 @@ from fieldmon.monitoring import (
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
-from fieldmon.monitoring.recorded_before import Contradictions, contradictions, said_before
+from fieldmon.monitoring.recorded_before import (
+    Contradictions,
+    contradicting,
+    contradictions,
+    said_before,
+)
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
@@ -43,7 +49,7 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
     from datetime import date, time
     from pathlib import Path
 
@@ -57,6 +63,7 @@ if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
+    from fieldmon.samplers.base import Scene
 
     Floats = NDArray[np.float64]
 
@@ -75,6 +82,25 @@ class _Contents:
             number = len(self.mornings) - 1
             self.mornings.append(self.history.night_after(self.mornings[number], number))
         return self.mornings[day]
+
+
+class SeasonChange:
+    """One change of a season within its transaction.
+
+    Parameters
+    ----------
+    db
+        The file, for this transaction alone.
+    """
+
+    def __init__(self, db: sqlite3.Connection) -> None:
+        self.db = db
+        #: the first day that is another now; None: none is
+        self.since: int | None = None
+
+    def reaches(self, day: int) -> None:
+        """Say that a day is not what it was."""
+        self.since = day if self.since is None else min(self.since, day)
 
 
 class Season:
@@ -230,15 +256,8 @@ class Season:
         with self._lock:
             contents = self._now()
             settings = contents.settings
-            day = settings.day(on)
-            shift = Shift(
-                self.plot.aisles,
-                settings.robot,
-                seconds(settings.starts),
-                RandomStreams(settings.seed),
-            )
-            now_s = None if now is None else seconds(now)
-            scene = contents.history.scene(shift, day, contents.morning(day), now_s)
+            scene = self._scene(contents, on, now)
+            day = scene.day
             today = plan_in(scene, settings.decides(), wishes)
             begins = routes.begins(settings, today)
             notes = RouteNotes(self.plot.field.name, settings.sampler, begins)
@@ -248,6 +267,11 @@ class Season:
                     if routes.keep(db, settings, self.label, today):
                         self._refresh(db, day)
         return today
+
+    def scene(self, on: date, now: time | None = None) -> Scene:
+        """Return a day as it stands after what was recorded of it; `now` as in `plan`."""
+        with self._lock:
+            return self._scene(self._now(), on, now)
 
     def kept_route(self, on: date) -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none."""
@@ -301,6 +325,23 @@ class Season:
             if new:
                 self._refresh(db, _settings(db).day(inspections.date.min().item()))
         return Recorded(batch if new else None, new, len(inspections) - new)
+
+    @contextmanager
+    def changing(self) -> Iterator[SeasonChange]:
+        """Give the file for one change: all is kept with what follows from it, or nothing."""
+        with self._lock, self.store.writing() as db:
+            change = SeasonChange(db)
+            yield change
+            if change.since is not None:
+                self._refresh(db, change.since)
+
+    def settings_in(self, db: sqlite3.Connection) -> MonitoringSettings:
+        """Return what is chosen for the season, as a transaction sees it."""
+        return self._read(db).settings
+
+    def contradicting(self, on: date) -> Inspections:
+        """Return a day's inspections of plants that were both clean and found on it."""
+        return contradicting(self.history.inspections.on(on))
 
     def treat(
         self, on: date, efficacy: float, area: MultiPolygon | None = None, product: str = ""
@@ -434,6 +475,14 @@ class Season:
             )
             self._last = _Contents(revision, settings, history, [history.first_morning])
         return self._last
+
+    def _scene(self, contents: _Contents, on: date, now: time | None) -> Scene:
+        settings = contents.settings
+        day = settings.day(on)
+        streams = RandomStreams(settings.seed)
+        shift = Shift(self.plot.aisles, settings.robot, seconds(settings.starts), streams)
+        now_s = None if now is None else seconds(now)
+        return contents.history.scene(shift, day, contents.morning(day), now_s)
 
     def _first_morning(self, settings: MonitoringSettings) -> Floats:
         key = (settings.begins, settings.prior)

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.io.sandbox import process
 
-from ..state import map_file, map_store
+from ..state import map_file, map_store, scout_page
 from . import preload
 
 if TYPE_CHECKING:
@@ -72,6 +72,11 @@ class Server:
             await self._hand_out(scope["path"], send)
         elif scope["type"] == "http" and scope["path"].startswith(map_store.PATH):
             await _hand_out_map(scope["path"], send)
+        elif scope["type"] == "http" and scope["path"].startswith(scout_page.PATH):
+            await _hand_out_scout_page(scope, send)
+        elif scope["type"] == "http" and scope["path"].startswith("/api/"):
+            interface = await asyncio.to_thread(_interface)
+            await interface(scope, receive, send)
         else:
             await self._loaded.wait()
             await self._streamlit(scope, receive, send)
@@ -120,6 +125,21 @@ async def _hand_out_map(path: str, send: Send) -> None:
     await _answer(send, 200, *found, [(b"cache-control", _OWN_FOR_GOOD)])
 
 
+async def _hand_out_scout_page(scope: Message, send: Send) -> None:
+    """Hand out the page that works offline; it holds nothing of any season."""
+    found = (await asyncio.to_thread(scout_page.files)).get(scope["path"])
+    if found is None or scope["method"] not in {"GET", "HEAD"}:
+        await _answer(send, 404, "text/plain", b"", [(b"cache-control", b"no-store")])
+        return
+    guards = [
+        (b"cache-control", _ASK),
+        (b"content-security-policy", scout_page.POLICY.encode()),
+        (b"referrer-policy", b"no-referrer"),
+        (b"cross-origin-resource-policy", b"same-origin"),
+    ]
+    await _answer(send, 200, found.kind, found.data, guards)
+
+
 async def _answer(send: Send, status: int, kind: str, body: bytes, more: list[Header]) -> None:
     headers = [
         (b"content-type", kind.encode()),
@@ -146,6 +166,12 @@ def page_files() -> dict[str, Path]:
 def is_page(path: str) -> bool:
     """Return whether an address is one of a page: one plain word."""
     return re.fullmatch(r"/[a-z]+", path) is not None and path not in _STREAMLITS_OWN
+
+
+def _interface() -> Any:  # noqa: ANN401 - an ASGI application
+    from ..api import season_api  # noqa: PLC0415 - libraries that nobody waits for at the start
+
+    return season_api.application()
 
 
 def _streamlit() -> Any:  # noqa: ANN401 - half a second to import

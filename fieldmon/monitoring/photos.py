@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
-from fieldmon.errors import FileProblem, LimitError
+from fieldmon.errors import ObservationError, LimitError
 from fieldmon.monitoring import phone_tables, scouts
 from fieldmon.monitoring.geopackage import insert, touch
 from fieldmon.monitoring.tables import utc_now as text_now
@@ -70,7 +70,7 @@ def keep(season: Season, key: str, photo: Photo) -> bool:
         If the key does not hold.
     LimitError
         If it is larger than `MOST_BYTES`, or one more than `MOST_A_DAY`.
-    FileProblem
+    ObservationError
         If it is no picture, or another photo has its id.
     """
     kind, mark = _kind(photo.data), digest(photo.data, end=b"")
@@ -79,7 +79,7 @@ def keep(season: Season, key: str, photo: Photo) -> bool:
         there = db.execute("SELECT digest FROM photos WHERE photo = ?", (photo.id,)).fetchone()
         if there is not None:
             if there[0] != mark:
-                raise FileProblem(
+                raise ObservationError(
                     worded("A photo must have an id of its own, but another one has it.")
                 )
             return False
@@ -124,4 +124,4 @@ def _kind(data: bytes) -> str:
     for begin, kind in _BEGINS.items():
         if data.startswith(begin) and (begin != b"RIFF" or data[8:12] == b"WEBP"):
             return kind
-    raise FileProblem(worded("A photo must be a JPEG, PNG or WebP picture, but it is none."))
+    raise ObservationError(worded("A photo must be a JPEG, PNG or WebP picture, but it is none."))

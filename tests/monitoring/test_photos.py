@@ -6,7 +6,7 @@ from contextlib import closing
 import pyogrio
 import pytest
 
-from fieldmon.errors import AccessError, FileProblem, LimitError
+from fieldmon.errors import AccessError, LimitError, ObservationError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season, photos, scouts
 from fieldmon.monitoring.photos import Photo, keep, photos_of, picture
@@ -51,9 +51,9 @@ def test_a_photo_may_come_before_what_it_belongs_to(season, key):
 @pytest.mark.parametrize(
     ("data", "error", "why"),
     [
-        (b"GIF89a", FileProblem, "JPEG, PNG or WebP"),
-        (b"RIFF0000AVI ", FileProblem, "JPEG, PNG or WebP"),
-        (b"", FileProblem, "JPEG, PNG or WebP"),
+        (b"GIF89a", ObservationError, "JPEG, PNG or WebP"),
+        (b"RIFF0000AVI ", ObservationError, "JPEG, PNG or WebP"),
+        (b"", ObservationError, "JPEG, PNG or WebP"),
         (b"\xff\xd8\xff" + bytes(photos.MOST_BYTES), LimitError, "4 MB at most"),
     ],
 )
@@ -64,7 +64,7 @@ def test_what_is_no_photo_is_refused(season, key, data, error, why):
 
 def test_another_photo_does_not_replace_one_with_its_id(season, key):
     keep(season, key, a_photo("x"))
-    with pytest.raises(FileProblem, match="id of its own"):
+    with pytest.raises(ObservationError, match="id of its own"):
         keep(season, key, a_photo("x", data=JPEG + b"!"))
     assert picture(season, "one") == ("image/jpeg", JPEG)
 

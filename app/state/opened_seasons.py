@@ -1,4 +1,7 @@
-"""Seasons that are open, one of each file for all who ask: pages and phones. No Streamlit in here."""
+"""Seasons that are open, one of each file for all who ask: pages and phones.
+
+No Streamlit in here.
+"""
 
 from __future__ import annotations
 

@@ -72,7 +72,9 @@ def invitation(address: str, season: str, key: str, day: str = "", language: str
 def files() -> dict[str, PageFile]:
     """Return the page's files by their addresses; what works offline knows them all."""
     named = {
-        "" if path.name == "page.html" else path.name: PageFile(_KINDS[path.suffix], path.read_bytes())
+        "" if path.name == "page.html" else path.name: PageFile(
+            _KINDS[path.suffix], path.read_bytes()
+        )
         for path in sorted(FOLDER.iterdir())
         if path.suffix in _KINDS and path.name != _WORKER
     }
@@ -81,6 +83,8 @@ def files() -> dict[str, PageFile]:
     worker = (FOLDER / _WORKER).read_text(encoding="utf-8")
     everything = json.dumps({name: file.data.hex() for name, file in named.items()}) + worker
     version = hashlib.sha256(everything.encode()).hexdigest()[:16]
-    said = worker.replace("@VERSION@", version).replace("@FILES@", " ".join(n or "./" for n in named))
+    said = worker.replace("@VERSION@", version).replace(
+        "@FILES@", " ".join(n or "./" for n in named)
+    )
     named[_WORKER] = PageFile(_KINDS[".js"], said.encode())
     return {PATH + name: file for name, file in named.items()}

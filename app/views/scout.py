@@ -9,7 +9,7 @@ import streamlit as st
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 
-from ..actions import scouting
+from ..actions import inviting, scouting
 from ..show import field_map, map_layers
 from ..show.maps import marks
 from ..show.next_stop import next_stop
@@ -31,6 +31,8 @@ def show(choices: Choices) -> None:
         return
     st.html(_STYLE)
     scouting.give_out(choices)
+    with st.expander(texts.INVITE):
+        inviting.show(choices)
     with st.container():  # empty or not: buttons that move are there twice for a moment
         scouting.ask_start(choices)
     plan, progress = choices.plan(), chosen_day.progress(choices)

@@ -1,4 +1,7 @@
-"""The texts of the scout's page in a language, as its script asks for them. No Streamlit in here."""
+"""The texts of the scout's page in a language, as its script asks for them.
+
+No Streamlit in here.
+"""
 
 from __future__ import annotations
 

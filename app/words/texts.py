@@ -480,8 +480,8 @@ SCOUT_PAGE = {
     "who_says": "{who}: {result}",
     "clean": "Clean", "found": "Found", "skipped": "Could not inspect",
     "count": "Pests", "leaves": "Leaves looked at", "stage": "Stage", "fewer": "{what}: one fewer",
-    "more": "{what}: one more", "stage_egg": "Eggs", "stage_young": "Young", "stage_adult": "Adults",
-    "stage_web": "Webs", "save_found": "Save the find",
+    "more": "{what}: one more", "stage_egg": "Eggs", "stage_young": "Young",
+    "stage_adult": "Adults", "stage_web": "Webs", "save_found": "Save the find",
     "photo": "Photo", "note_button": "Note", "undo": "Undo", "here": "I am at another plant",
     "other_plant": "Another plant", "back_to_route": "Back to the route",
     "photos": "Photos: {n}", "drop_photos": "Throw these photos away?",
@@ -492,7 +492,7 @@ SCOUT_PAGE = {
     "plan_rest": "Plan the rest anew", "ahead_takes": "What is ahead takes {minutes} minutes.",
     "your_rows": "Your part: rows {low} to {high}.",
     "no_network": "There is no network now. All that you do is kept on this phone.",
-    "state_idle": "", "state_sending": "Sending ...",
+    "state_idle": "Nothing was sent yet.", "state_sending": "Sending ...",
     "state_sent": "The season has everything.",
     "state_offline": "No network: all is kept on this phone and goes in by itself later.",
     "state_ended": "The key no longer holds. All is kept on this phone: ask for a new code and "
@@ -516,11 +516,34 @@ INVITE_LOCAL = (
 )
 INVITE_NAME, INVITE_FIRST, INVITE_LAST = "Name", "From row", "To row"
 INVITE_BUTTON, TAKE_BACK = "Make a code", "Take back"
-INVITE_CODE, INVITE_ALT = "Code for {name}", "Code that opens the scout's page for {name}"
+INVITE_CODE = "Code for {name}"
 INVITED = "{name}, rows {low} to {high}"
 TAKEN_BACK = "{name} can no longer read or record anything of this season."
 SAID_OTHERWISE = "Said otherwise of the same plant on this day. Look again, and undo what is wrong:"
 SAID_BY = "Row {row}, plant {plant}: {said}"
+
+# -- other devices: who may open the app, and how a phone comes to trust it
+LAN_PAGE = {
+    "ask": "Password", "open": "Open", "wrong": "This is not the password.",
+    "wait": "Too many tries: wait a minute.",
+    "where": "It stands in the window in which fieldmon app was started.",
+    "title": "Let this phone trust this fieldmon",
+    "why": "Once for each phone: position, and work without a network, need a connection that the "
+    "phone trusts.",
+    "compare": "The certificate's fingerprint (SHA-256) must be the one that stands in the window "
+    "of fieldmon app:",
+    "download": "Download the certificate",
+    "android": "Android", "iphone": "iPhone",
+    "android_1": "Download the certificate.",
+    "android_2": "Settings, Security, Encryption and credentials, Install a certificate, CA "
+    "certificate: choose the file.",
+    "android_3": "Scan your own code, and add the page to the home screen.",
+    "iphone_1": "Open this page in Safari, download the certificate, and allow it.",
+    "iphone_2": "Settings, Profile downloaded: install it. Then General, About, Certificate trust "
+    "settings: switch it on.",
+    "iphone_3": "Scan your own code in Safari, and add the page to the home screen before the "
+    "first tap.",
+}  # fmt: skip
 
 
 class _Texts(ModuleType):

@@ -34,7 +34,9 @@ def let_in(choices: Choices, name: str, rows: tuple[int, int] | None = None) -> 
     plot, or no name.
     """
     key = scouts.let_in(choices.season, name, rows)
-    address = phone_address() or f"http://127.0.0.1:{os.environ.get('STREAMLIT_SERVER_PORT', '8501')}"
+    address = (
+        phone_address() or f"http://127.0.0.1:{os.environ.get('STREAMLIT_SERVER_PORT', '8501')}"
+    )
     day = "" if choices.is_today else choices.day
     season = choices.season.path.stem
     return scout_page.invitation(address, season, key, day, language.current())

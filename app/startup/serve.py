@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 from fieldmon.io.sandbox import process
 
 from ..state import map_file, map_store, scout_page
-from . import preload
+from . import gate, lan, preload
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -184,6 +184,16 @@ def _has_screen() -> bool:
     return not sys.platform.startswith("linux") or any(map(os.environ.get, screens))
 
 
+def _as_reached() -> Any:  # noqa: ANN401 - an ASGI application
+    """Return the app; behind a server that others reach it asks for a password."""
+    address = os.environ.get(lan.ADDRESS)
+    if not address:
+        return Server()
+    password = os.environ.get(lan.PASSWORD) or gate.new_password()
+    lan.say_password(password, address)
+    return gate.Gate(Server(), password)
+
+
 def main() -> None:
     """Serve the app at the address and port of the environment; `--browser` opens it there."""
     address, port = os.environ[ADDRESS], int(os.environ[PORT])
@@ -195,13 +205,16 @@ def main() -> None:
     import uvicorn  # noqa: PLC0415 - the browser starts meanwhile
 
     sys.setswitchinterval(_TURN_S)
-    config = uvicorn.Config(
-        Server(), access_log=False, log_level="warning", ws="websockets-sansio", lifespan="on",
-        ws_per_message_deflate=False, ws_ping_interval=30, ws_ping_timeout=30,
-        timeout_graceful_shutdown=_GOODBYE_S,
-    )  # fmt: skip
+    settings: dict[str, Any] = {
+        "access_log": False, "log_level": "warning", "ws": "websockets-sansio", "lifespan": "on",
+        "ws_per_message_deflate": False, "ws_ping_interval": 30, "ws_ping_timeout": 30,
+        "timeout_graceful_shutdown": _GOODBYE_S,
+    }  # fmt: skip
     logging.getLogger("uvicorn.access").disabled = True  # Streamlit writes down every request
-    uvicorn.Server(config).run(sockets=[line])
+    if lan.LAN in os.environ:
+        lan.serve(Server(), port, line, settings)
+    else:
+        uvicorn.Server(uvicorn.Config(_as_reached(), **settings)).run(sockets=[line])
 
 
 if __name__ == "__main__":

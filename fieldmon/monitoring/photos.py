@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ObservationError, LimitError
+from fieldmon.errors import LimitError, ObservationError
 from fieldmon.monitoring import phone_tables, scouts
 from fieldmon.monitoring.geopackage import insert, touch
 from fieldmon.monitoring.tables import utc_now as text_now

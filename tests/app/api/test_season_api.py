@@ -179,7 +179,8 @@ async def _exchange_lazily(scope, parts):
     return type("Said", (), {"status": sent[0]["status"]})
 
 
-def test_the_description_is_there_for_everybody_and_says_no_season(served):
+@pytest.mark.usefixtures("served")
+def test_the_description_is_there_for_everybody_and_says_no_season():
     answer = ask("GET", f"{description.PATH}/openapi.json")
     assert answer.status == 200
     assert answer.json["openapi"] == "3.1.0"

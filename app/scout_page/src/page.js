@@ -69,7 +69,7 @@ export class Page {
     this.state = state;
     this.left = await this.store.left();
     this.#drawBar();
-    if (this.menu.open) this.#openMenu();
+    if (this.menu.open && this.menu.dataset.of === "menu") this.#openMenu();
     if (state === "sent") this.#drawMap();
   }
 
@@ -147,9 +147,9 @@ export class Page {
     }
     const { draft } = field;
     if (draft.plant < 0) {
-      return this.sheet.replaceChildren(...this.#old(), h("p", { class: "large", id: "place" }, say("route_done")), this.#others(), this.#back());
+      return this.sheet.replaceChildren(...this.#old(), h("p", { class: "large", id: "place", "data-plant": -1 }, say("route_done")), this.#others(), this.#back());
     }
-    this.place = h("div", { id: "place" });
+    this.place = h("div", { id: "place", "data-plant": draft.plant });
     this.#drawPlace();
     this.sheet.replaceChildren(...this.#old(), this.place, draft.open ? this.#details() : this.#buttons(), this.#others());
   }
@@ -256,10 +256,11 @@ export class Page {
   #ask(title, inner, done) {
     const form = h("form", { method: "dialog", onsubmit: done }, h("h2", {}, title), inner,
       h("div", { class: "pair" }, h("button", { type: "button", onclick: () => this.menu.close() }, say("cancel")), h("button", { class: "main", id: "ok" }, say("ok"))));
-    this.#show(form, title);
+    this.#show(form, title, "form");
   }
 
-  #show(inner, title) {
+  #show(inner, title, of) {
+    this.menu.dataset.of = of;
     this.menu.setAttribute("aria-label", title);
     this.menu.replaceChildren(inner);
     if (!this.menu.open) this.menu.showModal();
@@ -287,7 +288,7 @@ export class Page {
       pick("language", Object.entries(LANGUAGES)),
       h("p", { class: "small" }, this.persisted ? say("stays") : say("may_be_cleared")),
       h("button", { type: "button", class: "wide main", id: "close", onclick: () => this.menu.close() }, say("close")));
-    this.#show(inner, say("menu"));
+    this.#show(inner, say("menu"), "menu");
   }
 
   load() { return this.#network(() => this.field.load()); }

@@ -25,7 +25,7 @@ FLOORS = [
 ]
 FLOOR = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
 #: likewise within the app
-APP_FLOORS = ["words", "state", "show", "actions", "views", "startup", "streamlit_app"]
+APP_FLOORS = ["words", "state", "show", "actions", "api", "views", "startup", "streamlit_app"]
 #: libraries that only some rooms may know
 ALONE = {
     "pyproj": {"plot", "io"},
@@ -45,6 +45,10 @@ ALONE = {
     "PIL": {"reports", "app"},
     "fpdf": {"reports"},
     "fontTools": {"reports"},
+    "segno": {"app"},
+    "cryptography": {"app"},
+    "starlette": {"app"},
+    "jsonschema": {"app"},
 }
 FILES = sorted((*(ROOT / "fieldmon").rglob("*.py"), *(ROOT / "app").rglob("*.py")))
 

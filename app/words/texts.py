@@ -464,6 +464,7 @@ PRIOR_PART, PRIOR_OWN = "Scenario or sweep", "This plot"
 
 # -- the scout's page, which works without a network: its script fills the blanks
 SCOUT_PAGE = {
+    "map_of": "Map",
     "map": "Map of the plot: arrow keys move it, + and - bring it closer",
     "zoom_in": "Closer", "zoom_out": "Farther", "to_next": "To the next plant",
     "whole_plot": "The whole plot",

@@ -52,7 +52,7 @@ def invited(phone, line, season, name="Ann"):
     phone.page.goto(invitation(line.address, season.path.stem, key, str(BEGINS), "en"))
     phone.page.locator("#clean").wait_for()
     phone.page.evaluate("navigator.serviceWorker.ready.then(() => null)")
-    phone.page.wait_for_function("navigator.serviceWorker.controller !== null")
+    phone.page.wait_for_function("() => navigator.serviceWorker.controller !== null")
     return key
 
 

@@ -38,7 +38,7 @@ export class Page {
     const tool = (name, act, sign) => h("button", { type: "button", class: "tool", title: say(name), "aria-label": say(name), onclick: act }, sign);
     const tools = h("div", { id: "tools" }, tool("zoom_in", () => this.map.zoom(1.6), "+"), tool("zoom_out", () => this.map.zoom(1 / 1.6), "−"),
       tool("to_next", () => this.map.look(this.field.plant), "◎"), tool("whole_plot", () => this.map.fit(), "⛶"));
-    this.root.replaceChildren(this.bar, h("div", { id: "stage" }, this.canvas, tools, this.note), this.sheet, this.menu);
+    this.root.replaceChildren(this.bar, h("section", { id: "stage", "aria-label": say("map_of") }, this.canvas, tools, this.note), this.sheet, this.menu);
     this.map = new PlotMap(this.canvas, { picked: (plant) => this.#act(() => this.field.goTo(plant)) });
     this.map.theme = this.theme;
     this.#laidOut = null;

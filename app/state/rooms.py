@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 import streamlit as st
 
-from . import widget_memory
-
 
 @dataclass(frozen=True)
 class Room:
@@ -49,13 +47,6 @@ def room_of(part: str) -> str:
 def key(name: str) -> str:
     """Return the key of the box that says which part of a room is shown."""
     return f"part {name}"
-
-
-def part_of(name: str) -> str:
-    """Return which part of a room is shown."""
-    parts = ROOMS[name].parts
-    chosen = widget_memory.value(key(name))
-    return chosen if chosen in parts else parts[0]
 
 
 def open_part(part: str) -> None:

@@ -8,7 +8,7 @@ import os
 import re
 import signal
 import time
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
 from itertools import islice
@@ -43,6 +43,8 @@ _COLUMNS = (
 _EVERY_S = 2.0
 # tasks handed to the pool at once, so that no worker waits for the next
 _AHEAD = 32
+# up to so many plots are planned here: starting other processes takes longer
+_FEW = 6
 # a name of a file may be 255 bytes long; Hebrew and Arabic take two a letter
 _NAME_BYTES = 120
 # plots refused for one reason that are told one by one; of more there is one line
@@ -152,7 +154,7 @@ def _plan(
             row = one.result()
             rows[row["file"]] = row | {"digest": digests[row["file"]]}
 
-    pool = ProcessPoolExecutor(min(workers, len(tasks)), get_context("spawn"), _prepare, (day,))
+    pool = _pool(min(workers, len(tasks)), day) if len(tasks) > _FEW else _here(day)
     names, saved = list(tasks), time.monotonic()
     with progress("Planning", len(names)) as bar:
         try:
@@ -171,8 +173,20 @@ def _plan(
             pool.shutdown(wait=True, cancel_futures=True)
 
 
+def _pool(workers: int, day: Day) -> Executor:
+    return ProcessPoolExecutor(workers, get_context("spawn"), _prepare, (day,))
+
+
+def _here(day: Day) -> Executor:
+    """Return this process: a few plots are planned before others have started."""
+    from fieldmon.simulation.executor import here  # noqa: PLC0415
+
+    _day[:] = [day]
+    return here().pool
+
+
 def _ended(
-    pool: ProcessPoolExecutor,
+    pool: Executor,
     tasks: Iterable[tuple[str, Task]],
     keep: Callable[[Future[Row]], None],
 ) -> Iterator[Future[Row]]:
@@ -180,9 +194,11 @@ def _ended(
     waiting = iter(tasks)
 
     def more(n: int) -> set[Future[Row]]:
-        handed = {pool.submit(_work, *item) for item in islice(waiting, n)}
-        for one in handed:
+        handed: set[Future[Row]] = set()
+        for item in islice(waiting, n):
+            one = pool.submit(_work, *item)
             one.add_done_callback(keep)
+            handed.add(one)
         return handed
 
     running = more(_AHEAD)

@@ -389,10 +389,13 @@ def _two_faced(frame: Frame, pieces: Pieces, area: MultiPolygon, planting: Plant
 
 def _corridors(lane_y: Float, lane_x: Float) -> NDArray[np.intp]:
     """Return a number for each row: the same where lanes of one aisle touch or overlap."""
-    order = np.lexsort((lane_x[:, 0], np.round(lane_y, 3)))
-    y, low, high = lane_y[order], lane_x[order, 0], lane_x[order, 1]
-    new_aisle = np.diff(y, prepend=-np.inf) > 1e-3
-    shift = np.cumsum(new_aisle) * (high.max() - low.min() + 1.0)
+    # the y of one aisle, come from the row on either side, may differ in its last digits
+    across = np.argsort(lane_y, kind="stable")
+    aisle = np.empty(len(across), np.intp)
+    aisle[across] = np.cumsum(np.diff(lane_y[across], prepend=-np.inf) > 1e-3)
+    order = np.lexsort((lane_x[:, 0], aisle))
+    low, high = lane_x[order, 0], lane_x[order, 1]
+    shift = aisle[order] * (high.max() - low.min() + 1.0)
     reached = np.maximum.accumulate(high + shift)
     apart = np.append(True, (low + shift)[1:] > reached[:-1] + _SLACK_M)
     corridor = np.empty(len(order), np.intp)

@@ -162,7 +162,6 @@ def test_unknown_is_not_clean():
 # --- what a hot spot tells
 
 
-@settings(max_examples=40, deadline=None)
 @given(crooked_grids(60.0, max_plants=4000), st.integers(0, 2**32 - 1))
 def test_the_columns_say_what_stands_in_each_hot_spot(grid, seed):
     rng = np.random.default_rng(seed)

@@ -21,7 +21,6 @@ from tests.crooked import crooked_grids
 GRID = rectangle(21, 25)
 
 
-@settings(max_examples=40, deadline=None)
 @given(crooked_grids(50.0, max_plants=3000), st.floats(1.0, 60.0), st.data())
 def test_the_distance_to_lines_is_the_planar_one_as_far_as_asked(grid, farthest_m, data):
     numbers = st.integers(-80, 80)

@@ -118,7 +118,6 @@ def test_even_a_risk_of_one_can_be_undone_by_clean_looks():
     assert chance[-1] > 0.99
 
 
-@settings(max_examples=40, deadline=None)
 @given(crooked_grids(40.0, max_plants=3000), st.data())
 def test_every_chance_is_a_chance_on_any_plot(grid, data):
     n = len(grid)

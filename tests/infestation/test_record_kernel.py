@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pyproj import Geod
 
@@ -158,7 +158,6 @@ def one_by_one(base, observations, prior):
     return base + (chance - base) * 0.5 ** (clock / prior.half_life_days)
 
 
-@settings(max_examples=60, deadline=None)
 @given(some_records, st.floats(0.0, 0.5))
 def test_records_add_up_as_they_do_when_heard_one_by_one_on_all_plants(observations, base):
     # each is cut where it would say less than 1e-4

@@ -97,7 +97,7 @@ rows = st.tuples(
 )
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=40)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(rows, max_size=20, unique_by=lambda row: row[:5]))
 def test_whatever_is_recorded_comes_back_as_it_was(db, listed):
     db.execute("DELETE FROM inspections")

@@ -86,7 +86,7 @@ def test_a_team_shares_a_plot_and_nobody_meets(n, faces):
     check(plan)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(crooked_fields(max_radius_m=60.0), st.integers(2, 3), st.booleans(), st.data())
 def test_on_crooked_plots_nobody_meets_either(field, n, returns, data):
     try:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.plot.adjacency import across, along, link, lists
@@ -40,7 +40,6 @@ def test_a_pair_stands_in_the_lists_of_both(pairs):
 
 
 @given(plants=plants_on_lines())
-@settings(max_examples=200)
 def test_along_a_row_stands_the_next_one_unless_one_is_missing_between(plants):
     xy_m, line = plants
     found = neighbours(along(xy_m[:, 0], line, PLANT_M))
@@ -63,7 +62,6 @@ def nearest_on(xy_m, line, i, step):
 
 
 @given(plants=plants_on_lines())
-@settings(max_examples=300)
 def test_across_stand_the_nearest_and_those_whose_nearest_one_is(plants):
     """Where two are as near, either may be taken, but one is."""
     xy_m, line = plants

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
@@ -15,14 +15,11 @@ from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.travel import Aisles, crosses_rows
 from tests.bent import FRAME, bent_grids
 
-FEW = settings(max_examples=40)
-
 
 def length_m(line):
     return float(np.hypot(*np.diff(line, axis=0).T).sum())
 
 
-@FEW
 @given(bent_grids(), st.integers(0, 1000))
 def test_paths_are_as_long_as_said_and_cross_no_row(grid, seed):
     aisles = Aisles.of(grid)
@@ -36,7 +33,6 @@ def test_paths_are_as_long_as_said_and_cross_no_row(grid, seed):
         assert not crosses_rows(grid, line)
 
 
-@FEW
 @given(bent_grids())
 def test_lanes_meet_no_plant_and_stay_where_driving_is_allowed(grid):
     aisles, own = grid.aisles_m, grid.aisle.astype(int)
@@ -56,7 +52,6 @@ def test_lanes_meet_no_plant_and_stay_where_driving_is_allowed(grid):
         assert shapely.covers(shapely.buffer(grid.drivable_m, 0.02), lane)
 
 
-@FEW
 @given(bent_grids())
 def test_places_ascend_along_each_row_and_are_metres_driven(grid):
     step_m = np.diff(grid.along_m)
@@ -67,7 +62,6 @@ def test_places_ascend_along_each_row_and_are_metres_driven(grid):
     assert step_m[same].sum() == pytest.approx(apart_m[same].sum(), rel=0.35)
 
 
-@FEW
 @given(bent_grids(faces=(1,)))
 def test_neighbours_across_are_near_in_metres_and_mutual(grid):
     one = np.repeat(np.arange(len(grid)), np.diff(grid.across_start))
@@ -81,7 +75,6 @@ def test_neighbours_across_are_near_in_metres_and_mutual(grid):
     assert (grid.block[grid.row[one]] == grid.block[grid.row[other]]).all()
 
 
-@FEW
 @given(bent_grids(faces=(2,)))
 def test_both_faces_of_a_plant_stand_in_one_place_and_are_inspected_from_two_aisles(grid):
     faced = np.flatnonzero(grid.twin >= 0)

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError
@@ -9,10 +9,7 @@ from fieldmon.plot.layout import Planting, lay, rectangle
 from fieldmon.plot.projection import Frame
 from tests.crooked import crooked_fields, crooked_grids, plantings
 
-FEW = settings(max_examples=50)
 
-
-@FEW
 @given(crooked_grids(50))
 def test_neighbours_are_mutual(grid):
     n = len(grid)
@@ -29,7 +26,6 @@ def test_neighbours_are_mutual(grid):
         assert len(set(zip(one, other, strict=True))) == len(plant)
 
 
-@FEW
 @given(crooked_grids(50))
 def test_adjacent_plants_are_those_along_the_row_and_then_those_across(grid):
     for plant in range(0, len(grid), 7):
@@ -39,7 +35,6 @@ def test_adjacent_plants_are_those_along_the_row_and_then_those_across(grid):
         assert adjacent.tolist() == [*along, *across]
 
 
-@FEW
 @given(crooked_grids(50))
 def test_linked_entries_are_those_of_the_same_two_plants(grid):
     start, plant, back = grid.linked
@@ -48,7 +43,6 @@ def test_linked_entries_are_those_of_the_same_two_plants(grid):
     assert (one[back] == plant).all()
 
 
-@FEW
 @given(crooked_grids(50))
 def test_the_snake_visits_every_plant_once_up_one_line_and_down_the_next(grid):
     assert sorted(grid.snake) == list(range(len(grid)))
@@ -60,7 +54,6 @@ def test_the_snake_visits_every_plant_once_up_one_line_and_down_the_next(grid):
     assert (onward[np.diff(passes) == 0] > 0).all()
 
 
-@FEW
 @given(crooked_grids(50))
 def test_a_label_leads_back_to_its_plant(grid):
     label = row_label(grid)
@@ -88,7 +81,6 @@ def test_labels_that_are_none_are_refused(line, number, sentence):
         plant_at(rectangle(3, 5), line, number)
 
 
-@FEW
 @given(crooked_fields(50), plantings(), st.integers(0, 2**32))
 def test_a_record_near_a_plant_belongs_to_it(field, planting, seed):
     try:

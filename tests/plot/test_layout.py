@@ -25,7 +25,39 @@ GEOD = Geod(ellps="WGS84")
 CM = 0.01
 # lanes run on the edge of their strip, so rounding decides on which side of it
 EDGE = 1e-4
-FEW = settings(max_examples=50)
+
+# once the faces on both sides of an aisle found themselves in two, as its y was 11.1625 for one
+# and a last digit less for the other, and was rounded to millimetres
+HALF_A_MILLIMETRE = Field(
+    "crooked",
+    MultiPolygon(
+        [
+            Polygon(
+                [
+                    (5.5871913342776505e-05, -0.00020364310713755213),
+                    (5.5871913342776505e-05, -0.00020364310713755213),
+                    (3.081089739911748e-05, -0.0002166628836138613),
+                    (4.2676138877648655e-05, -0.00022433281297508885),
+                    (-9.227240685423487e-06, -0.0003057123226027007),
+                    (-0.00027228261457086376, -0.00013566806859734894),
+                    (-0.0002421303652150472, -8.839224017581659e-05),
+                    (-0.0002461151947041223, -0.00010551798275692041),
+                    (-0.00021796207685991558, -6.366185658507488e-05),
+                    (-0.0002045809078471928, -5.9095673465091246e-05),
+                    (-0.00019978397230777692, -4.571637825355912e-05),
+                    (-0.00020718346054250233, -3.359885313265379e-05),
+                    (-0.00020718346054250238, -3.359885313265379e-05),
+                    (-0.00014560317970535372, 6.295310744233445e-05),
+                    (-1.4075492762785432e-05, -2.20690195600296e-05),
+                    (1.4075492762785432e-05, 2.20690195600296e-05),
+                    (-0.00011745219417986197, 0.00010709114656238592),
+                    (9.227240685423611e-06, 0.0003057123226027007),
+                    (0.00027228261457086376, 0.00013566806859734891),
+                ]
+            )
+        ]
+    ),
+)
 
 
 def laid(field, planting):
@@ -59,7 +91,6 @@ def lanes(grid):
 # --- on any crooked plot ---------------------------------------------------------------------
 
 
-@FEW
 @given(crooked_fields(50), plantings())
 def test_every_plant_is_inside_the_boundary_and_outside_holes_and_no_go_areas(field, planting):
     grid = laid(field, planting)
@@ -68,7 +99,6 @@ def test_every_plant_is_inside_the_boundary_and_outside_holes_and_no_go_areas(fi
     assert not shapely.contains_xy(field.no_go, places).any()
 
 
-@FEW
 @given(crooked_fields(50), plantings())
 def test_every_plant_keeps_half_a_row_or_a_headland_from_every_edge(field, planting):
     grid = laid(field, planting)
@@ -76,7 +106,6 @@ def test_every_plant_keeps_half_a_row_or_a_headland_from_every_edge(field, plant
     assert clear_m.min() >= min(planting.row_spacing_m / 2, planting.headland_m) - EDGE
 
 
-@FEW
 @given(crooked_fields(50), plantings())
 def test_rows_and_lanes_and_what_lies_between_them_are_on_the_plot(field, planting):
     grid = laid(field, planting)
@@ -90,7 +119,6 @@ def test_rows_and_lanes_and_what_lies_between_them_are_on_the_plot(field, planti
     assert shapely.covers(shapely.buffer(grid.drivable_m, EDGE), between).all()
 
 
-@FEW
 @given(crooked_fields(50), plantings())
 def test_lanes_reach_beyond_the_last_plants_of_their_row_and_meet_no_other_row(field, planting):
     grid = laid(field, planting)
@@ -103,7 +131,6 @@ def test_lanes_reach_beyond_the_last_plants_of_their_row_and_meet_no_other_row(f
     assert off == pytest.approx(planting.row_spacing_m / 2)
 
 
-@FEW
 @given(crooked_fields(50), plantings(faces=(1,)))
 def test_rows_come_line_by_line_and_plants_along_them(field, planting):
     grid = laid(field, planting)
@@ -117,7 +144,6 @@ def test_rows_come_line_by_line_and_plants_along_them(field, planting):
     assert (np.diff(grid.row_start) > 0).all()
 
 
-@FEW
 @given(crooked_fields(50), plantings())
 def test_plants_stand_one_spacing_apart_measured_over_the_ellipsoid(field, planting):
     grid = laid(field, planting)
@@ -127,7 +153,6 @@ def test_plants_stand_one_spacing_apart_measured_over_the_ellipsoid(field, plant
     assert apart == pytest.approx(np.full(len(same_row), planting.plant_spacing_m), abs=CM)
 
 
-@FEW
 @given(crooked_fields(50), plantings())
 def test_every_plant_is_where_a_geodesic_from_the_middle_of_the_plot_leads(field, planting):
     grid = laid(field, planting)
@@ -141,7 +166,6 @@ def test_every_plant_is_where_a_geodesic_from_the_middle_of_the_plot_leads(field
         assert grid.frame.bearing_deg == planting.row_bearing_deg
 
 
-@FEW
 @given(crooked_fields(max_radius_m=25), plantings(faces=(1,)))
 def test_neighbours_are_the_plants_next_to_each_other(field, planting):
     grid = laid(field, planting)
@@ -160,7 +184,6 @@ def test_neighbours_are_the_plants_next_to_each_other(field, planting):
         assert np.count_nonzero(truth) == len(plant)
 
 
-@FEW
 @given(crooked_fields(50), plantings(faces=(2,)))
 def test_both_faces_of_a_plant_are_inspected_from_the_aisles_on_its_two_sides(field, planting):
     grid = laid(field, planting)
@@ -175,7 +198,7 @@ def test_both_faces_of_a_plant_are_inspected_from_the_aisles_on_its_two_sides(fi
     assert grid.across_plant.tolist() == grid.twin.tolist()
 
 
-@FEW
+@example(field=HALF_A_MILLIMETRE, planting=Planting(None, 1.9, 1.0, 1.0, faces=2))
 @given(crooked_fields(50), plantings(faces=(2,)))
 def test_rows_of_one_corridor_share_an_unbroken_stretch_of_aisle(field, planting):
     grid = laid(field, planting)
@@ -191,7 +214,6 @@ def test_rows_of_one_corridor_share_an_unbroken_stretch_of_aisle(field, planting
         assert clear.all()
 
 
-@FEW
 @given(crooked_fields(50), plantings(faces=(2,)))
 def test_without_outer_faces_every_face_looks_at_another_row(field, planting):
     both = laid(field, planting)
@@ -371,7 +393,6 @@ def test_a_rectangle_needs_a_plant():
 # --- from measured plants --------------------------------------------------------------------
 
 
-@FEW
 @given(crooked_fields(50), plantings(faces=(1,)), st.randoms(use_true_random=False))
 def test_measured_plants_fall_into_the_rows_they_were_laid_in(field, planting, random):
     truth = laid(field, planting)
@@ -386,7 +407,6 @@ def test_measured_plants_fall_into_the_rows_they_were_laid_in(field, planting, r
     assert (np.diff(grid.xy_m[:, 0])[same_line] > 0).all()
 
 
-@FEW
 @given(crooked_fields(50), plantings(), st.booleans(), st.integers(0, 2**32))
 def test_lanes_of_measured_rows_meet_no_plant_and_stay_where_driving_is_allowed(
     field, planting, with_field, seed

@@ -24,7 +24,6 @@ SEEDS = st.integers(0, 2**32)
 SHARES = st.sampled_from([0.0, 0.05, 0.5, 0.97])
 
 
-@settings(max_examples=40)
 @given(crooked_grids(), SEEDS, SHARES)
 def test_those_that_are_left_stand_where_they_stood_in_rows_and_aisles_as_they_were(
     grid, seed, share
@@ -46,7 +45,6 @@ def test_those_that_are_left_stand_where_they_stood_in_rows_and_aisles_as_they_w
     assert (np.diff(left.row_start) > 0).all()
 
 
-@settings(max_examples=40)
 @given(crooked_grids(), SEEDS, SHARES)
 def test_neighbours_are_those_that_were_and_are_left(grid, seed, share):
     missing, left = thinned(grid, seed, share)

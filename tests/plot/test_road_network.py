@@ -52,7 +52,6 @@ def outside_m(grid, steps):
 
 
 @given(crooked_grids())
-@settings(max_examples=60)
 def test_ways_lead_to_every_row_and_across_none(grid):
     net = find_roads(grid)
     assert net.end.min() >= 0
@@ -63,7 +62,6 @@ def test_ways_lead_to_every_row_and_across_none(grid):
 
 
 @given(crooked_grids())
-@settings(max_examples=60)
 def test_ways_stay_on_the_plot_unless_parts_must_be_joined(grid):
     net = find_roads(grid)
     if len(shapely.get_parts(grid.drivable_m)) == 1:
@@ -71,7 +69,6 @@ def test_ways_stay_on_the_plot_unless_parts_must_be_joined(grid):
 
 
 @given(field=crooked_fields(max_radius_m=50), planting=plantings())
-@settings(max_examples=40)
 def test_the_plot_is_left_only_for_what_cannot_be_reached_on_it(field, planting):
     try:
         plot = Plot.of(field, planting)

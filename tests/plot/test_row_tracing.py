@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.plot.polylines import Polylines
@@ -25,7 +25,6 @@ def row_of(traced):
     return row
 
 
-@settings(max_examples=40)
 @given(
     size=st.tuples(st.integers(5, 15), st.integers(15, 40)),
     row_spacing_m=st.floats(2.0, 5.0),

@@ -160,7 +160,6 @@ def test_paths_are_as_long_as_said_and_cross_no_row(grid):
 
 
 @given(grid=crooked_grids(), seed=st.integers(0, 100))
-@settings(max_examples=60)
 def test_paths_on_crooked_plots_are_as_long_as_said_and_cross_no_row(grid, seed):
     check_paths(Aisles.of(grid), some_plants(grid, 10, seed))
 
@@ -193,7 +192,6 @@ def test_paths_between_plants_taken_from_gps_cross_no_row(seed, row_spacing_m, s
 
 
 @given(grid=crooked_grids(), seed=st.integers(0, 100))
-@settings(max_examples=40)
 def test_paths_stay_on_the_plot_unless_parts_must_be_joined(grid, seed):
     aisles = Aisles.of(grid)
     plants = some_plants(grid, 8, seed)
@@ -206,7 +204,6 @@ def test_paths_stay_on_the_plot_unless_parts_must_be_joined(grid, seed):
 
 
 @given(crooked_grids(max_radius_m=60))
-@settings(max_examples=40)
 def test_no_detour_is_shorter_than_the_way(grid):
     between_m = Aisles.of(grid).travel.between_m
     assert (between_m == between_m.T).all()

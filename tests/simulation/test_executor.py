@@ -13,7 +13,7 @@ from fieldmon.cli import study_run
 from fieldmon.errors import SettingError
 from fieldmon.simulation import design, executor, results
 from fieldmon.simulation.design import Design, study_of
-from fieldmon.simulation.experiment import run
+from fieldmon.simulation.experiment import Experiment, Memory, run
 from fieldmon.simulation.results import StudyFolder
 from tests.parcels import write_geojson
 from tests.simulation.study_plots import SMALL, area, plot
@@ -36,6 +36,13 @@ def simulated(folder, plots, asked, workers, progress=None):
 
 
 @pytest.fixture(scope="module")
+def two_workers():
+    """Return two processes of this machine, which take seconds to start."""
+    with executor.cluster(workers=2) as workers:
+        yield workers
+
+
+@pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory):
     """Return the folder of the small study, simulated in this thread."""
     folder = tmp_path_factory.mktemp("undisturbed")
@@ -52,11 +59,21 @@ def same_files(one, other):
     assert parts[0] == parts[1]
 
 
-@pytest.mark.parametrize("n", [1, 2])
-def test_the_seasons_do_not_depend_on_the_number_of_workers(undisturbed, tmp_path, n):
-    with executor.cluster(workers=n) as workers:
-        assert simulated(tmp_path, [plot()], SMALL, workers).refused == {}
+def test_the_seasons_do_not_depend_on_the_number_of_workers(undisturbed, two_workers, tmp_path):
+    assert simulated(tmp_path, [plot()], SMALL, two_workers).refused == {}
     same_files(tmp_path, undisturbed)
+
+
+def _pid(setting, seeds):  # noqa: ARG001
+    time.sleep(0.05)
+    return os.getpid()
+
+
+def test_a_cluster_works_in_processes_of_its_own(two_workers):
+    made = Memory()
+    run(Experiment(tuple(range(12)), range(1), _pid), two_workers, made)
+    assert os.getpid() not in made.values()
+    assert len(set(made.values())) == 2
 
 
 def test_threads_make_the_same_files(undisturbed, tmp_path):
@@ -65,7 +82,7 @@ def test_threads_make_the_same_files(undisturbed, tmp_path):
     same_files(tmp_path, undisturbed)
 
 
-def test_a_killed_worker_costs_only_what_it_had_in_hand(undisturbed, tmp_path):
+def test_a_killed_worker_costs_only_what_it_had_in_hand(undisturbed, two_workers, tmp_path):
     from distributed import default_client
 
     killed = []
@@ -79,13 +96,12 @@ def test_a_killed_worker_costs_only_what_it_had_in_hand(undisturbed, tmp_path):
             os.kill(pid, signal.SIGKILL)
             killed.append(pid)
 
-    with executor.cluster(workers=2) as workers:
-        simulated(tmp_path, [plot()], SMALL, workers, kill_one)
+    simulated(tmp_path, [plot()], SMALL, two_workers, kill_one)
     assert killed
     same_files(tmp_path, undisturbed)
 
 
-def test_a_killed_client_costs_only_unfinished_chunks(tmp_path):
+def test_a_killed_client_costs_only_unfinished_chunks(two_workers, tmp_path):
     write_geojson(tmp_path / "plot.geojson", [area(60.0)])
     command = f"from fieldmon.simulation import design; design._CHUNK_S = {CHUNK_S}; "
     command += "from fieldmon.cli.main import main; main()"
@@ -101,9 +117,9 @@ def test_a_killed_client_costs_only_unfinished_chunks(tmp_path):
     _, alive = psutil.wait_procs(children, timeout=60)
     assert not alive, "workers outlive the client that started them"
     half = {path: path.stat().st_mtime_ns for path in tmp_path.glob("killed/*/*.parquet")}
-    subprocess.run([*words, "-o", "killed"], cwd=tmp_path, check=True, capture_output=True)
     plots = study_run.StudyOptions(tmp_path / "plot.geojson", on="2026-11-02").plots()
     asked = Design(n_days=10, n_seeds=40)
+    simulated(tmp_path / "killed", plots, asked, two_workers)
     simulated(tmp_path / "whole", plots, asked, executor.here())
     assert 0 < len(half) < len(list(study_of(plots, asked).chunks()))
     same_files(tmp_path / "killed", tmp_path / "whole")
@@ -116,27 +132,34 @@ def test_no_scheduler_is_a_sentence(monkeypatch):
         pass
 
 
+@pytest.mark.usefixtures("two_workers")
 def test_a_cluster_that_is_there_already_is_used(tmp_path):
-    from distributed import LocalCluster, default_client
+    from distributed import default_client
 
+    there = default_client().scheduler.address
     short = Design(samplers=("naive",), n_days=1, n_seeds=2)
-    there = LocalCluster(
-        n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
-    )
-    with there, executor.cluster(there.scheduler_address) as workers:
-        assert default_client().scheduler.address == there.scheduler_address
+    with executor.cluster(there) as workers:
+        assert default_client().scheduler.address == there
         simulated(tmp_path, [plot()], short, workers)
     assert results.seasons(tmp_path).num_rows == 2
 
 
+@pytest.mark.usefixtures("two_workers")
 def test_a_chunk_that_kills_its_workers_is_a_sentence():
-    from fieldmon.simulation.experiment import Experiment, Memory
+    from distributed import default_client
 
+    client = default_client()
+    # Dask tries a chunk on some workers, each of which is started anew
+    client.run_on_scheduler(_allow_no_failure)
     with (
         pytest.raises(SettingError, match="ended several workers"),
-        executor.cluster(workers=1) as workers,
+        executor.cluster(client.scheduler.address) as workers,
     ):
         run(Experiment((1,), range(1), _die), workers, Memory())
+
+
+def _allow_no_failure(dask_scheduler):
+    dask_scheduler.allowed_failures = 0
 
 
 def _die(setting, seeds):  # noqa: ARG001

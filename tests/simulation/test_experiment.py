@@ -1,8 +1,6 @@
 """An experiment is simulated once, whoever does it, and goes on where it was stopped."""
 
-import os
 import threading
-import time
 from concurrent.futures import ProcessPoolExecutor
 
 import pytest
@@ -66,15 +64,13 @@ def test_an_experiment_without_seeds_is_refused():
         Experiment((1,), range(0), squares)
 
 
-def test_threads_processes_a_cluster_and_this_thread_come_to_the_same():
+def test_threads_processes_and_this_thread_come_to_the_same():
     assert results(executor.here()) == EXPECTED
     for n in (1, 3):
         with executor.threads(n) as workers:
             assert results(workers) == EXPECTED
     with ProcessPoolExecutor(2) as pool:
         assert results(Workers(pool, 4), chunk_size=lambda _: 4) == EXPECTED
-    with executor.cluster(workers=2) as workers:
-        assert results(workers) == EXPECTED
 
 
 def test_what_a_store_holds_is_not_simulated_again():
@@ -175,16 +171,3 @@ def test_this_thread_hands_a_result_over_before_it_begins_the_next():
     made = Memory()
     run(Experiment(tuple(range(5)), range(1), simulate), executor.here(), made)
     assert seen == [0, 1, 2, 3, 4]
-
-
-def _pid(setting, seeds):  # noqa: ARG001
-    time.sleep(0.05)
-    return os.getpid()
-
-
-def test_a_cluster_works_in_processes_of_its_own():
-    made = Memory()
-    with executor.cluster(workers=2) as workers:
-        run(Experiment(tuple(range(12)), range(1), _pid), workers, made)
-    assert os.getpid() not in made.values()
-    assert len(set(made.values())) == 2

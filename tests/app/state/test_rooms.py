@@ -19,22 +19,18 @@ def test_every_part_is_in_one_room_and_has_a_page_and_words():
     assert set(texts.PARTS) >= several
 
 
-@pytest.mark.usefixtures("session")
-def test_the_first_part_is_shown_until_another_is_opened(session):
-    assert rooms.part_of("today") == "today"
+def test_a_part_that_is_opened_is_shown_in_its_room(session):
     rooms.open_part("scout")
-    assert rooms.part_of("today") == "scout"
-    assert rooms.part_of("season") == "season"
-    session[rooms.key("today")] = "report"
-    assert rooms.part_of("today") == "today", "the report is in another room"
+    assert session[rooms.key("today")] == "scout"
+    assert rooms.key("season") not in session
 
 
 def test_a_part_that_was_opened_is_kept_when_its_box_is_not_shown(session):
     rooms.open_part("record")
-    assert rooms.part_of("today") == "record"
-    widget_memory.first(rooms.key("today"), "record")
+    widget_memory.first(rooms.key("today"), "today")
+    assert widget_memory.value(rooms.key("today")) == "record"
     del session[rooms.key("today")]
-    assert rooms.part_of("today") == "record"
+    assert widget_memory.value(rooms.key("today")) == "record"
 
 
 @pytest.mark.usefixtures("session")

@@ -127,7 +127,7 @@ def test_what_is_no_geojson_is_refused_with_what_it_is(tmp_path, root, says):
 points = st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=3)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=40)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(points, min_size=2, max_size=8))
 def test_lines_keep_every_corner_with_or_without_heights(tmp_path, corners):
     stated = {"type": "LineString", "coordinates": corners}

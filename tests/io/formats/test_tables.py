@@ -28,7 +28,7 @@ def rows_of(layer):
     return [list(layer.columns), *map(list, zip(*layer.columns.values(), strict=True))]
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.tuples(WORDS, WORDS, WORDS), min_size=3, max_size=6), st.sampled_from(",;\t|"))
 def test_cells_come_back_whatever_parts_them_and_stands_in_them(tmp_path, rows, mark):
     written = io.StringIO(newline="")

@@ -380,7 +380,6 @@ COLUMNS = (
     st.dictionaries(st.sampled_from(COLUMNS), st.lists(CELLS, min_size=3, max_size=3), min_size=1),
     st.booleans(),
 )
-@settings(max_examples=150)
 def test_whatever_stands_in_cells_ends_in_findings_or_in_a_sentence(columns, take_doubtful):
     cells = {name: np.array(values, dtype=object) for name, values in columns.items()}
     options = InspectionOptions(zone="+02:00", take_doubtful=take_doubtful)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
@@ -73,7 +73,6 @@ def check(aisles, reward, robot, seconds, route):
     assert route.reward <= route.bound
 
 
-@settings(max_examples=300, deadline=None)
 @given(st.data())
 def test_no_order_of_few_plants_exceeds_the_bound_nor_is_missed_by_much(data):
     aisles = data.draw(crooked_aisles(max_radius_m=40.0, max_plants=400))
@@ -87,7 +86,6 @@ def test_no_order_of_few_plants_exceeds_the_bound_nor_is_missed_by_much(data):
     assert most <= route.bound + 1e-9
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.data())
 def test_no_sampler_expects_more_than_the_bound(data):
     aisles = data.draw(crooked_aisles(max_radius_m=60.0, max_plants=1500))

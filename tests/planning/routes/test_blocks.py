@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from shapely import MultiPolygon, box
 
@@ -29,7 +29,6 @@ def below(aisles, reward, robot):
     return [*(Priced(ladder, reward, robot) for ladder in whole), *blocks]
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.data())
 def test_at_no_price_is_any_route_worth_more_than_the_best_drive(data):
     aisles = data.draw(crooked_aisles(max_radius_m=80.0, max_plants=500))

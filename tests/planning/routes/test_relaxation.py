@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
@@ -44,7 +44,6 @@ def truly(aisles):
     return aisles.distance_m(places[:, None], places)
 
 
-@settings(max_examples=150, deadline=None)
 @given(crooked_aisles(max_radius_m=60.0, max_plants=400), st.booleans())
 def test_no_way_on_the_ladder_is_longer_than_the_true_one(aisles, hanging):
     ladder = Ladders(aisles).whole(hanging=hanging)
@@ -59,7 +58,6 @@ def test_a_plain_plot_is_a_ladder_itself(faces):
     assert on_the_ladder(ladder) == pytest.approx(truly(aisles), abs=1e-4)
 
 
-@settings(max_examples=50, deadline=None)
 @given(crooked_aisles(max_radius_m=40.0), st.data())
 def test_every_plant_is_in_one_aisle_in_order(aisles, data):
     ladder = ladder_below(aisles)

@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.planning.routes.ladder import sweep
@@ -48,7 +48,6 @@ def test_no_two_walks_of_all_there_are_exceed_the_bound(seed):
     assert most <= team.bound + 1e-9
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.integers(1, 8), st.integers(1, 8), st.integers(1, 4), st.integers(0, 2**32))
 def test_nobody_meets_and_budgets_are_kept(m, n, n_walks, seed):
     rng = np.random.default_rng(seed)

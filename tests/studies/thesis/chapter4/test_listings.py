@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.studies.thesis.chapter4 import listings
@@ -37,7 +37,6 @@ def go(trial, seed=0, *, start=0.3, spare=0.5, curve=0):
     return table, trace[:points], aborted
 
 
-@settings(max_examples=200)
 @given(trial=trials, seed=st.integers(0, 1000))
 def test_insects_are_conserved(trial, seed):
     table, _, aborted = go(trial, seed)
@@ -49,7 +48,6 @@ def test_insects_are_conserved(trial, seed):
         assert table[day + 1, listings.INFESTED] == left + table[day, listings.NEW_TRUE]
 
 
-@settings(max_examples=100)
 @given(trial=trials, seed=st.integers(0, 1000))
 def test_the_way_does_not_depend_on_the_insects(trial, seed):
     """Nothing is learnt: END and VISITED are the same in a clean and in a full field."""
@@ -60,14 +58,12 @@ def test_the_way_does_not_depend_on_the_insects(trial, seed):
         assert (clean[:days, column] == full[:days, column]).all()
 
 
-@settings(max_examples=100)
 @given(trial=trials, seed=st.integers(0, 1000))
 def test_a_run_draws_no_more_than_it_says(trial, seed):
     low, high = go(trial, seed, spare=0.0)[0], go(trial, seed, spare=0.99)[0]
     assert (low == high).all()
 
 
-@settings(max_examples=100)
 @given(trial=trials, seed=st.integers(0, 1000))
 def test_faces_are_counted_once_and_the_day_is_used_up_to_a_row_change(trial, seed):
     table, _, aborted = go(trial, seed)

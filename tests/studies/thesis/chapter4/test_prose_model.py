@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.studies.thesis.chapter4 import listings, prose_model
@@ -84,7 +84,6 @@ def test_turning_to_the_plant_is_charged_where_it_is_asked_for():
     assert go(turning)[0, listings.VISITED] < go(trial)[0, listings.VISITED]
 
 
-@settings(max_examples=200)
 @given(trial=trials, seed=st.integers(0, 1000))
 def test_the_days_hours_are_kept_and_insects_are_conserved(trial, seed):
     table = go(trial, seed)
@@ -95,7 +94,6 @@ def test_the_days_hours_are_kept_and_insects_are_conserved(trial, seed):
     assert (table[1:, listings.INFESTED] == left[:-1] + table[:-1, listings.NEW_TRUE]).all()
 
 
-@settings(max_examples=100)
 @given(trial=trials, seed=st.integers(0, 1000))
 def test_the_way_does_not_depend_on_the_insects_and_draws_no_more_than_it_says(trial, seed):
     faces = trial.vineyard.faces

@@ -14,6 +14,8 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.errors import SettingError
+
 from ..state import scout_page
 from ..words import language, texts
 from .certificates import Certificates, certificates, local_address
@@ -133,7 +135,13 @@ async def _all(apps: list[tuple[Application, dict[str, Any]]], lines: list[socke
 
 def _listening(address: str, port: int) -> socket.socket:
     family = socket.AF_INET6 if ":" in address else socket.AF_INET
-    return socket.create_server((address, port), family=family, backlog=2048)
+    try:
+        return socket.create_server((address, port), family=family, backlog=2048)
+    except OSError as error:
+        raise SettingError(
+            f"Port {port} at {address} must be free for other devices, but it is not "
+            f"({error.strerror}). Close what uses it, or choose others with --port and --address."
+        ) from error
 
 
 def _host(address: str) -> str:

@@ -23,6 +23,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.errors import FieldmonError
 from fieldmon.io.sandbox import process
 
 from ..state import map_file, map_store, scout_page
@@ -212,7 +213,10 @@ def main() -> None:
     }  # fmt: skip
     logging.getLogger("uvicorn.access").disabled = True  # Streamlit writes down every request
     if lan.LAN in os.environ:
-        lan.serve(Server(), port, line, settings)
+        try:
+            lan.serve(Server(), port, line, settings)
+        except FieldmonError as error:
+            sys.exit(f"Error: {error}")
     else:
         uvicorn.Server(uvicorn.Config(_as_reached(), **settings)).run(sockets=[line])
 

@@ -12,6 +12,7 @@ import uvicorn
 
 from app.startup import lan
 from app.startup.certificates import certificates
+from fieldmon.errors import SettingError
 from tests.app.driving import until
 
 #: an address of this machine that its browser does not use
@@ -129,3 +130,8 @@ def test_the_window_says_password_fingerprint_and_both_codes(served):
 def test_behind_a_server_of_ones_own_the_password_is_said(capsys):
     lan.say_password("a-b", "https://field.example")
     assert "https://field.example   password: a-b" in capsys.readouterr().out
+
+
+def test_a_port_that_somebody_else_has_is_a_sentence(served):
+    with pytest.raises(SettingError, match="must be free for other devices"):
+        lan._listening(HERE, served.port)

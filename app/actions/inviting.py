@@ -51,6 +51,12 @@ def code(address: str) -> str:
     return f"data:image/svg+xml;base64,{base64.b64encode(made.getvalue()).decode()}"
 
 
+def show_folded(choices: Choices) -> None:
+    """Show it where it is not the first thing wanted."""
+    with st.expander(texts.INVITE):
+        show(choices)
+
+
 def show(choices: Choices) -> None:
     """Show who may record from a phone, and make codes."""
     st.markdown(texts.INVITE_NOTE)

@@ -195,7 +195,7 @@ def show_said_otherwise(choices: Choices) -> None:
         ]  # fmt: skip
         place = {"row": label.line[plant], "plant": label.number[plant]}
         lines.append(f"- {texts.SAID_BY.format(said=', '.join(each), **place)}")
-    st.warning("\n".join([texts.SAID_OTHERWISE, "", *lines[:_MOST]]))
+    st.info("\n".join([texts.SAID_OTHERWISE, "", *lines[:_MOST]]))
 
 
 @notices.reporting

@@ -47,7 +47,7 @@ _HEADERS = [
 STYLE = (
     "body{font:18px/1.5 system-ui,sans-serif;max-width:34rem;margin:2rem auto;padding:0 1rem;"
     "color:#111;background:#fff}input,button,.button{font:inherit;padding:.7rem 1rem;"
-    "margin:.3rem 0;border:2px solid #333;border-radius:.6rem;min-height:3rem}"
+    "margin:.3rem 0;border:2px solid #333;border-radius:.6rem}"
     "button,.button{background:#1d5b2c;color:#fff;display:inline-block;text-decoration:none}"
     ".bad{color:#a00000}code{overflow-wrap:anywhere}"
     "@media(prefers-color-scheme:dark){body{color:#fff;background:#101214}.bad{color:"

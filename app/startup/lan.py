@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import os
 import socket
 import sys
@@ -123,6 +124,7 @@ async def _all(apps: list[tuple[Application, dict[str, Any]]], lines: list[socke
         (uvicorn.Server if k == 0 else _Follower)(uvicorn.Config(app, **settings))
         for k, (app, settings) in enumerate(apps)
     )
+    logging.getLogger("uvicorn.access").disabled = True  # each server's settings switch it on
     tasks = [
         asyncio.create_task(other.serve(sockets=[line]))
         for other, line in zip(others, lines[1:], strict=True)

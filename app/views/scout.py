@@ -31,8 +31,6 @@ def show(choices: Choices) -> None:
         return
     st.html(_STYLE)
     scouting.give_out(choices)
-    with st.expander(texts.INVITE):
-        inviting.show(choices)
     with st.container():  # empty or not: buttons that move are there twice for a moment
         scouting.ask_start(choices)
     plan, progress = choices.plan(), chosen_day.progress(choices)
@@ -45,6 +43,7 @@ def show(choices: Choices) -> None:
             st.button(texts.SCOUT_LONGER, key="scout_hour", on_click=scouting.longer,
                       args=(choices,))  # fmt: skip
         _undo(choices)
+        inviting.show_folded(choices)
         return
     stop = next_stop(plan, progress.inspected_today, choices.units)
     st.markdown(f"## {stop.arrow} {stop.place}")
@@ -64,6 +63,7 @@ def show(choices: Choices) -> None:
     _undo(choices)
     here = marks.places([stop.lonlat], "next", (255, 190, 0), texts.NEXT)
     field_map.want(map_layers.day_map(choices, above=[here], first="state"))
+    inviting.show_folded(choices)
 
 
 def _undo(choices: Choices) -> None:

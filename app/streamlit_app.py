@@ -69,14 +69,20 @@ def in_panel(name: str) -> None:
     head, said, body, foot = (
         st.container(key=f"panel_{k}") for k in ("head", "said", "body", "foot")
     )
-    with head:
+    links_, ways, head = head.container(), head.container(), head.container()
+    with links_:
         links()
     with said:
         waiting = first_screen.FirstScreen(st.empty())
     preload.start().load(map_sent=waiting.begin())
+    from .actions import ways_in  # noqa: PLC0415
     from .actions.bringing_files import show_left_out  # noqa: PLC0415 - as just loaded
     from .actions.choosing import choose, mark_day  # noqa: PLC0415
     from .state import notices  # noqa: PLC0415
+
+    if name == "today" and ways_in.is_first_run():
+        with ways:
+            ways_in.show()
 
     chosen = choose(head, foot, waiting.wait)
     with said:
@@ -120,6 +126,7 @@ def page_prior() -> None:
 
 # a click may end the first run of a page before its boxes are there
 plot_source.begin_from_address()
+rooms.begin_from_address()
 field_map.clear()
 map_place = st.container(key="map_place")
 ROOM_PAGES = {name: page_of(name) for name in rooms.ROOMS}

@@ -15,6 +15,7 @@ FLOORS = [
     {"plot"},
     {"infestation"},
     {"io"},
+    {"decisions"},
     {"samplers"},
     {"planning"},
     {"simulation", "monitoring"},

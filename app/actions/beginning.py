@@ -20,14 +20,19 @@ def show(choices: Choices) -> None:
     with st.form("begin", border=True):
         st.markdown(f"### {texts.BEGIN_TITLE}")
         st.caption(texts.BEGIN_NOTE)
-        proposed = f"{choices.plot.field.name} {choices.on.year}"
-        st.text_input(texts.SEASON_NAME, proposed, key="season_name")
-        st.form_submit_button(texts.BEGIN, type="primary", on_click=_begin, args=(choices,))
+        st.text_input(texts.SEASON_NAME, _proposed(choices), key="season_name")
+        st.form_submit_button(texts.BEGIN, on_click=begin, args=(choices,))
+
+
+def _proposed(choices: Choices) -> str:
+    """Return what a season is called unless somebody says otherwise."""
+    return f"{choices.plot.field.name} {choices.on.year}"
 
 
 @notices.reporting
-def _begin(choices: Choices) -> str:
-    name = st.session_state["season_name"].strip()
+def begin(choices: Choices) -> str:
+    """Keep what is chosen as a season from now on (for callbacks)."""
+    name = st.session_state.get("season_name", _proposed(choices)).strip()
     settings = MonitoringSettings(
         choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior
     )

@@ -18,10 +18,12 @@ if TYPE_CHECKING:
 
     from ..state.brought_files import FileMessage
     from ..state.choices import Choices
+    from ..state.tried_answers import TriedAnswer
 
 _ICONS = {"seen": "👁", "repaired": "🔧", "guessed": "💡", "dropped": "🗑", "doubtful": "⚠️"}
 # questions that another file answers, in a box of its own
 _OTHER_FILES = frozenset({"kind", "plots", "plants"})
+_MOST_BUTTONS = 12
 
 
 # -- boxes
@@ -83,34 +85,51 @@ def show_left_out(choices: Choices) -> None:
             say(one.problem, one.file.asked)
 
 
-def say(error: FieldmonError, asked: str | None = None) -> None:
-    """Show a problem as its sentence; where the file leaves a choice, ask for it by buttons."""
+def say(
+    error: FieldmonError, asked: str | None = None, tried: tuple[TriedAnswer, ...] = ()
+) -> None:
+    """Show a problem as its sentence; where the file leaves a choice, ask for it by buttons.
+
+    What is `tried` is on the map, by the same numbers.
+    """
     asking = brought_files.asking() if asked is None else asked
     if isinstance(error, ChoiceNeeded):
-        st.warning(of_error(error))
-        _ask(error, asking)
+        if tried:
+            st.markdown(f"### {texts.CHOOSE_ON_MAP}")
+            with st.expander(texts.CHOOSE):
+                st.markdown(of_error(error))
+        else:
+            st.warning(of_error(error))
+        _ask(error, asking, {one.answer: one for one in tried})
     else:
         st.error(of_error(error))
     _offer_undo(asking)
 
 
-def _ask(error: ChoiceNeeded, asking: str) -> None:
+def _ask(error: ChoiceNeeded, asking: str, tried: dict[str, TriedAnswer]) -> None:
     if error.option in _OTHER_FILES:
         return
-    label = f"{texts.CHOOSE}: {error.option}"
-    widget = f"ask {asking} {error.option}"
-    if error.choices:
-        st.markdown(texts.CHOOSE_QUICK)
-        with st.container(horizontal=True):
-            for choice in error.choices[:4]:
-                st.button(str(choice), key=f"pick {asking} {choice}",
-                          on_click=brought_files.answer,
-                          args=(asking, error.option, str(choice)))  # fmt: skip
-        st.selectbox(label, error.choices, key=widget, accept_new_options=True)
-    else:
-        st.text_input(label, key=widget)
-    st.button(texts.CHOOSE_BUTTON, key=f"use {asking} {error.option}", type="primary",
-              on_click=_answer_from, args=(asking, error.option, widget))  # fmt: skip
+    offered = [str(choice) for choice in error.choices]
+    for number, answer in enumerate(offered[:_MOST_BUTTONS], start=1):
+        st.button(_label(number, answer, tried.get(answer)), key=f"pick {asking} {answer}",
+                  width="stretch", on_click=brought_files.answer,
+                  args=(asking, error.option, answer))  # fmt: skip
+    label, widget = texts.CHOOSE_OTHER, f"ask {asking} {error.option}"
+    with st.container(horizontal=True, vertical_alignment="bottom"):
+        if error.choices:
+            st.selectbox(label, offered, key=widget, accept_new_options=True)
+        else:
+            st.text_input(label, key=widget)
+        st.button(texts.CHOOSE_BUTTON, key=f"use {asking} {error.option}",
+                  on_click=_answer_from, args=(asking, error.option, widget))  # fmt: skip
+
+
+def _label(number: int, answer: str, one: TriedAnswer | None) -> str:
+    """Return what a button says: what is answered and, where it was tried, where that leads."""
+    if one is None:
+        return answer
+    where = one.zone.replace("_", " ") if one.plots else texts.CHOOSE_NOWHERE
+    return f"{number} · {answer} · {where}"
 
 
 def _answer_from(key: str, option: str, widget: str) -> None:

@@ -37,7 +37,7 @@ def named() -> dict[str, Any]:
 
 def show(name: str, season: Season) -> None:
     """Show who works in the season of this name, and change it on demand."""
-    with st.expander(texts.WHO):
+    with st.expander(texts.WHO, expanded=True):
         settings = season.settings
         wanted = _wanted(name, settings)
         if wanted != settings:

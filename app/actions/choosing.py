@@ -30,7 +30,7 @@ from ..state import (
     work_day,
 )
 from ..state.brought_files import FileMessage
-from ..state.choices import Choices, Chosen
+from ..state.choices import WHOSE_DAY, Choices, Chosen
 from ..state.work_day import Calendar
 from ..words import language, texts
 from ..words.strategies import sampler_does
@@ -173,6 +173,15 @@ def _choose_day(source: str, key: str, calendar: Calendar) -> None:
         work_day.choose(source, day)
 
 
+def whose_day(choices: Choices) -> None:
+    """Let one of a season's team be chosen, whose day is shown and whose findings are recorded."""
+    if len(choices.team) > 1:
+        widget_memory.show(
+            st.segmented_control, texts.WHOSE_DAY, list(choices.team), key=WHOSE_DAY,
+            default=choices.team[0], required=True,
+        )  # fmt: skip
+
+
 def mark_day(choices: Choices) -> None:
     """Say above a page that its day is not today, with the way back."""
     if choices.is_today:
@@ -193,7 +202,7 @@ def _which(file: File, names: list[str]) -> int:
 
 
 def _work() -> tuple[Robot, str]:
-    with st.expander(texts.WHO):
+    with st.expander(texts.WHO, expanded=True):
         who = widget_memory.show(
             st.segmented_control, texts.WHO, list(changing.WHO), key="who",
             default=changing.ROBOT, required=True, label_visibility="collapsed",

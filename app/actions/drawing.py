@@ -13,7 +13,7 @@ from fieldmon.plot.layout import Planting
 
 from ..show import field_map, map_layers
 from ..show.map_view import Drawable, MapAnswers, MapContent
-from ..show.maps import colours, deck, labels, legends, marks, plant_layers
+from ..show.maps import colours, deck, legends, marks, plant_layers
 from ..state import cached, notices, widget_memory
 from ..state.chosen_units import units
 from ..state.plot_edits import GATE, NO_GO, PATH, Edit, points_of
@@ -24,6 +24,7 @@ from ..words.language import of_error
 if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
     from fieldmon.plot.field import Field
+    from fieldmon.plot.plot import Plot
 
     from ..state.choices import Choices
     from ..state.plot_edits import Points
@@ -87,12 +88,17 @@ def tools(choices: Choices) -> None:
                       args=(choices,))  # fmt: skip
 
 
-def content(choices: Choices, records: Observations) -> tuple[MapContent, MapAnswers]:
-    """Return the map on which the gate, paths and no-go areas are drawn, and who hears of it."""
+def content(
+    choices: Choices, records: Observations, before: Plot | None = None
+) -> tuple[MapContent, MapAnswers]:
+    """Return the map on which the gate, paths and no-go areas are drawn, and who hears of it.
+
+    The plot as it was `before` the last change lies under it.
+    """
     field, kind = choices.plot.field, _kind()
     layers = [
-        deck.boundary(field, dark=choices.dark), *_plain_plants(choices), *marks.paths(field),
-        *marks.records(records, dark=choices.dark),
+        *map_layers.plan(choices), *_as_it_was(before), *_plain_plants(choices),
+        *marks.paths(field), *marks.records(records, dark=choices.dark),
     ]  # fmt: skip
     if field.gate is not None:
         layers.append(marks.places([list(field.gate)], "gate", colours.GATE, texts.TIP_GATE))
@@ -104,8 +110,9 @@ def content(choices: Choices, records: Observations) -> tuple[MapContent, MapAns
         draw = Drawable(_SHAPES[kind], kind, texts.DRAW_HINTS[kind], _corners(field))
     made = MapContent(
         **field_map.of_plot(choices), layers=layers, switches=map_layers.switches(layers),
-        legend=legends.signs(dark=choices.dark)[2:], draw=draw,
-        labels=labels.rows(choices.plot.grid),
+        legend=[*legends.signs(dark=choices.dark)[2:], *legends.plan(field, dark=choices.dark)],
+        draw=draw,
+        labels=map_layers.words(choices),
     )  # fmt: skip
     return made, MapAnswers(drawn=partial(_drawn, choices))
 
@@ -115,9 +122,17 @@ def _plain_plants(choices: Choices) -> list:
     grid = choices.plot.grid
 
     def make() -> list:
-        return [plant_layers.plants(grid, colours.plain(len(grid)))]
+        plants = plant_layers.plants(grid, colours.plain(len(grid)))
+        return [marks.rows(grid, "row-lines", colours.ROWS), plants]
 
     return cached.layers(f"plain {choices.key}", make)
+
+
+def _as_it_was(before: Plot | None) -> list:
+    if before is None:
+        return []
+    outline = deck.outline(before.field, "boundary-before", colours.BEFORE)
+    return [marks.rows(before.grid, "rows-before", colours.BEFORE), outline]
 
 
 def _corners(field: Field) -> tuple[tuple[float, float], ...]:

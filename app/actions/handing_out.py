@@ -1,4 +1,4 @@
-"""Handing a day's route out: as a download in any format, and as the route a season keeps."""
+"""Handing a day's route out: to a phone by a picture of its address, and as a file."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.io.writers import FORMATS, HandoffPlan
-from fieldmon.io.writers.geojson import RouteNotes, route_geojson
+from fieldmon.io.writers.geojson import RouteNotes
 
-from ..state import chosen_day, rooms
+from ..show import qr_code
+from ..state import chosen_day, phone
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -23,31 +24,30 @@ if TYPE_CHECKING:
 
 
 def show(choices: Choices, plan: DayPlan) -> None:
-    """Show the buttons, if there is a route."""
-    if not len(plan.route):
-        return
-    notes = RouteNotes(choices.plot.field.name, choices.sampler, chosen_day.starts(choices, plan))
-    with st.container(horizontal=True):
-        st.download_button(
-            texts.DOWNLOAD, partial(route_geojson, plan.route, notes),
-            f"route_{choices.day}.geojson", "application/geo+json", type="primary",
-            on_click="ignore",
-        )  # fmt: skip
-        with st.popover(texts.OTHER_FORMATS):
-            _other_formats(choices, HandoffPlan(plan.route, notes))
-        if choices.season is not None:
-            _give_out(choices)
+    """Show both ways."""
+    where = phone.address(choices)
+    if where.reachable:
+        st.markdown(texts.SEND_SCAN)
+        st.html(qr_code.image(where.url, texts.SEND_ALT))
+        st.code(where.url, language=None, wrap_lines=True)
+    else:
+        st.info(texts.SEND_ALONE)
+    st.markdown(texts.SEND_FILE)
+    starts = chosen_day.starts(choices, plan)
+    notes = RouteNotes(choices.plot.field.name, choices.sampler, starts, choices.who)
+    _files(choices, HandoffPlan(plan.route, notes))
 
 
-def _other_formats(choices: Choices, plan: HandoffPlan) -> None:
+def _files(choices: Choices, plan: HandoffPlan) -> None:
     """Offer the route in the formats of robots, phones and paper."""
-    name = st.selectbox(texts.FORMAT, list(FORMATS), key="format", filter_mode=None,
-                        format_func=lambda one: f"{one}: {_reader(one)}")  # fmt: skip
+    name = st.selectbox(texts.FORMAT, list(FORMATS), list(FORMATS).index("gpx"), key="format",
+                        filter_mode=None, label_visibility="collapsed",
+                        format_func=lambda one: f"{_reader(one)}: {one}")  # fmt: skip
     chosen = FORMATS[name]
     ending = f".{name}.zip" if chosen.several else chosen.endings[0]
     st.download_button(
         texts.DOWNLOAD_AS.format(reader=_reader(name)), partial(made, chosen, plan),
-        f"route_{choices.day}{ending}", key="download_format", on_click="ignore",
+        f"route_{choices.day}{ending}", key="download_format", type="primary", on_click="ignore",
     )  # fmt: skip
 
 
@@ -66,16 +66,3 @@ def made(chosen: HandoffFormat, plan: HandoffPlan) -> bytes:
         for ending, data in files.items():
             archive.writestr(f"route{ending}", data)
     return packed.getvalue()
-
-
-def _give_out(choices: Choices) -> None:
-    if st.button(texts.GIVE_OUT, help=texts.GIVE_OUT_HELP, key="give_out"):
-        choices.season.plan(choices.on, wishes=choices.wishes)
-        st.toast(texts.GIVEN_OUT.format(day=choices.units.day(choices.day)))
-    with st.container(key="start_scouting", width="content"):
-        st.button(texts.START_SCOUTING, key="begin_scouting", icon=":material/eco:",
-                  on_click=_open_scouting)  # fmt: skip
-
-
-def _open_scouting() -> None:
-    rooms.open_part("scout")

@@ -14,6 +14,7 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.options import Upload
 from fieldmon.plot.grid import plant_at, row_label
 
+from ..show import plant_history
 from ..state import chosen_day, notices, unconfirmed
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
@@ -31,13 +32,13 @@ def show(choices: Choices) -> None:
     st.markdown(f"**{texts.RECORD} · {choices.units.day(choices.day)}**")
     st.caption(texts.RECORD_NOTE)
     _ask_about_contradictions(choices)
-    route, one, file, treat = st.tabs(
-        [texts.RECORD_ROUTE, texts.RECORD_ONE, texts.RECORD_UPLOAD, texts.TREAT]
+    one, route, file, treat = st.tabs(
+        [texts.RECORD_ONE, texts.RECORD_ROUTE, texts.RECORD_UPLOAD, texts.TREAT]
     )
-    with route:
-        _show_route(choices)
     with one:
         _show_one(choices)
+    with route:
+        _show_route(choices)
     with file:
         _show_file(choices)
     with treat:
@@ -47,7 +48,17 @@ def show(choices: Choices) -> None:
 # -- one plant
 
 
+def take_plant(choices: Choices, layer: str, index: int) -> None:
+    """Take the plant that was tapped as the one to be recorded; nothing is recorded by it."""
+    if layer.startswith("plants"):
+        label = row_label(choices.plot.grid, np.array([min(index, len(choices.plot.grid) - 1)]))
+        st.session_state["one_row"] = int(label.line[0])
+        st.session_state["one_plant"] = int(label.number[0])
+        plant_history.take_plant(choices, layer, index)
+
+
 def _show_one(choices: Choices) -> None:
+    st.caption(texts.HISTORY_TAP)
     with st.form("one_plant_form", border=False):
         left, right = st.columns(2)
         # empty: what nobody said must not be recorded by one click
@@ -147,7 +158,7 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
 def _recorded(choices: Choices, results: Inspections, source: str) -> str:
     """Record results; those that contradict what is recorded wait until somebody says so."""
     try:
-        done = choices.season.record(results, source)
+        done = choices.season.record(results, source, choices.who or "")
     except ContradictionError:
         unconfirmed.keep(Unconfirmed(choices.key, results, source))
         return ""
@@ -218,7 +229,8 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
     waiting = unconfirmed.of(choices.key)
     if waiting is None:
         return ""
-    done = choices.season.record(waiting.results.take(which), waiting.source, confirmed=True)
+    taken, who = waiting.results.take(which), choices.who or ""
+    done = choices.season.record(taken, waiting.source, who, confirmed=True)
     unconfirmed.drop()
     return texts.RECORDED.format(new=done.new, known=done.known)
 

@@ -17,7 +17,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.infestation.observations import ABSENT, PRESENT
-from fieldmon.monitoring.day_ahead import planned_again, route_ahead
+from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
 from fieldmon.monitoring.derived_layers import spot_area
 from fieldmon.monitoring.photos import photos_of
 from fieldmon.plot.local_clock import local_clock, utc_now
@@ -69,8 +69,11 @@ def day_document(season: Season, scout: Scout, on: date | None) -> bytes:
     """Return a day as it stands: the route left for this person, what is believed and known."""
     on = _day(season, on)
     number = season.settings.day(on)
-    history, robot = season.history, season.settings.robot
-    route = route_ahead(season, on, scout.rows)
+    part = Part(scout.rows, scout.name)
+    route, history = route_ahead(season, on, part), season.history
+    member = part.member(season)
+    scene = season.scene(on, who="" if member is None else member.name)
+    robot = scene.robot
     known = history.known(number)
     document = {
         "season": season.path.stem,
@@ -87,7 +90,7 @@ def day_document(season: Season, scout: Scout, on: date | None) -> bytes:
             "visit_s": robot.visit_s,
             "returns": robot.returns,
         },
-        "seconds_left": season.scene(on).seconds_left,
+        "seconds_left": scene.seconds_left,
         "route": _route(route),
         # evening: what was found today counts
         "chance": np.round(season.evening(on) * 1000).astype(int).tolist(),
@@ -106,7 +109,7 @@ def rest_document(
 ) -> bytes:
     """Return the rest of a day, planned anew with all that is known."""
     on = _day(season, on)
-    route = planned_again(season, on, scout.rows, seconds_left)
+    route = planned_again(season, on, Part(scout.rows, scout.name), seconds_left)
     return _json({"day": on.isoformat(), "route": _route(route)})
 
 

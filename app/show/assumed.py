@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.units import in_unit
+
 from ..words import texts
-from ..words.language import number
-from ..words.units import in_unit
+from ..words.language import in_words, number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,7 +33,7 @@ def mark(label: str, assumed: Sequence[Assumed], settings: Sequence[str]) -> str
 
 def _words(one: Assumed, units: UnitsInLanguage) -> str:
     if one.setting in _LENGTHS:
-        value = in_unit(units.shown(one.value), "g", units.length)
+        value = in_words(in_unit(units.shown(one.value), "g", units.length))
     elif one.setting == "speed_m_s":
         value = number(3.6 * one.value, ".3g")
     else:

@@ -51,6 +51,12 @@ def headline(choices: Choices, plan: DayPlan) -> str:
     return in_words(sentences.headline(plan.route, choices.units.day(choices.day)))
 
 
+def plan_in_short(plan: DayPlan) -> str:
+    """Return how many plants there are to inspect, and how long it takes."""
+    plants = texts.PLANTS_COUNTED.format(n=len(plan.route))
+    return f"{plants}, {hours(plan.route.end_s / 3600)}"
+
+
 def route_figures(choices: Choices, plan: DayPlan) -> None:
     """Show the figures to decide by."""
     route, n = plan.route, len(choices.plot.grid)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import timedelta
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -21,18 +22,23 @@ from .maps import plant_layers
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
-    from .map_view import MapContent, Selected
+    from .map_view import MapContent, Selected, Tapped
 
 _ROW, _PLANT, _TAPPED = "history row", "history plant", "history tapped"
 
 
-def want(choices: Choices, content: MapContent, selected: Selected | None = None) -> None:
+def want(
+    choices: Choices, content: MapContent, selected: Selected | None = None,
+    tapped: Tapped | None = None, picked: tuple[int, ...] = (),
+) -> None:  # fmt: skip
     """Want a map on which a tap chooses the plant whose history is shown, with a ring round it.
 
-    `selected` hears of the plants that are selected on it.
+    `selected` hears of the plants that are selected on it, `tapped` of what is tapped instead;
+    `picked` are the plants selected by now.
     """
     chosen = replace(content, layers=[*content.layers, *layers(choices)])
-    field_map.want(chosen, MapAnswers(partial(take_plant, choices), selected=selected))
+    taking = tapped or partial(take_plant, choices)
+    field_map.want(chosen, MapAnswers(taking, selected=selected, picked=picked))
 
 
 def take_plant(choices: Choices, layer: str, index: int) -> None:
@@ -76,10 +82,22 @@ def show(choices: Choices) -> None:
     if choices.season is not None:
         first = chosen_day.morning(choices, str(choices.season.settings.begins))
     st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
+    st.caption(texts.HISTORY_CHANCE)
+    st.markdown(_on_route(choices, plant))
     if _taken_as_treated(choices, plant):
         st.caption(texts.HISTORY_TREATED)
     for line in _inspections(choices, plant):
         st.markdown(line)
+
+
+def _on_route(choices: Choices, plant: int) -> str:
+    """Return which stop of the day's route the plant is, and when."""
+    shown = chosen_day.route(choices)
+    stops = np.flatnonzero(shown.route.plant == plant)
+    if not len(stops):
+        return texts.HISTORY_NO_STOP
+    at = shown.begins + timedelta(seconds=round(float(shown.route.arrive_s[stops[0]])))
+    return texts.HISTORY_STOP.format(n=int(stops[0]) + 1, all=len(shown.route), time=f"{at:%H:%M}")
 
 
 def _taken_as_treated(choices: Choices, plant: int) -> bool:

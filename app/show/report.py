@@ -9,6 +9,7 @@ from fieldmon.reports.day import DayFacts, day_report, results_on
 from fieldmon.reports.settings_rows import WorkSettings
 
 from ..state import assumptions, cached, chosen_day
+from ..words import language
 
 if TYPE_CHECKING:
     from fieldmon.reports.content import Report
@@ -18,9 +19,10 @@ if TYPE_CHECKING:
 
 def of_season(choices: Choices) -> Report:
     """Return the report of the season up to the chosen day."""
-    return cached.season_report(
+    made = cached.season_report(
         choices.key, choices.revision, choices.day, choices.units.of_library, choices.season
     )
+    return made.said_in(language.tongue(language.current()))
 
 
 def of_day(choices: Choices) -> Report:
@@ -33,7 +35,8 @@ def of_day(choices: Choices) -> Report:
         chosen_day.found(choices), shown.worked,
         {} if season is None else results_on(season, choices.on),
     )  # fmt: skip
-    return day_report(facts, choices.units.of_library)
+    made = day_report(facts, choices.units.of_library)
+    return made.said_in(language.tongue(language.current()))
 
 
 def _settings(choices: Choices) -> WorkSettings:

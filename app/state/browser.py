@@ -18,3 +18,8 @@ def language() -> str:
     # what Java called Hebrew once
     code = said.split(";")[0].split("-")[0].strip().lower().replace("iw", "he")
     return code if code in LANGUAGES else ENGLISH
+
+
+def is_phone() -> bool:
+    """Return whether it is a phone's browser."""
+    return "Mobi" in (st.context.headers.get("User-Agent") or "")

@@ -25,7 +25,16 @@ ROOMS = {
 }
 
 
+#: the word in the address that names a part, as the one that a phone is sent to
+KEY = "part"
 _TURN = "turn to"
+
+
+def begin_from_address() -> None:
+    """Show the part that the address names, once."""
+    part = st.query_params.pop(KEY, None)
+    if any(part in room.parts for room in ROOMS.values()):
+        open_part(part)
 
 
 def turn_to(name: str) -> None:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import streamlit as st
 
-from fieldmon.errors import PlotError
+from fieldmon.errors import ChoiceNeeded, PlotError
 
-from ..actions import bringing_files, drawing, rasters
-from ..show import field_map, plot_figures
+from ..actions import bringing_files, drawing, laying_ground, rasters
+from ..show import answers_map, field_map, plot_figures
 from ..show.assumed import sentence
+from ..show.map_view import MapAnswers
 from ..show.records import records_until
-from ..state import chosen_day, plot_files, plot_source
+from ..state import brought_files, browser, chosen_day, plot_before, plot_files, plot_source, rooms
 from ..state.row_settings import row_settings
+from ..state.tried_answers import tried
 from ..words import texts
 from ..words.language import in_words
 
@@ -22,6 +25,7 @@ if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
 
     from ..state.choices import Choices
+    from ..state.tried_answers import TriedAnswer
 
 
 def bring(problem: FieldmonError | None) -> None:
@@ -32,19 +36,37 @@ def bring(problem: FieldmonError | None) -> None:
     if plot_source.chosen() == plot_source.FILES:
         bringing_files.show()
     if problem is not None:
-        bringing_files.say(problem)
+        answers = tried(problem)
+        bringing_files.say(problem, tried=answers)
+        looked_at = answers_map.content(answers, browser.is_dark())
+        if looked_at is not None:
+            field_map.want(looked_at, MapAnswers(tapped=partial(_tapped, problem, answers)))
         laying = plot_files.laying()
         # what was set by hand may be what is wrong: it must stay within reach
         if isinstance(problem, PlotError) and any(row_settings(laying).values()):
             drawing.rows(laying)
 
 
+def _tapped(problem: FieldmonError, tried: tuple[TriedAnswer, ...], layer: str, n: int) -> None:
+    """Take the answer that was tapped on the map."""
+    answer = answers_map.tapped(tried, layer, n)
+    if isinstance(problem, ChoiceNeeded) and answer is not None:
+        brought_files.answer(brought_files.asking(), problem.option, answer)
+
+
 def show(choices: Choices) -> None:
     """Show the plot as it was understood, and change what was not."""
-    if plot_source.chosen() == plot_source.FILES:
-        bringing_files.show()
+    st.button(texts.TO_ROUTE, key="to_route", type="primary", on_click=rooms.turn_to,
+              args=("today",))  # fmt: skip
     plot_figures.show(choices.plot, choices.units)
+    before = plot_before.plot_before(choices) if choices.season is None else None
+    if before is not None:
+        st.caption(texts.BEFORE_NOTE)
+        st.button(texts.BEFORE_DROP, key="forget_before", on_click=plot_before.forget)
     st.caption(sentence(choices.plot.assumed, choices.units))
+    if plot_source.chosen() == plot_source.FILES:
+        with st.expander(texts.FILES):
+            bringing_files.show()
     records, said = records_until(choices.records)
     if choices.season is None:
         drawing.tools(choices)
@@ -53,12 +75,13 @@ def show(choices: Choices) -> None:
         rasters.show_risk()
     else:
         st.info(texts.FIXED)
+    laying_ground.show(choices)
     with st.expander(texts.MESSAGES, expanded=True):
         bringing_files.show_messages(choices.messages)
         for message in chosen_day.messages_on_records(choices):
             st.markdown(f"- {in_words(message)}")
     _say_records(choices, said)
-    field_map.want(*drawing.content(choices, records))
+    field_map.want(*drawing.content(choices, records, before))
 
 
 def _say_records(choices: Choices, said: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
 
 def show(choices: Choices) -> None:
     """Take in what was found."""
-    plant_history.want(choices, map_layers.day_map(choices, first="state"))
+    content = map_layers.day_map(choices, first="state")
+    plant_history.want(choices, content, tapped=partial(recording.take_plant, choices))
     if choices.season is None:
         st.markdown(texts.NEEDS_SEASON)
         beginning.show(choices)

@@ -9,13 +9,16 @@ from __future__ import annotations
 import ast
 from dataclasses import dataclass
 from pathlib import Path
+from string import Formatter
 from typing import TYPE_CHECKING, Any
 
 from babel.messages.catalog import Catalog
 from babel.messages.pofile import read_po, write_po
 
 import fieldmon
+from fieldmon.compute.units import IN_UNIT
 from fieldmon.reports import words as report_words
+from fieldmon.samplers import of_equal_times
 
 from . import texts
 from .language import ENGLISH, FOLDER, LANGUAGES, LIBRARY, SAME, Plural
@@ -25,6 +28,7 @@ if TYPE_CHECKING:
 
 #: functions of the library that word a sentence: their first argument is what is translated
 _WORDING = frozenset({"worded"})
+_SAME_ON_PAPER = frozenset({report_words.FOOTER})
 
 
 @dataclass(frozen=True)
@@ -63,21 +67,50 @@ def _within(context: str, value: Any) -> Iterator[Entry]:  # noqa: ANN401 - a te
 
 def of_library() -> list[Entry]:
     """Return the sentences that the library words, as its source has them."""
-    found: dict[str, Entry] = {}
+    found = {entry.words: entry for entry in _of_reports()}
     for path in sorted(Path(fieldmon.__file__).parent.rglob("*.py")):
         if "_app" in path.parts:
             continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            entry = None
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.args:
                 entry = _worded(node.func.id, node.args)
-                if entry is not None:
-                    found.setdefault(entry.words, entry)
+            elif (many := _of_many(node)) is not None:
+                entry = Entry(LIBRARY, many)
+            if entry is not None:
+                found.setdefault(entry.words, entry)
     return list(found.values())
+
+
+def _of_reports() -> Iterator[Entry]:
+    """Yield what reports write without wording it: headings, units, names of samplers."""
+    titles = [kind.title for kind in of_equal_times().values()]
+    for value in (*report_words.TEXTS.values(), *IN_UNIT.values(), *titles):
+        for entry in _within(LIBRARY, value):
+            if entry.words not in _SAME_ON_PAPER and _has_letters(entry.words):
+                yield Entry(LIBRARY, entry.words)
+
+
+def _has_letters(words: str) -> bool:
+    said = (literal for literal, *_ in Formatter().parse(words))
+    return any(letter.isalpha() for one in said for letter in one)
+
+
+def _of_many(node: ast.AST) -> str | None:
+    """Return what is said of many features at once (see `ImportMessage.many`), if it is that."""
+    named = (isinstance(node, ast.keyword) and node.arg == "many") or (
+        isinstance(node, ast.Assign)
+        and isinstance(node.targets[0], ast.Name)
+        and node.targets[0].id == "many"
+    )
+    value = getattr(node, "value", None) if named else None
+    said = value.value if isinstance(value, ast.Constant) else None
+    return said if isinstance(said, str) and said else None
 
 
 def _worded(function: str, arguments: list[ast.expr]) -> Entry | None:
     said = [_value(one) for one in arguments if isinstance(one, ast.Constant | ast.Attribute)]
-    if function in _WORDING and said and isinstance(said[0], str):
+    if function in _WORDING and said and isinstance(said[0], str) and _has_letters(said[0]):
         return Entry(LIBRARY, said[0])
     if function == "counted" and said and isinstance(said[-1], str):
         return Entry(LIBRARY, f"{{n}} {said[-1]}s", f"{{n}} {said[-1]}")

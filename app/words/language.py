@@ -8,6 +8,7 @@ as the language writes them, and a text that names a count takes the form that t
 from __future__ import annotations
 
 import gettext
+import re
 from contextvars import ContextVar
 from functools import cache
 from io import BytesIO
@@ -17,6 +18,8 @@ from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
 from fieldmon.compute.wording import Worded
+from fieldmon.reports.tongue import ENGLISH as ENGLISH_TONGUE
+from fieldmon.reports.tongue import Tongue
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,6 +34,10 @@ FOLDER = Path(__file__).with_name("languages")
 LIBRARY = "fieldmon"
 #: names, signs and files, which are the same in every language
 SAME = frozenset({"TITLE", "ARROWS", "MAP_WORDS.picture_name", "MAP_WORDS.film_name"})
+
+# signs that embed, override or isolate a direction, and their ends (Unicode Standard Annex 9)
+_TURNING = re.compile("[\u202a-\u202e\u2066-\u2069]")
+_LEADING = re.compile(r"\](?=[\[(:])|!(?=\[)|:(?=//)|www(?=\.)|(?<=\S)@(?=\S)", re.IGNORECASE)
 
 _NOW: ContextVar[str | None] = ContextVar("language", default=None)
 _ASKED: list[Callable[[], str]] = []
@@ -158,7 +165,7 @@ def _in_language(language: str, context: str, value: Any) -> Any:  # noqa: ANN40
 
 
 @cache
-def _catalogue(language: str) -> gettext.GNUTranslations:
+def _catalogue(language: str) -> _Catalogue:
     """Return a language's texts, read once."""
     from babel.messages.mofile import write_mo  # noqa: PLC0415 - who reads English needs none
     from babel.messages.pofile import read_po  # noqa: PLC0415
@@ -167,9 +174,18 @@ def _catalogue(language: str) -> gettext.GNUTranslations:
     with (FOLDER / f"{language}.po").open("rb") as file:
         write_mo(written, read_po(file, locale=language))
     written.seek(0)
-    found = gettext.GNUTranslations(written)
+    found = _Catalogue(written)
     found.add_fallback(_Unknown())
     return found
+
+
+class _Catalogue(gettext.GNUTranslations):
+    """A language's texts."""
+
+    def words(self) -> list[str]:
+        """Return all of them."""
+        texts_: dict[object, str] = self._catalog  # type: ignore[attr-defined]
+        return [*texts_.values()]
 
 
 class _Unknown(gettext.NullTranslations):
@@ -188,13 +204,24 @@ class _Unknown(gettext.NullTranslations):
 def in_words(sentence: str) -> str:
     """Return a sentence of the library in the current language.
 
-    One that nobody has translated stays English, and is marked as such.
+    One that nobody has translated stays English, and is marked as such. Names of files and plots
+    stand in it, so nothing in it leads anywhere.
     """
     language = current()
     if language == ENGLISH or not sentence:
-        return str(sentence)
+        return leading_nowhere(str(sentence))
     said = _said(sentence, language)
-    return marked_as_english(sentence) if said is None else said
+    return leading_nowhere(marked_as_english(sentence) if said is None else said)
+
+
+def leading_nowhere(text: str, *, turning: bool = True) -> str:
+    """Return a text of a file in which nothing becomes a link or a picture of the internet.
+
+    What Markdown or a browser would take for one is parted by a sign that nobody sees. Unless
+    `turning`, signs that turn the direction are left out.
+    """
+    text = text if turning else _TURNING.sub("", text)
+    return _LEADING.sub("\\g<0>\u2060", text)
 
 
 def of_error(error: BaseException) -> str:
@@ -222,13 +249,38 @@ def _said(sentence: object, language: str) -> str | None:
         form = found.npgettext(LIBRARY, sentence.one, sentence.words, sentence.number)
     else:
         form = found.pgettext(LIBRARY, sentence.words)
+    if not form and _is_wordless(sentence.words):
+        form = sentence.words
     if not form:
         return None
+    if not sentence.values:  # whoever shows it fills its blanks
+        return form
     values = {
         name: value if (made := _said(value, language)) is None else made
         for name, value in sentence.values.items()
     }
     return _filled(form, language, (), values)
+
+
+def _is_wordless(words: str) -> bool:
+    """Return whether nothing is to be translated: numbers, signs, and other sentences."""
+    return not any(
+        letter.isalpha() for literal, *_ in Formatter().parse(words) for letter in literal
+    )
+
+
+@cache
+def tongue(language: str) -> Tongue:
+    """Return a language for reports."""
+    if language == ENGLISH:
+        return ENGLISH_TONGUE
+    found = _catalogue(language)
+
+    def say(sentence: str) -> str:
+        return _said(sentence, language) or str(sentence)
+
+    letters = "".join(sorted({*"".join(found.words()), *ENGLISH_TONGUE.letters}))
+    return Tongue(language, say, language in RIGHT_TO_LEFT, letters)
 
 
 # -- numbers and dates

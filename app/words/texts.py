@@ -15,8 +15,11 @@ from .language import Plural
 
 
 def isolated(name: str) -> str:
-    """Return a name that reads right inside any sentence, whatever its script and direction."""
-    return f"\u2068{name}\u2069"
+    """Return a name that reads right inside any sentence, whatever its script and direction.
+
+    Signs of its own that turn the direction end with it, and it leads nowhere.
+    """
+    return f"\u2068{language.leading_nowhere(name, turning=False)}\u2069"
 
 
 TITLE = "fieldmon"
@@ -40,6 +43,7 @@ PLOT_FROM = "Plot or season"
 PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
 RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
 PLANT_FILE = "Measured plant positions (optional)"
+FILES = "Files: the plot, pest records, measured plants"
 KEPT_FILE = "In use: {name}"
 FORGET_FILE = "Take it out"
 WHICH_PLOT = "Which plot"
@@ -90,7 +94,6 @@ BOUND_HELP = (
     "Whichever plants it visits, no route fixed in the morning can expect more finds. Who plans "
     "again after each find may find more."
 )
-DOWNLOAD = "Download the route (GeoJSON)"
 NO_STOPS = (
     "The working day is too short to reach a plant and come back. Give more hours below, under "
     "Who inspects."
@@ -99,7 +102,11 @@ MESSAGES = "What the import found"
 MESSAGES_NONE = "Nothing to report: the files were read as they are."
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
-CHOOSE_QUICK = "Most likely:"
+CHOOSE_ON_MAP = "Which of these is your plot? Click it on the map, or choose here."
+CHOOSE_OTHER, CHOOSE_NOWHERE = "Another answer", "leads nowhere"
+LEGEND_ZONE = "border of a time zone"
+ANSWERS_ALT = Plural("Map of {n} place where the plot could lie.",
+                     "Map of {n} places where the plot could lie.")  # fmt: skip
 LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
 UNDO_ANSWER = "Take back: {option} = {value}"
 SEVERITIES = {
@@ -126,8 +133,13 @@ MAP_WORDS = {
     "draw_hint": "Click on the map.", "draw_back": "Back", "draw_drop": "Drop",
     "draw_done": "Finish",
     "play_season": "Play the season", "day": "Day", "film": "Save the season as a film",
-    "film_name": "season.webm",
-    "lasso_hint": "Draw round the plants.", "corners": "{n} point(s)",
+    "film_name": "season",
+    "lasso_hint": "Draw round the plants; with Shift, to those selected before.",
+    "select_rows": "Select rows", "rows_hint": "Tap plants or row numbers: a whole row each.",
+    "too_many": "At most {most} plants can be selected at once.",
+    "keys": "Map. Arrow keys move it, plus and minus zoom, Enter opens what is under the cross, "
+            "Escape leaves.", "corners": "{n} point(s)",
+    "ground": "Ground", "ground_away": "The ground's pictures cannot be reached.",
     "scale": "The scale bar is {bar} long; the arrow points north.",
 }  # fmt: skip
 SEASON_INTRO = (
@@ -173,7 +185,7 @@ LANGUAGE = "Language"
 MACHINE_MADE = "Translated by a machine; no native speaker has read it yet."
 UNITS = {"m": "m", "km": "km", "ft": "ft", "mi": "mi", "ha": "ha", "dunam": "dunam",
          "acre": "acre"}  # fmt: skip
-IN_UNIT, IN_HOURS = "{value} {unit}", "{hours} h"
+IN_HOURS = "{hours} h"
 IN_PERCENT = "{value} %"
 STOP_NUMBER = "stop"
 
@@ -203,7 +215,37 @@ PLOTS_TIP_NEW = "{name}: no season yet"
 PLOTS_SEEN = {0: "seen today", None: "never seen",
               "n": Plural("seen {n} day ago", "seen {n} days ago")}  # fmt: skip
 PLOTS_PICK = "Click a plot on the map, or a row here."
-WAYS_IN = {"sample": "Try the sample estate", "file": "Bring a plot of mine"}
+PLAN_ALL = "Plan all that are due"
+PLAN_ALL_OFF = "Without the plan"
+PLAN_ALL_CREW = {"robots": "Robots", "robot_hours": "Hours of each robot", "scouts": "Scouts",
+                 "scout_hours": "Hours of each scout",
+                 "move_min": "Minutes from plot to plot"}  # fmt: skip
+ROBOT_NAMED, SCOUT_NAMED = "robot {n}", "scout {n}"
+PLAN_ALL_LEAD = Plural(
+    "{plants} plants on {n} plot; expect {finds:.0f} finds.",
+    "{plants} plants on {n} plots; expect {finds:.0f} finds.",
+)
+PLAN_ALL_NONE = "Nothing is due today: every plot was seen today."
+PLAN_ALL_RULE = (
+    "Plots come in the order of the infested plants expected there. Each goes to whoever then has "
+    "most time for it, and everybody shares his hours among his plots by what is expected. A plot "
+    "that would get less than a quarter of an hour waits. From plot to plot takes so many minutes, "
+    "wherever they lie."
+)
+PLAN_ALL_WAITING = "No time today: {names}."
+PLAN_ALL_FREE = "Free today: {names}."
+PLAN_ALL_WORKING = "Planning the plots ..."
+PLAN_ALL_DOWNLOAD = "Download all routes"
+PLAN_ALL_COLUMNS = {"who": "who", "from": "from", "to": "to", "plants": "plants to inspect",
+                    "finds": "finds expected"}  # fmt: skip
+PLOTS_LABEL = "{name}\n{who}, {start}-{end}"
+WAYS_IN = {"sample": "Try the sample", "file": "My plot", "season": "Open a season"}
+NO_SEASONS = (
+    "There is no season here yet. One begins with a plot: bring yours or try the sample, then "
+    "press Begin a season on Today. Seasons are files in the folder {folder}: one that was made "
+    "elsewhere is opened by putting it there."
+)
+TO_ROUTE = "Show today's route"
 
 # -- today
 PLANTS_COUNTED = Plural("{n} plant", "{n} plants")
@@ -214,9 +256,26 @@ BEGIN_NOTE = (
 )
 SEASON_NAME, BEGIN = "Name of the season", "Begin the season"
 BEGUN = "Season {name} has begun. Its file is {path}."
-START_SCOUTING, GIVE_OUT = "Start scouting", "Give this route out"
-GIVEN_OUT = "This route is kept with the season as given out for {day}."
-GIVE_OUT_HELP = "Keeps the route with the season, so that the report can hold it to what was done."
+START_SCOUTING = "Start scouting"
+YESTERDAY = "Yesterday"
+STEPS = {"look_back": "Day before", "plan": "Plan", "begin": "Keep it", "send": "Take along",
+         "record": "Record", "report": "Report", "next_day": "Next day"}  # fmt: skip
+STEP_BUTTONS = {"look_back": "Look back", "plan": "Use this plan", "begin": "Begin a season",
+                "send": "Send to phone", "record": "Record finds", "report": "Print (PDF)",
+                "next_day": "Plan the next day"}  # fmt: skip
+STEP_NOTHING = "nothing recorded"
+STEP_FOUND = Plural(
+    "{found} found on {inspected} plant", "{found} found on {inspected} plants", by="inspected"
+)
+PLAN_USED = "This is the plan for {day}: it is kept with the season."
+SEND_TITLE = "Take the route along"
+SEND_SCAN = "**Point the phone's camera here.** It opens the day's work, in the phone's language."
+SEND_ALT = "Picture with the address of the day's work, for a phone's camera."
+SEND_ALONE = (
+    "This page can be seen on this computer only, so a phone cannot open it. Take the route along "
+    "as a file; or let others in, as the documentation says, and come here by that address."
+)
+SEND_FILE = "**Or as a file**, for phones, robots and paper:"
 WHY, WHY_TODAY = "Why there", "today"
 CHANGED = "Since yesterday"
 CHANGED_FIRST = "This is the first day of the season; from tomorrow, changes stand here."
@@ -240,7 +299,7 @@ TODAY_DONE = Plural(
     "{inspected} plants inspected today so far, {found} found. The route shows the rest.",
     by="inspected",
 )
-OTHER_FORMATS, FORMAT, DOWNLOAD_AS = "Robot, phone, paper", "Format", "Download for {reader}"
+FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
 #: as `fieldmon.io.writers.handoff` says them, which takes long to load
 READERS = {
     "nav2": "robots with Nav2 (ROS 2)", "waypoints": "robots of any kind",
@@ -255,13 +314,21 @@ MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {fin
 # -- what stands beside a thing on the map that is pointed at
 TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start and end", "path"
 TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
+TIP_SEEN_TODAY, TIP_NEVER = "{result} today", "never inspected"
+TIP_SEEN_BEFORE = Plural("{result} {n} day ago", "{result} {n} days ago")
+TIP_LOOKS = Plural(", inspected {n} time", ", inspected {n} times")
+TIP_FINDS = Plural(", found {n} time", ", found {n} times")
 TIP_HOT = "hot spot: {found} found of {inspected} inspected"
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
-TIP_INFESTED, TIP_CORNER = "infested", "corner"
+TIP_INFESTED, TIP_CORNER, TIP_NO_GO = "infested", "corner", "no-go area: not driven through"
+LABEL_GATE, LABEL_NO_GO, LABEL_BLOCK = "gate", "no-go", "block {n}"
+LEGEND_HEADLAND, LEGEND_AISLE, LEGEND_NO_GO = "headland", "aisle", "no-go area"
 
 # -- plot and records
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
 BEARING_IS, SPACING_IS = "Row bearing", "Rows / plants apart"
+BEFORE_NOTE = "The plot as it was before the last change is drawn in orange."
+BEFORE_DROP = "It is right now"
 FOUND_ROWS = "Leave a box empty to take what was found. Plants are laid again at once."
 FIXED = "The plants of a season are laid once and for all: its plant numbers stay valid."
 DRAW, DRAW_KIND = "Gate, paths, no-go areas", "A click on the map sets"
@@ -306,20 +373,58 @@ UNDATED = "Records without a date are always shown."
 # -- the map of the field
 SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspected",
           "age": "days since inspected"}  # fmt: skip
-MAP_LAYERS = {"route": "route", "numbers": "stop numbers", "hot": "hot spots",
-              "records": "records", "rows": "row numbers", "backdrop": "picture"}  # fmt: skip
-BACKDROP_TITLE, HOT_TITLE = "Picture of the ground", "Hot spots"
-BACKDROP = "Picture of the ground (GeoTIFF)"
+MAP_LAYERS = {"before": "as it was before", "route": "route", "numbers": "stop numbers",
+              "hot": "hot spots", "records": "records", "rows": "row numbers",
+              "plan": "plan of the plot", "ground": "ground"}  # fmt: skip
+HOT_TITLE = "Hot spots"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
 HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
 HISTORY_NOW = "Chance of infestation now: **{now:.1%}** (first morning: {first:.1%})."
+HISTORY_CHANCE = (
+    "A chance says all that is believed of one plant, so it has no interval of its own; sums of "
+    "many plants have one, see Season."
+)
 HISTORY_TREATED = (
     "It was found infested, and in this season plants found are taken as treated at once: from "
     "then on it counts as clean, and its chance grows again as insects come from its neighbours."
 )
+HISTORY_STOP = "Stop {n} of {all} on the day's route, at {time}."
+HISTORY_NO_STOP = "Not on the day's route."
 HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
 HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}
+
+# -- the ground under the plot
+GROUND = "Ground under the plot"
+GROUND_NOTE = (
+    "So that the plot is recognised at a glance. A file stays on this machine; nothing is asked of "
+    "the internet for it."
+)
+GROUND_FILE = "Picture or heights (GeoTIFF), or a map in tiles (MBTiles, PMTiles)"
+GROUND_SHOWS = "The file shows"
+GROUND_KINDS = {"picture": "a picture of the ground", "heights": "heights, drawn as relief"}
+GROUND_KEPT = "Kept with the season: {name}"
+WEB_MAP = "Map from the internet"
+WEB_MAPS = {"": "none", "osm": "OpenStreetMap", "other": "another, by its address"}
+WEB_MAP_ADDRESS = "Address of its tiles"
+WEB_MAP_HELP = (
+    "As a provider of aerial pictures writes it, with {z}, {x} and {y} ({-y} where rows count from "
+    "the south). Whether you may use it, the provider says."
+)
+WEB_MAP_LIKE = (
+    "The address of a map must begin with https:// and hold {{z}}, {{x}} and {{y}} after the "
+    "server's name, but it is {address!r}. Copy it as the provider writes it."
+)
+WEB_MAP_ASK = (
+    "**Ask {host} for pictures?** Each browser that shows this plot then asks {host} for pictures "
+    "of the area in view. {host} learns that browser's internet address, and which area is looked "
+    "at and when. It is told nothing else: no plants, no finds, no names."
+)
+WEB_MAP_SEASON = "This holds for this season on this machine, until you take it back."
+WEB_MAP_SESSION = "This holds until you close this page, or take it back."
+WEB_MAP_AGREE = "Agree: show pictures from {host}"
+WEB_MAP_AGREED = "Pictures come from {host}, as agreed on {day}: it sees which area is looked at."
+WEB_MAP_BACK = "Stop asking {host}"
 
 # -- the season
 NEEDS_SEASON = (
@@ -422,7 +527,12 @@ COMPARE_INTRO = (
     "strategy meets the same insects. Less loss (infested plants times days) is better."
 )
 STRATEGY_SAMPLERS, STRATEGY_HOURS = "Samplers", "Working hours"
-STRATEGY_INSPECTION_S = "Seconds at a plant"
+WHOSE_DAY = "Whose day"
+STRATEGY_INSPECTION_S, STRATEGY_ROBOTS = "Seconds at a plant", "Robots"
+STRATEGY_ROBOTS_HELP = (
+    "Several share the aisles out by what is believed, and hear of each other's finds every half "
+    "hour; who reads no chances keeps to a section of its own."
+)
 SEEDS, SEEDS_HELP = "Seasons each", "More seasons, narrower intervals."
 RUN, STOP, GO_ON = "Compare", "Stop", "Go on"
 COMPARE_PROGRESS = "{done} of {total} seasons simulated"
@@ -434,6 +544,7 @@ ONE_SEASON = "(one season: no interval)"
 COLUMN_STRATEGY, COLUMN_LOSS = "strategy", "infested plant-days"
 COLUMN_FOUND = "found at the end"
 COLUMN_VISITED, COLUMN_HALF, COLUMN_VERDICT = "inspected a day", "half found on day", "verdict"
+COLUMN_MOST, COLUMN_WORKED = "80 % found on day", "hours worked"
 STRATEGY = "Strategy"
 USE_THIS = "Use this strategy"
 VERDICT = (
@@ -446,6 +557,20 @@ VERDICT_TIED = (
 )
 NOW_USED = "{name} is in use now."
 STRATEGY_NAME = "{sampler} · {hours:g} h · {seconds:g} s"
+STRATEGY_TEAM = "{robots} × {strategy}"
+GAIN = (
+    "{robots} robots instead of {fewer} would save {saved:,.0f} ({low:,.0f} to {high:,.0f}) "
+    "infested plant-days."
+)
+GAIN_FIRST = (
+    "A second robot would save {saved:,.0f} ({low:,.0f} to {high:,.0f}) infested plant-days{more}."
+)
+GAIN_MORE = {
+    "3": "; a third {saved:,.0f} ({low:,.0f} to {high:,.0f})",
+    "4": "; a fourth {saved:,.0f} ({low:,.0f} to {high:,.0f})",
+    "5": "; a fifth {saved:,.0f} ({low:,.0f} to {high:,.0f})",
+}
+GAIN_NONE = "Of one season no interval is known: simulate more to see what a robot would save."
 
 # -- the report
 REPORT_ABOUT, REPORT_KINDS = "About", {"day": "the day", "season": "the season"}

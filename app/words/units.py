@@ -6,9 +6,9 @@ from fieldmon.compute import units as library
 from fieldmon.compute.units import AREAS_M2, DATES, LENGTHS
 
 from . import texts
-from .language import number
+from .language import in_words, number
 
-__all__ = ["AREAS_M2", "DATES", "LENGTHS", "UnitsInLanguage", "hours", "in_unit", "usual"]
+__all__ = ["AREAS_M2", "DATES", "LENGTHS", "UnitsInLanguage", "hours", "usual"]
 
 
 class UnitsInLanguage(library.Units):
@@ -21,25 +21,15 @@ class UnitsInLanguage(library.Units):
 
     def metres(self, value_m: float, decimals: int = 0) -> str:
         """Return a length; long ones in kilometres or miles."""
-        if self.length == "ft" and value_m >= 1609.344:
-            return in_unit(value_m / 1609.344, ".2f", "mi")
-        if self.length == "m" and value_m >= 1000.0:
-            return in_unit(value_m / 1000.0, ".2f", "km")
-        return in_unit(value_m / LENGTHS[self.length], f".{decimals}f", self.length)
+        return in_words(super().metres(value_m, decimals))
 
     def square(self, value_m2: float) -> str:
         """Return an area."""
-        return in_unit(value_m2 / AREAS_M2[self.area], ",.2f", self.area)
+        return in_words(super().square(value_m2))
 
     def lengths(self) -> list[tuple[float, str]]:
         """Return the round lengths for scale bars, shortest first: in metres and as text."""
-        named = [(metres, text.split()) for metres, text in super().lengths()]
-        return [(metres, in_unit(float(n), "g", unit)) for metres, (n, unit) in named]
-
-
-def in_unit(value: float, form: str, unit: str) -> str:
-    """Return a number with its unit, both as the session's language writes them."""
-    return texts.IN_UNIT.format(value=number(value, form), unit=texts.UNITS[unit])
+        return [(metres, in_words(said)) for metres, said in super().lengths()]
 
 
 def hours(value_h: float) -> str:

@@ -16,7 +16,7 @@ _GOODBYE_S = 10
 _HERE = "127.0.0.1"
 
 
-def open_app(
+def open_app(  # noqa: PLR0913, PLR0917 - the command's options
     port: Annotated[int, typer.Option(help="Port on this machine.", min=1, max=65535)] = 8501,
     address: Annotated[
         str, typer.Option(help="Address to listen on; others may only see it beyond 127.0.0.1.")
@@ -24,6 +24,13 @@ def open_app(
     seasons: Annotated[
         Path, typer.Option(help="Folder in which seasons are kept; made when one begins.")
     ] = Path("seasons"),
+    name: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Name by which browsers ask for this machine, in a network or behind a proxy; "
+            "may be repeated. Its own name and numbers are known."
+        ),
+    ] = None,
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,  # noqa: FBT002
     lan: Annotated[  # noqa: FBT002 - typer's way
         bool,
@@ -64,6 +71,7 @@ def open_app(
         "STREAMLIT_SERVER_ADDRESS": address,
         "STREAMLIT_SERVER_PORT": str(port),
         "FIELDMON_SEASONS": str(seasons.absolute()),
+        "FIELDMON_NAMES": _names(name, reached_at),
         "PYTHONPATH": own_path(),
         **others,
     }
@@ -82,6 +90,13 @@ def _others(lan: bool, address: str, reached_at: str) -> dict[str, str]:  # noqa
     if lan:
         told["FIELDMON_LAN"] = "" if address == _HERE else address
     return told
+
+
+def _names(told: list[str] | None, reached_at: str) -> str:
+    """Return the names by which browsers may ask, that of a server before us among them."""
+    names = told or os.environ.get("FIELDMON_NAMES", "").split(",")
+    before = reached_at.partition("://")[2].partition("/")[0].partition(":")[0]
+    return ",".join([*names, before] if before else names)
 
 
 def _run(command: list[str], env: dict[str, str]) -> int:

@@ -6,8 +6,13 @@ import typer
 
 from fieldmon.cli import problems, study
 from fieldmon.cli.app import open_app
+from fieldmon.cli.backup import backup
 from fieldmon.cli.change import change
+from fieldmon.cli.compare import compare
+from fieldmon.cli.correct import correct
+from fieldmon.cli.decide import decide
 from fieldmon.cli.init import init
+from fieldmon.cli.merge import merge
 from fieldmon.cli.plan import plan
 from fieldmon.cli.plots import plots
 from fieldmon.cli.record import record
@@ -35,14 +40,19 @@ app.command()(record)
 app.command()(status)
 app.command()(report)
 app.command()(undo)
+app.command()(decide)
 app.command()(treat)
 app.command()(change)
+app.command()(correct)
+app.command()(merge)
+app.command()(backup)
 app.command()(salvage)
 app.command("app")(open_app)
 app.command()(plots)
 app.command()(plan)
 app.command()(init)
 app.command()(simulate)
+app.command()(compare)
 
 
 def main() -> None:

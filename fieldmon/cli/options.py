@@ -112,6 +112,20 @@ RowChange = Annotated[float | None, typer.Option(help="Seconds added for changin
 Turn = Annotated[
     float | None, typer.Option(help="Seconds to turn to the other side of the same aisle.")
 ]
+Robots = Annotated[
+    str | None,
+    typer.Option(
+        help="How many robots, or a table of robots and scouts (CSV: name, who, hours, speed_km_h, "
+        "look_s, detection, start, lon, lat). Each has a route file of its own."
+    ),
+]
+Contact = Annotated[
+    float, typer.Option(min=0.0, help="Minutes between contacts; 0: finds are heard of at once.")
+]
+LeastGain = Annotated[
+    float,
+    typer.Option(min=0.0, help="Finds that must be gained for anyone to be sent elsewhere."),
+]
 OneSampler = Annotated[SamplerName, typer.Option(help="Who chooses.")]
 Every = Annotated[
     int | None,

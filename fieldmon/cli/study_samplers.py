@@ -86,11 +86,11 @@ def _outcomes(scenarios: list[Scenario], seeds: int, file: Path) -> list[SeasonO
     """Simulate what the table lacks, and keep it there; return the outcomes asked for."""
     from fieldmon.simulation import executor  # noqa: PLC0415
     from fieldmon.simulation.experiment import run  # noqa: PLC0415
-    from fieldmon.studies.samplers.outcome_table import OutcomeTable  # noqa: PLC0415
-    from fieldmon.studies.samplers.seasons import study_of  # noqa: PLC0415
+    from fieldmon.studies.outcome_table import OutcomeTable  # noqa: PLC0415
+    from fieldmon.studies.samplers.seasons import SeasonOutcome, study_of  # noqa: PLC0415
 
     study = study_of(scenarios, range(seeds))
-    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()])
+    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], SeasonOutcome)
     with counting("Seasons") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
     return table.asked()

@@ -4,11 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import date
+from typing import TYPE_CHECKING
+
+from fieldmon.compute.wording import figure, worded
+
+if TYPE_CHECKING:
+    from fieldmon.compute.wording import Worded
 
 LENGTHS = {"m": 1.0, "ft": 0.3048}
 AREAS_M2 = {"ha": 10_000.0, "dunam": 1_000.0, "acre": 4_046.8564224}
 DATES = {"2026-11-16": "%Y-%m-%d", "16.11.2026": "%d.%m.%Y", "16/11/2026": "%d/%m/%Y",
          "11/16/2026": "%m/%d/%Y"}  # fmt: skip
+#: a number with its unit
+IN_UNIT = {"m": "{value} m", "km": "{value} km", "ft": "{value} ft", "mi": "{value} mi",
+           "ha": "{value} ha", "dunam": "{value} dunam", "acre": "{value} acre"}  # fmt: skip
+
+
+def in_unit(value: float, form: str, unit: str) -> Worded:
+    """Return a number with its unit."""
+    return worded(IN_UNIT[unit], value=figure(value, form))
 
 
 @dataclass(frozen=True)
@@ -32,10 +46,10 @@ class Units:
     def metres(self, value_m: float, decimals: int = 0) -> str:
         """Return a length; long ones in kilometres or miles."""
         if self.length == "ft" and value_m >= 1609.344:
-            return f"{value_m / 1609.344:.2f} mi"
+            return in_unit(value_m / 1609.344, ".2f", "mi")
         if self.length == "m" and value_m >= 1000.0:
-            return f"{value_m / 1000.0:.2f} km"
-        return f"{value_m / LENGTHS[self.length]:.{decimals}f} {self.length}"
+            return in_unit(value_m / 1000.0, ".2f", "km")
+        return in_unit(value_m / LENGTHS[self.length], f".{decimals}f", self.length)
 
     def shown(self, value_m: float) -> float:
         """Return a length as a number in the chosen unit, precise to less than a millimetre."""
@@ -51,7 +65,7 @@ class Units:
 
     def square(self, value_m2: float) -> str:
         """Return an area."""
-        return f"{value_m2 / AREAS_M2[self.area]:,.2f} {self.area}"
+        return in_unit(value_m2 / AREAS_M2[self.area], ",.2f", self.area)
 
     @property
     def date_format(self) -> str:
@@ -74,6 +88,8 @@ class Units:
         long_m, long = (1000.0, "km") if self.length == "m" else (1609.344, "mi")
         short = [(n * 10.0**power, self.length) for power in range(-1, 4) for n in (1, 2, 5)]
         far = [(n * 10.0**power, long) for power in range(3) for n in (1, 2, 5)]
-        short_m = [(n * LENGTHS[self.length], f"{n:g} {unit}") for n, unit in short]
-        far_m = [(n * long_m, f"{n:g} {unit}") for n, unit in far]
+        short_m: list[tuple[float, str]] = [
+            (n * LENGTHS[self.length], in_unit(n, "g", unit)) for n, unit in short
+        ]
+        far_m: list[tuple[float, str]] = [(n * long_m, in_unit(n, "g", unit)) for n, unit in far]
         return [one for one in short_m if one[0] < long_m] + far_m

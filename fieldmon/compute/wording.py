@@ -54,6 +54,17 @@ def worded(words: str, **values: Any) -> Worded:  # noqa: ANN401 - whatever can 
     return made
 
 
+def figure(value: float, form: str = ",", after: str = "") -> Worded:
+    """Return a number as words without words: whoever speaks a language writes its digits so.
+
+    Examples
+    --------
+    >>> figure(1234.5, ",.1f", " %")
+    '1,234.5 %'
+    """
+    return worded(f"{{n:{form}}}{after}", n=value)
+
+
 def joined(between: str, parts: Iterable[str]) -> Worded:
     """Return sentences, or parts of one, joined."""
     kept = tuple(parts)

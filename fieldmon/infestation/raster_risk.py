@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 import numpy as np
 from scipy.special import expit
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.prior import scaled
 
@@ -52,23 +53,36 @@ class RiskSettings:
     def __post_init__(self) -> None:
         if self.meaning not in get_args(Meaning):
             raise SettingError(
-                f"What a risk raster means must be one of {', '.join(get_args(Meaning))}, but it "
-                f"is {self.meaning!r}."
+                worded(
+                    "What a risk raster means must be one of {names}, but it is {meaning!r}.",
+                    names=", ".join(get_args(Meaning)),
+                    meaning=self.meaning,
+                )
             )
         relative = self.meaning in RELATIVE
         if relative and self.mean_share is None:
             raise SettingError(
-                f"A {self.meaning} says which plants are at more risk, but not at how much: state "
-                "the mean_share of plants infested for this reason, for instance 0.02."
+                worded(
+                    "A {meaning} says which plants are at more risk, but not "
+                    "at how much: state the mean_share of plants infested for "
+                    "this reason, for instance 0.02.",
+                    meaning=self.meaning,
+                )
             )
         if not relative and (self.mean_share is not None or self.low_is_risky):
             raise SettingError(
-                f"A {self.meaning} is taken as it is: mean_share and low_is_risky go with rank "
-                "and score only."
+                worded(
+                    "A {meaning} is taken as it is: mean_share and "
+                    "low_is_risky go with rank and score only.",
+                    meaning=self.meaning,
+                )
             )
         if self.mean_share is not None and not 0.0 < self.mean_share < 1.0:
             raise SettingError(
-                f"The mean_share of a risk must be between 0 and 1, but it is {self.mean_share}."
+                worded(
+                    "The mean_share of a risk must be between 0 and 1, but it is {mean_share}.",
+                    mean_share=self.mean_share,
+                )
             )
 
 
@@ -83,8 +97,10 @@ def risk_chance(values: Floats, settings: RiskSettings) -> Floats:
     known = ~np.isnan(values)
     if not known.any():
         raise ObservationError(
-            "A risk raster must have a value at one plant at least, but it has none. Choose a "
-            "raster that covers the plot."
+            worded(
+                "A risk raster must have a value at one plant at least, but "
+                "it has none. Choose a raster that covers the plot."
+            )
         )
     chance = np.full(len(values), np.nan)
     chance[known] = _chances(values[known], settings)
@@ -96,9 +112,15 @@ def _chances(values: Floats, settings: RiskSettings) -> Floats:
         whole = 100.0 if settings.meaning == "percent" else 1.0
         if values.min() < 0.0 or values.max() > whole:
             raise ObservationError(
-                f"A raster of {settings.meaning} must hold values in 0..{whole:g}, but at the "
-                f"plants they run from {values.min():.6g} to {values.max():.6g}. Say what they "
-                "mean: percent, rank or score."
+                worded(
+                    "A raster of {meaning} must hold values in 0..{whole:g}, "
+                    "but at the plants they run from {low:.6g} to {high:.6g}. "
+                    "Say what they mean: percent, rank or score.",
+                    meaning=settings.meaning,
+                    whole=whole,
+                    low=values.min(),
+                    high=values.max(),
+                )
             )
         return values / whole
     upward = -values if settings.low_is_risky else values

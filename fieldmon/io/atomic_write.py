@@ -6,6 +6,7 @@ import os
 import tempfile
 from pathlib import Path
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 
 
@@ -18,11 +19,19 @@ def write_whole(path: str | Path, data: bytes) -> None:
     target = Path(path)
     if target.exists() and not target.is_file():
         what = "a folder" if target.is_dir() else "not a plain file"
-        raise FileProblem(f"{target} must be a file to write to, but it is {what}.")
+        raise FileProblem(
+            worded(
+                "{target} must be a file to write to, but it is {what}.", target=target, what=what
+            )
+        )
     if not target.parent.is_dir():
         raise FileProblem(
-            f"The folder {target.parent} must exist before {target.name} can be written into it. "
-            "Make it, or choose another one."
+            worded(
+                "The folder {parent} must exist before {name} can be written "
+                "into it. Make it, or choose another one.",
+                parent=target.parent,
+                name=target.name,
+            )
         )
     name = None
     try:
@@ -37,8 +46,12 @@ def write_whole(path: str | Path, data: bytes) -> None:
         Path(name).replace(target)
     except OSError as error:
         raise FileProblem(
-            f"{target} could not be written ({error.strerror or error}); nothing was changed. "
-            "Make room or choose another place."
+            worded(
+                "{target} could not be written ({value}); nothing was "
+                "changed. Make room or choose another place.",
+                target=target,
+                value=error.strerror or error,
+            )
         ) from error
     finally:
         if name is not None:

@@ -15,6 +15,8 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from fieldmon.compute.wording import worded
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -118,9 +120,13 @@ def gathered(messages: Iterable[ImportMessage]) -> tuple[ImportMessage, ...]:
 
 def _as_one(same: list[ImportMessage]) -> ImportMessage:
     first = same[0]
-    told = first.many.format(n=len(same))
-    about = f"{first.feature}: " if first.feature else ""
-    return replace(first, sentence=f"{told}; the first is {about}{first.sentence}", feature=None)
+    told = worded(
+        "{told}; the first is {about}{first}",
+        told=worded(first.many, n=len(same)),
+        about=f"{first.feature}: " if first.feature else "",
+        first=first.sentence,
+    )
+    return replace(first, sentence=told, feature=None)
 
 
 @dataclass(frozen=True)

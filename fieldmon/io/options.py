@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Literal, Self, TypeAlias
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 DateOrder: TypeAlias = Literal["dmy", "mdy", "ymd"]
@@ -120,21 +121,37 @@ class ReadOptions:
         for role, _ in self.columns:
             if role not in ROLES:
                 raise SettingError(
-                    f"A column can be named for one of {', '.join(ROLES)}, but not for {role!r}."
+                    worded(
+                        "A column can be named for one of {names}, but not for {role!r}.",
+                        names=", ".join(ROLES),
+                        role=role,
+                    )
                 )
         if self.where is not None and "=" not in self.where:
             raise SettingError(
-                f"The choice of features must read column=value, but it is {self.where!r}."
+                worded(
+                    "The choice of features must read column=value, but it is {where!r}.",
+                    where=self.where,
+                )
             )
         self._check_words()
         if self.delimiter is not None and len(self.delimiter) != 1:
-            raise SettingError(f"A delimiter must be one character, but it is {self.delimiter!r}.")
+            raise SettingError(
+                worded(
+                    "A delimiter must be one character, but it is {delimiter!r}.",
+                    delimiter=self.delimiter,
+                )
+            )
         if self.near is not None:
             lon, lat = self.near
             if not (-180.0 <= lon <= 180.0 and -90.0 <= lat <= 90.0):
                 raise SettingError(
-                    "A place nearby must be a longitude in -180..180 and a latitude in -90..90, "
-                    f"but it is ({lon}, {lat})."
+                    worded(
+                        "A place nearby must be a longitude in -180..180 and "
+                        "a latitude in -90..90, but it is ({lon}, {lat}).",
+                        lon=lon,
+                        lat=lat,
+                    )
                 )
 
     def _check_words(self) -> None:
@@ -148,7 +165,15 @@ class ReadOptions:
             if told is not None and told not in words:
                 may_be = " or ".join(words)
                 comma = "" if may_be.endswith(",") else ","
-                raise SettingError(f"{what} must be {may_be}{comma} but it is {told!r}.")
+                raise SettingError(
+                    worded(
+                        "{what} must be {may_be}{comma} but it is {told!r}.",
+                        what=what,
+                        may_be=may_be,
+                        comma=comma,
+                        told=told,
+                    )
+                )
 
     def column(self, role: str) -> str | None:
         """Return the column named by hand for a role, or None."""
@@ -164,7 +189,9 @@ class ReadOptions:
             role, _, column = value.partition("=")
             return self.naming(**{role: column})
         if option not in {field.name for field in fields(self)}:
-            raise SettingError(f"There is no option {option!r} for this file.")
+            raise SettingError(
+                worded("There is no option {option!r} for this file.", option=option)
+            )
         now = getattr(self, option)
         if isinstance(now, bool):
             return replace(self, **{option: value.lower() in {"yes", "true", "1"}})  # type: ignore[arg-type]
@@ -212,7 +239,10 @@ class RecordOptions(ReadOptions):
         super().__post_init__()
         if self.date_order not in {None, "dmy", "mdy", "ymd"}:
             raise SettingError(
-                f"The order of a date must be dmy, mdy or ymd, but it is {self.date_order!r}."
+                worded(
+                    "The order of a date must be dmy, mdy or ymd, but it is {date_order!r}.",
+                    date_order=self.date_order,
+                )
             )
 
 
@@ -221,6 +251,8 @@ def _lonlat(text: str) -> tuple[float, float]:
         lon, lat = (float(part) for part in text.split(","))
     except ValueError:
         raise SettingError(
-            f"A place nearby must be written lon,lat (35.1,30.2), but it is {text!r}."
+            worded(
+                "A place nearby must be written lon,lat (35.1,30.2), but it is {text!r}.", text=text
+            )
         ) from None
     return lon, lat

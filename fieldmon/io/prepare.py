@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, PlotError, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.import_report import ImportMessage, doubtful
@@ -101,10 +102,14 @@ class Laid:
 
         rows, drawn = self.plot.rows, self.plot.field.row_lines
         if rows is None and self.plot.field.plants is None and len(drawn.geoms) > 1:
-            return (seen(f"Plants stand along the {len(drawn.geoms)} rows that were drawn."),)
+            return (
+                seen(
+                    worded("Plants stand along the {n} rows that were drawn.", n=len(drawn.geoms))
+                ),
+            )
         if rows is None:
             return ()
-        found = (seen(f"Rows were found: {rows.how}."),) if rows.in_rows else ()
+        found = (seen(worded("Rows were found: {how}.", how=rows.how)),) if rows.in_rows else ()
         return (*found, *(doubtful(sentence) for sentence in rows.doubts))
 
 
@@ -203,8 +208,10 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
     sources, measured = request.sources, None
     if sources.plants is not None and (sources.rows or sources.contours) is not None:
         raise SettingError(
-            "Plants stand where they were measured, or along rows that were drawn: give their "
-            "positions or the rows, not both."
+            worded(
+                "Plants stand where they were measured, or along rows that "
+                "were drawn: give their positions or the rows, not both."
+            )
         )
     if sources.plot is None:
         measured = _measured(sources, hearing)
@@ -247,7 +254,7 @@ def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Es
     hearing = _Hearing(listener)
     sources, records = request.sources, EstateRecords()
     if (file := sources.plot) is None:
-        raise SettingError("Give a file of plots.")
+        raise SettingError(worded("Give a file of plots."))
 
     def read() -> Imported[tuple[tuple[Field, ...], dict[str, Crew]]]:
         plots, crews = read_crews(file, sources.plot_options)
@@ -267,8 +274,12 @@ def one_of(fields: tuple[Field, ...]) -> Field:
         return fields[0]
     names = tuple(field.name for field in fields)
     raise ChoiceNeeded(
-        f"One plot must be chosen, but the file holds {len(names)}: {_some(names)}. "
-        "Choose one by name or number.",
+        worded(
+            "One plot must be chosen, but the file holds {n}: {some}. Choose "
+            "one by name or number.",
+            n=len(names),
+            some=_some(names),
+        ),
         "feature",
         names,
     )
@@ -358,7 +369,9 @@ def _far_from_all(
     middle = ((west + east) / 2, (south + north) / 2)
     if source.options.near is None:
         read_records(source.file, replace(source.options, near=middle))
-    return [doubtful("Not one record lies near any of the plots; they say nothing about them.")]
+    return [
+        doubtful(worded("Not one record lies near any of the plots; they say nothing about them."))
+    ]
 
 
 def without_missing(plot: Plot, source: CanopySource) -> Imported[Plot]:
@@ -392,7 +405,7 @@ class _Hearing:
         try:
             imported = read()
         except ChoiceNeeded as question:
-            raise ChoiceNeeded(str(question), question.option, question.choices, role) from None
+            raise ChoiceNeeded(question.args[0], question.option, question.choices, role) from None
         self.say(role, source, imported.messages)
         return imported.value
 
@@ -423,7 +436,7 @@ def _every_field(sources: PlotSources) -> tuple[Field, ...]:
 def _measured(sources: PlotSources, hearing: _Hearing) -> Plants:
     file = sources.plants
     if file is None:
-        raise SettingError("Give a file of plots, or the positions of a plot's plants.")
+        raise SettingError(worded("Give a file of plots, or the positions of a plot's plants."))
     return hearing.read("plants", file, partial(read_plants, file, sources.plants_options))
 
 
@@ -455,7 +468,9 @@ def contour_of(
         return read.value.at(lonlat, "bilinear")
 
     row = contour_row(field, height_m, row_spacing_m)
-    said = seen("Rows run along the contour through the middle of the plot, all others beside it.")
+    said = seen(
+        worded("Rows run along the contour through the middle of the plot, all others beside it.")
+    )
     return read.having(row, [said])
 
 
@@ -503,9 +518,15 @@ def _plot_by_hand(fields: tuple[Field, ...], source: RecordSource) -> Field:
     names = tuple(field.name for field in fields)
     wrong = "" if by_hand is None else f" (it is not {by_hand!r})"
     raise ChoiceNeeded(
-        f"Records that name rows and plants must be of a known plot, but "
-        f"{source_name(source.file)} does not say of which{wrong}. Choose one of {len(names)}: "
-        f"{_some(names)}.",
+        worded(
+            "Records that name rows and plants must be of a known plot, but "
+            "{source_name} does not say of which{wrong}. Choose one of {n}: "
+            "{some}.",
+            source_name=source_name(source.file),
+            wrong=wrong,
+            n=len(names),
+            some=_some(names),
+        ),
         "plot",
         names,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import touch
@@ -13,7 +14,11 @@ from fieldmon.monitoring.tables import utc_now
 if TYPE_CHECKING:
     import sqlite3
 
-_TABLE_OF = {"findings": "inspections", "treatment": "treatments"}
+_TABLE_OF = {
+    "findings": "inspections",
+    "corrections": "inspections",
+    "treatment": "treatments",
+}
 
 
 @dataclass(frozen=True)
@@ -27,7 +32,7 @@ class Batch:
     at
         When it was recorded, UTC.
     kind
-        ``"findings"`` or ``"treatment"``.
+        ``"findings"``, ``"treatment"``, or ``"corrections"`` of what another program changed.
     source, who
         File or screen it came from, and the person.
     rows
@@ -99,8 +104,11 @@ def undo(db: sqlite3.Connection, number: int | None) -> str:
     if not waiting:
         what = "to undo" if number is None else f"called batch {number} that still counts"
         raise SettingError(
-            f"There must be something {what}, but there is nothing. "
-            "See what was recorded with: fieldmon status --batches"
+            worded(
+                "There must be something {what}, but there is nothing. See "
+                "what was recorded with: fieldmon status --batches",
+                what=what,
+            )
         )
     batch = waiting[0]
     table = _TABLE_OF[batch.kind]
@@ -119,8 +127,12 @@ def undo_one(db: sqlite3.Connection, inspection: int) -> str:
     ).fetchone()
     if row is None:
         raise SettingError(
-            f"There must be an inspection {inspection} that still counts, but there is none. "
-            "The layer inspections of the season's file shows their numbers (fid)."
+            worded(
+                "There must be an inspection {inspection} that still counts, "
+                "but there is none. The layer inspections of the season's "
+                "file shows their numbers (fid).",
+                inspection=inspection,
+            )
         )
     db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
     close_if_empty(db, row[4])

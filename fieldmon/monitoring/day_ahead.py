@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from datetime import datetime, timedelta
+from dataclasses import dataclass
+from datetime import datetime, time, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,52 +15,73 @@ from fieldmon.planning.workday import Workday
 from fieldmon.plot.travel import GATE, driven_s
 
 if TYPE_CHECKING:
-    from datetime import date, time
+    from datetime import date
 
     from numpy.typing import NDArray
 
     from fieldmon.monitoring.season_file import Season
+    from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route
     from fieldmon.samplers.base import Scene
 
     Plants = NDArray[np.int32]
 
+MIDNIGHT = time()
 
-def route_ahead(season: Season, on: date, rows: tuple[int, int] | None = None) -> Route:
-    """Return what is left of the route given out for a day; give one out if there is none.
+
+@dataclass(frozen=True)
+class Part:
+    """Whose part of a day's work it is.
 
     Parameters
     ----------
-    season
-        The season.
-    on
-        The day.
     rows
-        First and last row of somebody's part, from 1: of a part the stops given out, or where
-        there are none, a route of its own.
+        First and last row, from 1; None: the whole plot, or what the team's plan gives.
+    name
+        Of one of the season's team; any other name is nobody's.
     """
-    kept = season.kept_route(on)
-    if not len(kept) and rows is None:
-        return season.plan(on).route
-    scene = season.scene(on)
-    left = kept[(scene.last_inspected[kept] != scene.day) & inside(season, rows)[kept]]
-    return _through(scene, left) if len(left) else planned_again(season, on, rows)
+
+    rows: tuple[int, int] | None = None
+    name: str = ""
+
+    def member(self, season: Season) -> TeamMember | None:
+        """Return the one of the team who has this name, or None."""
+        named = (one for one in season.settings.team if one.name.casefold() == self.name.casefold())
+        return next(named, None)
+
+
+WHOLE = Part()
+
+
+def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
+    """Return what is left of the route given out for a day; give one out if there is none.
+
+    Somebody of the team has a route of their own. Of a part it is the stops given out in its rows,
+    or where there are none, a route of its own.
+    """
+    member = part.member(season)
+    who = "" if member is None else member.name
+    kept = season.kept_route(on, who)
+    if not len(kept) and part.rows is None:
+        return season.plan(on, who=who or None).route
+    scene = season.scene(on, who=who)
+    left = kept[(scene.last_inspected[kept] != scene.day) & inside(season, part.rows)[kept]]
+    return _through(scene, left) if len(left) else planned_again(season, on, part)
 
 
 def planned_again(
-    season: Season,
-    on: date,
-    rows: tuple[int, int] | None = None,
-    seconds_left: float | None = None,
+    season: Season, on: date, part: Part = WHOLE, seconds_left: float | None = None
 ) -> Route:
     """Plan what is left of a day with all that is known now.
 
     Where it is for the whole plot, it is kept as the route given out.
     """
-    others = np.flatnonzero(~inside(season, rows))
-    now = None if seconds_left is None else _time(season, seconds_left)
+    others = np.flatnonzero(~inside(season, part.rows))
+    member = part.member(season)
+    now = None if seconds_left is None else _time(season, seconds_left, member)
     wishes = Wishes(unwanted=tuple(others.tolist()))
-    return season.plan(on, now, keep=rows is None, wishes=wishes).route
+    who = None if member is None else member.name
+    return season.plan(on, now, keep=part.rows is None, wishes=wishes, who=who).route
 
 
 def inside(season: Season, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
@@ -71,14 +93,14 @@ def inside(season: Season, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
     return part
 
 
-def _time(season: Season, seconds_left: float) -> time:
+def _time(season: Season, seconds_left: float, member: TeamMember | None) -> time:
     """Return the local time at which so much of the working day is left."""
     settings = season.settings
-    left_s = min(max(seconds_left, 0.0), settings.robot.day_s)
-    gone = timedelta(seconds=round(settings.robot.day_s - left_s))
-    begin = datetime.combine(settings.begins, settings.starts)
-    midnight = 86_399 - seconds(settings.starts)
-    return (begin + min(gone, timedelta(seconds=midnight))).time()
+    robot, later_s = (settings.robot, 0.0) if member is None else (member.robot, member.starts_s)
+    left_s = min(max(seconds_left, 0.0), robot.day_s)
+    begins_s = seconds(settings.starts) + later_s
+    now_s = min(begins_s + robot.day_s - left_s, 86_399.0)
+    return (datetime.combine(settings.begins, MIDNIGHT) + timedelta(seconds=round(now_s))).time()
 
 
 def _through(scene: Scene, plants: Plants) -> Route:

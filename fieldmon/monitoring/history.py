@@ -20,6 +20,7 @@ from fieldmon.plot.travel import driven_s, robot_clock
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from datetime import date
 
     from numpy.typing import NDArray
@@ -125,6 +126,8 @@ class History:
     recorded
         ``(n,)`` what the records say from which the season began: 1 infested, 0 clean, -1 nothing;
         None: there are none.
+    detection_of
+        The same chance for those of a team, by their names without capitals.
     """
 
     grid: PlantGrid
@@ -135,6 +138,7 @@ class History:
     belief: BeliefSettings = field(default_factory=BeliefSettings)
     detection: float = 0.84
     recorded: NDArray[np.int8] | None = None
+    detection_of: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if (np.diff(self.days) < 0).any():
@@ -165,11 +169,18 @@ class History:
     def evening(self, morning: Belief, day: int) -> Belief:
         """Return what is believed after what was found and treated on a day."""
         done = self.on(day).inspected
-        believed = self.belief.evening(morning, done.plant, done.result == FOUND, self.detection)
+        found = done.result == FOUND
+        believed = self.belief.evening(morning, done.plant, found, self._detection(done))
         for treatment in self.treatments:
             if treatment.day == day:
                 believed = believed.treated(np.where(treatment.plants, 1 - treatment.efficacy, 1.0))
         return believed
+
+    def _detection(self, done: Inspections) -> float | NDArray[np.float64]:
+        if not self.detection_of:
+            return self.detection
+        names = [str(who).casefold() for who in done.who]
+        return np.array([self.detection_of.get(name, self.detection) for name in names], float)
 
     def estimate(self, morning: Belief, day: int) -> PlotEstimate:
         """Return how many plants are infested and not found yet, after a day's work."""
@@ -199,7 +210,14 @@ class History:
         state = self.states(day)
         return state if self.recorded is None else np.maximum(state, self.recorded)
 
-    def scene(self, shift: Shift, day: int, morning: Belief, now_s: float | None = None) -> Scene:
+    def scene(
+        self,
+        shift: Shift,
+        day: int,
+        morning: Belief,
+        now_s: float | None = None,
+        who: str | None = None,
+    ) -> Scene:
         """Return the scene of a day as it stands after what was recorded of it.
 
         Parameters
@@ -213,12 +231,15 @@ class History:
         now_s
             Seconds since midnight; None: when the last inspection recorded was done, by its own
             time or, where none was noted, by what driving and looking cost.
+        who
+            Whose scene it is, of a team; None: all inspections were made by the one who works.
         """
         aisles, robot = shift.aisles, shift.robot
         today, believed = self.on(day), self.evening(morning, day)
         last = self.last_inspected(day)
         last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
-        trail = self._trail(day)
+        trail = self._trail(day, who)
+        today = made_by(today, who)
         resting = resting_place(robot, trail)
         return Scene(
             aisles=aisles,
@@ -233,13 +254,20 @@ class History:
             key=shift.streams.key("sampler", day),
         )
 
-    def _trail(self, day: int) -> NDArray[np.int32]:
+    def _trail(self, day: int, who: str | None) -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the last day before `day` on which any was inspected."""
-        earlier = self.until(day - 1)
-        inspected = np.flatnonzero(earlier.result != SKIPPED)
-        if not len(inspected):
-            return earlier.plant[:0]
-        return self.on(int(self.days[inspected[-1]])).inspected.plant
+        earlier = made_by(self.until(day - 1).inspected, who)
+        if not len(earlier):
+            return earlier.plant
+        return earlier.take(earlier.date == earlier.date[-1]).plant
+
+
+def made_by(inspections: Inspections, who: str | None) -> Inspections:
+    """Return those that somebody made; None: all."""
+    if who is None:
+        return inspections
+    names = np.array([str(name).casefold() for name in inspections.who], np.str_)
+    return inspections.take(names == who.casefold())
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import sqlite3
 from contextlib import closing
 from functools import lru_cache
@@ -11,10 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.compute.digest import digest
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import point_blobs, touch
+from fieldmon.monitoring.transactions import copy_season
 
 if TYPE_CHECKING:
     from datetime import date
@@ -34,7 +35,7 @@ _LOT = 1 << 14
 def counting_copy(season: Path, folder: Path) -> Path:
     """Return a copy of a season that holds only the inspections that were not undone there."""
     copy = folder / season.name
-    shutil.copyfile(season, copy)
+    copy_season(season, copy)
     with closing(sqlite3.connect(copy)) as db:
         db.execute("DELETE FROM inspections WHERE undone = 1")
         db.commit()
@@ -84,27 +85,44 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
     wrong = np.flatnonzero((plant < 0) | (plant >= len(grid)))
     if wrong.size:
         raise ObservationError(
-            f"A plant's number must be 0 to {len(grid) - 1} on this plot, but result "
-            f"{wrong[0] + 1} is of plant {plant[wrong[0]]}. Is it from another plot?"
+            worded(
+                "A plant's number must be 0 to {value} on this plot, but "
+                "result {found} is of plant {plant}. Is it from another "
+                "plot?",
+                value=len(grid) - 1,
+                found=wrong[0] + 1,
+                plant=plant[wrong[0]],
+            )
         )
     if np.isnat(inspections.date).any():
         first = int(np.flatnonzero(np.isnat(inspections.date))[0])
         raise ObservationError(
-            f"Every result must have a date, but result {first + 1} has none. "
-            "Give the day of the work."
+            worded(
+                "Every result must have a date, but result {value} has none. "
+                "Give the day of the work.",
+                value=first + 1,
+            )
         )
     if not np.isin(inspections.result, list(RESULT_NAMES)).all():
-        raise ObservationError(f"A result must be one of {', '.join(_CODES)}.")
+        raise ObservationError(worded("A result must be one of {names}.", names=", ".join(_CODES)))
     bad = np.flatnonzero(~(np.isnan(inspections.count) | (inspections.count >= 0)))
     if bad.size:
         raise ObservationError(
-            f"A count must be 0 or more, but result {bad[0] + 1} says {inspections.count[bad[0]]}."
+            worded(
+                "A count must be 0 or more, but result {value} says {found}.",
+                value=bad[0] + 1,
+                found=inspections.count[bad[0]],
+            )
         )
     late = np.flatnonzero(~(np.isnan(inspections.second) | (inspections.second < _DAY_S)))
     if late.size:
         raise ObservationError(
-            f"A time must lie within its day, but result {late[0] + 1} is "
-            f"{inspections.second[late[0]]} seconds after midnight."
+            worded(
+                "A time must lie within its day, but result {value} is "
+                "{found} seconds after midnight.",
+                value=late[0] + 1,
+                found=inspections.second[late[0]],
+            )
         )
 
 
@@ -134,6 +152,12 @@ def store(db: sqlite3.Connection, made: list[tuple[object, ...]]) -> int:
     return new
 
 
+def n_counting(db: sqlite3.Connection) -> int:
+    """Return how many inspections count."""
+    counts = "SELECT count(*) FROM inspections WHERE undone = 0 AND digest IS NOT NULL"
+    return int(db.execute(counts).fetchone()[0])
+
+
 def load(db: sqlite3.Connection, begins: date) -> Inspections:
     """Return the inspections that count, by day; within a day by time, untimed ones last."""
     found = db.execute(
@@ -160,14 +184,15 @@ def _columns(rows: list[tuple[Any, ...]], texts: dict[str, str]) -> list[NDArray
         np.array(plant, np.int32),
         np.array([_CODES[name] for name in result], np.int8),
         np.array(day, np.int32),
-        np.array([_second(text) for text in time], np.float64),
+        np.array([second_of(text) for text in time], np.float64),
         np.array(count, np.float64),
         *(np.array([texts.setdefault(t, t) for t in column], object) for column in said),
     ]
 
 
 @lru_cache(maxsize=_DAY_S)
-def _second(text: str | None) -> float:
+def second_of(text: str | None) -> float:
+    """Return the seconds since midnight that a clock shows; NaN for none."""
     if text is None:
         return np.nan
     hour, minute, second = (float(part) for part in text.split(":"))

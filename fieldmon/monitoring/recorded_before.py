@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
 
@@ -69,9 +70,15 @@ class Contradictions:
         named = " ".join(self.sentences(label)[:_MOST_NAMED])
         more = " ..." if len(self) > _MOST_NAMED else ""
         raise ContradictionError(
-            "Results must not contradict what is recorded of the same plants and day unless that "
-            f"is confirmed, but {len(self)} of them contradict it: {named}{more} "
-            "Check both; then undo what was wrong, or confirm that these hold too."
+            worded(
+                "Results must not contradict what is recorded of the same "
+                "plants and day unless that is confirmed, but {n} of them "
+                "contradict it: {named}{more} Check both; then undo what was "
+                "wrong, or confirm that these hold too.",
+                n=len(self),
+                named=named,
+                more=more,
+            )
         )
 
 

@@ -13,6 +13,7 @@ import shapely
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import worded
+from fieldmon.decisions.map_verdict import map_verdict
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.hotspots import record_states
 from fieldmon.infestation.observations import Observations, usable
@@ -24,6 +25,8 @@ from fieldmon.monitoring import (
     day_figures,
     derived_layers,
     inspection_table,
+    merging,
+    outside_changes,
     routes,
     settings_log,
     tables,
@@ -32,6 +35,7 @@ from fieldmon.monitoring import (
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
+from fieldmon.monitoring.merging import Merged
 from fieldmon.monitoring.recorded_before import (
     Contradictions,
     contradicting,
@@ -42,7 +46,9 @@ from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json,
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
 from fieldmon.planning.assumptions import assumed_by
-from fieldmon.planning.plan import plan_in
+from fieldmon.planning.plan import DayPlan, plan_in
+from fieldmon.planning.route import route_of
+from fieldmon.planning.team_day import Posted, team_day
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.grid import RowLabel, row_label
 from fieldmon.plot.local_clock import local_clock
@@ -56,13 +62,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
+    from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.tables import KeptMessage
-    from fieldmon.planning.plan import DayPlan
+    from fieldmon.planning.members import TeamMember
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot
+    from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Scene
 
     Floats = NDArray[np.float64]
@@ -120,6 +129,7 @@ class Season:
         self._lock = threading.RLock()
         self._last: _Contents | None = None
         self._prior: tuple[object, Floats] | None = None
+        self._aisles: dict[tuple[float, float], Aisles] = {}
         with self.store.reading() as db:
             self.plot: Plot = tables.read_plot(db)
             self.observations: Observations = tables.read_observations(db)
@@ -237,7 +247,7 @@ class Season:
 
     def plan(
         self, on: date, now: time | None = None, *, keep: bool = True,
-        wishes: Wishes | None = None,
+        wishes: Wishes | None = None, who: str | None = None,
     ) -> DayPlan:  # fmt: skip
         """Plan what is left of a day from all that is known.
 
@@ -252,32 +262,131 @@ class Season:
             whether the route is kept in the file: the same one once, an empty one never.
         wishes
             What people want of the day besides.
+        who
+            Whose day, of a team; None: the first one's. All are planned, see `plan_each`.
+        """
+        days = self.plan_each(on, now, keep=keep, wishes=wishes)
+        team = self.settings.team
+        return days[team.index(self.settings.member(who)) if who and team else 0]
+
+    def plan_each(
+        self, on: date, now: time | None = None, *, keep: bool = True,
+        wishes: Wishes | None = None,
+    ) -> tuple[DayPlan, ...]:  # fmt: skip
+        """Plan what is left of a day for each of the team, or for the one who works.
+
+        In the order of the team. Aisles that the routes kept of this day gave to one stay its own
+        unless another way to give them out gains enough, see `Teamwork`.
         """
         with self._lock:
             contents = self._now()
-            settings = contents.settings
-            scene = self._scene(contents, on, now)
-            day = scene.day
-            today = plan_in(scene, settings.decides(), wishes)
-            begins = routes.begins(settings, today)
-            notes = RouteNotes(self.plot.field.name, settings.sampler, begins)
-            today = replace(today, route=replace(today.route, notes=notes))
-            if keep and len(today.route):
-                with self.store.writing() as db:
-                    if routes.keep(db, settings, self.label, today):
-                        self._refresh(db, day)
-        return today
+            settings, day = contents.settings, contents.settings.day(on)
+            now_s = None if now is None else seconds(now)
+            if settings.team:
+                days = self._team_days(contents, day, now_s, wishes)
+            else:
+                shift = self._shift(settings, settings.robot)
+                scene = contents.history.scene(shift, day, contents.morning(day), now_s)
+                days = (plan_in(scene, settings.decides(), wishes),)
+            noted = tuple(
+                self._noted(settings, today, who)
+                for today, who in zip(days, _names(settings), strict=True)
+            )
+            if keep:
+                self._keep(settings, noted)
+        return noted
 
-    def scene(self, on: date, now: time | None = None) -> Scene:
-        """Return a day as it stands after what was recorded of it; `now` as in `plan`."""
-        with self._lock:
-            return self._scene(self._now(), on, now)
-
-    def kept_route(self, on: date) -> NDArray[np.int32]:
-        """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none."""
-        day = self.settings.day(on)
+    def _keep(self, settings: MonitoringSettings, noted: tuple[DayPlan, ...]) -> None:
+        """Keep routes; those that are kept already are not written: that would wait for readers."""
+        named = [
+            (today, who)
+            for today, who in zip(noted, _names(settings), strict=True)
+            if len(today.route)
+        ]
         with self.store.reading() as db:
-            return routes.plants(db, day)
+            if all(routes.is_kept(db, today, who) for today, who in named):
+                return
+        with self.store.writing() as db:
+            kept = [routes.keep(db, settings, self.label, today, who) for today, who in named]
+            if any(kept):
+                self._refresh(db, named[0][0].scene.day)
+
+    def _noted(self, settings: MonitoringSettings, today: DayPlan, who: str) -> DayPlan:
+        begins = routes.begins(settings, today, who)
+        notes = RouteNotes(self.plot.field.name, settings.sampler, begins, who or None)
+        return replace(today, route=replace(today.route, notes=notes))
+
+    def _shift(
+        self, settings: MonitoringSettings, robot: Robot, member: TeamMember | None = None
+    ) -> Shift:
+        starts_s, streams = seconds(settings.starts), RandomStreams(settings.seed)
+        if member is None:
+            return Shift(self.plot.aisles, robot, starts_s, streams)
+        return Shift(self.aisles_from(member.gate), robot, starts_s + member.starts_s, streams)
+
+    def aisles_from(self, gate: tuple[float, float] | None) -> Aisles:
+        """Return the ways on the plot with another gate; None: its own."""
+        if gate is None:
+            return self.plot.aisles
+        if gate not in self._aisles:
+            self._aisles[gate] = self.plot.with_gate(gate).aisles
+        return self._aisles[gate]
+
+    def _team_days(
+        self, contents: _Contents, day: int, now_s: float | None, wishes: Wishes | None
+    ) -> tuple[DayPlan, ...]:
+        settings, history = contents.settings, contents.history
+        scenes, posts = [], []
+        for member in settings.team:
+            shift = self._shift(settings, member.robot, member)
+            scene = history.scene(shift, day, contents.morning(day), now_s, member.name)
+            begun_s = member.starts_s + member.robot.day_s - scene.seconds_left
+            told = scene if wishes is None else wishes.told(scene)
+            scenes.append(scene)
+            posts.append(Posted(told, begun_s, np.zeros(len(scene.chance), np.bool_)))
+        before = self._given_out(settings, day)
+        works = team_day(posts, settings.decides(), settings.teamwork, before=before)
+        return tuple(
+            DayPlan(scene, work, route_of(scene, work))
+            for scene, work in zip(scenes, works, strict=True)
+        )
+
+    def _given_out(self, settings: MonitoringSettings, day: int) -> NDArray[np.int64] | None:
+        """Return who has each aisle by the routes kept of a day, -1: nobody; None: none is kept."""
+        aisle = self.plot.grid.corridor[self.plot.grid.row]
+        given = np.full(int(aisle.max()) + 1, -1)
+        with self.store.reading() as db:
+            for k, member in enumerate(settings.team):
+                given[aisle[routes.plants(db, day, member.name)]] = k
+        return given if (given >= 0).any() else None
+
+    def scene(self, on: date, now: time | None = None, who: str = "") -> Scene:
+        """Return a day as it stands after what was recorded of it; `now` as in `plan`.
+
+        Of a team it is that of the one named, or of the first.
+        """
+        with self._lock:
+            contents = self._now()
+            settings, day = contents.settings, contents.settings.day(on)
+            now_s = None if now is None else seconds(now)
+            morning = contents.morning(day)
+            if not settings.team:
+                shift = self._shift(settings, settings.robot)
+                return contents.history.scene(shift, day, morning, now_s)
+            member = settings.member(who) if who else settings.team[0]
+            shift = self._shift(settings, member.robot, member)
+            return contents.history.scene(shift, day, morning, now_s, member.name)
+
+    def kept_route(self, on: date, who: str = "") -> NDArray[np.int32]:
+        """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none.
+
+        Of a team it is that of the one named, or of the first.
+        """
+        settings = self.settings
+        if settings.team:
+            who = settings.member(who).name if who else settings.team[0].name
+        with self.store.reading() as db:
+            return routes.plants(db, settings.day(on), who)
 
     def contradictions(self, inspections: Inspections) -> Contradictions:
         """Return those that say otherwise than what is recorded of the same plant and day."""
@@ -379,6 +488,36 @@ class Season:
             self._refresh(db)
         return said
 
+    def correct(self, who: str) -> int:
+        """Take what another program changed of inspections as corrections; return how many.
+
+        They are a batch of their own, of this person; undoing it takes the corrected rows out.
+        Raise `FileProblem` if more than inspections was changed, or what makes no sense.
+        """
+        with self._lock, self.store.writing() as db:
+            outside_changes.refuse_more(db)
+            settings, plot = _settings(db), (self.plot.grid, self.label)
+            n = outside_changes.correct(db, plot, settings, who)
+            if n:
+                self._refresh(db)
+        return n
+
+    def merge(self, other: Season) -> Merged:
+        """Take in what another copy of this season holds: all that is in either, once each.
+
+        The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
+        """
+        with self._lock, self.store.writing() as db:
+            contradict = contradictions(
+                other.history.inspections, self._read(db).history.inspections
+            )
+            before = inspection_table.n_counting(db)
+            with other.store.reading() as theirs:
+                chosen = merging.merge(db, theirs)
+            self._refresh(db)
+            new = inspection_table.n_counting(db) - before
+        return Merged(new, (*contradict.sentences(self.label), *chosen))
+
     # -- what is known
 
     def morning(self, on: date) -> Floats:
@@ -393,6 +532,19 @@ class Season:
             contents = self._now()
             day = contents.settings.day(on)
             return contents.history.evening(contents.morning(day), day).chance
+
+    def verdict(self, on: date, level: float, sure: float = 0.9) -> MapVerdict:
+        """Return whether treating pays after a day's work; see `fieldmon.decisions`.
+
+        Plants that were found and not treated count: they are infested.
+        """
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            evening = contents.history.evening(contents.morning(day), day)
+        return map_verdict(
+            contents.history.grid, evening.chance, level, evening.pair_chance, sure=sure
+        )
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""
@@ -444,7 +596,8 @@ class Season:
             contents = self._now()
             with self.store.reading() as db:
                 kept = db.execute("SELECT day, date, digest FROM days ORDER BY day").fetchall()
-            return tuple(
+            doubt = () if self.store.doubt is None else (self.store.doubt,)
+            return doubt + tuple(
                 f"The chance map of {on} comes out differently from the one used then: it was "
                 "made by another version of fieldmon, or the file was changed by other hands."
                 for day, on, then in kept
@@ -464,6 +617,7 @@ class Season:
 
     def _read(self, db: sqlite3.Connection) -> _Contents:
         """Return what the file says; nothing is read again that did not change."""
+        outside_changes.refuse(db)
         revision = _revision(db)
         if self._last is None or self._last.revision != revision:
             settings = _settings(db)
@@ -475,14 +629,6 @@ class Season:
             )
             self._last = _Contents(revision, settings, history, [history.first_morning])
         return self._last
-
-    def _scene(self, contents: _Contents, on: date, now: time | None) -> Scene:
-        settings = contents.settings
-        day = settings.day(on)
-        streams = RandomStreams(settings.seed)
-        shift = Shift(self.plot.aisles, settings.robot, seconds(settings.starts), streams)
-        now_s = None if now is None else seconds(now)
-        return contents.history.scene(shift, day, contents.morning(day), now_s)
 
     def _first_morning(self, settings: MonitoringSettings) -> Floats:
         key = (settings.begins, settings.prior)
@@ -519,7 +665,13 @@ def _nothing_yet(
         belief=settings.belief,
         detection=settings.robot.detects,
         recorded=record_states(plot.grid, known) if len(known) else None,
+        detection_of={one.name.casefold(): one.robot.detects for one in settings.team},
     )
+
+
+def _names(settings: MonitoringSettings) -> tuple[str, ...]:
+    """Return who works: the names of the team, or nobody's for the one."""
+    return tuple(member.name for member in settings.team) or ("",)
 
 
 def _revision(db: sqlite3.Connection) -> str:

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.planning.members import TeamMember, Teamwork, must_differ
 from fieldmon.plot.robot import Robot, Viewpoints
 from fieldmon.samplers import USUAL, sampler
 
@@ -43,6 +45,11 @@ class MonitoringSettings:
         What is made of findings and nights.
     seed
         For samplers that draw.
+    team
+        Who works, if several do; each starts so long after `starts` as it says. Empty: one works,
+        `robot`.
+    teamwork
+        How they work together.
     """
 
     begins: date
@@ -53,30 +60,59 @@ class MonitoringSettings:
     prior: PriorSettings = field(default_factory=PriorSettings)
     belief: BeliefSettings = field(default_factory=BeliefSettings)
     seed: int = 1
+    team: tuple[TeamMember, ...] = ()
+    teamwork: Teamwork = field(default_factory=Teamwork)
 
     def __post_init__(self) -> None:
+        if self.team:
+            must_differ(self.team)
         if len(self.decides().inspection_times(self.robot).detects) > 1:
             raise SettingError(
-                "The sampler of a season must look equally long at every plant, for that is what "
-                f"its findings are read by, but {self.sampler!r} chooses. Take another sampler."
+                worded(
+                    "The sampler of a season must look equally long at every "
+                    "plant, for that is what its findings are read by, but "
+                    "{sampler!r} chooses. Take another sampler.",
+                    sampler=self.sampler,
+                )
             )
 
     def decides(self) -> Sampler:
         """Return the sampler; raise `SettingError` if there is none of that name."""
         return sampler(self.sampler, **self.sampler_settings)
 
+    def member(self, who: str) -> TeamMember:
+        """Return one of the team by its name; raise `SettingError` if there is none."""
+        for one in self.team:
+            if one.name.casefold() == who.casefold():
+                return one
+        raise SettingError(
+            f"One of the team must be named ({', '.join(one.name for one in self.team)}), but it "
+            f"is {who!r}."
+        )
+
     def day(self, on: date) -> int:
         """Return the number of a date, from 0; raise `SettingError` outside the season."""
         number = (on - self.begins).days
         if number < 0:
             raise SettingError(
-                f"The day must be of this season, which began on {self.begins}, but it is {on}. "
-                "Check the date."
+                worded(
+                    "The day must be of this season, which began on {begins}, "
+                    "but it is {on}. Check the date.",
+                    begins=self.begins,
+                    on=on,
+                )
             )
         if number > MOST_DAYS:
             raise SettingError(
-                f"A season lasts {MOST_DAYS} days at most, but {on} is {number} days after it "
-                f"began on {self.begins}. Check the date, or begin a new season."
+                worded(
+                    "A season lasts {most_days} days at most, but {on} is "
+                    "{number} days after it began on {begins}. Check the "
+                    "date, or begin a new season.",
+                    most_days=MOST_DAYS,
+                    on=on,
+                    number=number,
+                    begins=self.begins,
+                )
             )
         return number
 
@@ -102,6 +138,9 @@ def as_json(settings: MonitoringSettings) -> dict[str, str]:
         "starts": settings.starts.isoformat(),
         "seed": settings.seed,
     }
+    members = [asdict(member) for member in settings.team]
+    together = {"teamwork": asdict(settings.teamwork)} if members else {}
+    plain["team"] = {"members": members, **together}
     plain["sampler"] = {"name": settings.sampler, "settings": dict(settings.sampler_settings)}
     return {name: json.dumps(part, sort_keys=True) for name, part in plain.items()}
 
@@ -110,22 +149,39 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
     """Return the settings that `as_json` wrote; raise `FileProblem` where it cannot be read."""
     try:
         plain = {name: json.loads(text) for name, text in parts.items()}
-        robot, season, chooses = plain["robot"], plain["season"], plain["sampler"]
-        steps = tuple((float(s), float(p)) for s, p in robot["viewpoints"]["steps"])
-        viewpoints = Viewpoints(steps, robot["viewpoints"]["longer"])
+        season, chooses = plain["season"], plain["sampler"]
+        team = plain.get("team", {"members": []})
         belief = plain["beliefs"]
         return MonitoringSettings(
             begins=date.fromisoformat(season["begins"]),
             starts=time.fromisoformat(season["starts"]),
-            robot=Robot(**{**robot, "viewpoints": viewpoints}),
+            robot=_robot(plain["robot"]),
             sampler=chooses["name"],
             sampler_settings=chooses["settings"],
             prior=PriorSettings(**plain["prior"]),
             belief=BeliefSettings(**{**belief, "spread": Spread(**belief["spread"])}),
             seed=season["seed"],
+            team=tuple(_member(one) for one in team["members"]),
+            teamwork=Teamwork(**team.get("teamwork", {})),
         )
     except (KeyError, TypeError, ValueError, FieldmonError) as error:
         raise FileProblem(
-            f"The season's settings must be as fieldmon wrote them, but they are not ({error}). "
-            "Was the file changed by hand? Save what can be saved with: fieldmon salvage"
+            worded(
+                "The season's settings must be as fieldmon wrote them, but "
+                "they are not ({error}). Was the file changed by hand? Save "
+                "what can be saved with: fieldmon salvage",
+                error=error,
+            )
         ) from error
+
+
+def _robot(plain: dict[str, Any]) -> Robot:
+    steps = tuple((float(s), float(p)) for s, p in plain["viewpoints"]["steps"])
+    viewpoints = Viewpoints(steps, plain["viewpoints"]["longer"])
+    return Robot(**{**plain, "viewpoints": viewpoints})
+
+
+def _member(plain: dict[str, Any]) -> TeamMember:
+    gate = plain["gate"]
+    lonlat = None if gate is None else (float(gate[0]), float(gate[1]))
+    return TeamMember(plain["name"], _robot(plain["robot"]), lonlat, float(plain["starts_s"]))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import insert
@@ -56,8 +57,10 @@ def undo(db: sqlite3.Connection) -> MonitoringSettings:
     parts = before_now(db)
     if parts is None:
         raise SettingError(
-            "There must be a change of settings to take back, but there is none: they are those "
-            "that the season began with."
+            worded(
+                "There must be a change of settings to take back, but there "
+                "is none: they are those that the season began with."
+            )
         )
     write(db, parts)
     return from_json(parts)

@@ -12,6 +12,7 @@ import numpy as np
 import shapely
 from shapely import LineString, MultiLineString, MultiPolygon, Point
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import schema
@@ -160,8 +161,12 @@ def read_plot(db: sqlite3.Connection) -> Plot:
         grid, field = _grid(arrays), _field(db, arrays)
     except (KeyError, TypeError, ValueError) as error:
         raise FileProblem(
-            f"The season's plants must be in its file, but they cannot be read ({error}). "
-            "Save what can be saved with: fieldmon salvage"
+            worded(
+                "The season's plants must be in its file, but they cannot be "
+                "read ({error}). Save what can be saved with: fieldmon "
+                "salvage",
+                error=error,
+            )
         ) from error
     gate = None if field.gate is None else grid.frame.xy_m(field.gate)[0]
     gate_xy_m = None if gate is None else (float(gate[0]), float(gate[1]))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.pairs import pair_chances
@@ -167,8 +167,11 @@ def plan_day(
     today = first_day(plot, given, np.datetime64(starts.date(), "D"), plans, risk)
     if not len(today.route):
         raise SettingError(
-            "The working day must be long enough to reach a plant and come back, but "
-            f"{plans.robot.hours:g} h are not. Give more hours."
+            worded(
+                "The working day must be long enough to reach a plant and "
+                "come back, but {hours:g} h are not. Give more hours.",
+                hours=plans.robot.hours,
+            )
         )
     who = sampler if isinstance(sampler, str) else type(sampler).__name__
     notes = RouteNotes(plot.field.name, who, starts)
@@ -182,7 +185,9 @@ def _starts(on: str | date | datetime | np.datetime64 | None, plot: Plot) -> dat
     try:
         day = local_clock(plot.field).today() if on is None else date.fromisoformat(str(on))
     except ValueError as error:
-        raise SettingError(f"A day must be as 2026-11-18, but it is {on!r}.") from error
+        raise SettingError(
+            worded("A day must be as 2026-11-18, but it is {on!r}.", on=on)
+        ) from error
     return datetime.combine(day, _STARTS)
 
 

@@ -9,6 +9,7 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.compute.arrays import offsets, runs
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot import adjacency
 from fieldmon.plot.aisle_lines import aisles_of
@@ -383,8 +384,11 @@ def _faces(pieces: BentPieces, planting: Planting) -> tuple[Int, Int]:
     inner = (sides[0] & sides[1])[corridor]
     if not inner.any():
         raise PlotError(
-            "Two rows or more must face each other if outer faces are not inspected, "
-            "but no two do. Inspect outer faces too, or one face only."
+            worded(
+                "Two rows or more must face each other if outer faces are not "
+                "inspected, but no two do. Inspect outer faces too, or one "
+                "face only."
+            )
         )
     return piece[inner], upper[inner]
 

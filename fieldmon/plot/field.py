@@ -9,7 +9,7 @@ import shapely
 from shapely import MultiLineString, MultiPolygon
 
 from fieldmon.compute.arrays import read_only
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.projection import Frame
 
@@ -61,9 +61,15 @@ class Field:
     def __post_init__(self) -> None:
         if self.boundary.is_empty or not self.boundary.is_valid:
             raise PlotError(
-                f"The boundary of plot {self.name!r} must be a valid, non-empty area, but it is "
-                f"{'empty' if self.boundary.is_empty else shapely.is_valid_reason(self.boundary)}. "
-                "Draw it again or let the import repair it."
+                worded(
+                    "The boundary of plot {name!r} must be a valid, non-empty "
+                    "area, but it is {value}. Draw it again or let the import "
+                    "repair it.",
+                    name=self.name,
+                    value="empty"
+                    if self.boundary.is_empty
+                    else shapely.is_valid_reason(self.boundary),
+                )
             )
         if self.plants is not None:
             read_only(self.plants)
@@ -98,7 +104,10 @@ class Field:
         areas = [part for part in shapely.get_parts(left) if part.area > 0]
         if not areas:
             raise PlotError(
-                f"Some of plot {self.name!r} must lie outside its no-go areas, but nothing does. "
-                "Remove or shrink a no-go area."
+                worded(
+                    "Some of plot {name!r} must lie outside its no-go areas, "
+                    "but nothing does. Remove or shrink a no-go area.",
+                    name=self.name,
+                )
             )
         return MultiPolygon(areas)

@@ -76,8 +76,11 @@ class Planting:
         for name in ("row_spacing_m", "plant_spacing_m", "headland_m"):
             if not 0.05 <= getattr(self, name) <= 1000.0:
                 raise SettingError(
-                    f"A planting's {name} must be 0.05 to 1000 metres, "
-                    f"but it is {getattr(self, name)}."
+                    worded(
+                        "A planting's {name} must be 0.05 to 1000 metres, but it is {value}.",
+                        name=name,
+                        value=getattr(self, name),
+                    )
                 )
         if self.row_bearing_deg is not None and not np.isfinite(self.row_bearing_deg):
             raise SettingError(
@@ -246,8 +249,13 @@ def _held_area(field: Field, frame: Frame, xy_m: Float) -> MultiPolygon:
     area = frame.geometry_m(field.drivable())
     if not shapely.contains_xy(area, xy_m).any():
         raise PlotError(
-            f"Measured plants must stand on plot {field.name!r}, but none of {len(xy_m)} does. "
-            "Choose the plants' own plot, or check the coordinate systems."
+            worded(
+                "Measured plants must stand on plot {name!r}, but none of {n} "
+                "does. Choose the plants' own plot, or check the coordinate "
+                "systems.",
+                name=field.name,
+                n=len(xy_m),
+            )
         )
     return area
 

@@ -11,6 +11,7 @@ from shapely import LineString, Point
 from shapely.ops import substring
 
 from fieldmon.compute.arrays import offsets, runs
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.bent_layout import (
     Blocked,
@@ -107,9 +108,14 @@ def lay_along(
     xy_m, row = _filled(rows.lines, blocked, planting)
     if not len(xy_m):
         raise PlotError(
-            f"A plot must have room for one plant on its rows, but {name!r} has none: rows end "
-            f"{planting.headland_m:g} m (the headland) before its boundary. Choose a smaller "
-            "headland, or check the rows and the boundary."
+            worded(
+                "A plot must have room for one plant on its rows, but "
+                "{name!r} has none: rows end {headland_m:g} m (the headland) "
+                "before its boundary. Choose a smaller headland, or check the "
+                "rows and the boundary.",
+                name=name,
+                headland_m=planting.headland_m,
+            )
         )
     known = ground._replace(blocked=blocked, aisles=aisles)
     return bent_grid(frame, rows, (xy_m, row), known, planting)

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, date, datetime
+from functools import cache
+from itertools import product
 from typing import TYPE_CHECKING
 from zoneinfo import ZoneInfo
+
+import numpy as np
+import shapely
+from shapely import MultiPolygon
 
 if TYPE_CHECKING:
     from fieldmon.plot.field import Field
@@ -62,3 +69,44 @@ def local_clock(field: Field) -> LocalClock:
         name = get_tz((west + east) / 2, (south + north) / 2)
         return LocalClock(ZoneInfo(name).key)
     return LocalClock()
+
+
+def zones_within(bounds: tuple[float, float, float, float]) -> tuple[str, ...]:
+    """Return the time zones of land in a part of the earth: west, south, east, north.
+
+    Small ones may be missed: they are looked up at 40 x 30 places.
+    """
+    from tzfpy import get_tz  # noqa: PLC0415 - as above
+
+    west, south, east, north = bounds
+    places = product(np.linspace(west, east, 40).tolist(), np.linspace(south, north, 30).tolist())
+    found = dict.fromkeys(get_tz(lon, lat) for lon, lat in places)
+    return tuple(zone for zone in found if zone and not zone.startswith("Etc/"))
+
+
+@cache
+def zone_outline(zone: str, rough_deg: float) -> MultiPolygon:
+    """Return where a time zone counts, lon/lat; empty where the zone is unknown.
+
+    Parameters
+    ----------
+    zone
+        Its name, as ``"Asia/Jerusalem"``.
+    rough_deg
+        How far the outline may be off, degrees.
+
+    Examples
+    --------
+    >>> from fieldmon.plot.local_clock import zone_outline
+    >>> zone_outline("Asia/Jerusalem", 0.1).contains(shapely.Point(35.2, 30.4))
+    True
+    """
+    from tzfpy import get_tz_polygon_geojson, timezonenames  # noqa: PLC0415 - as above
+
+    if zone not in timezonenames():
+        return MultiPolygon()
+    found = json.loads(get_tz_polygon_geojson(zone))
+    (feature,) = found.get("features", [found])
+    shape = shapely.from_geojson(json.dumps(feature["geometry"]))
+    parts = shapely.get_parts(shapely.simplify(shape, rough_deg))
+    return MultiPolygon([part for part in parts if not part.is_empty])

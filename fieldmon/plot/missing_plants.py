@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.arrays import offsets
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
@@ -28,14 +29,21 @@ def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
     """
     if len(missing) != len(grid):
         raise PlotError(
-            f"Missing plants must be marked for each of {len(grid)} plants, but {len(missing)} "
-            "marks were given."
+            worded(
+                "Missing plants must be marked for each of {n} plants, "
+                "but {given} marks were given.",
+                n=len(grid),
+                given=len(missing),
+            )
         )
     gone = missing | (missing[grid.twin] & (grid.twin >= 0))
     if gone.all():
         raise PlotError(
-            "One plant at least must be there, but all were marked as missing. Check the canopy "
-            "raster and the value below which a plant is missing."
+            worded(
+                "One plant at least must be there, but all were marked as "
+                "missing. Check the canopy raster and the value below which a "
+                "plant is missing."
+            )
         )
     kept = ~gone
     new = np.where(kept, np.cumsum(kept) - 1, -1).astype(np.int32)

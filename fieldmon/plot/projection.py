@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from pyproj import Transformer
 from pyproj.enums import TransformDirection
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError, SettingError
 
 Float = NDArray[np.float64]
@@ -51,11 +52,21 @@ class Frame:
     def __post_init__(self) -> None:
         if not (-180.0 <= self.lon <= 180.0 and -90.0 <= self.lat <= 90.0):
             raise SettingError(
-                "A frame's centre must be a longitude in -180..180 and a latitude in -90..90, "
-                f"but it is ({self.lon}, {self.lat}). Are the coordinates in degrees?"
+                worded(
+                    "A frame's centre must be a longitude in -180..180 and a "
+                    "latitude in -90..90, but it is ({lon}, {lat}). Are the "
+                    "coordinates in degrees?",
+                    lon=self.lon,
+                    lat=self.lat,
+                )
             )
         if not np.isfinite(self.bearing_deg):
-            raise SettingError(f"A row bearing must be a number, but it is {self.bearing_deg}.")
+            raise SettingError(
+                worded(
+                    "A row bearing must be a number, but it is {bearing_deg}.",
+                    bearing_deg=self.bearing_deg,
+                )
+            )
 
     def turned(self, bearing_deg: float) -> Frame:
         """Return the frame with the same centre and another row bearing."""
@@ -71,9 +82,15 @@ class Frame:
         xy = np.stack([x, y], axis=1)
         if xy.size and not (np.abs(xy) < _FARTHEST_M).all():
             raise PlotError(
-                f"Everything on a plot must lie within {_FARTHEST_M / 1000:.0f} km of its centre "
-                f"({self.lon:.5f}, {self.lat:.5f}), but some positions do not. "
-                "Check the coordinate system and the order of longitude and latitude."
+                worded(
+                    "Everything on a plot must lie within {value:.0f} km of "
+                    "its centre ({lon:.5f}, {lat:.5f}), but some positions do "
+                    "not. Check the coordinate system and the order of "
+                    "longitude and latitude.",
+                    value=_FARTHEST_M / 1000,
+                    lon=self.lon,
+                    lat=self.lat,
+                )
             )
         return xy
 

@@ -16,7 +16,7 @@ from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.arrays import runs
 from fieldmon.compute.jit import kept, routine
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.bent_ways import Bends, bends_of, off_steps, row_end_places, row_steps
 
@@ -506,9 +506,14 @@ def _joined_outside(net: _Net, needed: Index, obstacles: Obstacles) -> _Net:
         part = net.component()[needed]
         stranded = (part[:-1] != part[-1]).reshape(-1, 2).any(axis=1)
         raise PlotError(
-            "Every row must be reachable from the gate without crossing rows or no-go areas, but "
-            f"{np.count_nonzero(stranded)} of {len(stranded)} rows are not. Move the gate, or "
-            "open the no-go areas that shut them in."
+            worded(
+                "Every row must be reachable from the gate without crossing "
+                "rows or no-go areas, but {shut} of {n} rows are "
+                "not. Move the gate, or open the no-go areas that shut them "
+                "in.",
+                shut=np.count_nonzero(stranded),
+                n=len(stranded),
+            )
         )
     return net
 

@@ -11,6 +11,7 @@ import shapely
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import cKDTree
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.projection import Frame
 
@@ -70,7 +71,10 @@ def rows_from_lines(field: Field) -> Rows:
     """Return the direction and spacing of the rows that were drawn; raise `PlotError` if none."""
     if field.row_lines.is_empty:
         raise PlotError(
-            f"Rows of plot {field.name!r} must be drawn to find their direction, but none are."
+            worded(
+                "Rows of plot {name!r} must be drawn to find their direction, but none are.",
+                name=field.name,
+            )
         )
     lines = shapely.get_parts(field.row_lines)
     points, line = shapely.get_coordinates(lines, return_index=True)
@@ -101,8 +105,11 @@ def rows_from_plants(lonlat: Float, near_bearing_deg: float | None = None) -> Ro
     """
     if len(lonlat) < 2:
         raise PlotError(
-            f"Rows can be found from 2 plants or more, but there are {len(lonlat)}. "
-            "Give the row bearing and the spacings."
+            worded(
+                "Rows can be found from 2 plants or more, but there are {n}. "
+                "Give the row bearing and the spacings.",
+                n=len(lonlat),
+            )
         )
     east_north_m = _middle_of(frame_around(lonlat).xy_m(lonlat))
     pairs = _Pairs.of(east_north_m)
@@ -147,12 +154,15 @@ def distinct(lonlat: Float, apart_m: float = 0.05) -> NDArray[np.intp]:
 def frame_around(lonlat: Float) -> Frame:
     """Return the plane, x east, centred on the given positions; raise `PlotError` if it cannot."""
     if not len(lonlat):
-        raise PlotError("There must be at least one plant position, but there is none.")
+        raise PlotError(worded("There must be at least one plant position, but there is none."))
     if not np.isfinite(lonlat).all():
         bad = int(np.flatnonzero(~np.isfinite(lonlat).all(axis=1))[0])
         raise PlotError(
-            f"Every plant must have a longitude and a latitude, but plant {bad + 1} has none. "
-            "Leave it out or measure it again."
+            worded(
+                "Every plant must have a longitude and a latitude, but plant "
+                "{value} has none. Leave it out or measure it again.",
+                value=bad + 1,
+            )
         )
     lon, lat = (np.min(lonlat, axis=0) + np.max(lonlat, axis=0)) / 2
     return Frame(float(lon), float(lat))
@@ -196,8 +206,11 @@ class _Pairs(NamedTuple):
         near_m = float(np.median(cKDTree(east_north_m).query(east_north_m, k=2)[0][:, 1]))
         if near_m == 0:
             raise PlotError(
-                "Plants must stand apart, but most share their position with another one. "
-                "Check the columns, or leave doubles out."
+                worded(
+                    "Plants must stand apart, but most share their position "
+                    "with another one. Check the columns, or leave doubles "
+                    "out."
+                )
             )
         centres = np.unique(np.linspace(0, n - 1, min(n, max(20, _MOST_PAIRS // n))).astype(int))
         apart = (east_north_m[None] - east_north_m[centres][:, None]).reshape(-1, 2)

@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from shapely import MultiLineString
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.row_detection import frame_around
 
@@ -49,14 +50,22 @@ def rows_from_posts(lonlat: Float, names: NDArray[np.str_] | None = None) -> Mul
         if (count != 2).any():
             wrong = str(names[row == np.flatnonzero(count != 2)[0]][0])
             raise PlotError(
-                f"Rows must have two end posts each, but row {wrong!r} has "
-                f"{int(count[count != 2][0])}. Add or remove posts."
+                worded(
+                    "Rows must have two end posts each, but row {wrong!r} has "
+                    "{n}. Add or remove posts.",
+                    wrong=wrong,
+                    n=int(count[count != 2][0]),
+                )
             )
         return _drawn(lonlat, np.argsort(row, kind="stable").reshape(-1, 2))
     if n < 4 or n % 2:
         raise PlotError(
-            f"End posts must be two a row, of two rows or more, but there are {n}. Add those that "
-            "are missing, or name the row of each post."
+            worded(
+                "End posts must be two a row, of two rows or more, but there "
+                "are {n}. Add those that are missing, or name the row of each "
+                "post.",
+                n=n,
+            )
         )
     return _drawn(lonlat, _pairs_in_line(frame_around(lonlat).xy_m(lonlat)))
 
@@ -74,8 +83,12 @@ def _pairs_in_line(xy_m: Float) -> NDArray[np.intp]:
     order, within, between = _in_turn(xy_m, float(best))
     if within.max() > _IN_LINE * between.min():
         raise PlotError(
-            f"End posts must lie two by two in line, but of {len(xy_m)} posts some do not. "
-            "Name the row of each post, or draw the rows as lines."
+            worded(
+                "End posts must lie two by two in line, but of {n} posts some "
+                "do not. Name the row of each post, or draw the rows as "
+                "lines.",
+                n=len(xy_m),
+            )
         )
     return order.reshape(-1, 2)
 
@@ -132,9 +145,13 @@ def contour_row(field: Field, height_m: Callable[[Float], Float], step_m: float)
     line = np.concatenate([halves[1][::-1], start[None], halves[0]])
     if not np.isfinite(level) or len(line) < 3:
         raise PlotError(
-            f"Rows along contours need heights that differ, but about the middle of plot "
-            f"{field.name!r} the raster shows {'none' if not np.isfinite(level) else 'no slope'}. "
-            "Choose another raster, or give the row bearing."
+            worded(
+                "Rows along contours need heights that differ, but about the "
+                "middle of plot {name!r} the raster shows {value}. Choose "
+                "another raster, or give the row bearing.",
+                name=field.name,
+                value="none" if not np.isfinite(level) else "no slope",
+            )
         )
     return MultiLineString(
         [frame.lonlat(shapely.get_coordinates(shapely.simplify(shapely.linestrings(line), 0.02)))]

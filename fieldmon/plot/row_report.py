@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.plot.row_tracing import beside_their_rows
 
 if TYPE_CHECKING:
@@ -97,7 +97,14 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
     n_rows = counted(int(grid.row_line.max()) + 1, "row")
     blocks = f" of {counted(grid.n_blocks, 'block')}" if grid.n_blocks > 1 else ""
     bend = ", as they bend" if grid.aisles_m is not None else ""
-    how = f"{counted(len(faces), 'plant')} in {n_rows}{blocks}{bend}, {typical_m:.2f} m beside"
+    how = worded(
+        "{counted} in {n_rows}{blocks}{bend}, {typical_m:.2f} m beside",
+        counted=counted(len(faces), "plant"),
+        n_rows=n_rows,
+        blocks=blocks,
+        bend=bend,
+        typical_m=typical_m,
+    )
     return RowReport(
         f"{how} their lines",
         typical_m,

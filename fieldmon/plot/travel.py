@@ -208,6 +208,13 @@ class Aisles:
         return here
 
 
+def trace(aisles: Aisles, a: int, b: int) -> list[int]:
+    """Return the nodes of the network on the way between two lane ends, as in `TravelTable`."""
+    stops = np.append(aisles.roads.end.ravel(), aisles.roads.gate)
+    nodes: list[int] = _trace(aisles.roads, stops[a], stops[b]).tolist()
+    return nodes
+
+
 def crosses_rows(grid: PlantGrid, line_xy_m: Float) -> bool:
     """Tell whether a line ``(k, 2)`` comes within a centimetre of a row.
 

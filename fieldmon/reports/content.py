@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.reports.drawing import Drawing, Lettering
+from fieldmon.reports.tongue import ENGLISH, Tongue
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from datetime import date
 
-    from fieldmon.reports.drawing import Drawing
+    from fieldmon.reports.drawing import Part
 
     Size = tuple[float, float]
 
@@ -130,6 +133,12 @@ class Report:
     title: str
     on: date
     sheets: tuple[Sheet, ...]
+    tongue: Tongue = ENGLISH
+
+    def said_in(self, tongue: Tongue) -> Report:
+        """Return the report in a language; the plot's name stays as it is."""
+        sheets = _said(self.sheets, tongue.say)
+        return Report(self.plot, tongue.say(self.title), self.on, sheets, tongue)
 
     def words(self) -> Iterator[str]:
         """Yield every text that goes on paper, but not those in drawings."""
@@ -138,6 +147,26 @@ class Report:
             yield sheet.heading
             for block in sheet.blocks:
                 yield from _words(block)
+
+
+def _said(thing: Any, say: Callable[[str], str]) -> Any:  # noqa: ANN401 - whatever a report holds
+    """Return a part of a report with all of its texts said, those in its drawings too."""
+    if isinstance(thing, str):
+        return say(thing)
+    if isinstance(thing, tuple):
+        return tuple(_said(one, say) for one in thing)
+    if isinstance(thing, Illustration):
+        made = replace(thing, title=say(thing.title), alt=say(thing.alt))
+        return replace(made, draw=lambda size: _said(thing.draw(size), say))
+    if isinstance(thing, Drawing):
+        return replace(thing, parts=tuple(_said_part(part, say) for part in thing.parts))
+    if is_dataclass(thing) and not isinstance(thing, type):
+        return replace(thing, **{f.name: _said(getattr(thing, f.name), say) for f in fields(thing)})
+    return thing
+
+
+def _said_part(part: Part, say: Callable[[str], str]) -> Part:
+    return replace(part, text=say(part.text)) if isinstance(part, Lettering) else part
 
 
 def _words(block: Block) -> Iterator[str]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import figure, worded
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
@@ -127,36 +128,36 @@ def day_report(facts: DayFacts, units: Units) -> Report:
     if len(facts.route):
         blocks.append(_every_stop(facts))
     on = facts.begins.date()
-    title = words.DAY_TITLE.format(day=units.day(on))
+    title = worded(words.DAY_TITLE, day=units.day(on))
     return Report(facts.name, title, on, (Sheet(words.DAY_SHEET, tuple(blocks)),))
 
 
 def _leads(facts: DayFacts, units: Units) -> list[str]:
     day = units.day(facts.begins.date())
-    said = []
+    said: list[str] = []
     if facts.inspected:
         numbers = {"inspected": facts.inspected, "found": len(facts.found)}
-        said.append(words.WORKED.format(day=day, **numbers))
+        said.append(worded(words.WORKED, day=day, **numbers))
     return said if facts.worked and said else [*said, headline(facts.route, day)]
 
 
 def _figures(facts: DayFacts, units: Units) -> KeyFigures:
     route, n = facts.route, len(facts.chance)
-    hours = words.FROM_TO.format(start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
+    hours = worded(words.FROM_TO, start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
     ahead = KeyFigure(
-        words.FINDS, f"{route.expected_found:.1f}",
-        words.OF_INFESTED.format(n=route.expected_finds),
+        words.FINDS, figure(route.expected_found, ".1f"),
+        worded(words.OF_INFESTED, n=route.expected_finds),
     )  # fmt: skip
     done = KeyFigure(
-        words.FOUND_TODAY, f"{len(facts.found)}", words.OF_INSPECTED.format(n=facts.inspected)
+        words.FOUND_TODAY, figure(len(facts.found)), worded(words.OF_INSPECTED, n=facts.inspected)
     )
     return KeyFigures(
         (
             KeyFigure(
                 words.INSPECTED if facts.worked else words.PLANTS_TO_INSPECT,
-                f"{len(route):,}", words.OF_PLANTS.format(n=n),
+                figure(len(route)), worded(words.OF_PLANTS, n=n),
             ),
-            KeyFigure(words.TIME, f"{route.end_s / 3600:.1f}", hours if len(route) else ""),
+            KeyFigure(words.TIME, figure(route.end_s / 3600, ".1f"), hours if len(route) else ""),
             KeyFigure(words.DRIVE, units.metres(route.drive_m)),
             done if facts.worked else ahead,
         )
@@ -174,8 +175,8 @@ def _map(facts: DayFacts, units: Units) -> list[Block]:
 def map_alt(name: str, state: NDArray[np.int8], stops: int) -> str:
     """Return what a map shows, in words."""
     finds = int(np.count_nonzero(state == PRESENT))
-    return words.MAP_ALT.format(
-        name=words.isolated(name), plants=len(state), stops=stops, finds=finds
+    return worded(
+        words.MAP_ALT, name=words.isolated(name), plants=len(state), stops=stops, finds=finds
     )
 
 
@@ -202,7 +203,7 @@ def _stops(facts: DayFacts) -> Table:
             )
         )
     return Table(
-        words.STOPS, words.STOPS_COLUMNS, tuple(rows), (0.12, 0.17, 0.13, 0.58), flow=flow,
+        words.STOPS, words.STOPS_COLUMNS, tuple(rows), (0.15, 0.16, 0.17, 0.52), flow=flow,
         rest=words.STOPS_REST, left=(3,),
     )  # fmt: skip
 
@@ -212,7 +213,7 @@ def which(numbers: list[int], letters: int) -> str:
     said = runs(numbers)
     if len(said) <= letters:
         return said
-    return words.WHICH_MANY.format(n=len(numbers), low=min(numbers), high=max(numbers))
+    return worded(words.WHICH_MANY, n=len(numbers), low=min(numbers), high=max(numbers))
 
 
 def _found(facts: DayFacts) -> Table:

@@ -25,6 +25,8 @@ _WEIGHTS = {"": 400, "B": 700}
 # stands for what no font has
 _MISSING = "?"
 _TIED = "\u00a0"
+# signs that the fonts lack, and what is written for them: geresh and gershayim of Hebrew
+_ALIKE = str.maketrans({"\u05f3": "'", "\u05f4": '"'})
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,9 @@ class FontSet:
     @classmethod
     def of(cls, texts: Iterable[str]) -> FontSet:
         """Return the fonts that write these texts."""
-        letters = {one for text in texts for one in text if _is_seen(one)} | {_MISSING, _TIED, " "}
+        written = (text.translate(_ALIKE) for text in texts)
+        letters = {one for text in written for one in text if _is_seen(one)}
+        letters |= {_MISSING, _TIED, " "}
         fonts, left = [], {*letters}
         for family in _FONTS:
             # what joins letters must come from the font of the letters
@@ -61,7 +65,8 @@ class FontSet:
 
     def printable(self, text: str) -> str:
         """Return a text with a sign in place of what no font has; no line ends before a %."""
-        shown = "".join(_MISSING if one in self.missing else one for one in text)
+        known = text.translate(_ALIKE)
+        shown = "".join(_MISSING if one in self.missing else one for one in known)
         return shown.replace(" %", f"{_TIED}%")
 
 

@@ -23,6 +23,8 @@ def html_text(report: Report) -> str:
         "fieldmon/reports/report.html.j2",
         title=f"{words.isolated(report.plot)}: {report.title}",
         report=report,
+        language=report.tongue.code,
+        direction="rtl" if report.tongue.right_to_left else "ltr",
         kind=_kind,
         drawn=_drawn,
         parts=_parts,

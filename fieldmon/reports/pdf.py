@@ -6,11 +6,12 @@ Nothing in it depends on the clock: the same report is the same file, byte for b
 from __future__ import annotations
 
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.reports import colours, words
 from fieldmon.reports.content import (
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from fpdf import FPDF
 
     from fieldmon.reports.drawing import Colour
+    from fieldmon.reports.tongue import Tongue
 
 #: width and height, millimetres
 PAPERS = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
@@ -44,6 +46,7 @@ _TITLE_MM, _ROW_MM, _NOTE_MM = 5.6, 4.1, 7.5
 _FLOW_GAP = 5.0
 _LEAST_NOTES, _MOST_NOTES = 2, 7
 _LEAST_PICTURE_MM = 35.0
+_OTHER_END = {"start": "end", "middle": "middle", "end": "start"}
 
 
 def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
@@ -65,7 +68,7 @@ def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
         raise SettingError(f"Paper must be one of {', '.join(PAPERS)}, but it is {paper!r}.")
     from fpdf import FPDF  # noqa: PLC0415 - a second to import
 
-    fonts = FontSet.of([*report.words(), *_own_words()])
+    fonts = FontSet.of([*report.words(), *_own_words(report.tongue)])
     pdf = FPDF(format=PAPERS[paper])
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
         for font in fonts.fonts:
@@ -77,39 +80,48 @@ def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
         pdf.set_text_shaping(use_shaping_engine=True)
         pdf.set_auto_page_break(auto=False)
         pdf.set_title(f"{report.plot}: {report.title}")
-        pdf.set_lang("en")
+        pdf.set_lang(report.tongue.code)
         pdf.set_creation_date(datetime.combine(report.on, datetime.min.time(), UTC))
-        page = _Page(pdf, fonts, PAPERS[paper])
+        page = _Page(pdf, fonts, PAPERS[paper], report)
         for number, sheet in enumerate(report.sheets, start=1):
-            page.write(report, sheet, number)
+            page.write(sheet, number)
         return bytes(pdf.output())
 
 
-def _own_words() -> Iterator[str]:
+def _own_words(tongue: Tongue) -> Iterator[str]:
     """Yield what drawings and pages write themselves, and all that numbers are made of."""
-    yield from (value for value in vars(words).values() if isinstance(value, str))
-    yield from words.LEGEND_STATES
+    yield tongue.letters
     yield "0123456789.,:;-–+%/()°'\" abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
 @dataclass(frozen=True, eq=False)
 class _Page:
-    """Writes sheets on paper of a size."""
+    """Writes sheets on paper of a size; from the right, where the report is read from there."""
 
     pdf: FPDF
     fonts: FontSet
     size: tuple[float, float]
+    report: Report
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether all that has a side stands on the other one; maps and charts do not."""
+        return self.report.tongue.right_to_left
+
+    def _left(self, x: float, wide: float) -> float:
+        """Return where a box of a width begins whose place is told from where reading begins."""
+        return self.size[0] - x - wide if self.mirrored else x
 
     @property
     def wide(self) -> float:
         """Width between the margins."""
         return self.size[0] - 2 * _MARGIN
 
-    def write(self, report: Report, sheet: Sheet, number: int) -> None:
+    def write(self, sheet: Sheet, number: int) -> None:
         """Write one sheet on a page of its own."""
         self.pdf.add_page()
-        self._head(report, sheet)
-        self._foot(report, number)
+        self._head(self.report, sheet)
+        self._foot(self.report, number)
         blocks: list[Block] = [block for block in sheet.blocks if not isinstance(block, TickList)]
         y = _MARGIN + _HEAD
         heights = self._heights(blocks, self.size[1] - _MARGIN - _FOOT - y)
@@ -176,7 +188,7 @@ class _Page:
 
     def _text_high(self, text: str, wide: float, size: float) -> float:
         lines = self.pdf.multi_cell(
-            wide, size * PT_MM * _LINE, self.fonts.printable(text), align="L", dry_run=True,
+            wide, size * PT_MM * _LINE, self.fonts.printable(text), align=self._align, dry_run=True,
             output="LINES",
         )  # fmt: skip
         return len(lines) * size * PT_MM * _LINE  # type: ignore[arg-type]
@@ -195,13 +207,13 @@ class _Page:
         aside = pdf.get_string_width(self.fonts.printable(report.title)) + 6.0
         self._font(17.0, "B")
         name = self._shortened(report.plot, self.wide - aside)
-        letter(pdf, self.fonts, Lettering(_MARGIN, _MARGIN + 5.6, name, 17.0, bold=True), (0, 0))
+        self._put(Lettering(_MARGIN, _MARGIN + 5.6, name, 17.0, bold=True))
         place = Lettering(_MARGIN, _MARGIN + 12.4, sheet.heading, 10.5, colours.ACCENT, bold=True)
         self._put(place)
 
     def _foot(self, report: Report, number: int) -> None:
         y, right = self.size[1] - _MARGIN, self.size[0] - _MARGIN
-        said = words.PAGE.format(page=number, of=len(report.sheets))
+        said = self._said(worded(words.PAGE, page=number, of=len(report.sheets)))
         for x, text, anchor in ((_MARGIN, self._unprinted(), "start"), (right, said, "end")):
             self._put(Lettering(x, y - 1.5, text, 7.0, colours.SOFT, anchor))
 
@@ -211,16 +223,27 @@ class _Page:
         if not missing:
             return words.FOOTER
         codes = " ".join(f"U+{ord(one):04X}" for one in missing[:8])
-        return f"{words.FOOTER}. {words.UNPRINTED.format(n=len(missing), codes=codes)}"
+        unprinted = self._said(worded(words.UNPRINTED, n=len(missing), codes=codes))
+        return f"{words.FOOTER}. {unprinted}"
 
     def _put(self, part: Lettering) -> None:
-        """Write words where they say."""
+        """Write words where they say, as told from where reading begins."""
+        if self.mirrored:
+            part = replace(part, x=self.size[0] - part.x, anchor=_OTHER_END[part.anchor])
         letter(self.pdf, self.fonts, part, (0.0, 0.0))
+
+    def _said(self, sentence: str) -> str:
+        return self.report.tongue.say(sentence)
+
+    @property
+    def _align(self) -> str:
+        return "R" if self.mirrored else "L"
 
     def _line(self, x: float, y: float, end: float, colour: Colour, width: float) -> None:
         self.pdf.set_draw_color(*colour)
         self.pdf.set_line_width(width)
-        self.pdf.line(x, y, end, y)
+        begins = self._left(x, end - x)
+        self.pdf.line(begins, y, begins + end - x, y)
 
     def _block(self, block: Block, y: float, high: float) -> None:
         if isinstance(block, Paragraph):
@@ -247,9 +270,11 @@ class _Page:
 
     def _text(self, text: str, place: tuple[float, float], wide: float, size: float) -> float:
         """Write sentences over as many lines as they need; return where they end."""
-        self.pdf.set_xy(*place)
+        self.pdf.set_xy(self._left(place[0], wide), place[1])
         self.pdf.c_margin, margin = 0.0, self.pdf.c_margin
-        self.pdf.multi_cell(wide, size * PT_MM * _LINE, self.fonts.printable(text), align="L")
+        self.pdf.multi_cell(
+            wide, size * PT_MM * _LINE, self.fonts.printable(text), align=self._align
+        )
         self.pdf.c_margin = margin
         return float(self.pdf.get_y())
 
@@ -267,7 +292,7 @@ class _Page:
         for k, figure in enumerate(block.figures):
             x = _MARGIN + k * each
             self.pdf.set_fill_color(*colours.GROUND)
-            self.pdf.rect(x, y, each - 2.0, 15.0, style="F")
+            self.pdf.rect(self._left(x, each - 2.0), y, each - 2.0, 15.0, style="F")
             lines = (
                 (3.0, figure.label, 7.0, "", colours.SOFT),
                 (7.9, figure.value, 14.0, "B", colours.INK),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, figure, joined, worded
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
 from fieldmon.plot.grid import row_label
@@ -92,7 +92,7 @@ def season_report(season: Season, on: date, units: Units) -> Report:
     """Return the report of a season up to a day; nothing is kept by it."""
     facts = _Facts.of(season, on, units)
     made = (_stands(facts), _went(facts), _hot_and_found(facts), _goes_by(facts))
-    title = words.SEASON_TITLE.format(begins=units.day(season.settings.begins), day=units.day(on))
+    title = worded(words.SEASON_TITLE, begins=units.day(season.settings.begins), day=units.day(on))
     sheets = tuple(
         Sheet(heading, tuple(blocks))
         for heading, blocks in zip(words.SEASON_SHEETS, made, strict=True)
@@ -106,40 +106,41 @@ def season_report(season: Season, on: date, units: Units) -> Report:
 def _stands(facts: _Facts) -> Iterator[Block]:
     status, ahead = facts.status, facts.status.estimate
     said = [
-        words.STANDS.format(
+        worded(words.STANDS,
             expected=ahead.expected, low=ahead.low, high=ahead.high,
             found=counted(status.found, "plant"),
         )
     ]  # fmt: skip
     if ahead.chance_clean >= 0.005:
-        said.append(words.STANDS_CLEAN.format(chance=ahead.chance_clean))
+        said.append(worded(words.STANDS_CLEAN, chance=ahead.chance_clean))
     if len(status.hot_spots):
-        said.append(words.STANDS_HOT.format(n=counted(len(status.hot_spots), "hot spot")))
-    yield Paragraph(" ".join(said), lead=True)
+        said.append(worded(words.STANDS_HOT, n=counted(len(status.hot_spots), "hot spot")))
+    yield Paragraph(joined(" ", said), lead=True)
     yield _figures(facts)
     assumed = assumed_sentence(WorkSettings.of_season(facts.season), facts.units)
     if assumed:
         yield Paragraph(assumed)
     yield from facts.plot_map(by_state=False)
-    yield Paragraph(" ".join(_rows_seen(facts)))
+    yield Paragraph(joined(" ", _rows_seen(facts)))
 
 
 def _figures(facts: _Facts) -> KeyFigures:
     status, ahead = facts.status, facts.status.estimate
     low, high = _of_all(status.found, ahead.high), _of_all(status.found, ahead.low)
     finds = sum(one.found for one in facts.days)
-    twice = words.FOUND_TWICE.format(n=finds) if finds != status.found else ""
+    twice = worded(words.FOUND_TWICE, n=finds) if finds != status.found else ""
     return KeyFigures(
         (
-            KeyFigure(words.STILL, f"{ahead.expected:,.1f}",
-                      words.INTERVAL.format(low=f"{ahead.low:,}", high=f"{ahead.high:,}")),
-            KeyFigure(words.FOUND_SO_FAR, f"{status.found:,}", twice),
-            KeyFigure(words.FOUND_OF_ALL, f"{status.detection_pct:.0f} %",
-                      words.INTERVAL.format(low=f"{low:.0f}", high=f"{high:.0f} %")),
-            KeyFigure(words.INSPECTED, f"{status.inspected:,}",
-                      words.OF_PLANTS.format(n=status.plants)),
-            KeyFigure(words.CLEAN, f"{ahead.chance_clean:.1%}", words.CLEAN_NOTE),
-            KeyFigure(words.HOT_SPOTS, f"{len(status.hot_spots)}", words.HOT_NOTE),
+            KeyFigure(words.STILL, figure(ahead.expected, ",.1f"),
+                      worded(words.INTERVAL, low=figure(ahead.low), high=figure(ahead.high))),
+            KeyFigure(words.FOUND_SO_FAR, figure(status.found), twice),
+            KeyFigure(words.FOUND_OF_ALL, figure(status.detection_pct, ".0f", " %"),
+                      worded(words.INTERVAL, low=figure(low, ".0f"),
+                             high=figure(high, ".0f", " %"))),
+            KeyFigure(words.INSPECTED, figure(status.inspected),
+                      worded(words.OF_PLANTS, n=status.plants)),
+            KeyFigure(words.CLEAN, figure(ahead.chance_clean, ".1%"), words.CLEAN_NOTE),
+            KeyFigure(words.HOT_SPOTS, figure(len(status.hot_spots)), words.HOT_NOTE),
         )
     )  # fmt: skip
 
@@ -157,10 +158,10 @@ def _rows_seen(facts: _Facts) -> Iterator[str]:
     never, late = lines[np.isinf(days)], lines[np.isfinite(days) & (days >= _LATE_DAYS)]
     for said, rows in ((words.ROWS_UNSEEN, never), (words.ROWS_LATE, late)):
         if len(rows):
-            named = (words.ROWS if len(rows) > 1 else words.ROW).split(" ")[0]
-            listed = f"{named} {runs(rows.tolist())}"
+            numbers = runs(rows.tolist())
+            listed = worded(words.ROWS_NAMED if len(rows) > 1 else words.ROW, low=numbers)
             long = len(listed) > _ROWS_LONG
-            yield said.format(rows=counted(len(rows), "row") if long else listed)
+            yield worded(said, rows=counted(len(rows), "row") if long else listed)
     if not len(never) and not len(late):
         yield words.ROWS_ALL
 
@@ -192,7 +193,7 @@ def _went(facts: _Facts) -> Iterator[Block]:
         words.CHART_INSPECTED: DayChart(on, inspected, facts.units),
     }
     for title, chart in charts.items():
-        yield Illustration(title, words.CHART_ALT.format(title=title), chart.draw, (28.0, 46.0))
+        yield Illustration(title, worded(words.CHART_ALT, title=title), chart.draw, (28.0, 46.0))
     yield _days(facts)
 
 
@@ -206,9 +207,9 @@ def _treated(facts: _Facts) -> tuple[tuple[date, str], ...]:
 def _days(facts: _Facts) -> Table:
     rows = [
         (
-            facts.units.day(one.on), f"{one.inspected:,}", f"{one.found:,}",
-            f"{one.expected:,.1f} ({one.low:,}–{one.high:,})",
-            f"{_of_all(found, one.expected):.0f} %",
+            facts.units.day(one.on), figure(one.inspected), figure(one.found),
+            worded("{n:,.1f} ({low:,}–{high:,})", n=one.expected, low=one.low, high=one.high),
+            figure(_of_all(found, one.expected), ".0f", " %"),
         )
         for one, found in zip(facts.days, facts.found_by.tolist(), strict=True)
     ]  # fmt: skip
@@ -260,8 +261,8 @@ def _batches(facts: _Facts) -> Block:
     rows = []
     for one in batches:
         kind = words.BATCH_KINDS[one.kind]
-        said = words.BATCH_UNDONE.format(kind=kind) if one.undone else kind
-        rows.append((one.at[:16].replace("T", " "), said, one.source, one.who, f"{one.rows:,}"))
+        said = worded(words.BATCH_UNDONE, kind=kind) if one.undone else kind
+        rows.append((one.at[:16].replace("T", " "), said, one.source, one.who, figure(one.rows)))
     return Table(
         words.BATCHES, words.BATCH_COLUMNS, tuple(rows), (0.2, 0.24, 0.32, 0.14, 0.1),
         rest=words.BATCHES_REST, left=(0, 1, 2, 3),
@@ -274,7 +275,7 @@ def _treatments(facts: _Facts) -> Block:
         return Listing(words.TREATMENTS, (words.TREATMENTS_NONE,))
     rows = tuple(
         (facts.units.day(facts.season.settings.date(one.day)),
-         f"{np.count_nonzero(one.plants):,}", f"{one.efficacy:.0%}")
+         figure(int(np.count_nonzero(one.plants))), figure(one.efficacy, ".0%"))
         for one in reversed(kept)
     )  # fmt: skip
     return Table(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import Worded, figure, joined, worded
 from fieldmon.io.import_report import Severity
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.plot.robot import Robot, scout
@@ -94,9 +95,11 @@ def assumed_sentence(settings: WorkSettings, units: Units) -> str:
     """Return what the figures rest on though nobody said it, in a sentence; empty: nothing."""
     rows = (*_of_plot(settings, units), *_of_work(settings), *_of_belief(settings))
     said = [
-        f"{name.lower()} {value}" for name, value, origin in rows if origin == words.FROM_NOBODY
+        worded("{name}: {value}", name=name, value=value)
+        for name, value, origin in rows
+        if origin == words.FROM_NOBODY
     ]
-    return words.ASSUMED.format(what="; ".join(said)) if said else ""
+    return worded(words.ASSUMED, what=joined("; ", said)) if said else ""
 
 
 def _of_plot(settings: WorkSettings, units: Units) -> Iterator[Row]:
@@ -113,22 +116,26 @@ def _told(settings: WorkSettings, setting: str) -> str:
 def _of_work(settings: WorkSettings) -> Iterator[Row]:
     robot = settings.robot
     usual = scout() if robot.turn_180_s == scout().turn_180_s else Robot()
-    yield words.SAMPLER, kind_of(settings.sampler).title, _from(settings.sampler == USUAL)
-    yield words.HOURS, f"{robot.hours:g}", _from(robot.hours == usual.hours)
-    yield words.LOOK, f"{robot.look_s:g}", _from(robot.look_s == usual.look_s)
-    yield words.SPEED, f"{robot.speed_m_s * 3.6:.1f} km/h", settings.origin("speed_m_s")
-    yield words.DETECTS, f"{robot.detects:.0%}", settings.origin("detects")
+    yield words.SAMPLER, Worded(kind_of(settings.sampler).title), _from(settings.sampler == USUAL)
+    yield words.HOURS, figure(robot.hours, "g"), _from(robot.hours == usual.hours)
+    yield words.LOOK, figure(robot.look_s, "g"), _from(robot.look_s == usual.look_s)
+    yield words.SPEED, worded("{n:.1f} km/h", n=robot.speed_m_s * 3.6), settings.origin("speed_m_s")
+    yield words.DETECTS, figure(robot.detects, ".0%"), settings.origin("detects")
 
 
 def _of_belief(settings: WorkSettings) -> Iterator[Row]:
-    background = f"{100 * settings.prior.background_chance:g} %"
+    background = figure(100 * settings.prior.background_chance, "g", " %")
     yield words.BACKGROUND, background, settings.origin("background_chance")
     if settings.belief is None:
         return
     spread, usual = settings.belief.spread, BeliefSettings()
-    yield words.SPREAD, f"{100 * spread.rate_per_day:g} %", settings.origin("rate_per_day")
+    yield (
+        words.SPREAD,
+        figure(100 * spread.rate_per_day, "g", " %"),
+        settings.origin("rate_per_day"),
+    )
     arrive = spread.arrivals_per_day
-    said = words.ARRIVALS_VALUE.format(n=1 / arrive) if arrive else words.ARRIVALS_NONE
+    said = worded(words.ARRIVALS_VALUE, n=1 / arrive) if arrive else words.ARRIVALS_NONE
     yield words.ARRIVALS, said, _from(arrive == usual.spread.arrivals_per_day)
     treated = settings.belief.treated
     yield words.TREATED, words.TREATED_VALUES[treated], _from(treated == usual.treated)

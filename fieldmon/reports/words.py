@@ -1,6 +1,10 @@
-"""Every text of a report in one place: a translation is one file."""
+"""Every text of a report in one place; each remembers its words, for who speaks a language."""
 
 from __future__ import annotations
+
+from typing import Any
+
+from fieldmon.compute.wording import Worded
 
 
 def isolated(name: str) -> str:
@@ -17,7 +21,7 @@ UNPRINTED = (
 HEADLINE = "Inspect {plants} in {rows} on {day}, {hours:.1f} h: about {finds} expected."
 HEADLINE_NONE = "Nothing to inspect on {day}."
 WORKED = "Worked on {day}: {inspected} plants inspected, {found} found infested."
-ROW, ROWS = "row {low}", "rows {low}–{high}"
+ROW, ROWS, ROWS_NAMED = "row {low}", "rows {low}–{high}", "rows {low}"
 LEGEND_CHANCE = "Chance that a plant is infested"
 LEGEND_FOUND, LEGEND_ROUTE = "found infested", "route, arrows show the way"
 LEGEND_STATES = ("never inspected", "looked clean")
@@ -116,3 +120,16 @@ MEANINGS = (
     "A hot spot is where finds cluster more than chance allows, three or more; false ones: 5 %.",
     "What is marked as assumed was neither measured nor chosen. Other values give other chances.",
 )
+
+
+def _remembered(value: Any) -> Any:  # noqa: ANN401 - a text, or many in a dict or tuple
+    if isinstance(value, dict):
+        return {key: _remembered(one) for key, one in value.items()}
+    if isinstance(value, tuple):
+        return tuple(map(_remembered, value))
+    return Worded(value)
+
+
+#: every text by its name
+TEXTS = {name: _remembered(value) for name, value in globals().copy().items() if name.isupper()}
+globals().update(TEXTS)

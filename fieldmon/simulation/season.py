@@ -78,15 +78,23 @@ class SimulatedDay:
         Infestations so far, this morning's included (a plant infested again counts again).
     ever_found
         Finds so far, today's included.
+    each
+        The working day of each of a team; of one alone it is `work`.
     """
 
     number: int
     work: Workday
     infested: NDArray[np.bool_]
-    mornings: _MorningBeliefs
+    mornings: MorningBeliefs
     last_inspected: NDArray[np.int32]
     ever_infested: int
     ever_found: int
+    each: tuple[Workday, ...] = ()
+
+    @property
+    def worked_s(self) -> float:
+        """Return the seconds worked today, of all together."""
+        return sum(one.end_s for one in self.each or (self.work,))
 
     @property
     def belief(self) -> Belief:
@@ -124,7 +132,7 @@ class SimulatedDay:
         return 100.0 * float(np.mean(self.last_inspected >= 0))
 
 
-class _MorningBeliefs:
+class MorningBeliefs:
     """What is believed on every morning of a season, worked out when somebody asks.
 
     Most of a season's time goes into it, and half of the samplers do not read it.
@@ -133,7 +141,7 @@ class _MorningBeliefs:
     def __init__(
         self, first: Callable[[], Belief], learning: Callable[[Workday], Learning], spread: Spread
     ) -> None:
-        self._first, self._learning, self._spread = first, learning, spread
+        self._first, self.learning, self._spread = first, learning, spread
         self._works: list[Workday] = []
         self._last: tuple[int, Belief] | None = None
 
@@ -147,7 +155,7 @@ class _MorningBeliefs:
         if day > number:
             day, belief = 0, self._first()
         for work in self._works[day:number]:
-            evening = belief.learn(work.plant, work.found, self._learning(work))
+            evening = belief.learn(work.plant, work.found, self.learning(work))
             belief = evening.overnight(self._spread)
         self._last = number, belief
         return belief
@@ -167,8 +175,8 @@ def simulated_days(
     ``inspect/day``, ``spread/day`` and ``sampler/day``, so that every sampler meets the same
     insects, and would find the same ones on a plant.
     """
-    _check(aisles, start)
-    season = _Season(aisles, robot, sampler, start, settings)
+    check_start(aisles, start)
+    season = SeasonOnItsWay(aisles, robot, sampler, start, settings)
     keys = zip(*(streams.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
     for number, (own, inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
         day = season.work(number, own, inspect)
@@ -176,7 +184,7 @@ def simulated_days(
         season.pass_night(day.work, overnight)
 
 
-class _Season:
+class SeasonOnItsWay:
     """A season on its way: what a day changes, and how."""
 
     def __init__(
@@ -190,7 +198,7 @@ class _Season:
         self.aisles, self.robot, self.sampler, self.settings = aisles, robot, sampler, settings
         self.first_chance, self.infested = start.chance, start.infested.copy()
         self.detects = sampler.inspection_times(robot).detects
-        self.mornings = _mornings(
+        self.mornings = morning_beliefs(
             aisles.grid, robot, start, settings, chooses_time=len(self.detects) > 1
         )
         self.last_inspected = np.full(len(self.infested), NEVER, np.int32)
@@ -200,7 +208,10 @@ class _Season:
     def work(self, number: int, own_key: np.uint64, inspect_key: np.uint64) -> SimulatedDay:
         """Work for a day; return what came of it."""
         would_find = draw_detections(self.infested, self.detects, inspect_key)
-        work = work_day(self._scene(number, own_key), self.sampler, would_find)
+        return self.worked(number, work_day(self.scene(number, own_key), self.sampler, would_find))
+
+    def worked(self, number: int, work: Workday, each: tuple[Workday, ...] = ()) -> SimulatedDay:
+        """Note what was done on a day; return it."""
         self.last_inspected = self.last_inspected.copy()
         self.last_inspected[work.plant] = number
         self.ever_found += int(np.count_nonzero(work.found))
@@ -212,6 +223,7 @@ class _Season:
             self.last_inspected,
             self.ever_infested,
             self.ever_found,
+            each,
         )
 
     def pass_night(self, work: Workday, key: np.uint64) -> None:
@@ -224,7 +236,8 @@ class _Season:
         self.ever_infested += int(np.count_nonzero(self.infested) - np.count_nonzero(evening))
         self.trail = work.plant if len(work) else self.trail
 
-    def _scene(self, number: int, key: np.uint64) -> Scene:
+    def scene(self, number: int, key: np.uint64) -> Scene:
+        """Return the scene of a morning."""
         belief = self.mornings.on(number) if self.sampler.reads_chance else None
         return Scene(
             aisles=self.aisles,
@@ -240,14 +253,14 @@ class _Season:
         )
 
 
-def _mornings(
+def morning_beliefs(
     grid: PlantGrid,
     robot: Robot,
     start: Start,
     settings: SeasonSettings,
     *,
     chooses_time: bool,
-) -> _MorningBeliefs:
+) -> MorningBeliefs:
     """Return what will be believed on the mornings of a season."""
     usual = settings.learning or Learning(detection=robot.detects)
 
@@ -257,10 +270,11 @@ def _mornings(
     def learning(work: Workday) -> Learning:
         return replace(usual, detection=work.detects) if chooses_time else usual
 
-    return _MorningBeliefs(first, learning, settings.believed_spread or settings.spread)
+    return MorningBeliefs(first, learning, settings.believed_spread or settings.spread)
 
 
-def _check(aisles: Aisles, start: Start) -> None:
+def check_start(aisles: Aisles, start: Start) -> None:
+    """Raise `PlotError` if a start is of another plot."""
     n = len(aisles.grid)
     for name, values in (("infested", start.infested), ("chance", start.chance)):
         if len(values) != n:

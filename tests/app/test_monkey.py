@@ -1,6 +1,8 @@
 """A thousand clicks by somebody who reads nothing: no page may fail.
 
-The suite clicks 80 times; ``FIELDMON_MONKEY=1000`` clicks as often as it says (seeded alike).
+The suite clicks 80 times; ``FIELDMON_MONKEY=1000`` clicks as often as it says (seeded alike, or
+as ``FIELDMON_MONKEY_SEED`` says). Languages are among what is chosen. What was recorded must stay:
+batches are taken back, never lost.
 """
 
 import os
@@ -12,11 +14,15 @@ import pytest
 from rasterio.io import MemoryFile
 from rasterio.transform import from_bounds
 
-from app.state import rooms
+from app.state import chosen_language, rooms
 from app.words import texts
+from app.words.language import LANGUAGES
+from fieldmon.monitoring import Season
 from tests.app.driving import PAGES, begun, go, opened
 
 CLICKS = int(os.environ.get("FIELDMON_MONKEY", "80"))
+SEED = int(os.environ.get("FIELDMON_MONKEY_SEED", "20261121"))
+TAPS = {f"click scout_{name}" for name in ("clean", "found", "skip")}
 # a comparison of 500 seasons or a table of the thesis takes minutes, as it should
 SMALL = {"seeds": 3, "n_days": 5, "study_replicates": 3}
 NASTY = [
@@ -30,7 +36,7 @@ NASTY = [
     "<b>1</b>",
     "9" * 400,
 ]
-RASTERS = {"missing_plants_file": 1.0, "risk_file": 0.1, "backdrop_file": 9.0}
+RASTERS = {"missing_plants_file": 1.0, "risk_file": 0.1, "ground_file": 9.0}
 
 
 def raster(value):
@@ -56,6 +62,7 @@ FILES = {
 
 # what can be chosen, by key; other boxes are chosen from by place
 CHOICES = {
+    chosen_language.KEY: list(LANGUAGES),
     "who": [texts.ROBOT, texts.SCOUT],
     "one_result": [0, 1, 2],
     "strategy_samplers": list(texts.SAMPLERS),
@@ -83,7 +90,7 @@ def poke(rng, kind, widget):
         value = rng.choice(FILES[key])
         widget.upload(*value)
         return f"upload {key} {value[0]}"
-    if kind == "selectbox":
+    if kind == "selectbox" and key not in CHOICES:
         place = rng.randrange(len(widget.options))
         widget.select_index(place)
         return f"choose {key} {widget.options[place]}"
@@ -117,12 +124,29 @@ def number(rng, widget, key):
     return (value, high) if isinstance(widget.value, (list, tuple)) else value
 
 
-@pytest.mark.timeout(60 + 10 * CLICKS)
-def test_random_clicks_raise_nothing():
-    rng = random.Random(20261121)
+class Recorded:
+    """What the seasons of a folder hold: nothing of it may go, and each tap adds to it."""
+
+    def __init__(self, folder):
+        self.folder, self.kept = folder, {}
+
+    def check(self, *, tapped):
+        now = {
+            (path.name, batch.number): batch.rows
+            for path in sorted(self.folder.glob("*.gpkg"))
+            for batch in Season(path).batches()
+        }
+        assert now.items() >= self.kept.items(), "a record was lost"
+        assert not tapped or len(now) > len(self.kept), "a tap was not recorded"
+        self.kept = now
+
+
+@pytest.mark.timeout(60 + 20 * CLICKS)
+def test_random_clicks_raise_nothing_and_lose_no_record(seasons_folder, speaking):
+    rng = random.Random(SEED)
     app = begun(opened())
-    done = []
-    for _ in range(CLICKS):
+    recorded, done = Recorded(seasons_folder), []
+    for step in range(CLICKS):
         if rng.random() < 0.12:
             page = rng.choice(PAGES)
             done.append(f"go {page}")
@@ -130,5 +154,12 @@ def test_random_clicks_raise_nothing():
         else:
             done.append(poke(rng, *rng.choice(widgets(app))))
             app.run()
+        for box in app.selectbox:
+            if box.key == chosen_language.KEY:
+                speaking(box.value)  # the harness asks boxes for the names of what they hold
         assert not app.exception, "\n".join([*done[-12:], str(app.exception[0].message)])
+        tapped = done[-1] in TAPS and not app.error
+        if tapped or step % 10 == 0:
+            recorded.check(tapped=tapped)
+    recorded.check(tapped=False)
     assert len(set(done)) > min(CLICKS / 3, 200)

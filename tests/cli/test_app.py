@@ -47,6 +47,7 @@ def test_other_devices_come_only_where_it_is_said(run, started):
         run("app", "--no-browser", "--port", free_port(), *words)
         env = started.pop()
         assert env["STREAMLIT_SERVER_ADDRESS"] == "127.0.0.1"
+        assert ("a.example" in env["FIELDMON_NAMES"]) == ("--reached-at" in words)
         named = {name: env[name] for name in ("FIELDMON_LAN", "FIELDMON_ADDRESS") if env.get(name)
                  or name in wanted}  # fmt: skip
         assert named == wanted

@@ -1,11 +1,14 @@
 """What is left of a day, for whoever leaves now."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.day_ahead import inside, planned_again, route_ahead
+from fieldmon.monitoring.day_ahead import Part, inside, planned_again, route_ahead
+from fieldmon.planning.members import team_of
 from tests.monitoring.seasons import BEGINS, a_season
 
 
@@ -34,11 +37,11 @@ def test_where_none_was_given_out_one_is(tmp_path):
 
 def test_a_part_has_stops_in_its_rows_only_and_is_given_out_to_nobody_else(season):
     given = season.kept_route(BEGINS)
-    route = planned_again(season, BEGINS, (1, 3))
+    route = planned_again(season, BEGINS, Part((1, 3)))
     assert inside(season, (1, 3))[route.plant].all()
     assert len(route)
     assert season.kept_route(BEGINS).tolist() == given.tolist()
-    ahead = route_ahead(season, BEGINS, (1, 3))
+    ahead = route_ahead(season, BEGINS, Part((1, 3)))
     assert inside(season, (1, 3))[ahead.plant].all()
 
 
@@ -56,3 +59,19 @@ def test_nothing_is_left_where_all_was_inspected(season):
         Inspections.of(everything, np.zeros(len(everything), np.int8), BEGINS), confirmed=True
     )
     assert len(route_ahead(season, BEGINS)) == 0
+
+
+def test_each_of_a_team_has_the_route_that_the_teams_plan_gives(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    alone = fresh.settings
+    team = tuple(
+        replace(one, name=name)
+        for one, name in zip(team_of(2, alone.robot), ("Ann", "Ben"), strict=True)
+    )
+    fresh.change(replace(alone, team=team), alone)
+    ann, ben = (route_ahead(fresh, BEGINS, Part(name=name)) for name in ("ann", "Ben"))
+    assert len(ann)
+    assert len(ben)
+    assert not set(ann.plant) & set(ben.plant)
+    short = planned_again(fresh, BEGINS, Part(name="Ben"), seconds_left=1200)
+    assert 0 < short.end_s <= 1200

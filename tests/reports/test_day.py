@@ -113,7 +113,7 @@ def test_what_is_assumed_stands_under_the_figures(of_day):
     sheet = of_day.sheets[0].blocks
     under = sheet[[isinstance(block, KeyFigures) for block in sheet].index(True) + 1]
     assert under.text.startswith("Assumed, though nobody said so: ")
-    assert "spread to a neighbour, a night 2 %" in under.text
+    assert "Spread to a neighbour, a night: 2 %" in under.text
 
 
 @pytest.mark.parametrize(

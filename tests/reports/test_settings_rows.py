@@ -41,8 +41,8 @@ def test_what_is_assumed_is_marked_and_nothing_else():
 def test_the_sentence_names_what_is_assumed_with_its_value():
     said = assumed_sentence(replace(TOLD, assumed=ALL[:3]), Units())
     assert said == (
-        "Assumed, though nobody said so: from row to row 4.0 m; from plant to plant 2.5 m; "
-        "speed 2.5 km/h."
+        "Assumed, though nobody said so: From row to row: 4.0 m; From plant to plant: 2.5 m; "
+        "Speed: 2.5 km/h."
     )
     assert assumed_sentence(TOLD, Units()) == ""
 

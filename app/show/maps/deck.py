@@ -79,6 +79,11 @@ def _bounds(corners: NDArray[np.float64]) -> list[float]:
 
 def boundary(field: Field, *, dark: bool = False) -> Layer:
     """Return the plot's outline, holes and no-go areas."""
+    return outline(field, "boundary", colours.OUTLINE_IN_DARK if dark else colours.OUTLINE)
+
+
+def outline(field: Field, name: str, colour: colours.Colour) -> Layer:
+    """Return the same in a colour, under a name."""
     rings = [
         {"path": np.round(shapely.get_coordinates(ring), 7).tolist()}
         for area in (field.boundary, field.no_go)
@@ -87,9 +92,9 @@ def boundary(field: Field, *, dark: bool = False) -> Layer:
     return Layer(
         "PathLayer",
         rings,
-        id="boundary",
+        id=name,
         get_path="path",
-        get_color=list(colours.OUTLINE_IN_DARK if dark else colours.OUTLINE),
+        get_color=list(colour),
         get_width=0.5,
         width_min_pixels=1.5,
     )

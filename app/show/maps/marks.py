@@ -1,15 +1,15 @@
-"""What else lies on a map: hot spots, records, paths, places, what is drawn, a picture below."""
+"""What else lies on a map: hot spots, records, paths, places, what is drawn."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pydeck as pdk
 import shapely
 from pydeck import Layer
 
 from fieldmon.infestation.hotspots import outlines_m
+from fieldmon.plot.grid import row_corners
 
 from ...words import texts
 from .colours import GATE, HOT, HOT_IN_DARK, TRUTH, TRUTH_IN_DARK
@@ -61,6 +61,16 @@ def paths(field: Field) -> list[Layer]:
         Layer("PathLayer", rows, id="paths", get_path="path", get_color=[150, 110, 60, 160],
               get_width=1.0, width_min_pixels=2)
     ]  # fmt: skip
+
+
+def rows(grid: PlantGrid, name: str, colour: Colour, note: str = "") -> Layer:
+    """Return the rows as lines."""
+    lines = [
+        {"path": np.round(grid.frame.lonlat(line_m), 7).tolist(), **({"t": note} if note else {})}
+        for line_m in row_corners(grid)
+    ]
+    return Layer("PathLayer", lines, id=name, get_path="path", get_color=list(colour),
+                 get_width=0.25, width_min_pixels=1.2)  # fmt: skip
 
 
 def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
@@ -120,11 +130,3 @@ def drawing(points: tuple[tuple[float, float], ...]) -> list[Layer]:
         ),
         places(here, "corners", GATE, texts.TIP_CORNER),
     ]  # fmt: skip
-
-
-def backdrop(uri: str, corners: list[list[float]]) -> Layer:
-    """Return a picture of the ground; corners from lower left over upper left, lon/lat."""
-    return Layer(
-        "BitmapLayer", None, id="backdrop", image=pdk.types.String(uri), bounds=corners,
-        opacity=0.8,
-    )  # fmt: skip

@@ -10,6 +10,7 @@ import pyogrio.raw
 import shapely
 from pyogrio.errors import DataLayerError, DataSourceError
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.wkb import shapes
@@ -75,16 +76,18 @@ def read_shapefile(path: Path, name: str, encoding: str | None) -> Layer:
     """Return a staged shapefile, its text read by its own evidence, with what is missing said."""
     messages: list[ImportMessage] = []
     if not path.with_suffix(".shx").exists():
-        messages.append(repaired("The index (.shx) was missing and was made anew."))
+        messages.append(repaired(worded("The index (.shx) was missing and was made anew.")))
     if not path.with_suffix(".dbf").exists():
-        messages.append(seen("The table (.dbf) is missing: there are shapes only."))
+        messages.append(seen(worded("The table (.dbf) is missing: there are shapes only.")))
     try:
         raw = read_layer(path, name, None, _BYTE_FOR_BYTE)
     except (FileProblem, UnboundLocalError):  # the latter is pyogrio's own, for a broken .prj
         if not path.with_suffix(".prj").exists():
             raise
         path.with_suffix(".prj").unlink()
-        messages.append(doubtful("The coordinate system (.prj) cannot be understood; it was left."))
+        messages.append(
+            doubtful(worded("The coordinate system (.prj) cannot be understood; it was left."))
+        )
         raw = read_layer(path, name, None, _BYTE_FOR_BYTE)
     decoder = Decoder(_all_bytes(raw), _stated_encoding(path), encoding)
     columns = {
@@ -100,8 +103,11 @@ def read_mapinfo(path: Path, name: str) -> Layer:
         said = path.read_bytes()[: limits.CELL_CHARACTERS].lower()
         if b"isseamless" in said or b"create view" in said or not _OWN_TABLE.search(said):
             raise FileProblem(
-                f"{name} must be a MapInfo table of its own, but it only leads to other files. "
-                "Choose those."
+                worded(
+                    "{name} must be a MapInfo table of its own, but it only "
+                    "leads to other files. Choose those.",
+                    name=name,
+                )
             )
     return read_layer(path, name, None)
 
@@ -141,6 +147,10 @@ def _in_words(value: object) -> object:
 
 def _unreadable(name: str, bad: Exception) -> FileProblem:
     return FileProblem(
-        f"{name} must be a whole file of its kind, but it cannot be read ({bad}). "
-        "Export or download it again."
+        worded(
+            "{name} must be a whole file of its kind, but it cannot be read "
+            "({bad}). Export or download it again.",
+            name=name,
+            bad=bad,
+        )
     )

@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 from shapely.errors import ShapelyError
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer
 from fieldmon.io.formats.wkb import closed
@@ -75,19 +76,31 @@ def _parsed(content: str, name: str) -> dict[str, Any]:
         lines = _line_by_line(content)
         if lines is None:
             raise FileProblem(
-                f"{name} must be whole GeoJSON, but it breaks off or errs in line {bad.lineno}: "
-                f"{bad.msg}. Export or download it again."
+                worded(
+                    "{name} must be whole GeoJSON, but it breaks off or errs "
+                    "in line {lineno}: {msg}. Export or download it again.",
+                    name=name,
+                    lineno=bad.lineno,
+                    msg=bad.msg,
+                )
             ) from bad
         root = lines
     except (RecursionError, ValueError) as bad:
         raise FileProblem(
-            f"{name} must be GeoJSON as map programs write it, but it is nested or numbered "
-            "beyond reason. Do not trust this file."
+            worded(
+                "{name} must be GeoJSON as map programs write it, but it is "
+                "nested or numbered beyond reason. Do not trust this file.",
+                name=name,
+            )
         ) from bad
     if isinstance(root, list):
         root = {"type": "FeatureCollection", "features": root}
     if not isinstance(root, dict):
-        raise FileProblem(f"{name} must be GeoJSON, but it holds no object. Choose another file.")
+        raise FileProblem(
+            worded(
+                "{name} must be GeoJSON, but it holds no object. Choose another file.", name=name
+            )
+        )
     return root
 
 
@@ -109,12 +122,20 @@ def _features(root: dict[str, Any], name: str) -> list[dict[str, Any]]:
     if isinstance(kind, str) and kind in _GEOMETRIES:
         return [{"type": "Feature", "properties": {}, "geometry": root}]
     if kind == "Topology":
-        raise FileProblem(f"{name} is TopoJSON. Export it as GeoJSON or GeoPackage.")
+        raise FileProblem(
+            worded("{name} is TopoJSON. Export it as GeoJSON or GeoPackage.", name=name)
+        )
     if "rings" in root or "geometryType" in root:
-        raise FileProblem(f"{name} is Esri JSON. Export it as GeoJSON or GeoPackage.")
+        raise FileProblem(
+            worded("{name} is Esri JSON. Export it as GeoJSON or GeoPackage.", name=name)
+        )
     raise FileProblem(
-        f"{name} must be a GeoJSON feature or collection of features, but its type is {kind!r}. "
-        "Export it as GeoJSON."
+        worded(
+            "{name} must be a GeoJSON feature or collection of features, but "
+            "its type is {kind!r}. Export it as GeoJSON.",
+            name=name,
+            kind=kind,
+        )
     )
 
 
@@ -125,15 +146,17 @@ def _crs(root: dict[str, Any]) -> tuple[str | None, list[ImportMessage]]:
         return _WGS84, []
     if not isinstance(stated, dict) or stated.get("type") == "link":
         raise ChoiceNeeded(
-            "The file leaves its coordinate system to another file or address, which is not "
-            "followed. Name the coordinate system.",
+            worded(
+                "The file leaves its coordinate system to another file or "
+                "address, which is not followed. Name the coordinate system."
+            ),
             "crs",
         )
     properties = stated.get("properties")
     name = properties.get("name") if isinstance(properties, dict) else None
     if isinstance(name, str):
         return name, []
-    return None, [seen("The file says that its coordinate system is unknown.")]
+    return None, [seen(worded("The file says that its coordinate system is unknown."))]
 
 
 def _properties(feature: dict[str, Any]) -> dict[str, Any]:
@@ -186,7 +209,7 @@ def _geometries(
     n_open = sum(_is_open(one) for one, kept in zip(stated, there, strict=True) if one and kept)
     messages = [
         dropped(
-            "The geometry cannot be understood and is left out.",
+            worded("The geometry cannot be understood and is left out."),
             f"feature {i + 1}",
             many="{n} geometries cannot be understood and are left out",
         )

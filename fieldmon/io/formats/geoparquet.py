@@ -9,6 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.formats.layer import Layer
 from fieldmon.io.formats.wkb import shapes
@@ -28,20 +29,31 @@ def read_parquet(path: Path, name: str) -> Layer:
         table = file.read(use_threads=False) if geo else None
     except (pa.ArrowException, OSError, ValueError, RecursionError) as bad:
         raise FileProblem(
-            f"{name} must be a whole GeoParquet file, but it cannot be read ({bad}). "
-            "Export or download it again."
+            worded(
+                "{name} must be a whole GeoParquet file, but it cannot be "
+                "read ({bad}). Export or download it again.",
+                name=name,
+                bad=bad,
+            )
         ) from bad
     primary = geo.get("primary_column") if isinstance(geo, dict) else None
     if table is None or primary not in table.column_names:
         raise FileProblem(
-            f"{name} must be GeoParquet, but it names no column with geometry. "
-            "Export it as GeoParquet or GeoPackage."
+            worded(
+                "{name} must be GeoParquet, but it names no column with "
+                "geometry. Export it as GeoParquet or GeoPackage.",
+                name=name,
+            )
         )
     stated = geo.get("columns", {}).get(primary, {})
     if stated.get("encoding", "WKB") != "WKB":
         raise FileProblem(
-            f"The geometry in {name} must be written as WKB, but it is {stated.get('encoding')}. "
-            "Export it as GeoPackage."
+            worded(
+                "The geometry in {name} must be written as WKB, but it is "
+                "{encoding}. Export it as GeoPackage.",
+                name=name,
+                encoding=stated.get("encoding"),
+            )
         )
     wkb = np.empty(table.num_rows, dtype=object)
     wkb[:] = table.column(primary).to_pylist()

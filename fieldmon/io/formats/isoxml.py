@@ -13,6 +13,7 @@ import numpy as np
 import shapely
 from shapely.errors import ShapelyError
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.formats.layer import Layer
 from fieldmon.io.import_report import ImportMessage, dropped, seen
@@ -63,8 +64,10 @@ class _Builder(ET.TreeBuilder):
     def doctype(self, *_: object) -> None:
         """Refuse a document type: ISOXML has none."""
         raise FileProblem(
-            "An ISOXML must not define a document type of its own, but this one does. "
-            "Do not trust it."
+            worded(
+                "An ISOXML must not define a document type of its own, but "
+                "this one does. Do not trust it."
+            )
         )
 
 
@@ -84,12 +87,23 @@ def read_isoxml(path: Path, name: str) -> Layer:
             limits.check("features", len(parts), limits.FEATURES, name)
     if others:
         told = ", ".join(f"{n} {kind}(s)" for kind, n in others.items())
-        messages.append(seen(f"Areas that are no outlines of partfields were passed over: {told}."))
-    messages += [dropped("Its shape cannot be understood; left out.", one) for one in broken]
+        messages.append(
+            seen(
+                worded(
+                    "Areas that are no outlines of partfields were passed over: {told}.", told=told
+                )
+            )
+        )
+    messages += [
+        dropped(worded("Its shape cannot be understood; left out."), one) for one in broken
+    ]
     if not parts:
         raise FileProblem(
-            f"{name} must hold at least one partfield with an outline, but it holds none. "
-            "Export the partfields with their boundaries."
+            worded(
+                "{name} must hold at least one partfield with an outline, but "
+                "it holds none. Export the partfields with their boundaries.",
+                name=name,
+            )
         )
     return _layer(name, parts, messages)
 
@@ -118,7 +132,12 @@ def _trees(path: Path, name: str) -> tuple[list[ET.Element], list[ImportMessage]
             trees.append(_tree(other, called))
         elif called.startswith("PFD"):
             messages.append(
-                dropped(f"It leads to {called}, which is not beside it: those partfields lack.")
+                dropped(
+                    worded(
+                        "It leads to {called}, which is not beside it: those partfields lack.",
+                        called=called,
+                    )
+                )
             )
     return trees, messages
 
@@ -129,8 +148,12 @@ def _tree(path: Path, name: str) -> ET.Element:
         return ET.parse(path, ET.XMLParser(target=_Builder())).getroot()  # noqa: S314
     except (ET.ParseError, ValueError, LookupError) as bad:
         raise FileProblem(
-            f"{name} must be a whole ISOXML, but it cannot be read ({bad}). "
-            "Export or download it again."
+            worded(
+                "{name} must be a whole ISOXML, but it cannot be read "
+                "({bad}). Export or download it again.",
+                name=name,
+                bad=bad,
+            )
         ) from bad
 
 

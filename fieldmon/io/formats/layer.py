@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, Self
 import numpy as np
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import dropped, seen
 
@@ -67,13 +68,15 @@ class Layer:
             return self
         messages = []
         if shapely.has_z(self.geometry).any() or shapely.has_m(self.geometry).any():
-            messages.append(seen("Heights and measures (Z, M) are not used."))
+            messages.append(seen(worded("Heights and measures (Z, M) are not used.")))
         flat = shapely.force_2d(self.geometry)
         coordinates, feature = shapely.get_coordinates(flat, return_index=True)
         broken = np.unique(feature[~np.isfinite(coordinates).all(axis=1)])
         flat[broken] = None
         if len(broken):
-            said = f"{len(broken)} feature(s) have coordinates that are no numbers; left out."
+            said = worded(
+                "{n} feature(s) have coordinates that are no numbers; left out.", n=len(broken)
+            )
             messages.append(dropped(said, f"feature {broken[0] + 1}"))
         return replace(self, geometry=flat, messages=(*self.messages, *messages))
 
@@ -87,13 +90,18 @@ class Layer:
         except ChoiceNeeded as asked:
             like = self._with_value(value.strip())
             offers = tuple(f"{name}={value.strip()}" for name in like or asked.choices)
-            raise ChoiceNeeded(str(asked), "where", offers) from None
+            raise ChoiceNeeded(asked.args[0], "where", offers) from None
         kept = np.array([text(v) == value.strip() for v in named], dtype=bool)
         if not kept.any():
             offers = tuple(f"{column}={v}" for v in sorted({text(v) for v in named})[:50])
             raise ChoiceNeeded(
-                f"The choice {condition!r} must fit at least one feature, but it fits none. "
-                f"Column {column} holds: {', '.join(o.partition('=')[2] for o in offers[:10])}.",
+                worded(
+                    "The choice {condition!r} must fit at least one feature, "
+                    "but it fits none. Column {column} holds: {names}.",
+                    condition=condition,
+                    column=column,
+                    names=", ".join(o.partition("=")[2] for o in offers[:10]),
+                ),
                 "where",
                 offers,
             )
@@ -111,7 +119,7 @@ class Layer:
                     self.column(name)
             except ChoiceNeeded as asked:
                 offers = tuple(f"{role}={own}" for own in asked.choices)
-                raise ChoiceNeeded(str(asked), "columns", offers) from None
+                raise ChoiceNeeded(asked.args[0], "columns", offers) from None
         return self
 
     def column(self, name: str) -> NDArray[np.object_]:
@@ -122,8 +130,11 @@ class Layer:
             if own.casefold() == name.casefold():
                 return values
         raise ChoiceNeeded(
-            f"There must be a column {name!r}, but the columns are "
-            f"{', '.join(self.columns) or 'none at all'}. Choose one of them.",
+            worded(
+                "There must be a column {name!r}, but the columns are {value}. Choose one of them.",
+                name=name,
+                value=", ".join(self.columns) or "none at all",
+            ),
             "columns",
             tuple(self.columns),
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.gdal import list_layers as gdal_layers
 from fieldmon.io.formats.gdal import read_layer, read_mapinfo, read_shapefile
@@ -60,8 +61,11 @@ def _data_sets(found: tuple[Member, ...]) -> tuple[Member, ...]:
     tables = tuple(m for m in usable if not m.name.lower().endswith(_NOTES))
     if not usable:
         raise FileProblem(
-            f"{found[0].name} is a raster, which holds no plots or records. "
-            "Choose it as a backdrop or covariate instead."
+            worded(
+                "{name} is a raster, which holds no plots or records. Choose "
+                "it as a backdrop or covariate instead.",
+                name=found[0].name,
+            )
         )
     return vectors or tables or usable
 
@@ -116,14 +120,25 @@ def _only_layer(staged: StagedMember, options: ReadOptions, names: tuple[str, ..
         raise _which_layer(staged, tuple(full), " with something in them")
     if not full:
         raise FileProblem(
-            f"{staged.name} must hold at least one layer with something in it, but holds none."
+            worded(
+                "{name} must hold at least one layer with something in it, but holds none.",
+                name=staged.name,
+            )
         )
     ((called, layer),) = full.items()
     if isinstance(layer, ChoiceNeeded):
         raise layer
     if len(names) == 1:
         return layer
-    return layer.saying(seen(f"Layer {called} was read; {len(names) - 1} other(s) hold nothing."))
+    return layer.saying(
+        seen(
+            worded(
+                "Layer {called} was read; {value} other(s) hold nothing.",
+                called=called,
+                value=len(names) - 1,
+            )
+        )
+    )
 
 
 def _full_layers(
@@ -156,7 +171,13 @@ def _layer(staged: StagedMember, layer: str, options: ReadOptions) -> Layer:
 
 def _which_layer(staged: StagedMember, names: tuple[str, ...], more: str) -> ChoiceNeeded:
     return ChoiceNeeded(
-        f"{staged.name} holds {len(names)} layers{more}. Choose one of: {', '.join(names[:20])}.",
+        worded(
+            "{name} holds {n} layers{more}. Choose one of: {names}.",
+            name=staged.name,
+            n=len(names),
+            more=more,
+            names=", ".join(names[:20]),
+        ),
         "layer",
         names,
     )

@@ -6,6 +6,7 @@ import re
 from enum import StrEnum
 from pathlib import PurePosixPath
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 
 #: how much of a file `kind_of` wants to see
@@ -150,19 +151,21 @@ def kind_of(head: bytes, name: str) -> FileKind:
     """
     if not head:
         raise FileProblem(
-            f"{name} must hold something, but it is empty. Save or download it again."
+            worded(
+                "{name} must hold something, but it is empty. Save or download it again.", name=name
+            )
         )
     for magic, why in _REFUSED_MAGIC:
         if head.startswith(magic):
-            raise FileProblem(f"{name} {why}.")
+            raise FileProblem(worded("{name} {why}.", name=name, why=why))
     ending = PurePosixPath(name.lower()).suffix
     if ending == ".shx" and head.startswith(_SHAPEFILE):  # it begins as the .shp does
-        raise FileProblem(f"{name} {_REFUSED_ENDINGS[ending]}.")
+        raise FileProblem(worded("{name} {value}.", name=name, value=_REFUSED_ENDINGS[ending]))
     for magic, kind in _MAGIC:
         if head.startswith(magic):
             return kind
     if ending in _REFUSED_ENDINGS:
-        raise FileProblem(f"{name} {_REFUSED_ENDINGS[ending]}.")
+        raise FileProblem(worded("{name} {value}.", name=name, value=_REFUSED_ENDINGS[ending]))
     return _text_kind(head, name)
 
 
@@ -181,7 +184,11 @@ def _text_kind(head: bytes, name: str) -> FileKind:
         if pattern.match(text):
             return kind
     if b"\x00" in text:
-        raise FileProblem(f"{name} must be {READABLE}, but it is none of them.")
+        raise FileProblem(
+            worded(
+                "{name} must be {readable}, but it is none of them.", name=name, readable=READABLE
+            )
+        )
     return FileKind.TABLE
 
 
@@ -190,18 +197,26 @@ def _xml_kind(start: bytes, name: str) -> FileKind:
     # map files have no DTD of their own; whatever stands in one is there to be expanded
     if b"<!ENTITY" in bare or re.search(rb"<!DOCTYPE[^>\[]*\[", bare):
         raise FileProblem(
-            f"{name} must not define XML entities, but it does; that is how such files are made to "
-            "read others or to fill the memory. Export it again."
+            worded(
+                "{name} must not define XML entities, but it does; that is "
+                "how such files are made to read others or to fill the "
+                "memory. Export it again.",
+                name=name,
+            )
         )
     tag = _TAG.search(re.sub(rb"<!DOCTYPE[^>]*>", b"", bare))
     root = tag.group(1).lower() if tag else b""
     if root in _XML_ROOTS:
         return _XML_ROOTS[root]
     if root in _REFUSED_ROOTS:
-        raise FileProblem(f"{name} {_REFUSED_ROOTS[root]}.")
+        raise FileProblem(worded("{name} {value}.", name=name, value=_REFUSED_ROOTS[root]))
     if b"opengis.net/gml" in start:
         return FileKind.GML
     raise FileProblem(
-        f"{name} must be KML, GML or GPX where it is XML, but it begins with "
-        f"{f'<{root.decode()}>' if root else 'something else'}. Export it as GeoPackage or GeoJSON."
+        worded(
+            "{name} must be KML, GML or GPX where it is XML, but it begins "
+            "with {value}. Export it as GeoPackage or GeoJSON.",
+            name=name,
+            value=f"<{root.decode()}>" if root else "something else",
+        )
     )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.wkt import with_shapes
@@ -37,14 +38,18 @@ def read_text_table(path: Path, name: str, options: ReadOptions) -> Layer:
     """Return a CSV or TSV file as a layer; its shapes where a column holds such (WKT)."""
     content, messages = decode(path.read_bytes(), options.encoding)
     if "\x00" in content:
-        raise FileProblem(f"{name} must be a text table, but it holds bytes that are no text.")
+        raise FileProblem(
+            worded("{name} must be a text table, but it holds bytes that are no text.", name=name)
+        )
     content, told = _told_delimiter(content)
     delimiter = options.delimiter or told or _delimiter(content)
     csv.field_size_limit(limits.CELL_CHARACTERS)
     try:
         rows = list(csv.reader(io.StringIO(content, newline=""), delimiter=delimiter))
     except csv.Error as bad:
-        raise FileProblem(f"{name} must be a text table, but it cannot be read: {bad}.") from bad
+        raise FileProblem(
+            worded("{name} must be a text table, but it cannot be read: {bad}.", name=name, bad=bad)
+        ) from bad
     layer = _table(rows, name, options.header)
     return with_shapes(replace(layer, messages=(*messages, *layer.messages)), _system_beside(path))
 
@@ -94,20 +99,31 @@ def _table(rows: list[list[Any]], name: str, header: str | None = None) -> Layer
     rows, head = _headed(rows, name, header)
     messages: list[ImportMessage] = []
     if header == "no":
-        said = f"{name} has no line of names: its columns are called column 1 to {len(rows[0])}."
+        said = worded(
+            "{name} has no line of names: its columns are called column 1 to {n}.",
+            name=name,
+            n=len(rows[0]),
+        )
         messages.append(seen(said))
     elif head:
-        messages.append(seen(f"{head} line(s) above the column names were passed over."))
+        messages.append(
+            seen(worded("{head} line(s) above the column names were passed over.", head=head))
+        )
     limits.check("columns", len(rows[head]), limits.COLUMNS, name)
     names = _names(rows[head])
     body = [row for row in rows[head + 1 :] if any(map(_is_filled, row))]
     if not body:
-        raise FileProblem(f"{name} must hold records below its column names, but holds none.")
+        raise FileProblem(
+            worded("{name} must hold records below its column names, but holds none.", name=name)
+        )
     longer = sum(len(row) > len(names) and any(text(v) for v in row[len(names) :]) for row in body)
     if longer:
         messages.append(
             dropped(
-                f"{longer} line(s) have more cells than there are columns; those were left out."
+                worded(
+                    "{longer} line(s) have more cells than there are columns; those were left out.",
+                    longer=longer,
+                )
             )
         )
     return Layer(name, _columns(names, body), messages=tuple(messages))
@@ -122,15 +138,23 @@ def _headed(rows: list[list[Any]], name: str, header: str | None) -> tuple[list[
         found = _head_row(rows)
         if found is None:
             raise FileProblem(
-                f"{name} must hold a table with a line of column names, but holds none."
+                worded(
+                    "{name} must hold a table with a line of column names, but holds none.",
+                    name=name,
+                )
             )
         head = found
         if header is None and looks_like_data(rows[head], rows[head + 1 :]):
             shown = ", ".join(text(v) for v in rows[head][:5] if text(v))
             raise ChoiceNeeded(
-                f"{name} must have a line of column names, but its first line looks like data "
-                f"({shown}). Say header=no if it has no names; its columns are called column 1, "
-                "column 2 and so on then. Or write names above it.",
+                worded(
+                    "{name} must have a line of column names, but its first "
+                    "line looks like data ({shown}). Say header=no if it has "
+                    "no names; its columns are called column 1, column 2 and "
+                    "so on then. Or write names above it.",
+                    name=name,
+                    shown=shown,
+                ),
                 "header",
                 ("no", "yes"),
             )

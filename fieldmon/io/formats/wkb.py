@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, dropped, repaired
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ def shapes(wkb: NDArray[np.object_]) -> tuple[NDArray[np.object_], list[ImportMe
     if len(lost) > len(broken):
         messages.append(closed(len(lost) - len(broken)))
     if len(broken):
-        said = f"The shape of {len(broken)} feature(s) cannot be understood; left out."
+        said = worded("The shape of {n} feature(s) cannot be understood; left out.", n=len(broken))
         messages.append(dropped(said, f"feature {broken[0] + 1}"))
     return geometry, messages
 
@@ -37,6 +38,9 @@ def shapes(wkb: NDArray[np.object_]) -> tuple[NDArray[np.object_], list[ImportMe
 def closed(n_features: int) -> ImportMessage:
     """Return what to say of features whose rings were closed."""
     return repaired(
-        f"The outline of {n_features} feature(s) did not end where it began; it was closed by a "
-        "straight line."
+        worded(
+            "The outline of {n_features} feature(s) did not end where it "
+            "began; it was closed by a straight line.",
+            n_features=n_features,
+        )
     )

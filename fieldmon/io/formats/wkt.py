@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.wkb import closed
 from fieldmon.io.import_report import ImportMessage, dropped, guessed, seen
@@ -48,12 +49,17 @@ def with_shapes(layer: Layer, stated: str | None) -> Layer:
     limits.check(
         "vertices", int(shapely.get_num_coordinates(geometry).sum()), limits.VERTICES, layer.name
     )
-    messages = [seen(f"Shapes are in column {name!r}."), *_about(layer, name, geometry, lost)]
+    messages = [
+        seen(worded("Shapes are in column {name!r}.", name=name)),
+        *_about(layer, name, geometry, lost),
+    ]
     systems = {m.group(1) for m in cells if m and m.group(1) not in {None, "0"}}
     crs = f"EPSG:{systems.pop()}" if len(systems) == 1 else stated
     if crs is None and _could_be_degrees(geometry):
         crs = _WGS84
-        said = "They name no coordinate system and were read as longitude and latitude (WGS 84)."
+        said = worded(
+            "They name no coordinate system and were read as longitude and latitude (WGS 84)."
+        )
         messages.append(guessed(said, name))
     columns = {own: values for own, values in layer.columns.items() if own != name}
     every = (*layer.messages, *messages)
@@ -76,7 +82,7 @@ def _about(
     messages = [closed(n)] if (n := int((lost & ~missing).sum())) else []
     said = np.array([bool(text(v)) for v in layer.columns[name]], dtype=bool)
     if (n := int((missing & said).sum())) > 0:
-        messages.append(dropped(f"{n} shape(s) cannot be understood; left out.", name))
+        messages.append(dropped(worded("{n} shape(s) cannot be understood; left out.", n=n), name))
     return messages
 
 

@@ -6,6 +6,7 @@ import io
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, Protocol
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.io.sandbox import limits
 
@@ -82,7 +83,12 @@ def sheet_rows(path: Path, name: str, sheet: str) -> list[list[Any]]:
     with _opened(path, name) as book:
         if sheet not in book.names:
             raise ChoiceNeeded(
-                f"{name} has no sheet {sheet!r}. Choose one of: {', '.join(book.names)}.",
+                worded(
+                    "{name} has no sheet {sheet!r}. Choose one of: {names}.",
+                    name=name,
+                    sheet=sheet,
+                    names=", ".join(book.names),
+                ),
                 "layer",
                 book.names,
             )
@@ -120,6 +126,10 @@ def _opened(path: Path, name: str) -> Iterator[_Book]:
         if not isinstance(bad, Exception) and type(bad).__name__ != "PanicException":
             raise
         raise FileProblem(
-            f"{name} must be a workbook of Excel or LibreOffice, but it cannot be read "
-            f"({str(bad)[:300]}). Save it again as .xlsx or CSV."
+            worded(
+                "{name} must be a workbook of Excel or LibreOffice, but it "
+                "cannot be read ({value}). Save it again as .xlsx or CSV.",
+                name=name,
+                value=str(bad)[:300],
+            )
         ) from bad

@@ -10,6 +10,7 @@ from zoneinfo import ZoneInfo
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 _CLOCK = re.compile(
@@ -33,7 +34,9 @@ def zone_of(name: str) -> tzinfo:
         with suppress(KeyError, ValueError, OSError):
             return ZoneInfo(name.strip())
     raise SettingError(
-        f"A time zone must be named as Asia/Jerusalem or +02:00, but it is {name!r}."
+        worded(
+            "A time zone must be named as Asia/Jerusalem or +02:00, but it is {name!r}.", name=name
+        )
     )
 
 

@@ -115,8 +115,11 @@ def system(text: str) -> pyproj.CRS:
     except CRSError:
         shown = text if len(text) < 80 else f"{text[:77]}..."
         raise ChoiceNeeded(
-            f"A coordinate system must be named as in EPSG:2039, but it is {shown!r}. "
-            "Name another one.",
+            worded(
+                "A coordinate system must be named as in EPSG:2039, but it is "
+                "{shown!r}. Name another one.",
+                shown=shown,
+            ),
             "crs",
         ) from None
 
@@ -134,10 +137,16 @@ def transformation_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Transfo
             group = TransformerGroup(flat, WGS84, always_xy=True, area_of_interest=_around(*rough))
     except ProjError as bad:
         raise FileProblem(
-            f"There must be a way from {name} to WGS84, but PROJ finds none ({bad})."
+            worded(
+                "There must be a way from {name} to WGS84, but PROJ finds none ({bad}).",
+                name=name,
+                bad=bad,
+            )
         ) from bad
     if not group.transformers:
-        raise FileProblem(f"There must be a way from {name} to WGS84, but PROJ finds none.")
+        raise FileProblem(
+            worded("There must be a way from {name} to WGS84, but PROJ finds none.", name=name)
+        )
     best = group.transformers[0]
     missing = None
     if not group.best_available and group.unavailable_operations:
@@ -164,8 +173,14 @@ def ask_for_crs(xy: NDArray[np.float64], options: ReadOptions, why: str) -> Choi
     ]
     listed = "; ".join(lines) if lines else "none of the usual ones fits the coordinates"
     return ChoiceNeeded(
-        f"{why} The coordinates are around {centre[0]:.10g}, {centre[1]:.10g}. "
-        f"Name the coordinate system. Candidates: {listed}.",
+        worded(
+            "{why} The coordinates are around {value:.10g}, {y:.10g}. "
+            "Name the coordinate system. Candidates: {listed}.",
+            why=why,
+            value=centre[0],
+            y=centre[1],
+            listed=listed,
+        ),
         "crs",
         tuple(c.code for c in offered),
     )

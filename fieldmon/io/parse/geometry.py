@@ -158,7 +158,7 @@ def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Impo
         try:
             whole = _polygons(shapely.make_valid(drawn, method="structure", keep_collapsed=False))
         except GEOSException as bad:
-            said = f"The shape is broken ({why}) beyond repair: {bad}."
+            said = worded("The shape is broken ({why}) beyond repair: {bad}.", why=why, bad=bad)
             many = "{n} shapes are broken beyond repair"
             return MultiPolygon(), [dropped(said, name, many=many)]
     measured = _measured(whole)
@@ -191,7 +191,9 @@ def _repaired(
     """Return what to say of an area made valid: parts that overlap are one, holes stay holes."""
     parts = "" if len(whole.geoms) == len(drawn.geoms) else f" in {len(whole.geoms)} part(s)"
     change = f"{_amount(area_m2(drawn))} as drawn, {_amount(now.area_m2.sum())}{parts} now"
-    said = f"The shape was not valid ({why}) and was repaired: {change}."
+    said = worded(
+        "The shape was not valid ({why}) and was repaired: {change}.", why=why, change=change
+    )
     return repaired(said, name, many="{n} shapes were not valid and were repaired")
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, repaired, seen
 from fieldmon.io.parse.crs import (
@@ -69,13 +70,18 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
     messages: list[ImportMessage] = []
     if not np.isfinite(xy).all():
         raise FileProblem(
-            "All coordinates must be numbers, but some are infinite or none. Export the file again."
+            worded(
+                "All coordinates must be numbers, but some are infinite or "
+                "none. Export the file again."
+            )
         )
     if options.swap_axes:
         xy = xy[:, ::-1]
-        messages.append(seen("First and second coordinate were exchanged, as asked."))
+        messages.append(seen(worded("First and second coordinate were exchanged, as asked.")))
     if options.crs is not None and stated is not None:
-        messages.append(seen(f"The coordinate system named by hand, {options.crs}, was used."))
+        messages.append(
+            seen(worded("The coordinate system named by hand, {crs}, was used.", crs=options.crs))
+        )
     wanted = options.crs or stated
     if wanted is None:
         raise ask_for_crs(xy, options, "The file does not say in which coordinate system it is.")
@@ -104,8 +110,12 @@ def _check_range(xy: NDArray[np.float64], crs: pyproj.CRS, options: ReadOptions)
         return
     if (second <= 360).all() and (first <= 90).all():
         raise ChoiceNeeded(
-            f"Latitudes must lie in -90..90, but there is {xy[np.argmax(second), 1]:.6g}: "
-            "longitude and latitude seem to be in the wrong order. Exchange them if that is so.",
+            worded(
+                "Latitudes must lie in -90..90, but there is {value:.6g}: "
+                "longitude and latitude seem to be in the wrong order. "
+                "Exchange them if that is so.",
+                value=xy[np.argmax(second), 1],
+            ),
             "swap_axes",
             ("no" if options.swap_axes else "yes",),
         )
@@ -128,14 +138,21 @@ def _without_zone(
     if float(false_easting) > 1e6:  # the system itself counts the zone in
         return xy, []
     bare = xy - np.array([zone * 1e6, 0.0])
-    return bare, [repaired(f"The zone number {zone} in front of the eastings was taken off.")]
+    return bare, [
+        repaired(
+            worded("The zone number {zone} in front of the eastings was taken off.", zone=zone)
+        )
+    ]
 
 
 def _check_landing(lonlat: NDArray[np.float64], crs: pyproj.CRS) -> None:
     if not (np.isfinite(lonlat).all() and (np.abs(lonlat[:, 1]) <= 90).all()):
         raise FileProblem(
-            f"All coordinates must lie where {crs.name} is defined, but some do not. "
-            "Check the coordinate system and name the right one."
+            worded(
+                "All coordinates must lie where {name} is defined, but some "
+                "do not. Check the coordinate system and name the right one.",
+                name=crs.name,
+            )
         )
 
 
@@ -147,9 +164,14 @@ def _outside(
     away = km_outside(crs, lon, lat)
     if not away > (_FAR_FROM_ZONE_KM if utm_zone(crs) else _FAR_FROM_USE_KM):
         return []
-    said = (
-        f"It lies at {lon:.4f}, {lat:.4f}, which is {away:.0f} km outside of where {crs.name} is "
-        "used, so the accuracy that PROJ states does not hold. Check the coordinate system."
+    said = worded(
+        "It lies at {lon:.4f}, {lat:.4f}, which is {away:.0f} km outside "
+        "of where {name} is used, so the accuracy that PROJ states does "
+        "not hold. Check the coordinate system.",
+        lon=lon,
+        lat=lat,
+        away=away,
+        name=crs.name,
     )
     others = [
         c for c in candidates(_middle(xy), options.country, options.near) if c.code != code_of(crs)
@@ -157,7 +179,13 @@ def _outside(
     if not others:
         return [doubtful(said)]
     codes = tuple(c.code for c in others)
-    return [doubtful(said, None, Remedy("crs", codes[0], f"Read as {others[0].name}", codes[1:]))]
+    return [
+        doubtful(
+            said,
+            None,
+            Remedy("crs", codes[0], worded("Read as {name}", name=others[0].name), codes[1:]),
+        )
+    ]
 
 
 def _check_near(
@@ -171,17 +199,26 @@ def _check_near(
         return
     if _nearest_km(lonlat[:, ::-1], options.near) < away / 10:
         raise ChoiceNeeded(
-            f"It lies {away:.0f} km from the place nearby. Exchange longitude and latitude if they "
-            "are in the wrong order.",
+            worded(
+                "It lies {away:.0f} km from the place nearby. Exchange "
+                "longitude and latitude if they are in the wrong order.",
+                away=away,
+            ),
             "swap_axes",
             ("yes",),
         )
-    said = f"As {code} it lies {away:.0f} km from the place nearby."
-    stay = f"{code} keeps it there."
+    said = worded("As {code} it lies {away:.0f} km from the place nearby.", code=code, away=away)
+    stay = worded("{code} keeps it there.", code=code)
     if (np.abs(xy) <= (180, 90)).all():  # degrees in any system
-        raise ChoiceNeeded(f"{said} Is it the right file? {stay}", "crs", (code,))
+        raise ChoiceNeeded(
+            worded("{said} Is it the right file? {stay}", said=said, stay=stay), "crs", (code,)
+        )
     question = ask_for_crs(xy, options, said)
-    raise ChoiceNeeded(f"{question} {stay}", "crs", tuple(dict.fromkeys([*question.choices, code])))
+    raise ChoiceNeeded(
+        worded("{question} {stay}", question=question, stay=stay),
+        "crs",
+        tuple(dict.fromkeys([*question.choices, code])),
+    )
 
 
 def _nearest_km(lonlat: NDArray[np.float64], place: tuple[float, float]) -> float:
@@ -202,15 +239,20 @@ def _distance(lonlat: NDArray[np.float64], options: ReadOptions) -> list[ImportM
         return []
     swapped = _nearest_km(lonlat[:, ::-1], options.near)
     if swapped < away / 10:
-        remedy = Remedy("swap_axes", "yes", "Exchange longitude and latitude")
+        remedy = Remedy("swap_axes", "yes", worded("Exchange longitude and latitude"))
         return [
             doubtful(
-                f"It lies {away:.0f} km from the place nearby, but {swapped:.0f} km from it with "
-                "longitude and latitude exchanged.",
+                worded(
+                    "It lies {away:.0f} km from the place nearby, but "
+                    "{swapped:.0f} km from it with longitude and latitude "
+                    "exchanged.",
+                    away=away,
+                    swapped=swapped,
+                ),
                 remedy=remedy,
             )
         ]
-    return [doubtful(f"It lies {away:.0f} km from the place nearby.")]
+    return [doubtful(worded("It lies {away:.0f} km from the place nearby.", away=away))]
 
 
 def _step(xy: NDArray[np.float64]) -> float:

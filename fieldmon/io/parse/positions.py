@@ -165,8 +165,13 @@ def _by_coordinates(
         raise unread.ask()
     if not there.any():
         raise FileProblem(
-            f"Column(s) {shown} of {layer.name} must hold positions, but not one record has any"
-            f"{unread.shown()}. Correct them or name other columns."
+            worded(
+                "Column(s) {shown} of {name} must hold positions, but not one "
+                "record has any{seen_in}. Correct them or name other columns.",
+                shown=shown,
+                name=layer.name,
+                seen_in=unread.shown(),
+            )
         )
     messages += unread.messages()
     placed = place(xy[there], stated or crs, options)
@@ -197,7 +202,7 @@ def _coordinates(
     read_as = partial(all_degrees, decimal=options.decimal, how=options.degrees)
     xy = np.stack([read_as(c) for c in columns], axis=1)
     if _letters_are_crossed(layer, names):
-        said = "Longitudes stood in the column of latitudes; exchanged."
+        said = worded("Longitudes stood in the column of latitudes; exchanged.")
         return xy[:, ::-1], _WGS84, [repaired(said)]
     return xy, _WGS84, []
 
@@ -250,9 +255,14 @@ class _Unread(NamedTuple):
 
     def ask(self) -> ChoiceNeeded:
         return ChoiceNeeded(
-            f"{self.n_dotted} record(s) give degrees with two points{self.shown()}. 35.26.33 can "
-            "mean degrees, minutes and seconds (degrees=dms) or degrees and minutes with decimals "
-            "(degrees=dm). Choose one.",
+            worded(
+                "{n_dotted} record(s) give degrees with two points{shown}. "
+                "35.26.33 can mean degrees, minutes and seconds (degrees=dms) "
+                "or degrees and minutes with decimals (degrees=dm). Choose "
+                "one.",
+                n_dotted=self.n_dotted,
+                shown=self.shown(),
+            ),
             "degrees",
             ("dms", "dm"),
         )
@@ -260,11 +270,15 @@ class _Unread(NamedTuple):
     def messages(self) -> list[ImportMessage]:
         if not self.n:
             return []
-        said = f"{self.n} record(s) without a usable position were left out{self.shown()}."
+        said = worded(
+            "{n} record(s) without a usable position were left out{shown}.",
+            n=self.n,
+            shown=self.shown(),
+        )
         if not self.n_dotted:
             return [dropped(said)]
         many = f"{said} {self.n_dotted} of them have two points, as 35.26.33."
-        label = "Read them as degrees, minutes and seconds"
+        label = worded("Read them as degrees, minutes and seconds")
         return [dropped(many, remedy=Remedy("degrees", "dms", label, ("dm",)))]
 
 
@@ -294,7 +308,9 @@ def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Im
     for value in stated:
         known = _known_system(value)
         if known is None:
-            said = f"It names the coordinate system {value!r}, which is not known."
+            said = worded(
+                "It names the coordinate system {value!r}, which is not known.", value=value
+            )
             return None, [doubtful(said, name)]
         return known, [
             seen(worded("Column {name!r} names the coordinate system {crs}.", name=name, crs=value))
@@ -328,7 +344,10 @@ def _by_name(layer: Layer, options: ReadOptions, places: NamedPlaces) -> Located
         named = by_plot(layer.column(plot), places)
     elif half := [f"{name!r} ({role})" for role, name in options.columns if role in {"lon", "lat"}]:
         raise ChoiceNeeded(
-            f"Longitudes and latitudes must both be named, but only {half[0]} is. Name the other.",
+            worded(
+                "Longitudes and latitudes must both be named, but only {value} is. Name the other.",
+                value=half[0],
+            ),
             "columns",
             could_be_positions(layer, options),
         )
@@ -423,7 +442,11 @@ def _kept(layer: Layer, named: PlacedByName) -> LocatedFeatures:
     if not there.any():
         said = " ".join(message.sentence for message in named.messages)
         raise FileProblem(
-            f"Records of {layer.name} must name places that are known, but none does. {said}"
+            worded(
+                "Records of {name} must name places that are known, but none does. {said}",
+                name=layer.name,
+                said=said,
+            )
         )
     return LocatedFeatures(
         layer.take(np.flatnonzero(there)),

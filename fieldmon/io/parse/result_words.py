@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.infestation.observations import ABSENT, PRESENT
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful
 
@@ -116,8 +117,8 @@ def about_minus(cells: Iterable[str], words: ResultWords) -> list[ImportMessage]
     n = sum(plain_word(cell) in MINUS and words[cell] is None for cell in cells)
     if not n:
         return []
-    said = f"{n} record(s) hold a minus alone: taken as not filled in, not as clean."
-    return [doubtful(said, remedy=Remedy("clean", "-", "Take a minus as clean"))]
+    said = worded("{n} record(s) hold a minus alone: taken as not filled in, not as clean.", n=n)
+    return [doubtful(said, remedy=Remedy("clean", "-", worded("Take a minus as clean")))]
 
 
 def _own(words: str | None) -> list[str]:

@@ -6,6 +6,7 @@ import codecs
 import re
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import ImportMessage, Remedy, guessed, repaired
 
@@ -87,7 +88,10 @@ class Decoder:
             return stated or "utf-8"
         if all(_is_utf8(sample) for sample in telling):
             if stated not in {None, "utf-8"}:
-                said = f"The .cpg file says {stated}, but the text is UTF-8 and was read so."
+                said = worded(
+                    "The .cpg file says {stated}, but the text is UTF-8 and was read so.",
+                    stated=stated,
+                )
                 self.messages.append(repaired(said))
             return "utf-8"
         if stated is not None and stated not in _WESTERN and _fits(telling, stated):
@@ -132,8 +136,10 @@ def _guess(best: str, stated: str | None = None) -> ImportMessage:
     other, *more = (name for name in ENCODINGS if name != best)
     why = f"The .cpg file says {stated}, but the" if stated else "The"
     return guessed(
-        f"{why} text is not UTF-8; by its letters it was read as {best}.",
-        remedy=Remedy("encoding", other, f"Read as {other}", tuple(more)),
+        worded(
+            "{why} text is not UTF-8; by its letters it was read as {best}.", why=why, best=best
+        ),
+        remedy=Remedy("encoding", other, worded("Read as {other}", other=other), tuple(more)),
     )
 
 
@@ -142,13 +148,19 @@ def _as_told(data: bytes, encoding: str) -> str:
         return data.decode(encoding)
     except (UnicodeDecodeError, ValueError):
         raise ChoiceNeeded(
-            f"The text must be readable as {encoding}, but it is not. Choose another encoding.",
+            worded(
+                "The text must be readable as {encoding}, but it is not. Choose another encoding.",
+                encoding=encoding,
+            ),
             "encoding",
             tuple(name for name in ("utf-8", *ENCODINGS) if name != encoding),
         ) from None
     except (LookupError, TypeError):
         raise ChoiceNeeded(
-            f"The encoding must be one that Python knows, but {encoding!r} is not. Choose one.",
+            worded(
+                "The encoding must be one that Python knows, but {encoding!r} is not. Choose one.",
+                encoding=encoding,
+            ),
             "encoding",
             ("utf-8", *ENCODINGS),
         ) from None

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.infestation.raster_risk import risk_chance
 from fieldmon.io.import_report import seen
 from fieldmon.io.rasters.read import read_raster
@@ -37,7 +38,13 @@ def read_risk(
     read = read_raster(source, options, plot.field)
     chance = risk_chance(read.value.of_plants(plot.grid, how or "mean"), settings)
     low, high, mean = np.nanmin(chance), np.nanmax(chance), np.nanmean(chance)
-    said = f"Risk by {settings.meaning}: {low:.3g} to {high:.3g}, {mean:.3g} on average"
+    said = worded(
+        "Risk by {meaning}: {low:.3g} to {high:.3g}, {mean:.3g} on average",
+        meaning=settings.meaning,
+        low=low,
+        high=high,
+        mean=mean,
+    )
     return read.having(chance, [seen(said + _unseen(chance, "and have no risk by it"))])
 
 
@@ -56,7 +63,12 @@ def read_missing(
     read = read_raster(source, options, plot.field)
     values = read.value.of_plants(plot.grid, how or "highest")
     missing = values < below
-    said = f"{int(missing.sum())} of {len(missing)} plants are missing (canopy below {below:g})"
+    said = worded(
+        "{n} of {total} plants are missing (canopy below {below:g})",
+        n=int(missing.sum()),
+        total=len(missing),
+        below=below,
+    )
     return read.having(missing, [seen(said + _unseen(values, "and count as there"))])
 
 

@@ -16,6 +16,7 @@ from rasterio.enums import MaskFlags, Resampling
 from rasterio.errors import RasterioError
 from rasterio.windows import Window
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.signatures import FileKind
 from fieldmon.io.import_report import ImportMessage, Remedy, guessed, seen
@@ -117,7 +118,12 @@ def open_raster(folder: str, source: Source, options: RasterOptions) -> Iterator
     found = members(source, room)
     rasters = tuple(member for member in found if member.kind is FileKind.RASTER)
     if not rasters:
-        raise FileProblem(f"{source_name(source)} must be a GeoTIFF, but it is not. Choose one.")
+        raise FileProblem(
+            worded(
+                "{source_name} must be a GeoTIFF, but it is not. Choose one.",
+                source_name=source_name(source),
+            )
+        )
     member = choose_member(rasters, options.member, source_name(source))
     path = room.stage(member)
     with warnings.catch_warnings():
@@ -131,8 +137,12 @@ def open_raster(folder: str, source: Source, options: RasterOptions) -> Iterator
                 yield _placed(tif, path, member.name, options)
         except _UNREADABLE as bad:
             raise FileProblem(
-                f"{member.name} must be a whole GeoTIFF, but it cannot be read "
-                f"({_short(bad)}). Export or download it again."
+                worded(
+                    "{name} must be a whole GeoTIFF, but it cannot be read "
+                    "({short}). Export or download it again.",
+                    name=member.name,
+                    short=_short(bad),
+                )
             ) from bad
 
 
@@ -145,7 +155,9 @@ def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -
     if crs.is_geographic and 180.0 < middle[0] <= 360.0:  # counted eastward all around the earth
         to_map = (*to_map[:2], to_map[2] - 360.0, *to_map[3:])
         middle = map_xy(to_map, size)[0]
-        messages.append(seen("Longitudes beyond 180 degrees were read as west of Greenwich."))
+        messages.append(
+            seen(worded("Longitudes beyond 180 degrees were read as west of Greenwich."))
+        )
     if crs.is_geographic and (abs(middle[0]) > 180 or abs(middle[1]) > 90):
         raise ask_for_crs(
             middle[None], options, f"{name} says {crs.name}, in degrees, but it lies nowhere so."
@@ -153,34 +165,56 @@ def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -
     through = transformation_from(crs, (float(middle[0]), float(middle[1])))
     if not np.isfinite(through.lonlat(middle[None])).all():
         raise FileProblem(
-            f"{name} must lie where {crs.name} is defined, but it does not. Name the right "
-            "coordinate system."
+            worded(
+                "{name} must lie where {system} is defined, but it does not. "
+                "Name the right coordinate system.",
+                name=name,
+                system=crs.name,
+            )
         )
     a, b, _, d, e, _ = to_map
     if abs(b) > 1e-6 * abs(a) or abs(d) > 1e-6 * abs(e):
         turn = math.degrees(math.atan2(d, a))
-        messages.append(seen(f"The raster is turned by {turn:.4g} degrees; positions follow it."))
+        messages.append(
+            seen(
+                worded(
+                    "The raster is turned by {turn:.4g} degrees; positions follow it.", turn=turn
+                )
+            )
+        )
     elif e > 0:
-        messages.append(seen("The raster's first line lies in the south; positions follow it."))
+        messages.append(
+            seen(worded("The raster's first line lies in the south; positions follow it."))
+        )
     return OpenRaster(tif, name, to_map, crs, through, (*messages, *through.messages()))
 
 
 def _check_shape(tif: DatasetReader, name: str) -> None:
     if tif.count == 0:
-        raise FileProblem(f"{name} must hold a band of values, but it holds none.")
+        raise FileProblem(
+            worded("{name} must hold a band of values, but it holds none.", name=name)
+        )
     limits.check("bands", tif.count, limits.BANDS, name)
     if any(np.dtype(kind).kind == "c" for kind in tif.dtypes):
         raise FileProblem(
-            f"{name} must hold plain numbers, but it holds complex ones (radar?). Make a raster of "
-            "plain numbers from it."
+            worded(
+                "{name} must hold plain numbers, but it holds complex ones "
+                "(radar?). Make a raster of plain numbers from it.",
+                name=name,
+            )
         )
     high, wide = tif.block_shapes[0]
     pixel_bytes = sum(np.dtype(kind).itemsize for kind in tif.dtypes)
     if high * wide * pixel_bytes > limits.BLOCK_BYTES:
         raise FileProblem(
-            f"A raster must be cut into tiles or strips of {limits.size(limits.BLOCK_BYTES)} at "
-            f"most, but those of {name} have {limits.size(high * wide * pixel_bytes)}. Save it as "
-            "a Cloud Optimised GeoTIFF."
+            worded(
+                "A raster must be cut into tiles or strips of {size} at most, "
+                "but those of {name} have {has}. Save it as a Cloud "
+                "Optimised GeoTIFF.",
+                size=limits.size(limits.BLOCK_BYTES),
+                name=name,
+                has=limits.size(high * wide * pixel_bytes),
+            )
         )
 
 
@@ -189,12 +223,19 @@ def _to_map(tif: DatasetReader, name: str) -> Affine:
     if tif.transform.is_identity:
         if tif.gcps[0] or tif.rpcs is not None:
             raise FileProblem(
-                f"{name} must say where its pixels lie, but it only holds control points. Rectify "
-                'it first ("warp" in a GIS).'
+                worded(
+                    "{name} must say where its pixels lie, but it only holds "
+                    'control points. Rectify it first ("warp" in a GIS).',
+                    name=name,
+                )
             )
         raise FileProblem(
-            f"{name} must say where on the earth it lies, but it is a picture without a position. "
-            "Georeference it in a GIS, or bring its world file (.tfw) along."
+            worded(
+                "{name} must say where on the earth it lies, but it is a "
+                "picture without a position. Georeference it in a GIS, or "
+                "bring its world file (.tfw) along.",
+                name=name,
+            )
         )
     to_map: Affine = tuple(float(number) for number in tif.transform[:6])  # type: ignore[assignment]
     a, b, _, d, e, _ = to_map
@@ -203,8 +244,13 @@ def _to_map(tif: DatasetReader, name: str) -> Affine:
         np.isfinite(to_map).all() and 0.0 < sides < np.inf and abs(a * e - b * d) > 1e-6 * sides
     ):
         raise FileProblem(
-            f"The pixels of {name} must cover some ground, but its georeference says they do not "
-            f"({', '.join(f'{number:.6g}' for number in to_map)}). Georeference it again."
+            worded(
+                "The pixels of {name} must cover some ground, but its "
+                "georeference says they do not ({names}). Georeference it "
+                "again.",
+                name=name,
+                names=", ".join(f"{number:.6g}" for number in to_map),
+            )
         )
     return to_map
 
@@ -214,7 +260,15 @@ def _system(
 ) -> tuple[pyproj.CRS, list[ImportMessage]]:
     if options.crs is not None:
         chosen = system(options.crs)
-        return chosen, [seen(f"Read in {chosen.name} ({code_of(chosen)}), as chosen.")]
+        return chosen, [
+            seen(
+                worded(
+                    "Read in {name} ({code}), as chosen.",
+                    name=chosen.name,
+                    code=code_of(chosen),
+                )
+            )
+        ]
     beside = path.with_suffix(".prj")
     for text, where in ((_own(tif), None), (_text(beside), "the .prj file beside it")):
         try:
@@ -222,7 +276,11 @@ def _system(
         except ChoiceNeeded:
             crs = None
         if crs is not None and (crs.is_geographic or crs.is_projected):
-            said = [] if where is None else [seen(f"The coordinate system was taken from {where}.")]
+            said = (
+                []
+                if where is None
+                else [seen(worded("The coordinate system was taken from {where}.", where=where))]
+            )
             return crs, said
     ends = map_xy(to_map, np.array([[0.0, 0.0], [tif.width, tif.height]]))
     raise ask_for_crs(ends, options, "The raster does not say its coordinate system.")
@@ -248,8 +306,13 @@ def band_named(opened: OpenRaster, wanted: str) -> int:
     if text.isdigit() and 1 <= int(text) <= tif.count:
         return int(text)
     raise ChoiceNeeded(
-        f"{opened.name} holds the bands 1 to {tif.count}, but {wanted!r} was asked for. "
-        "Choose one of them.",
+        worded(
+            "{name} holds the bands 1 to {count}, but {wanted!r} was asked "
+            "for. Choose one of them.",
+            name=opened.name,
+            count=tif.count,
+            wanted=wanted,
+        ),
         "band",
         tuple(str(b) for b in range(1, tif.count + 1)),
     )
@@ -268,10 +331,17 @@ def part_of(opened: OpenRaster, bounds: Bounds | None, most: int, n_bands: int =
     decoded = window.width * window.height / overview**2 * max(pixel_bytes, n_bands)
     if decoded > limits.RASTER_BYTES:
         raise FileProblem(
-            f"{limits.size(limits.RASTER_BYTES)} of a raster may be read at most, but "
-            f"{opened.name} ({opened.tif.width} x {opened.tif.height} pixels) would take "
-            f"{limits.size(decoded)}. Cut it to the plot, or save it as a Cloud Optimised GeoTIFF, "
-            "which holds smaller copies of itself."
+            worded(
+                "{size} of a raster may be read at most, but {name} ({width} "
+                "x {height} pixels) would take {has}. Cut it to the plot, "
+                "or save it as a Cloud Optimised GeoTIFF, which holds smaller "
+                "copies of itself.",
+                size=limits.size(limits.RASTER_BYTES),
+                name=opened.name,
+                width=opened.tif.width,
+                height=opened.tif.height,
+                has=limits.size(decoded),
+            )
         )
     return RasterPart(window, shape)
 
@@ -293,9 +363,15 @@ def _window(opened: OpenRaster, bounds: Bounds | None) -> Window:
     plot = ((bounds[0] + bounds[2]) / 2, (bounds[1] + bounds[3]) / 2)
     away = km_between(plot, (float(middle[0]), float(middle[1])))
     raise FileProblem(
-        f"{opened.name} must lie on the plot, at least in part, but its middle is {away:.3g} km "
-        f"away, at {middle[0]:.4f}, {middle[1]:.4f}. Choose another raster, or name its right "
-        "coordinate system."
+        worded(
+            "{name} must lie on the plot, at least in part, but its middle is "
+            "{away:.3g} km away, at {value:.4f}, {lat:.4f}. Choose another "
+            "raster, or name its right coordinate system.",
+            name=opened.name,
+            away=away,
+            value=middle[0],
+            lat=middle[1],
+        )
     )
 
 
@@ -353,9 +429,13 @@ def _undeclared(raw: NDArray[Any], missing: NDArray[np.bool_]) -> list[ImportMes
     what = ", ".join([*(f"{n:g}" for n in sentinels), *(["beyond 1e30"] if huge.any() else [])])
     return [
         guessed(
-            f"Values of {what} were taken as no value, although the raster declares none "
-            f"({100 * odd.mean():.3g} % of the pixels read).",
-            remedy=Remedy("nodata", "none", "They are values"),
+            worded(
+                "Values of {what} were taken as no value, although the raster "
+                "declares none ({value:.3g} % of the pixels read).",
+                what=what,
+                value=100 * odd.mean(),
+            ),
+            remedy=Remedy("nodata", "none", worded("They are values")),
         )
     ]
 
@@ -388,8 +468,16 @@ def _what_was_read(opened: OpenRaster, bands: tuple[int, ...], part: RasterPart)
     listed = f"band{'s' if len(bands) > 1 else ''} {', '.join(map(str, bands))} of {tif.count}"
     shrunk = f"; read at every {part.step:.3g}th pixel" if part.step > 1.001 else ""
     return seen(
-        f"{opened.name}: {listed} ({tif.dtypes[bands[0] - 1]}), {tif.width} x {tif.height} pixels "
-        f"of {metres:.3g} m{shrunk}."
+        worded(
+            "{name}: {listed} ({value}), {width} x {height} pixels of {metres:.3g} m{shrunk}.",
+            name=opened.name,
+            listed=listed,
+            value=tif.dtypes[bands[0] - 1],
+            width=tif.width,
+            height=tif.height,
+            metres=metres,
+            shrunk=shrunk,
+        )
     )
 
 

@@ -9,6 +9,7 @@ from rasterio.enums import ColorInterp, Resampling
 from rasterio.io import MemoryFile
 from rasterio.shutil import copy
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
 from fieldmon.io.rasters.opening import (
@@ -45,7 +46,7 @@ def backdrop(
     with open_raster(folder, source, options) as opened:
         bands = _shown(opened, options.band)
         part = part_of(opened, bounds, _SIDE * _SIDE, len(bands))
-        part = RasterPart(part.window, _within_side(part.shape))
+        part = RasterPart(part.window, within_side(part.shape))
         colours = _colours(opened, bands)
         kinds = {opened.tif.dtypes[band - 1] for band in bands}
         smooth = kinds <= {"uint8", "uint16"} and colours is None
@@ -55,16 +56,20 @@ def backdrop(
         missing = read.missing | ~np.isfinite(raw).all(axis=0)
         if missing.all():
             raise FileProblem(
-                f"{opened.name} must show something, but there is no value in it"
-                f"{'' if bounds is None else ' about the plot'}. Choose another raster."
+                worded(
+                    "{name} must show something, but there is no value in "
+                    "it{value}. Choose another raster.",
+                    name=opened.name,
+                    value="" if bounds is None else " about the plot",
+                )
             )
         if colours is not None:
             image, missing = _coloured(raw[0], colours, missing)
         else:
             image, stretched = _stretched(raw, ~missing)
             said += stretched
-        corners, bent = _corners(opened, part)
-        return Imported(Backdrop(*_encoded(image, missing), corners), (*said, *bent))
+        corners, bent = corners_on_map(opened, part)
+        return Imported(Backdrop(*encoded(image, missing), corners), (*said, *bent))
 
 
 def _shown(opened: OpenRaster, wanted: str | None) -> tuple[int, ...]:
@@ -73,7 +78,8 @@ def _shown(opened: OpenRaster, wanted: str | None) -> tuple[int, ...]:
         bands = tuple(band_named(opened, one) for one in wanted.split(","))
         if len(bands) not in {1, 3}:
             raise ChoiceNeeded(
-                f"A picture is made of one band or three, but {len(bands)} were named.", "band"
+                worded("A picture is made of one band or three, but {n} were named.", n=len(bands)),
+                "band",
             )
         return bands
     meaning = opened.tif.colorinterp
@@ -84,7 +90,8 @@ def _shown(opened: OpenRaster, wanted: str | None) -> tuple[int, ...]:
     return tuple(plain[:3]) if len(plain) >= 3 else tuple(plain[:1])
 
 
-def _within_side(shape: tuple[int, int]) -> tuple[int, int]:
+def within_side(shape: tuple[int, int]) -> tuple[int, int]:
+    """Return the pixels of a picture of at most 2000 a side."""
     shrink = min(1.0, _SIDE / max(shape))
     return max(1, round(shape[0] * shrink)), max(1, round(shape[1] * shrink))
 
@@ -121,10 +128,12 @@ def _stretched(
         spans.append(f"{low:.4g} to {high:.4g}")
         span = high - low if high > low else 1.0
         bytes_[shown] = np.clip((band[shown] - low) / span * 255.0, 0.0, 255.0)
-    return image, [seen(f"Contrast is stretched over the middle 96 %: {'; '.join(spans)}.")]
+    return image, [
+        seen(worded("Contrast is stretched over the middle 96 %: {names}.", names="; ".join(spans)))
+    ]
 
 
-def _corners(opened: OpenRaster, part: RasterPart) -> tuple[Float, list[ImportMessage]]:
+def corners_on_map(opened: OpenRaster, part: RasterPart) -> tuple[Float, list[ImportMessage]]:
     """Return the corners ``(4, 2)`` in degrees, and how far off the map the picture is between.
 
     A map draws the picture as two flat triangles between its corners; the projection bends it.
@@ -140,14 +149,22 @@ def _corners(opened: OpenRaster, part: RasterPart) -> tuple[Float, list[ImportMe
     lonlat = opened.transformation.lonlat(map_xy(to_map, np.concatenate([u, v], axis=1) * size))
     if not (np.isfinite(lonlat).all() and (np.abs(lonlat[:, 1]) < 85.0).all()):
         raise FileProblem(
-            f"{opened.name} must lie where a web map reaches, but it does not. Cut it to the plot."
+            worded(
+                "{name} must lie where a web map reaches, but it does not. Cut it to the plot.",
+                name=opened.name,
+            )
         )
     off = np.hypot(*(np.where(u <= v, lower, upper) - _mercator(lonlat)).T)
     off_m = float((off * np.cos(np.radians(lonlat[:, 1]))).max()) * M_PER_DEGREE
     if off_m < _VISIBLE_M:
         return corners, []
     return corners, [
-        doubtful(f"So large a picture is drawn up to {off_m:.3g} m off its place on the map.")
+        doubtful(
+            worded(
+                "So large a picture is drawn up to {off_m:.3g} m off its place on the map.",
+                off_m=off_m,
+            )
+        )
     ]
 
 
@@ -158,7 +175,7 @@ def _mercator(lonlat: Float) -> Float:
     return np.stack([lonlat[:, 0], y], axis=1)
 
 
-def _encoded(image: NDArray[np.uint8], missing: NDArray[np.bool_]) -> tuple[bytes, str]:
+def encoded(image: NDArray[np.uint8], missing: NDArray[np.bool_]) -> tuple[bytes, str]:
     """Return a picture as JPEG, or as WebP where some of it is clear."""
     bands = np.broadcast_to(image, (3, *image.shape[1:]))
     driver, mime, quality = "JPEG", "image/jpeg", 85

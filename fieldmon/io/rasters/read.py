@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.import_report import doubtful
 from fieldmon.io.options import Source, source_name
@@ -66,6 +67,23 @@ def read_backdrop(
     return picture
 
 
+def read_relief(
+    source: Source, options: RasterOptions | None = None, near: Field | None = None
+) -> Imported[Backdrop]:
+    """Return the relief that a raster of heights (metres) shows, lit from the north-west.
+
+    All of it, or what lies about a plot. How much steeper it is drawn than it is, is told.
+    """
+    picture: Imported[Backdrop] = _read("relief:relief", source, options, near)
+    return picture
+
+
+def looks_like_heights(source: Source, options: RasterOptions | None = None) -> bool:
+    """Return whether a raster is more likely heights than a picture: one band, of no colours."""
+    looks: bool = _read("relief:looks_like_heights", source, options, None)
+    return looks
+
+
 def _read(task: str, source: Source, options: RasterOptions | None, near: Field | None) -> Any:  # noqa: ANN401 - each door says
     options = options or RasterOptions()
     bounds = None
@@ -86,14 +104,23 @@ def _coverage(raster: Raster, field: Field, name: str) -> list[ImportMessage]:
     covered = float(np.mean(~np.isnan(raster.at(_within(field)))))
     if covered == 0.0:
         raise FileProblem(
-            f"{name} must hold values on plot {field.name}, but there it holds none: it ends "
-            "beside it or says nodata. Choose another raster, or name what stands for no value."
+            worded(
+                "{name} must hold values on plot {plot}, but there it holds "
+                "none: it ends beside it or says nodata. Choose another "
+                "raster, or name what stands for no value.",
+                name=name,
+                plot=field.name,
+            )
         )
     if covered >= _FULL:
         return []
     return [
         doubtful(
-            f"The raster covers {100 * covered:.3g} % of plot {field.name}; the rest has no value."
+            worded(
+                "The raster covers {value:.3g} % of plot {name}; the rest has no value.",
+                value=100 * covered,
+                name=field.name,
+            )
         )
     ]
 
@@ -112,4 +139,12 @@ def _within(field: Field) -> NDArray[np.float64]:
     return np.stack([lon[inside], lat[inside]], axis=1)
 
 
-__all__ = ["Backdrop", "Raster", "RasterOptions", "read_backdrop", "read_raster"]
+__all__ = [
+    "Backdrop",
+    "Raster",
+    "RasterOptions",
+    "looks_like_heights",
+    "read_backdrop",
+    "read_raster",
+    "read_relief",
+]

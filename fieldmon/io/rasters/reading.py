@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rasterio.enums import ColorInterp
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
 from fieldmon.io.rasters.opening import (
@@ -57,14 +58,20 @@ def _band(opened: OpenRaster, wanted: str | None) -> int:
     if len(bands) == 1:
         return bands[0]
     if not bands:
-        raise FileProblem(f"{opened.name} must hold a band of values, but it only holds a mask.")
+        raise FileProblem(
+            worded("{name} must hold a band of values, but it only holds a mask.", name=opened.name)
+        )
     names = [
         f"{b} ({tif.descriptions[b - 1] or tif.colorinterp[b - 1].name}, {tif.dtypes[b - 1]})"
         for b in bands
     ]
     raise ChoiceNeeded(
-        f"{opened.name} holds {len(bands)} bands. Choose the one with the values: "
-        f"{', '.join(names[:20])}.",
+        worded(
+            "{name} holds {n} bands. Choose the one with the values: {names}.",
+            name=opened.name,
+            n=len(bands),
+            names=", ".join(names[:20]),
+        ),
         "band",
         tuple(str(b) for b in bands),
     )
@@ -76,10 +83,26 @@ def _scaled(opened: OpenRaster, band: int, values: NDArray[np.floating]) -> list
     if (scale, offset) == (1.0, 0.0):
         return []
     if not (np.isfinite([scale, offset]).all() and scale != 0.0):
-        return [doubtful(f"Scale {scale:g} and offset {offset:g} make no sense and were ignored.")]
+        return [
+            doubtful(
+                worded(
+                    "Scale {scale:g} and offset {offset:g} make no sense and were ignored.",
+                    scale=scale,
+                    offset=offset,
+                )
+            )
+        ]
     values *= scale
     values += offset
-    return [seen(f"Values were scaled as the band says: times {scale:g}, plus {offset:g}.")]
+    return [
+        seen(
+            worded(
+                "Values were scaled as the band says: times {scale:g}, plus {offset:g}.",
+                scale=scale,
+                offset=offset,
+            )
+        )
+    ]
 
 
 def _empty(values: NDArray[np.floating]) -> list[ImportMessage]:
@@ -87,7 +110,14 @@ def _empty(values: NDArray[np.floating]) -> list[ImportMessage]:
     share = float(np.isnan(values).mean())
     if share == 1.0:
         raise FileProblem(
-            "A raster must hold values, but all that was read of this one is nodata. Choose "
-            "another band or raster, or name what stands for no value."
+            worded(
+                "A raster must hold values, but all that was read of this one "
+                "is nodata. Choose another band or raster, or name what "
+                "stands for no value."
+            )
         )
-    return [seen(f"{100 * share:.3g} % of the pixels read have no value.")] if share else []
+    return (
+        [seen(worded("{value:.3g} % of the pixels read have no value.", value=100 * share))]
+        if share
+        else []
+    )

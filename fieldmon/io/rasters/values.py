@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 import numpy as np
 
 from fieldmon.compute.jit import routine
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.options import ReadOptions
 from fieldmon.io.parse.crs import Transformation, system, transformation_from
@@ -52,14 +53,19 @@ class RasterOptions(ReadOptions):
         super().__post_init__()
         for name in _NOT_OF_RASTERS:
             if getattr(self, name):
-                raise SettingError(f"A raster has no {name} to choose. Leave it away.")
+                raise SettingError(
+                    worded("A raster has no {name} to choose. Leave it away.", name=name)
+                )
         if self.nodata is not None and self.nodata != "none":
             try:
                 float(self.nodata)
             except ValueError:
                 raise SettingError(
-                    f'What stands for no value must be a number or "none", but it is '
-                    f"{self.nodata!r}."
+                    worded(
+                        'What stands for no value must be a number or "none", '
+                        "but it is {nodata!r}.",
+                        nodata=self.nodata,
+                    )
                 ) from None
 
 
@@ -106,7 +112,9 @@ class Raster:
         """
         self._check(how)
         if how not in {"nearest", "bilinear"}:
-            raise SettingError(f"A position has no footprint to take the {how} of. Sample plants.")
+            raise SettingError(
+                worded("A position has no footprint to take the {how} of. Sample plants.", how=how)
+            )
         return self._sampled(self.pixels(np.asarray(lonlat, np.float64).reshape(-1, 2)), how)
 
     def of_plants(self, grid: PlantGrid, how: How = "mean") -> Float:
@@ -133,12 +141,20 @@ class Raster:
     def _check(self, how: How) -> None:
         if how not in get_args(How):
             raise SettingError(
-                f"A raster is sampled by {', '.join(get_args(How))}, but {how!r} was asked for."
+                worded(
+                    "A raster is sampled by {names}, but {how!r} was asked for.",
+                    names=", ".join(get_args(How)),
+                    how=how,
+                )
             )
         if self.is_classes and how != "nearest":
             raise FileProblem(
-                "Classes must not be averaged or compared, but this band holds classes (it has a "
-                f"colour table) and the {how} was asked for. Sample it by nearest."
+                worded(
+                    "Classes must not be averaged or compared, but this band "
+                    "holds classes (it has a colour table) and the {how} was "
+                    "asked for. Sample it by nearest.",
+                    how=how,
+                )
             )
 
     def _about(self, grid: PlantGrid) -> Float:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.clock import zone_of
@@ -48,7 +49,10 @@ class InspectionOptions(RecordOptions):
         super().__post_init__()
         if self.accuracy_m is not None and not 0 <= self.accuracy_m <= 1000:
             raise SettingError(
-                f"The accuracy of positions must be 0 to 1000 m, but it is {self.accuracy_m}."
+                worded(
+                    "The accuracy of positions must be 0 to 1000 m, but it is {accuracy_m}.",
+                    accuracy_m=self.accuracy_m,
+                )
             )
         if self.zone is not None:
             zone_of(self.zone)
@@ -62,13 +66,17 @@ class InspectionOptions(RecordOptions):
         if option == "day":
             read = dates(np.array([value], dtype=object), self.date_order).day[0]
             if np.isnat(read):
-                raise SettingError(f"A day must be a date (2026-11-18), but it is {value!r}.")
+                raise SettingError(
+                    worded("A day must be a date (2026-11-18), but it is {value!r}.", value=value)
+                )
             return replace(self, day=read)
         if option == "accuracy_m":
             try:
                 return replace(self, accuracy_m=float(value))
             except ValueError:
                 raise SettingError(
-                    f"The accuracy must be a number of metres, but it is {value!r}."
+                    worded(
+                        "The accuracy must be a number of metres, but it is {value!r}.", value=value
+                    )
                 ) from None
         return super().choose(option, value)

@@ -291,7 +291,9 @@ def _about_faces(
     unsaid[unsaid] = grid.twin[plant[unsaid]] >= 0
     if not unsaid.any():
         return []
-    said = f"{int(unsaid.sum())} record(s) do not say which face of a plant; taken for the first."
+    said = worded(
+        "{n} record(s) do not say which face of a plant; taken for the first.", n=int(unsaid.sum())
+    )
     return [guessed(said)]
 
 
@@ -301,7 +303,7 @@ def _about_accuracy(
     unsaid = snapped & np.isnan(rows.accuracy_m)
     if options.accuracy_m is not None or not unsaid.any():
         return []
-    said = f"{int(unsaid.sum())} position(s) state no accuracy and were taken as exact."
+    said = worded("{n} position(s) state no accuracy and were taken as exact.", n=int(unsaid.sum()))
     return [
         guessed(
             said, None, Remedy("accuracy_m", "3", worded("Say how far off they may be, in metres"))

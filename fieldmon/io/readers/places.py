@@ -230,7 +230,7 @@ def _join(wanted: list[str], known: list[str]) -> tuple[NDArray[np.int64], list[
         index = {k: i for i, k in enumerate(keys)}
         match = np.array([index.get(key(name), -1) if name else -1 for name in wanted], dtype=int)
         if (match >= 0).any():
-            return match, [guessed(f"Names were compared {how}.")] if how else []
+            return match, [guessed(worded("Names were compared {how}.", how=how))] if how else []
     return np.full(len(wanted), -1), []
 
 
@@ -253,12 +253,18 @@ def _unmatched(wanted: list[str], match: NDArray[np.int64], what: str) -> list[I
         n = sum(bool(name) for name in missing)
         messages.append(
             dropped(
-                f"{n} record(s) name {len(named)} {what}(s) that are not known: {_some(named)}."
+                worded(
+                    "{n} record(s) name {total} {what}(s) that are not known: {some}.",
+                    n=n,
+                    total=len(named),
+                    what=what,
+                    some=_some(named),
+                )
             )
         )
     if len(missing) > sum(bool(name) for name in missing):
         n = sum(not name for name in missing)
-        messages.append(dropped(f"{n} record(s) name no {what} at all."))
+        messages.append(dropped(worded("{n} record(s) name no {what} at all.", n=n, what=what)))
     return messages
 
 

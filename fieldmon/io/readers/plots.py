@@ -100,7 +100,7 @@ def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[Import
         try:
             cells = layer.column(named)
         except ChoiceNeeded as asked:
-            raise ChoiceNeeded(str(asked), "name_column", asked.choices) from None
+            raise ChoiceNeeded(asked.args[0], "name_column", asked.choices) from None
         base = [text(v) or layer.name for v in cells]
         if len(layer) > 1 or column is None:
             messages.append(seen(worded("Plots are named by column {name!r}.", name=named)))
@@ -138,10 +138,14 @@ def _areas(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
             dropped(worded("{n} feature(s) without a geometry were left out.", n=missing))
         )
     if lines.any():
-        said = f"{int(lines.sum())} line(s) were left out: import them as rows or paths."
+        said = worded(
+            "{n} line(s) were left out: import them as rows or paths.", n=int(lines.sum())
+        )
         messages.append(dropped(said))
     if points.any():
-        said = f"{int(points.sum())} point(s) were left out: import them as plants or records."
+        said = worded(
+            "{n} point(s) were left out: import them as plants or records.", n=int(points.sum())
+        )
         messages.append(dropped(said))
     return layer.take(np.flatnonzero(areas)), messages
 
@@ -154,7 +158,7 @@ def _outlines(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
         return layer, []
     as_areas = shapes.copy()
     as_areas[closed] = [filled(line) for line in shapes[closed]]
-    said = f"{int(closed.sum())} closed line(s) were taken as the outlines of plots."
+    said = worded("{n} closed line(s) were taken as the outlines of plots.", n=int(closed.sum()))
     return replace(layer, geometry=as_areas), [guessed(said)]
 
 
@@ -165,8 +169,13 @@ def _refuse_without_areas(layer: Layer, n_lines: int, n_points: int) -> None:
             f"{n} {word}" for n, word in ((n_lines, "line(s)"), (n_points, "point(s)")) if n
         )
         raise ChoiceNeeded(
-            f"A plot must be an area, but {layer.name} holds only {what}. Lines can be imported as "
-            "rows or paths, points as plants or records; or choose a file with the boundary.",
+            worded(
+                "A plot must be an area, but {name} holds only {what}. Lines "
+                "can be imported as rows or paths, points as plants or "
+                "records; or choose a file with the boundary.",
+                name=layer.name,
+                what=what,
+            ),
             "kind",
             offers,
         )
@@ -196,9 +205,14 @@ def _chosen(names: list[str], feature: str | int | None) -> NDArray[np.int64]:
 def _which_plot(names: list[str], wanted: str, alike: list[str] | None = None) -> ChoiceNeeded:
     offered = alike or names
     return ChoiceNeeded(
-        f"There are {len(names)} plots, but {'several are' if alike else 'none is'} called "
-        f"{wanted!r}. Choose one of: {', '.join(offered[:20])}; or its number, as fieldmon plots "
-        "lists it.",
+        worded(
+            "There are {n} plots, but {value} called {wanted!r}. Choose one "
+            "of: {names}; or its number, as fieldmon plots lists it.",
+            n=len(names),
+            value="several are" if alike else "none is",
+            wanted=wanted,
+            names=", ".join(offered[:20]),
+        ),
         "feature",
         tuple(offered),
     )
@@ -212,7 +226,9 @@ def _fields(
     is_left = ~shapely.is_empty(kept)
     for i in np.flatnonzero(~is_left).tolist():
         many = "Nothing is left to use of {n} plots"
-        messages.append(dropped("Nothing of this plot is left to use.", names[i], many=many))
+        messages.append(
+            dropped(worded("Nothing of this plot is left to use."), names[i], many=many)
+        )
     for i in np.flatnonzero(is_left).tolist():
         rows = known.get(names[i], _UNKNOWN_ROWS)._asdict()
         # what no plot of a file has is one object for all of them, sent and kept but once
@@ -221,7 +237,9 @@ def _fields(
         )
     if not fields:
         said = "; ".join(f.sentence for f in messages[:5])
-        raise FileProblem(f"At least one plot must have an area, but none has. {said}")
+        raise FileProblem(
+            worded("At least one plot must have an area, but none has. {said}", said=said)
+        )
     return tuple(fields), [*messages, *_parts(fields), *_duplicates(fields)]
 
 
@@ -272,7 +290,7 @@ def _duplicates(fields: list[Field]) -> list[ImportMessage]:
         field = fields[i]
         key = shapely.to_wkb(shapely.normalize(field.boundary))
         if key in first:
-            said = f"It has the same outline as {first[key]}."
+            said = worded("It has the same outline as {value}.", value=first[key])
             many = "{n} plots have the same outline as another"
             messages.append(doubtful(said, field.name, many=many))
         first.setdefault(key, field.name)

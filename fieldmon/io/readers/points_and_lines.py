@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from shapely import MultiLineString
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import Imported, dropped, guessed, seen
@@ -39,15 +40,17 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
             labels.append(np.full(len(found.layer), "", dtype=np.str_))
             continue
         taken.add(named)
-        messages.append(seen(f"Column {named!r} names the {role}s."))
+        messages.append(seen(worded("Column {named!r} names the {role}s.", named=named, role=role)))
         labels.append(np.array([text(v) for v in found.layer.column(named)], dtype=np.str_))
     kept = distinct(found.lonlat)
     n_doubles = len(found.lonlat) - len(kept)
     if n_doubles and options.doubles is None:
         raise _about_doubles(found.layer, kept)
     if n_doubles:
-        said = (
-            f"{n_doubles} of {len(found.lonlat)} plants stood within 5 cm of another one; left out."
+        said = worded(
+            "{n_doubles} of {n} plants stood within 5 cm of another one; left out.",
+            n_doubles=n_doubles,
+            n=len(found.lonlat),
         )
         messages.append(dropped(said))
     row, plant = (label[kept] for label in labels)
@@ -59,9 +62,14 @@ def _about_doubles(layer: Layer, kept: NDArray[np.intp]) -> ChoiceNeeded:
     again = np.setdiff1d(np.arange(len(layer)), kept)
     called = _called(layer.take(again))
     return ChoiceNeeded(
-        f"No two plants may stand in one place, but {len(again)} of {len(layer)} are within 5 cm "
-        f"of an earlier one, the first of them {called}. Keep one of each if they are doubles; "
-        "if not, mend the file.",
+        worded(
+            "No two plants may stand in one place, but {n} of {others_n} are within "
+            "5 cm of an earlier one, the first of them {called}. Keep one of "
+            "each if they are doubles; if not, mend the file.",
+            n=len(again),
+            others_n=len(layer),
+            called=called,
+        ),
         "doubles",
         ("one",),
     )
@@ -80,30 +88,47 @@ def drawn_rows_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineStrin
     named = None if (posts.value.row == "").any() else posts.value.row
     rows = rows_from_posts(posts.value.lonlat, named)
     how = "by the names of their rows" if named is not None else "as they lie in line"
-    said = guessed(f"{len(posts.value)} points are the end posts of rows, paired {how}.")
+    said = guessed(
+        worded("{n} points are the end posts of rows, paired {how}.", n=len(posts.value), how=how)
+    )
     return posts.having(rows, [said])
 
 
 def lines_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:
     """Return the lines of a layer, lon/lat."""
     if layer.geometry is None:
-        raise FileProblem(f"{layer.name} must hold lines, but it is a plain table.")
+        raise FileProblem(
+            worded("{name} must hold lines, but it is a plain table.", name=layer.name)
+        )
     areas, lines, points = geometry_kinds(layer.geometry)
     if not lines.any():
         raise FileProblem(
-            f"{layer.name} must hold lines, but it holds {int(areas.sum())} area(s) and "
-            f"{int(points.sum())} point(s). Choose another file or layer."
+            worded(
+                "{name} must hold lines, but it holds {n} area(s) and {others_n} "
+                "point(s). Choose another file or layer.",
+                name=layer.name,
+                n=int(areas.sum()),
+                others_n=int(points.sum()),
+            )
         )
     messages = []
     others = len(layer) - int(lines.sum())
     if others:
-        messages.append(dropped(f"{others} feature(s) that are no lines were left out."))
+        messages.append(
+            dropped(worded("{others} feature(s) that are no lines were left out.", others=others))
+        )
     placed, more = place_geometry(layer.geometry[lines], layer.crs, options)
     parts = shapely.get_parts(shapely.get_parts(placed))
     is_line = np.isin(shapely.get_type_id(parts), (1, 2))
     has_length = is_line & (shapely.length(parts) > 0)
     if has_length.sum() < is_line.sum():
         n_points = int(is_line.sum() - has_length.sum())
-        messages.append(dropped(f"{n_points} line(s) that do not lead anywhere were left out."))
+        messages.append(
+            dropped(
+                worded(
+                    "{n_points} line(s) that do not lead anywhere were left out.", n_points=n_points
+                )
+            )
+        )
     whole = MultiLineString(list(parts[has_length]))
     return Imported(whole, (*layer.messages, *messages, *more))

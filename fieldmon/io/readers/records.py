@@ -69,7 +69,9 @@ def _records_and_plots(
 ) -> tuple[Imported[Observations], NDArray[np.str_] | None]:
     """Return the records of a layer, and the plot that each names, if they do."""
     if len(layer) == 0:
-        raise ObservationError(f"{layer.name} must hold records, but it holds none.")
+        raise ObservationError(
+            worded("{name} must hold records, but it holds none.", name=layer.name)
+        )
     layer, repeated = _once_each(by_day(layer, options))
     found = located(layer, options, places)
     table = _Table(found.layer, options)
@@ -140,7 +142,9 @@ def _once_each(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     n_again = len(layer) - len(kept)
     if n_again == 0 or len(columns) < 3:
         return layer, []
-    said = f"{n_again} record(s) repeat another in every column and were left out."
+    said = worded(
+        "{n_again} record(s) repeat another in every column and were left out.", n_again=n_again
+    )
     return layer.take(kept), [dropped(said)]
 
 
@@ -154,7 +158,7 @@ def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[ImportMessage]]:
         name = table.named("date", frozenset(parts) if len(parts) > 1 else frozenset())
         if name is None:
             unknown = np.full(len(table), "NaT", dtype="datetime64[D]")
-            said = "No column was recognised as the date of the records."
+            said = worded("No column was recognised as the date of the records.")
             return unknown, [doubtful(said, remedy=_offer(table, "date", _are_dates))]
         read = dates(table.layer.column(name), table.options.date_order)
         where = name
@@ -221,7 +225,7 @@ def _counts(table: _Table) -> _Counts:
         counts = _with_presence(table, present_name, counts)
     elif all_are_finds and count_name is None:
         counts.present[:] = PRESENT
-        counts.messages.append(seen("Every record was taken as a find, as told."))
+        counts.messages.append(seen(worded("Every record was taken as a find, as told.")))
     elif count_name is None:
         raise _what_was_found(table)
     return counts
@@ -233,10 +237,14 @@ def _what_was_found(table: _Table) -> ChoiceNeeded:
     numbers = [name for name in _fitting(table, _are_numbers) if not is_id(name, table.cells(name))]
     could = (*(f"present={n}" for n in words), *(f"count={n}" for n in numbers if n not in words))
     return ChoiceNeeded(
-        f"{table.layer.name} must have a column that says what was found (count, found, result), "
-        f"but none was recognised among: {', '.join(table.layer.columns) or 'none'}. Name it: "
-        "columns=count=NAME, or columns=present=NAME for words; or say that every record is a "
-        "find: columns=present=.",
+        worded(
+            "{name} must have a column that says what was found (count, "
+            "found, result), but none was recognised among: {value}. Name it: "
+            "columns=count=NAME, or columns=present=NAME for words; or say "
+            "that every record is a find: columns=present=.",
+            name=table.layer.name,
+            value=", ".join(table.layer.columns) or "none",
+        ),
         "columns",
         (*could, "present="),
     )
@@ -314,7 +322,7 @@ def _mark(table: _Table, name: str, cells: list[str]) -> tuple[str, list[ImportM
     unsure = next((c for c in cells if "," in c and could_be_thousands(c)), None)
     if mark is not None or unsure is None:
         return mark or ".", []
-    said = f"Counts such as {unsure} were read as thousands."
+    said = worded("Counts such as {unsure} were read as thousands.", unsure=unsure)
     return ".", [guessed(said, name, Remedy("decimal", ",", worded("Read the comma as decimal")))]
 
 
@@ -336,8 +344,10 @@ def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
     if unread:
         shown = ", ".join(repr(cell) for cell in sorted(unread)[:3])
         one = min(unread)
-        remedy = Remedy("found", one, f"Take {one!r} as found; clean= takes it as clean")
-        said = f"These words say neither yes nor no: {shown}."
+        remedy = Remedy(
+            "found", one, worded("Take {one!r} as found; clean= takes it as clean", one=one)
+        )
+        said = worded("These words say neither yes nor no: {shown}.", shown=shown)
         messages.append(doubtful(said, name, None if "," in one else remedy))
     messages += about_minus(cells, words)
     present = np.where(stated == UNKNOWN, counts.present, stated).astype(np.int8)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.infestation.observations import UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
@@ -39,7 +40,9 @@ def by_day(layer: Layer, options: RecordOptions) -> Layer:
     others = [name for name in names if name not in dated]
     stated = find("date", others)
     if stated is not None:
-        said = f"{len(dated)} columns are called by dates, but the dates were taken from this one."
+        said = worded(
+            "{n} columns are called by dates, but the dates were taken from this one.", n=len(dated)
+        )
         return layer.saying(doubtful(said, stated))
     limits.check("records", len(layer) * len(dated), limits.RECORDS, layer.name)
     days = {name: str(day) for name, day in zip(names, read.day, strict=True)}
@@ -58,12 +61,20 @@ def _unfolded(layer: Layer, days: dict[str, str], messages: list[ImportMessage])
     for name in passed:
         del columns[name]
     if passed:
-        messages.append(seen(f"Beside the days, these were passed over: {', '.join(passed)}."))
+        messages.append(
+            seen(
+                worded("Beside the days, these were passed over: {names}.", names=", ".join(passed))
+            )
+        )
     day = np.array(list(days.values()), dtype=object)[column]
     what = "count" if _are_counts(values) else "result"
     blank = filled.size - len(row)
     if blank:
-        messages.append(seen(f"{blank} cell(s) are not filled in: nothing is known of them."))
+        messages.append(
+            seen(
+                worded("{blank} cell(s) are not filled in: nothing is known of them.", blank=blank)
+            )
+        )
     return replace(
         long,
         columns=columns | {"date": day, what: values},
@@ -79,14 +90,21 @@ def _are_counts(values: NDArray[np.object_]) -> bool:
 
 def _about(read: DatedColumn, dated: list[str]) -> list[ImportMessage]:
     first, last = np.nanmin(read.day), np.nanmax(read.day)
-    said = f"{len(dated)} columns are called by dates, {first} to {last}: each cell is one record."
+    said = worded(
+        "{n} columns are called by dates, {first} to {last}: each cell is one record.",
+        n=len(dated),
+        first=first,
+        last=last,
+    )
     messages = [seen(said)]
     if read.is_ambiguous:
         messages.append(
             guessed(
-                "The dates above the columns could be day first or month first; they were read "
-                "day first.",
-                remedy=Remedy("date_order", "mdy", "Read month first"),
+                worded(
+                    "The dates above the columns could be day first or month "
+                    "first; they were read day first."
+                ),
+                remedy=Remedy("date_order", "mdy", worded("Read month first")),
             )
         )
     return messages

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 
 MB = 1_000_000
@@ -49,6 +50,11 @@ def check(what: str, n: int, most: int, name: str) -> None:
     """Raise `FileProblem` where a file holds more of something than it may."""
     if n > most:
         raise FileProblem(
-            f"A file may hold {most} {what} at most, but {name} holds more. "
-            "Cut it to the plots and the season that matter."
+            worded(
+                "A file may hold {most} {what} at most, but {name} holds "
+                "more. Cut it to the plots and the season that matter.",
+                most=most,
+                what=what,
+                name=name,
+            )
         )

@@ -20,6 +20,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.sandbox import limits
 
@@ -291,12 +292,15 @@ def _answer(task: str, arguments: tuple[Any, ...]) -> tuple[bool, Any]:
         return True, getattr(importlib.import_module(module), function)(*arguments)
     except MemoryError:
         return False, FileProblem(
-            f"Reading a file may take {limits.size(limits.MEMORY_BYTES)} of memory at most, but "
-            "this one takes more. Cut it to the plots that matter."
+            worded(
+                "Reading a file may take {size} of memory at most, but this "
+                "one takes more. Cut it to the plots that matter.",
+                size=limits.size(limits.MEMORY_BYTES),
+            )
         )
     except RecursionError:
         return False, FileProblem(
-            "A file must not be nested beyond reason, but this one is. Do not trust it."
+            worded("A file must not be nested beyond reason, but this one is. Do not trust it.")
         )
     except Exception as bad:  # noqa: BLE001 - everything is for the caller to see
         return False, bad

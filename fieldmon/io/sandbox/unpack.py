@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import IO, TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.signatures import (
     HEAD_BYTES,
@@ -139,8 +140,12 @@ class Workroom:
                 self.bytes_left -= len(piece)
                 if self.bytes_left < 0:
                     raise FileProblem(
-                        f"A file may unpack to {limits.size(limits.UNPACKED_BYTES)} at most, "
-                        f"but {entry.name} brings it to more. Pack less into it."
+                        worded(
+                            "A file may unpack to {size} at most, but {name} "
+                            "brings it to more. Pack less into it.",
+                            size=limits.size(limits.UNPACKED_BYTES),
+                            name=entry.name,
+                        )
                     )
                 target.write(piece)
 
@@ -162,9 +167,15 @@ def _opened(entry: FileEntry) -> Iterator[IO[bytes]]:
         with entry.open() as file:
             yield file
     except _DAMAGE as bad:
-        raise FileProblem(f"{entry.name} is damaged ({bad}). Pack or download it again.") from bad
+        raise FileProblem(
+            worded(
+                "{name} is damaged ({bad}). Pack or download it again.", name=entry.name, bad=bad
+            )
+        ) from bad
     except OSError as bad:
-        raise FileProblem(f"{entry.name} cannot be read: {bad.strerror or bad}.") from bad
+        raise FileProblem(
+            worded("{name} cannot be read: {value}.", name=entry.name, value=bad.strerror or bad)
+        ) from bad
 
 
 def members(source: Source, workroom: Workroom) -> tuple[Member, ...]:
@@ -176,8 +187,12 @@ def members(source: Source, workroom: Workroom) -> tuple[Member, ...]:
     if len(problems) == 1:
         raise problems[0]
     raise FileProblem(
-        f"{source_name(source)} must hold {READABLE}, but nothing of the kind is in it. "
-        "Choose another file."
+        worded(
+            "{source_name} must hold {readable}, but nothing of the kind is "
+            "in it. Choose another file.",
+            source_name=source_name(source),
+            readable=READABLE,
+        )
     )
 
 
@@ -194,8 +209,13 @@ def choose_member(found: tuple[Member, ...], wanted: str | None, name: str) -> M
     names = tuple(m.name for m in found)
     missing = "" if wanted is None else f", but none alone is called {wanted!r}"
     raise ChoiceNeeded(
-        f"{name} holds {len(found)} files that can be read{missing}. Choose one of: "
-        f"{', '.join(names[:20])}.",
+        worded(
+            "{name} holds {n} files that can be read{missing}. Choose one of: {names}.",
+            name=name,
+            n=len(found),
+            missing=missing,
+            names=", ".join(names[:20]),
+        ),
         "member",
         names,
     )
@@ -208,13 +228,21 @@ def _entries(source: Source) -> list[FileEntry]:
         return [_of_upload(upload) for upload in source]
     path = Path(source)
     if not path.exists():
-        raise FileProblem(f"{path} must be a file or a folder, but there is none. Check the name.")
+        raise FileProblem(
+            worded(
+                "{path} must be a file or a folder, but there is none. Check the name.", path=path
+            )
+        )
     if path.is_dir():
         return _of_folder(path)
     if not path.is_file():
         raise FileProblem(
-            f"{path} must be a file or a folder, but it is a pipe, a device or the like. "
-            "Save what comes out of it in a file, and choose that."
+            worded(
+                "{path} must be a file or a folder, but it is a pipe, a "
+                "device or the like. Save what comes out of it in a file, and "
+                "choose that.",
+                path=path,
+            )
         )
     return [_of_path(p, p.name) for p in (path, *_belongings(path))]
 
@@ -250,7 +278,9 @@ def _of_path(path: Path, name: str) -> FileEntry:
     try:
         n_bytes = path.stat().st_size
     except OSError as bad:
-        raise FileProblem(f"{name} cannot be read: {bad.strerror or bad}.") from bad
+        raise FileProblem(
+            worded("{name} cannot be read: {value}.", name=name, value=bad.strerror or bad)
+        ) from bad
     _check_size(name, n_bytes)
     return FileEntry(name, n_bytes, lambda: path.open("rb"))
 
@@ -258,8 +288,13 @@ def _of_path(path: Path, name: str) -> FileEntry:
 def _check_size(name: str, n_bytes: int) -> None:
     if n_bytes > limits.FILE_BYTES:
         raise FileProblem(
-            f"A file may have {limits.size(limits.FILE_BYTES)} at most, but {name} has "
-            f"{limits.size(n_bytes)}. Cut it to the plots that matter."
+            worded(
+                "A file may have {size} at most, but {name} has {has}. Cut "
+                "it to the plots that matter.",
+                size=limits.size(limits.FILE_BYTES),
+                name=name,
+                has=limits.size(n_bytes),
+            )
         )
 
 
@@ -272,8 +307,12 @@ def _of_folder(folder: Path) -> list[FileEntry]:
                 entries.append(_of_path(path, path.relative_to(base).as_posix()))
         if len(entries) > limits.ARCHIVE_ENTRIES or n_seen > _MOST_SEEN:
             raise FileProblem(
-                f"A folder may hold {limits.ARCHIVE_ENTRIES} files at most, but {folder} holds "
-                "more. Choose one file in it."
+                worded(
+                    "A folder may hold {archive_entries} files at most, but "
+                    "{folder} holds more. Choose one file in it.",
+                    archive_entries=limits.ARCHIVE_ENTRIES,
+                    folder=folder,
+                )
             )
     return entries
 
@@ -301,8 +340,12 @@ def _expand(entries: Iterable[FileEntry], workroom: Workroom, depth: int) -> Ite
             continue
         if depth >= limits.ARCHIVE_DEPTH:
             raise FileProblem(
-                f"Archives may lie {limits.ARCHIVE_DEPTH} deep inside each other at most, but "
-                f"{entry.name} is one more. Unpack the outer ones."
+                worded(
+                    "Archives may lie {archive_depth} deep inside each other "
+                    "at most, but {name} is one more. Unpack the outer ones.",
+                    archive_depth=limits.ARCHIVE_DEPTH,
+                    name=entry.name,
+                )
             )
         inner = _zip_entries(entry, workroom)
         if is_open_workbook(entry.head()) or any(
@@ -328,8 +371,12 @@ def _zip_entries(archive: FileEntry, workroom: Workroom) -> list[FileEntry]:
         infos = packed.infolist()
     except (*_DAMAGE, OSError) as bad:
         raise FileProblem(
-            f"{archive.name} must be a whole zip archive, but it is damaged ({bad}). "
-            "Pack or download it again."
+            worded(
+                "{name} must be a whole zip archive, but it is damaged "
+                "({bad}). Pack or download it again.",
+                name=archive.name,
+                bad=bad,
+            )
         ) from bad
     _check_archive(archive, infos)
     return [
@@ -350,34 +397,61 @@ def _check_archive(archive: FileEntry, infos: list[zipfile.ZipInfo]) -> None:
     name = archive.name
     if len(infos) > limits.ARCHIVE_ENTRIES:
         raise FileProblem(
-            f"An archive may hold {limits.ARCHIVE_ENTRIES} files at most, but {name} holds "
-            f"{len(infos)}. Pack only the plots."
+            worded(
+                "An archive may hold {archive_entries} files at most, but "
+                "{name} holds {n}. Pack only the plots.",
+                archive_entries=limits.ARCHIVE_ENTRIES,
+                name=name,
+                n=len(infos),
+            )
         )
     total = sum(info.file_size for info in infos)
     if total > limits.UNPACKED_BYTES:
         raise FileProblem(
-            f"An archive may unpack to {limits.size(limits.UNPACKED_BYTES)} at most, but {name} "
-            f"says {limits.size(total)}. Pack less into it."
+            worded(
+                "An archive may unpack to {size} at most, but {name} says "
+                "{has}. Pack less into it.",
+                size=limits.size(limits.UNPACKED_BYTES),
+                name=name,
+                has=limits.size(total),
+            )
         )
     if total > limits.RATIO_FROM_BYTES and total > limits.COMPRESSION_RATIO * archive.n_bytes:
         raise FileProblem(
-            f"An archive of more than {limits.size(limits.RATIO_FROM_BYTES)} may unpack to "
-            f"{limits.COMPRESSION_RATIO} times its size at most, but {name} unpacks to "
-            f"{total / archive.n_bytes:.0f} times. Pack it again, or choose the file itself."
+            worded(
+                "An archive of more than {size} may unpack to "
+                "{compression_ratio} times its size at most, but {name} "
+                "unpacks to {value:.0f} times. Pack it again, or choose the "
+                "file itself.",
+                size=limits.size(limits.RATIO_FROM_BYTES),
+                compression_ratio=limits.COMPRESSION_RATIO,
+                name=name,
+                value=total / archive.n_bytes,
+            )
         )
     for info in infos:
         if stat.S_ISLNK(info.external_attr >> 16):
             raise FileProblem(
-                f"An archive must hold files only, but {info.filename} in {name} is a link to "
-                "another file. Pack the file itself."
+                worded(
+                    "An archive must hold files only, but {filename} in "
+                    "{name} is a link to another file. Pack the file itself.",
+                    filename=info.filename,
+                    name=name,
+                )
             )
         if ".." in PurePosixPath(info.filename.replace("\\", "/")).parts:
             raise FileProblem(
-                f"Files in an archive must lie inside it, but {info.filename} in {name} points "
-                "outside. Do not trust this file."
+                worded(
+                    "Files in an archive must lie inside it, but {filename} "
+                    "in {name} points outside. Do not trust this file.",
+                    filename=info.filename,
+                    name=name,
+                )
             )
         if info.flag_bits & 0x1:
-            raise FileProblem(f"{name} is locked with a password. Pack it again without one.")
+            raise FileProblem(
+                worded("{name} is locked with a password. Pack it again without one.", name=name)
+            )
 
 
 def _group(entries: list[FileEntry]) -> tuple[list[Member], list[FileProblem]]:

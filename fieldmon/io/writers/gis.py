@@ -13,6 +13,7 @@ import pandas as pd
 import pyogrio
 from shapely import LineString, Point
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import plain_text
 from fieldmon.io.writers.geojson import summary
@@ -76,8 +77,11 @@ def _made(write: Callable[[Path], bytes]) -> bytes:
             return write(Path(folder))
     except (OSError, pyogrio.errors.DataSourceError) as error:
         raise FileProblem(
-            f"The route could not be made in the folder for temporary files ({error}). "
-            "Make room there."
+            worded(
+                "The route could not be made in the folder for temporary "
+                "files ({error}). Make room there.",
+                error=error,
+            )
         ) from error
 
 
@@ -103,7 +107,8 @@ def _stops(plan: HandoffPlan) -> gpd.GeoDataFrame:
         )
     }
     for name, kind in (("found", object), ("count", "Int32"), ("who", object), ("notes", object)):
-        columns[name] = pd.Series([None] * len(stops), dtype=kind)
+        said = plan.notes.who if name == "who" else None
+        columns[name] = pd.Series([said] * len(stops), dtype=kind)
     points = [Point(stop.lon, stop.lat) for stop in stops]
     return gpd.GeoDataFrame(columns, geometry=points, crs=_WGS84)
 

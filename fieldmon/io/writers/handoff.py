@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.io.atomic_write import write_whole
 
@@ -110,7 +111,11 @@ def _format_of(target: Path, name: str | None) -> HandoffFormat:
     if name is not None:
         if name.lower() not in FORMATS:
             raise SettingError(
-                f"A route can be written as {', '.join(FORMATS)}, but not as {name!r}."
+                worded(
+                    "A route can be written as {names}, but not as {name!r}.",
+                    names=", ".join(FORMATS),
+                    name=name,
+                )
             )
         return FORMATS[name.lower()]
     for chosen in FORMATS.values():
@@ -118,6 +123,10 @@ def _format_of(target: Path, name: str | None) -> HandoffFormat:
             return chosen
     endings = ", ".join(ending for chosen in FORMATS.values() for ending in chosen.endings)
     raise SettingError(
-        f"The name of a route file must end in one of {endings}, but it is {target.name!r}. "
-        "Choose another name, or name the format."
+        worded(
+            "The name of a route file must end in one of {endings}, but it is "
+            "{name!r}. Choose another name, or name the format.",
+            endings=endings,
+            name=target.name,
+        )
     )

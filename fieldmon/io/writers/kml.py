@@ -76,7 +76,7 @@ def _stop(placemark: ET.Element, stop: Stop, plan: HandoffPlan) -> None:
         "chance": stop.chance,
         "found": "",
         "count": "",
-        "who": "",
+        "who": plan.notes.who or "",
         "notes": "",
     }
     for name, value in values.items():

@@ -22,6 +22,7 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -161,8 +162,10 @@ def graph_of(plan: HandoffPlan) -> RouteGraph:
     steps = [_steps(part) for part in noded if shapely.length(part) > 0]
     if not steps:
         raise SettingError(
-            "A route graph must have a way between two places, but this day drives nowhere. "
-            "Give it more hours."
+            worded(
+                "A route graph must have a way between two places, but this "
+                "day drives nowhere. Give it more hours."
+            )
         )
     ends = np.concatenate(steps)
     places, pair = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
@@ -173,8 +176,12 @@ def graph_of(plan: HandoffPlan) -> RouteGraph:
     rank = np.argsort(order)
     if len(order) > _MOST_NODES:
         raise SettingError(
-            f"A route graph can have {_MOST_NODES} nodes at most, but this day has {len(order)}. "
-            "Hand off a shorter day."
+            worded(
+                "A route graph can have {most_nodes} nodes at most, but this "
+                "day has {n}. Hand off a shorter day.",
+                most_nodes=_MOST_NODES,
+                n=len(order),
+            )
         )
     there = rank[pair.reshape(-1, 2)]
     there = np.unique(np.sort(there, axis=1), axis=0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import night
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from fieldmon.studies.samplers.scenarios import Scenario
 
 _FAST = 1e6
+MEASURES = ("infested_plant_days", "d50", "d80", "inspected", "found", "visited_pct")
 
 
 @dataclass(frozen=True)
@@ -44,8 +45,14 @@ class SeasonOutcome:
     found: float
     visited_pct: float
 
+    # the first and third column are a scenario and a contender, named as in the tables made first
+    columns: ClassVar[tuple[str, ...]] = ("cell", "seed", "who", *MEASURES)
+    kinds: ClassVar[tuple[type[Any], ...]] = (str, int, str, *(float,) * len(MEASURES))
 
-MEASURES = ("infested_plant_days", "d50", "d80", "inspected", "found", "visited_pct")
+    @property
+    def key(self) -> tuple[str, int]:
+        """Return the chunk that it is of: scenario and seed."""
+        return self.scenario, self.seed
 
 
 def study_of(

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.parse.columns import find, is_id, plain, recognised
@@ -70,8 +71,13 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
         marks = next((n for n in names if plain(n) in {"name", "title", "label"}), None)
         if marks is None:
             raise ChoiceNeeded(
-                f"{layer.name} must have a column that says what was found (found, result, count), "
-                f"but none was recognised among: {', '.join(names) or 'none'}. Name it.",
+                worded(
+                    "{name} must have a column that says what was found "
+                    "(found, result, count), but none was recognised among: "
+                    "{value}. Name it.",
+                    name=layer.name,
+                    value=", ".join(names) or "none",
+                ),
                 "columns",
                 tuple(f"{role}={n}" for role in ("present", "count") for n in _open(layer)),
             )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.parse.columns import find
@@ -71,9 +72,13 @@ def positions_in(
     if not given and (is_named or not roles >= {"x", "y"}):
         if not is_named:
             raise ChoiceNeeded(
-                f"{layer.name} must say which plants were inspected (a plant's number, a row and a "
-                f"number in it, or a position), but its columns are {', '.join(layer.columns)}. "
-                "Name them.",
+                worded(
+                    "{name} must say which plants were inspected (a plant's "
+                    "number, a row and a number in it, or a position), but "
+                    "its columns are {names}. Name them.",
+                    name=layer.name,
+                    names=", ".join(layer.columns),
+                ),
                 "columns",
                 tuple(f"plant={name}" for name in layer.columns)
                 + could_be_positions(layer, options),

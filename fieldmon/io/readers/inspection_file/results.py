@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, seen
@@ -59,7 +60,10 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
         mark = options.decimal or decimal_mark(cells) or "."
         known = {cell: _of_word(cell, mark, words) for cell in set(cells)}
         by_result = [known[cell] for cell in cells]
-        messages += [seen(f"Results are in column {columns.result!r}."), *_unread(cells, known)]
+        messages += [
+            seen(worded("Results are in column {result!r}.", result=columns.result)),
+            *_unread(cells, known),
+        ]
         messages += about_minus(cells, words)
     if columns.number_found is not None:
         cells = [text(v) for v in layer.column(columns.number_found)]
@@ -67,7 +71,9 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
         known = {cell: _of_count(cell, mark) for cell in set(cells)}
         by_count = [known[cell] for cell in cells]
         messages += [
-            seen(f"Counts are in column {columns.number_found!r}."),
+            seen(
+                worded("Counts are in column {number_found!r}.", number_found=columns.number_found)
+            ),
             *_unread(cells, known),
         ]
     return _put_together(by_result, by_count, messages)
@@ -102,9 +108,15 @@ def _unread(cells: list[str], known: dict[str, _CellResult]) -> list[ImportMessa
     if not odd:
         return []
     shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(odd))[:5])
-    said = f"{len(odd)} record(s) say neither clean nor found ({shown}); left unknown."
+    said = worded(
+        "{n} record(s) say neither clean nor found ({shown}); left unknown.",
+        n=len(odd),
+        shown=shown,
+    )
     one = odd[0] if "," not in odd[0] else ""
-    remedy = Remedy("found", one, f"Take {one!r} as found; clean= takes it as clean")
+    remedy = Remedy(
+        "found", one, worded("Take {one!r} as found; clean= takes it as clean", one=one)
+    )
     return [doubtful(said, None, remedy if one else None)]
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.open_layer import layers_of, open_layer
@@ -102,7 +103,7 @@ def rows_of(
             read = rows_in(open_layer(source, own, workroom), own)
         except (ChoiceNeeded, FileProblem):
             continue  # this one has no columns for inspections
-        said = seen(f"Findings were read from layer {info.layer}.")
+        said = seen(worded("Findings were read from layer {layer}.", layer=info.layer))
         if len(read.value):
             return Imported(read.value, (said, *read.messages))
         said_nothing.append(Imported(read.value, (said, *read.messages)))
@@ -129,10 +130,23 @@ def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows
     said = results.said
     noted = int((~said & (notes != "")).sum()) if columns.marks is None else 0
     if noted:
-        messages.append(doubtful(f"{noted} record(s) have a note, but no result: left unknown."))
+        messages.append(
+            doubtful(
+                worded("{noted} record(s) have a note, but no result: left unknown.", noted=noted)
+            )
+        )
     if not said.all():
         what = "carry no finding in their name" if columns.marks else "are not filled in"
-        messages.append(seen(f"{int((~said).sum())} of {len(layer)} record(s) {what}: unknown."))
+        messages.append(
+            seen(
+                worded(
+                    "{n} of {total} record(s) {what}: unknown.",
+                    n=int((~said).sum()),
+                    total=len(layer),
+                    what=what,
+                )
+            )
+        )
     lonlat, accuracy_m, more = positions_in(layer, columns, options)
     plant, line, number, face = named_plants(layer, columns)
     times = times_in(layer, columns, options)
@@ -165,7 +179,7 @@ def _without_lines(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     lines = np.isin(kinds, (1, 2, 5))
     if not lines.any() or lines.all():
         return layer, []
-    said = seen(f"{int(lines.sum())} line(s) beside the points were passed over.")
+    said = seen(worded("{n} line(s) beside the points were passed over.", n=int(lines.sum())))
     return layer.take(np.flatnonzero(~lines)), [said]
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed
 from fieldmon.io.parse.clock import clock_time, is_clock_alone, local_time, zone_of
 from fieldmon.io.parse.columns import find
@@ -62,13 +63,26 @@ def _about_times(
     messages = []
     if n_broken:
         shown = ", ".join(repr(cell) for cell in broken[:3])
-        messages.append(doubtful(f"{n_broken} time(s) are none ({shown}); left open."))
+        messages.append(
+            doubtful(
+                worded(
+                    "{n_broken} time(s) are none ({shown}); left open.",
+                    n_broken=n_broken,
+                    shown=shown,
+                )
+            )
+        )
     if is_ambiguous:
-        remedy = Remedy("date_order", "mdy", "Read month first")
-        messages.append(guessed("Dates could be day or month first; read day first.", None, remedy))
+        remedy = Remedy("date_order", "mdy", worded("Read month first"))
+        messages.append(
+            guessed(worded("Dates could be day or month first; read day first."), None, remedy)
+        )
     if n_utc:
-        remedy = Remedy("zone", "+02:00", "Name the plot's time zone")
-        said = f"{n_utc} time(s) name a time zone of their own; their clock was kept as it is."
+        remedy = Remedy("zone", "+02:00", worded("Name the plot's time zone"))
+        said = worded(
+            "{n_utc} time(s) name a time zone of their own; their clock was kept as it is.",
+            n_utc=n_utc,
+        )
         messages.append(guessed(said, None, remedy))
     return messages
 

@@ -1,0 +1,162 @@
+"""The morning's work, a line and a button a step; what comes next is the filled one."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+from functools import partial
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.reports.pdf import PAPERS, pdf_bytes
+
+from ..show import day, report
+from ..state import (
+    browser,
+    chosen_day,
+    morning,
+    notices,
+    plot_source,
+    rooms,
+    widget_memory,
+    work_day,
+)
+from ..state.morning import BEGIN, LOOK_BACK, NEXT_DAY, PLAN, RECORD, REPORT, SEND
+from ..words import texts
+from . import beginning, handing_out
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fieldmon.planning.plan import DayPlan
+
+    from ..state.choices import Choices
+    from ..state.morning import Step
+
+
+def show(choices: Choices, plan: DayPlan) -> None:
+    """Show the steps of the day."""
+    with st.container(key="steps", gap=None):
+        for step in morning.steps(choices, plan):
+            with st.container(
+                key=f"step_{step.name}", horizontal=True, vertical_alignment="center"
+            ):
+                st.markdown(f"{_sign(step)} {_said(choices, plan, step)}", width="stretch")
+                _BUTTONS[step.name](choices, plan, step)
+
+
+def _sign(step: Step) -> str:
+    if step.done:
+        return ":green[:material/check_circle:]"
+    return f":material/{'arrow_circle_right' if step.next else 'circle'}:"
+
+
+# -- what is said of each
+
+
+def _said(choices: Choices, plan: DayPlan, step: Step) -> str:
+    name = texts.STEPS[step.name]
+    if step.name == LOOK_BACK and choices.is_today:
+        name = texts.YESTERDAY
+    return f"**{name}** {_HOW_FAR.get(step.name, _nothing)(choices, plan)}"
+
+
+def _day_before(choices: Choices, _: DayPlan) -> str:
+    before = morning.day_before(choices)
+    return _recorded(before.found, before.inspected)
+
+
+def _planned(_: Choices, plan: DayPlan) -> str:
+    return day.plan_in_short(plan) if len(plan.route) else ""
+
+
+def _today(choices: Choices, _: DayPlan) -> str:
+    now = chosen_day.progress(choices)
+    return _recorded(now.found_today, now.inspected_today)
+
+
+def _recorded(found: int, inspected: int) -> str:
+    if not inspected:
+        return texts.STEP_NOTHING
+    return texts.STEP_FOUND.format(found=found, inspected=inspected)
+
+
+def _nothing(*_: object) -> str:
+    return ""
+
+
+_HOW_FAR: dict[str, Callable[[Choices, DayPlan], str]] = {
+    LOOK_BACK: _day_before, PLAN: _planned, RECORD: _today,
+}  # fmt: skip
+
+
+# -- the button of each
+
+
+def _button(step: Step, label: str, action: Callable[..., object], *arguments: object) -> None:
+    st.button(label, key=f"do_{step.name}", type="primary" if step.next else "secondary",
+              on_click=action, args=arguments)  # fmt: skip
+
+
+def _look_back(choices: Choices, _: DayPlan, step: Step) -> None:
+    if step.next:
+        _button(step, texts.STEP_BUTTONS[RECORD], _record_day_before, choices)
+    else:
+        _button(step, texts.STEP_BUTTONS[LOOK_BACK], rooms.turn_to, "season")
+
+
+def _record_day_before(choices: Choices) -> None:
+    work_day.choose(plot_source.chosen(), choices.on - timedelta(days=1))
+    rooms.open_part("record")
+
+
+def _plan(choices: Choices, plan: DayPlan, step: Step) -> None:
+    if len(plan.route):
+        _button(step, texts.STEP_BUTTONS[PLAN], _use_plan, choices)
+
+
+@notices.reporting
+def _use_plan(choices: Choices) -> str:
+    """Keep the day's route with the season, so that the report can hold it to what was done."""
+    choices.season.plan(choices.on, wishes=choices.wishes)
+    return texts.PLAN_USED.format(day=choices.units.day(choices.day))
+
+
+def _begin(choices: Choices, _: DayPlan, step: Step) -> None:
+    _button(step, texts.STEP_BUTTONS[BEGIN], beginning.begin, choices)
+
+
+def _send(choices: Choices, plan: DayPlan, step: Step) -> None:
+    kind = "primary" if step.next else "secondary"
+    if st.button(texts.STEP_BUTTONS[SEND], key="do_send", type=kind,
+                 on_click=morning.note, args=(choices, SEND)):  # fmt: skip
+        st.dialog(texts.SEND_TITLE)(handing_out.show)(choices, plan)
+
+
+def _record(_: Choices, __: DayPlan, step: Step) -> None:
+    if browser.is_phone():
+        _button(step, texts.START_SCOUTING, rooms.open_part, "scout")
+    else:
+        _button(step, texts.STEP_BUTTONS[RECORD], rooms.open_part, "record")
+
+
+def _report(choices: Choices, _: DayPlan, step: Step) -> None:
+    paper = widget_memory.value("report paper", next(iter(PAPERS)))
+    made = report.of_day(choices)
+    # made when it is asked for: fonts are cut and plants are drawn, in a second or two
+    st.download_button(
+        texts.STEP_BUTTONS[REPORT], partial(pdf_bytes, made, paper), f"day_{choices.day}.pdf",
+        "application/pdf", key="do_report", type="primary" if step.next else "secondary",
+        on_click=morning.note, args=(choices, REPORT),
+    )  # fmt: skip
+
+
+def _next_day(choices: Choices, _: DayPlan, step: Step) -> None:
+    _button(step, texts.STEP_BUTTONS[NEXT_DAY], work_day.choose, plot_source.chosen(),
+            choices.on + timedelta(days=1))  # fmt: skip
+
+
+_BUTTONS: dict[str, Callable[[Choices, DayPlan, Step], None]] = {
+    LOOK_BACK: _look_back, PLAN: _plan, BEGIN: _begin, SEND: _send, RECORD: _record,
+    REPORT: _report, NEXT_DAY: _next_day,
+}  # fmt: skip

@@ -1,0 +1,1 @@
+"""From finds to a decision: thresholds, sequential plans, where to treat."""

@@ -1,0 +1,152 @@
+"""What the chance map decides: whether so much is infested that treating pays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.arrays import read_only
+from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
+from fieldmon.errors import SettingError
+from fieldmon.infestation.pairs import pair_chances
+from fieldmon.infestation.plot_estimate import draw_fields
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.decisions.sequential import Verdict
+    from fieldmon.plot.grid import PlantGrid
+
+    Floats = NDArray[np.float64]
+
+_DRAWS = 400
+# fields drawn at a time, so that a million plants need no gigabyte
+_CELLS_AT_ONCE = 20_000_000
+
+
+@dataclass(frozen=True)
+class MapVerdict:
+    """Whether treating pays, as the chance map has it.
+
+    Parameters
+    ----------
+    verdict
+        ``"treat"``, ``"do not treat"`` or ``"look on"``.
+    level
+        Share of plants infested from which on treating pays.
+    chance_above
+        Chance that the true share is at the level or above.
+    share, low, high
+        Share of plants infested as expected, and the interval that holds it with `sure`.
+    sure
+        How sure a verdict must be.
+    """
+
+    verdict: Verdict
+    level: float
+    chance_above: float
+    share: float
+    low: float
+    high: float
+    sure: float
+
+    def sentence(self) -> str:
+        """Return it as an answer to "do I have to spray?"."""
+        believed = (
+            f"{self.share:.1%} of the plants are believed infested ({self.low:.1%} to "
+            f"{self.high:.1%}), treating pays from {self.level:.1%} on"
+        )
+        chance = f"the chance that it is so much is {self.chance_above:.0%}"
+        answer = {
+            TREAT: "Treat",
+            LEAVE: "Do not treat",
+            LOOK_ON: "Look on before you decide",
+        }[self.verdict]
+        return f"{answer}: {believed}; {chance}."
+
+
+def map_verdict(  # noqa: PLR0913 - two of them have to be named
+    grid: PlantGrid,
+    chance: Floats,
+    level: float,
+    pair_chance: Floats | None = None,
+    *,
+    plants: NDArray[np.bool_] | None = None,
+    sure: float = 0.9,
+    key: np.uint64 = np.uint64(0),  # noqa: B008 - a number, not a call with effects
+) -> MapVerdict:
+    """Return whether a plot, or a part of it, has to be treated.
+
+    Whole fields are drawn from the chance map, neighbours together: were plants taken as
+    independent, the share would seem far surer than it is.
+
+    Parameters
+    ----------
+    grid
+        The plants.
+    chance
+        ``(n,)`` chance that each plant is infested.
+    level
+        Share of the plants from which on treating pays, between 0 and 1.
+    pair_chance
+        ``(e,)`` chance that two neighbours are both infested; None: as records have it.
+    plants
+        ``(n,)`` the part of the plot that is asked about; None: all.
+    sure
+        A verdict needs this chance of being right, between 0.5 and 1.
+    key
+        Which fields are drawn: the same key, the same answer.
+
+    Raises
+    ------
+    SettingError
+        If the level or `sure` cannot be, or no plant is asked about.
+
+    Examples
+    --------
+    >>> import numpy as np, fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> chance = np.full(plot.n_plants, 0.002)
+    >>> map_verdict(plot.grid, chance, 0.05).verdict
+    'do not treat'
+    """
+    if not 0.0 < level < 1.0:
+        raise SettingError(
+            f"The share of plants from which treating pays must lie between 0 and 1, but it is "
+            f"{level:g}."
+        )
+    if not 0.5 < sure < 1.0:
+        raise SettingError(
+            f"A verdict must be asked to be right with a chance between 0.5 and 1, but it is "
+            f"{sure:g}."
+        )
+    asked = np.ones(len(grid), bool) if plants is None else plants
+    if not asked.any():
+        raise SettingError("A verdict must be about a plant or more, but the area holds none.")
+    pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
+    shares = _drawn_shares(grid, (chance, pairs), asked, key)
+    above = float(np.mean(shares >= level))
+    verdict: Verdict = TREAT if above >= sure else LEAVE if above <= 1 - sure else LOOK_ON
+    low, high = np.quantile(shares, [0.5 - sure / 2, 0.5 + sure / 2])
+    share = float(chance[asked].mean())
+    return MapVerdict(verdict, level, above, share, float(low), float(high), sure)
+
+
+def _drawn_shares(
+    grid: PlantGrid,
+    believed: tuple[Floats, Floats],
+    asked: NDArray[np.bool_],
+    key: np.uint64,
+) -> Floats:
+    """Return the share of the asked plants that is infested in each drawn field, ``(draws,)``."""
+    at_once = int(np.clip(_CELLS_AT_ONCE // len(grid), 1, _DRAWS))
+    shares = np.empty(_DRAWS)
+    for first in range(0, _DRAWS, at_once):
+        fields = np.empty((min(at_once, _DRAWS - first), len(grid)), bool)
+        draw_fields(believed, grid.adjacent, key + np.uint64(first), fields)
+        shares[first : first + len(fields)] = fields[:, asked].mean(axis=1)
+    # round the loops of a lattice the drawn fields are a little off the map: put right together
+    right = float(believed[0][asked].mean())
+    return read_only(np.minimum(shares * (right / max(float(shares.mean()), 1e-12)), 1.0))

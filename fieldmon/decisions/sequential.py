@@ -1,0 +1,348 @@
+"""Sequential plans: look at leaves or plants one by one, and stop as soon as it is clear.
+
+After n of them the cumulative count is held against two lines: below the lower one treating does
+not pay, above the upper one it does, and in between one looks on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, Protocol
+
+import numpy as np
+
+from fieldmon.compute.arrays import read_only
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.decisions.taylor import TaylorLaw
+
+    Floats = NDArray[np.float64]
+
+TREAT: Final = "treat"
+LEAVE: Final = "do not treat"
+LOOK_ON: Final = "look on"
+Verdict = Literal["treat", "do not treat", "look on"]
+Counts = Literal["presence", "poisson", "negative binomial"]
+
+_CODES: tuple[Verdict, ...] = (LOOK_ON, LEAVE, TREAT)
+# how far one looks ahead for the next moment at which a verdict is possible
+_MOST_AHEAD = 100_000
+_STEPS = 200
+
+
+class StopLines(NamedTuple):
+    """Stop once the cumulative count is at or beyond one of them, ``(n,)`` after 1, 2, ..."""
+
+    low: Floats
+    high: Floats
+
+    def __repr__(self) -> str:
+        return f"<StopLines: {len(self.low)} looks>"
+
+
+class OperatingCurve(NamedTuple):
+    """What a plan does at true means ``(k,)``."""
+
+    mean: Floats
+    leaves_it: Floats
+    looks: Floats
+
+    def __repr__(self) -> str:
+        return f"<OperatingCurve: {len(self.mean)} means>"
+
+
+class Plan(Protocol):
+    """Whatever has stop lines."""
+
+    @property
+    def most_per_look(self) -> float:
+        """Return the most that one look can count: 1 for presence."""
+        ...
+
+    def lines(self, n: int) -> StopLines:
+        """Return the stop lines for 1 to n looks."""
+        ...
+
+
+@dataclass(frozen=True)
+class WaldPlan:
+    """Wald's sequential probability ratio test (Ann. Math. Stat. 16 (1945) 117).
+
+    Parameters
+    ----------
+    low, high
+        Surely no treatment at this mean or share; surely one at that.
+    counts
+        What one look gives: ``"presence"`` (0 or 1), or a count that is random (``"poisson"``) or
+        clustered (``"negative binomial"``).
+    k
+        Clustering of the negative binomial: the less, the more clustered.
+    treats_wrongly, leaves_wrongly
+        Tolerated chances of the two mistakes, at `low` and at `high`.
+
+    Raises
+    ------
+    SettingError
+        If the two levels, the chances or k cannot be.
+
+    Examples
+    --------
+    The example of the R package sequential.pops:
+
+    >>> plan = WaldPlan(2, 4, "negative binomial", k=4.6)
+    >>> decided(plan, [2, 5, 6, 2, 7])
+    ('treat', 5)
+    """
+
+    low: float
+    high: float
+    counts: Counts = "presence"
+    k: float = np.inf
+    treats_wrongly: float = 0.1
+    leaves_wrongly: float = 0.1
+
+    def __post_init__(self) -> None:
+        most = 1.0 if self.counts == "presence" else np.inf
+        if not 0.0 < self.low < self.high < most:
+            raise SettingError(
+                "The levels of a plan must rise from above 0"
+                + (" to below 1" if most == 1.0 else "")
+                + f", but they are {self.low:g} and {self.high:g}."
+            )
+        for name, chance in (("treats", self.treats_wrongly), ("leaves", self.leaves_wrongly)):
+            if not 0.0 < chance < 0.5:
+                raise SettingError(
+                    f"The chance that a plan {name} wrongly must lie between 0 and 0.5, but it is "
+                    f"{chance:g}."
+                )
+        if self.counts == "negative binomial" and not 0.0 < self.k < np.inf:
+            raise SettingError(
+                f"The clustering k of counts must be a number above 0, but it is {self.k:g}."
+            )
+
+    @property
+    def most_per_look(self) -> float:
+        """Return the most that one look can count: 1 for presence."""
+        return 1.0 if self.counts == "presence" else np.inf
+
+    @property
+    def evidence(self) -> tuple[float, float]:
+        """Return what one animal more, and a look as such, add to the logarithm of the ratio."""
+        a, b, k = self.low, self.high, self.k
+        if self.counts == "presence":
+            return float(np.log(b * (1 - a) / (a * (1 - b)))), float(np.log((1 - b) / (1 - a)))
+        if self.counts == "poisson":
+            return float(np.log(b / a)), a - b
+        return float(np.log(b * (a + k) / (a * (b + k)))), float(k * np.log((a + k) / (b + k)))
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Return the logarithms of the ratio at which it is clear, low and high."""
+        treats, leaves = self.treats_wrongly, self.leaves_wrongly
+        return float(np.log(leaves / (1 - treats))), float(np.log((1 - leaves) / treats))
+
+    def lines(self, n: int) -> StopLines:
+        """Return the stop lines for 1 to n looks: straight and parallel."""
+        one_more, look = self.evidence
+        below, above = self.limits
+        looks = np.arange(1.0, n + 1.0)
+        low: Floats = (below - look * looks) / one_more
+        high: Floats = (above - look * looks) / one_more
+        return StopLines(read_only(low), read_only(high))
+
+    def operating_curve(self, mean: Any) -> OperatingCurve:  # noqa: ANN401 - an array or a number
+        """Return how often it ends without treatment, and after how many looks, by true mean.
+
+        Wald's approximations: what the last look oversteps a line by is left out, so that the
+        true number of looks is a little higher and both mistakes are a little rarer.
+        """
+        mean = np.atleast_1d(np.asarray(mean, float))
+        below, above = self.limits
+        tilt = np.array([self._tilt(one) for one in mean])
+        # at the mean where the ratio stays where it is in the long run
+        flat = np.abs(tilt) < 1e-6
+        safe = np.where(flat, 1.0, tilt)
+        leaves = np.where(
+            flat,
+            above / (above - below),
+            np.expm1(safe * above) / (np.exp(safe * above) - np.exp(safe * below)),
+        )
+        drift, spread = self._moments(mean)
+        ends = leaves * below + (1.0 - leaves) * above
+        looks = np.where(flat, -below * above / spread, ends / np.where(flat, 1.0, drift))
+        return OperatingCurve(read_only(mean), read_only(leaves), read_only(looks))
+
+    def _moments(self, mean: Floats) -> tuple[Floats, Floats]:
+        """Return mean and mean square of what one look adds to the logarithm of the ratio."""
+        one_more, look = self.evidence
+        variance = {
+            "presence": mean * (1.0 - mean),
+            "poisson": mean,
+            "negative binomial": mean + mean**2 / self.k,
+        }[self.counts]
+        drift = one_more * mean + look
+        return drift, one_more**2 * variance + drift**2
+
+    def _log_mgf(self, h: float, mean: float) -> float:
+        """Return the logarithm of the mean of ratio^h after one look."""
+        one_more, look = self.evidence
+        grown = h * one_more
+        if self.counts == "presence":
+            return float(np.logaddexp(np.log1p(-mean), np.log(mean) + grown) + h * look)
+        if self.counts == "poisson":
+            return float(mean * np.expm1(grown) + h * look)
+        share = mean / (mean + self.k)
+        left = -share * np.expm1(grown) / (1.0 - share)
+        if left <= -1.0:
+            return float("inf")
+        return float(-self.k * np.log1p(left) + h * look)
+
+    def _tilt(self, mean: float) -> float:
+        """Return the h other than 0 for which the mean of ratio^h stays 1 (0: there is none)."""
+        drift = self._moments(np.array([mean]))[0][0]
+        if abs(drift) < 1e-9:
+            return 0.0
+        side = -1.0 if drift > 0 else 1.0
+        far = side
+        while self._log_mgf(far, mean) < 0.0 and abs(far) < 1e6:
+            far *= 2.0
+        near = 0.0
+        # the root lies where the convex function comes up again
+        for _ in range(_STEPS):
+            middle = (near + far) / 2
+            near, far = (middle, far) if self._log_mgf(middle, mean) < 0.0 else (near, middle)
+        return (near + far) / 2
+
+
+@dataclass(frozen=True)
+class IwaoPlan:
+    """Iwao's plan: stop once a confidence interval round the threshold is left.
+
+    S. Iwao, Res. Popul. Ecol. 16 (1975) 281. It has one threshold instead of two levels.
+
+    Parameters
+    ----------
+    threshold
+        Mean or share from which on treating pays.
+    law
+        How counts cluster; None: presence, 0 or 1 a look.
+    z
+        Standard errors on either side: 1.645 for 90 %.
+
+    Raises
+    ------
+    SettingError
+        If the threshold or z cannot be.
+    """
+
+    threshold: float
+    law: TaylorLaw | None = None
+    z: float = 1.645
+
+    def __post_init__(self) -> None:
+        most = 1.0 if self.law is None else np.inf
+        if not 0.0 < self.threshold < most:
+            raise SettingError(
+                "The threshold of a plan must be above 0"
+                + (" and below 1" if most == 1.0 else "")
+                + f", but it is {self.threshold:g}."
+            )
+        if not self.z > 0.0:
+            raise SettingError(f"A plan's z must be above 0, but it is {self.z:g}.")
+
+    @property
+    def most_per_look(self) -> float:
+        """Return the most that one look can count: 1 for presence."""
+        return 1.0 if self.law is None else np.inf
+
+    def lines(self, n: int) -> StopLines:
+        """Return the stop lines for 1 to n looks: they open like a parabola."""
+        looks = np.arange(1, n + 1)
+        level = self.threshold
+        variance = level * (1 - level) if self.law is None else float(self.law.variance(level))
+        wide = self.z * np.sqrt(looks * variance)
+        return StopLines(read_only(looks * level - wide), read_only(looks * level + wide))
+
+
+def decided(plan: Plan, counts: Any) -> tuple[Verdict, int]:  # noqa: ANN401 - whatever is a list
+    """Return the first verdict on counts ``(n,)`` one by one, and after how many it came.
+
+    Examples
+    --------
+    >>> decided(WaldPlan(0.05, 0.15), [0] * 30)
+    ('do not treat', 20)
+    """
+    counts = np.asarray(counts, float)
+    verdict, looks = _first(plan, counts[None, :])
+    return _CODES[verdict[0]], int(looks[0])
+
+
+def after(plan: Plan, looks: int, total: float) -> Verdict:
+    """Return the verdict after so many looks, 1 or more, that counted so much together.
+
+    Examples
+    --------
+    >>> after(IwaoPlan(0.22), 40, 20)
+    'treat'
+    """
+    lines = plan.lines(looks)
+    return LEAVE if total <= lines.low[-1] else TREAT if total >= lines.high[-1] else LOOK_ON
+
+
+def least_more(plan: Plan, looks: int, total: float) -> int:
+    """Return after how many looks more a verdict can come at the earliest; 0: there is one.
+
+    Parameters
+    ----------
+    looks, total
+        Looks so far, and what they counted together.
+    """
+    ahead = 16
+    while ahead <= _MOST_AHEAD:
+        lines = plan.lines(looks + ahead)
+        later = np.arange(ahead + 1)
+        low, high = (np.concatenate([[np.nan], line])[looks:] for line in lines)
+        # all that come are clean, or each counts as much as one can
+        clear = total <= low
+        clear |= total + np.where(later > 0, later * min(plan.most_per_look, 1e12), 0.0) >= high
+        if clear.any():
+            return int(np.argmax(clear))
+        ahead *= 4
+    raise SettingError(
+        f"A verdict must be possible within {_MOST_AHEAD} looks, but these levels are too near "
+        "each other. Set them further apart."
+    )
+
+
+class Trials(NamedTuple):
+    """What a plan did on simulated looks: shares of verdicts, and looks ``(trials,)``."""
+
+    treats: float
+    leaves: float
+    looks: NDArray[np.int64]
+
+    def __repr__(self) -> str:
+        return f"<Trials: {len(self.looks)} trials>"
+
+
+def tried(plan: Plan, counts: NDArray[Any]) -> Trials:
+    """Return what a plan does on counts ``(trials, n)``, in the order in which they are seen.
+
+    The formulas of a plan take looks as independent. Neighbours on a drive are not: here the
+    looks may come from any simulated plot and any order.
+    """
+    verdict, looks = _first(plan, np.asarray(counts, float))
+    return Trials(float(np.mean(verdict == 2)), float(np.mean(verdict == 1)), read_only(looks))
+
+
+def _first(plan: Plan, counts: Floats) -> tuple[NDArray[np.intp], NDArray[np.int64]]:
+    """Return the code of the first verdict of each line of counts, and after how many looks."""
+    n = counts.shape[1]
+    lines, totals = plan.lines(n), np.cumsum(counts, axis=1)
+    code = np.where(totals <= lines.low, 1, np.where(totals >= lines.high, 2, 0))
+    clear = code > 0
+    at = np.where(clear.any(axis=1), np.argmax(clear, axis=1), n - 1)
+    return code[np.arange(len(code)), at], at + 1

@@ -1,0 +1,175 @@
+"""Action thresholds: from which infestation on treating pays, and who says so."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from fieldmon.errors import FileProblem, SettingError
+from fieldmon.io.packaged import packaged_table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+
+#: what a threshold counts; a share lies between 0 and 1, a mean is animals a leaf
+MEASURES = ("share of plants", "share of leaves", "mean per leaf")
+_OWN = "your own"
+_COLUMNS = ("name", "measure", "level", "source")
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """From which infestation on treating pays.
+
+    Parameters
+    ----------
+    name
+        By which it is asked for.
+    measure
+        What is counted: ``"share of plants"`` or ``"share of leaves"`` that are infested, or
+        ``"mean per leaf"``, the animals on one.
+    level
+        Treat from this on: a share between 0 and 1, or a mean above 0.
+    source
+        Who says so.
+    crop, pest, when
+        Where it holds, in words; empty: not said.
+    predators
+        Whether it holds where predators of the pest live; None: the source draws no such line.
+
+    Raises
+    ------
+    SettingError
+        If the measure is not known, or the level is not one of it.
+    """
+
+    name: str
+    measure: str
+    level: float
+    source: str = _OWN
+    crop: str = ""
+    pest: str = ""
+    when: str = ""
+    predators: bool | None = None
+
+    def __post_init__(self) -> None:
+        if self.measure not in MEASURES:
+            raise SettingError(
+                f"A threshold must count one of {', '.join(MEASURES)}, but {self.name!r} counts "
+                f"{self.measure!r}."
+            )
+        most = float("inf") if self.measure == "mean per leaf" else 1.0
+        if not 0.0 < self.level < most:
+            raise SettingError(
+                f"The threshold {self.name!r} must be above 0"
+                + (" and below 1 (100 %)" if most == 1.0 else "")
+                + f", but it is {self.level:g}."
+            )
+
+    @property
+    def is_share(self) -> bool:
+        """Return whether it is a share, so that presence is all that need be seen."""
+        return self.measure != "mean per leaf"
+
+    def sentence(self) -> str:
+        """Return it in words, with its source."""
+        level = (
+            f"{100 * self.level:g} % of the {self.measure.rpartition(' ')[2]} infested"
+            if self.is_share
+            else f"{self.level:g} a leaf"
+        )
+        return f"Treat from {level} on ({self.source})."
+
+
+@lru_cache(maxsize=1)
+def published() -> tuple[Threshold, ...]:
+    """Return the thresholds that come with fieldmon, each with its source."""
+    return tuple(map(_of_row, packaged_table("fieldmon/decisions/thresholds.csv")))
+
+
+def read_thresholds(path: Path) -> tuple[Threshold, ...]:
+    """Return thresholds of one's own from a CSV with the columns of the published ones.
+
+    Raises
+    ------
+    FileProblem
+        If the file cannot be read, or a line is no threshold: the sentence says which.
+    """
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileProblem(f"{path.name}: thresholds must be text in UTF-8 ({error}).") from error
+    table = csv.DictReader(line for line in lines if not line.startswith("#"))
+    missing = [name for name in _COLUMNS if name not in (table.fieldnames or ())]
+    if missing:
+        raise FileProblem(
+            f"{path.name}: thresholds need the columns {', '.join(_COLUMNS)}, but there is no "
+            f"{' and no '.join(missing)}."
+        )
+    return tuple(_read(path, number, row) for number, row in enumerate(table, 1))
+
+
+def threshold_of(said: str, known: Iterable[Threshold] | None = None) -> Threshold:
+    """Return the threshold of a name, or of a share of plants as ``"5%"``.
+
+    Parameters
+    ----------
+    said
+        ``"almond"``, or a share of the plants: ``"5%"``, ``"5 %"``.
+    known
+        Where names are looked up; None: the published ones.
+
+    Raises
+    ------
+    SettingError
+        If it is neither.
+
+    Examples
+    --------
+    >>> threshold_of("almond").level
+    0.22
+    >>> threshold_of("2.5%").sentence()
+    'Treat from 2.5 % of the plants infested on (your own).'
+    """
+    options = {one.name: one for one in (published() if known is None else known)}
+    if said in options:
+        return options[said]
+    if said.endswith("%"):
+        try:
+            share = float(said[:-1]) / 100
+        except ValueError:
+            pass
+        else:
+            return Threshold(said, "share of plants", share)
+    raise SettingError(
+        f"A threshold must be a share of the plants, as 5%, or one of {', '.join(options)}; "
+        f"but it is {said!r}."
+    )
+
+
+def _read(path: Path, number: int, row: Mapping[str, str]) -> Threshold:
+    try:
+        return _of_row(row)
+    except ValueError as error:
+        raise FileProblem(
+            f"{path.name}, threshold {number}: the level must be a number, but it is "
+            f"{row['level']!r}."
+        ) from error
+    except SettingError as error:
+        raise FileProblem(f"{path.name}, threshold {number}: {error}") from error
+
+
+def _of_row(row: Mapping[str, str]) -> Threshold:
+    words = {name: row.get(name) or "" for name in ("crop", "pest", "when")}
+    predators = {"yes": True, "no": False}.get((row.get("predators") or "").strip().lower())
+    return Threshold(
+        row["name"],
+        row["measure"],
+        float(row["level"]),
+        row["source"] or _OWN,
+        predators=predators,
+        **words,
+    )

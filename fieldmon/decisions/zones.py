@@ -1,0 +1,326 @@
+"""Where to treat: strips along the rows that a sprayer can switch, at the least expected loss.
+
+A sprayer's section covers some rows side by side. Along them it is on or off, and each stretch
+that is on, or off between two that are, has a least length. Which stretches cost least is found
+exactly, section by section: plants stand in order along the rows, so that the best of all
+switchings up to a plant follows from the best up to the one before.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import shapely
+
+from fieldmon.compute.arrays import read_only
+from fieldmon.compute.jit import routine
+from fieldmon.compute.wording import counted
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.grid import PlantGrid
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Sprayer:
+    """What can be switched.
+
+    Parameters
+    ----------
+    rows
+        Rows that one section covers; 0: plants are sprayed one by one, with a knapsack.
+    least_on_m, least_off_m
+        Least length along the rows of a stretch that is sprayed, and of a gap between two.
+
+    Raises
+    ------
+    SettingError
+        If a number is below 0.
+    """
+
+    rows: int = 2
+    least_on_m: float = 6.0
+    least_off_m: float = 6.0
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not 0 <= value < np.inf:
+                raise SettingError(
+                    f"A sprayer's {name.replace('_', ' ')} must be 0 or more, but it is {value:g}."
+                )
+
+
+@dataclass(frozen=True)
+class TreatmentCosts:
+    """What treating costs, and what not treating does; in one currency.
+
+    Parameters
+    ----------
+    per_ha
+        Product, water and work for a hectare sprayed.
+    per_zone
+        Each zone: switching on and off, slowing down, overlap.
+    infested_plant_day
+        Loss by a plant that is infested for a day.
+    days
+        How long an infested plant stays so if it is not treated.
+    works
+        Chance that an infested plant is clean after the treatment.
+
+    Raises
+    ------
+    SettingError
+        If a number cannot be.
+    """
+
+    per_ha: float = 100.0
+    per_zone: float = 0.5
+    infested_plant_day: float = 0.1
+    days: float = 14.0
+    works: float = 0.9
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not 0.0 <= value < np.inf:
+                raise SettingError(
+                    f"The cost {name.replace('_', ' ')!r} must be 0 or more, but it is {value:g}."
+                )
+        if not 0.0 < self.works <= 1.0:
+            raise SettingError(
+                "The chance that a treatment works must be above 0 and at most 1, but it is "
+                f"{self.works:g}."
+            )
+
+    @property
+    def per_infested_plant(self) -> float:
+        """Return what treating an infested plant saves."""
+        return self.infested_plant_day * self.days * self.works
+
+
+@dataclass(frozen=True, eq=False)
+class Zones:
+    """Where to treat, and what that comes to.
+
+    Parameters
+    ----------
+    treated
+        ``(n,)`` whether each plant is sprayed.
+    zone
+        ``(n,)`` number of the zone it is in, from 0; -1: not sprayed.
+    m2, plot_m2
+        Area sprayed, and of all plants.
+    inside, outside
+        Infested plants expected where it is sprayed, and elsewhere.
+    cost, saved
+        What spraying costs, and what it is expected to save.
+    """
+
+    treated: NDArray[np.bool_]
+    zone: Ints
+    m2: float
+    plot_m2: float
+    inside: float
+    outside: float
+    cost: float
+    saved: float
+
+    def __post_init__(self) -> None:
+        for value in vars(self).values():
+            if isinstance(value, np.ndarray):
+                read_only(value)
+
+    def __repr__(self) -> str:
+        return f"<Zones: {counted(len(self), 'zone')} of {self.m2:.0f} m2>"
+
+    def __len__(self) -> int:
+        """Return the number of zones."""
+        return int(self.zone.max(initial=-1)) + 1
+
+    def sentence(self) -> str:
+        """Return it in words, beside treating the whole plot."""
+        if not len(self):
+            return (
+                f"Treat nowhere: {self.outside:.1f} infested plants are expected, and nowhere "
+                "would spraying save more than it costs."
+            )
+        share = self.m2 / self.plot_m2
+        return (
+            f"Treat {self.m2 / 10_000:.2f} ha in {counted(len(self), 'zone')}, "
+            f"{share:.0%} of the plot: {self.inside:.1f} infested plants are expected there and "
+            f"{self.outside:.1f} elsewhere. It costs {self.cost:.2f} and saves {self.saved:.2f}."
+        )
+
+
+def best_zones(
+    grid: PlantGrid,
+    chance: Floats,
+    sprayer: Sprayer | None = None,
+    costs: TreatmentCosts | None = None,
+) -> Zones:
+    """Return the zones whose spraying is expected to lose least.
+
+    Parameters
+    ----------
+    grid
+        The plants.
+    chance
+        ``(n,)`` chance that each plant is infested.
+    sprayer, costs
+        What can be switched, and what it costs; None: the defaults.
+
+    Examples
+    --------
+    >>> import numpy as np, fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> chance = np.full(plot.n_plants, 1e-4)
+    >>> chance[1000:1006] = 0.9
+    >>> len(best_zones(plot.grid, chance))
+    1
+    """
+    sprayer, costs = sprayer or Sprayer(), costs or TreatmentCosts()
+    once = grid.vine == np.arange(len(grid))
+    m2 = grid.row_spacing_m * grid.plant_spacing_m
+    gain = np.where(once, chance * costs.per_infested_plant - costs.per_ha * m2 / 10_000, 0.0)
+    strips = _strips(grid, sprayer.rows)
+    on = np.zeros(len(strips.start_m), bool)
+    per_step = np.bincount(strips.step, gain, len(on)).astype(np.float64)
+    _switch(
+        (strips.first, strips.start_m, per_step),
+        (sprayer.least_on_m, sprayer.least_off_m, costs.per_zone),
+        strips.step_m,
+        on,
+    )
+    treated = on[strips.step]
+    new = on & ~np.concatenate([[False], on[:-1] & ~strips.begins[1:]])
+    zone = np.where(treated, (np.cumsum(new) - 1)[strips.step], -1)
+    sprayed = once & treated
+    n_zones = int(new.sum())
+    inside, area_m2 = float(chance[sprayed].sum()), float(sprayed.sum()) * m2
+    return Zones(
+        treated,
+        zone,
+        area_m2,
+        float(once.sum()) * m2,
+        inside,
+        float(chance[once & ~treated].sum()),
+        area_m2 / 10_000 * costs.per_ha + n_zones * costs.per_zone,
+        inside * costs.per_infested_plant,
+    )
+
+
+def outlines(grid: PlantGrid, zones: Zones) -> list[shapely.MultiPolygon]:
+    """Return the area of each zone, lon/lat, that the plants of its rows fill.
+
+    Each plant stands for the ground half a spacing around it; touching grounds are one.
+    """
+    half_m = np.array([grid.plant_spacing_m, grid.row_spacing_m]) / 2 * 1.001
+    areas = []
+    for k in range(len(zones)):
+        x, y = grid.xy_m[zones.zone == k].T
+        # turned along each row where rows bend would gain centimetres: squares follow the plants
+        cells = shapely.box(x - half_m[0], y - half_m[1], x + half_m[0], y + half_m[1])
+        whole = shapely.union_all(cells)
+        areas.append(
+            grid.frame.geometry_lonlat(shapely.MultiPolygon(list(shapely.get_parts(whole))))
+        )
+    return areas
+
+
+class _Strips(NamedTuple):
+    """Steps along the sections of a sprayer, section after section.
+
+    `first` ``(s + 1,)`` says where each section's steps begin, `start_m` ``(k,)`` where along the
+    rows each step is, `step` ``(n,)`` in which step a plant stands, and `begins` ``(k,)`` whether
+    a step is the first of its section.
+    """
+
+    first: Ints
+    start_m: Floats
+    step: Ints
+    begins: NDArray[np.bool_]
+    step_m: float
+
+
+def _strips(grid: PlantGrid, rows: int) -> _Strips:
+    """Cut the plot into sections of so many lines, and those into steps of a plant's spacing."""
+    if rows == 0:
+        n, alone = len(grid), grid.vine.astype(np.int64)
+        return _Strips(np.arange(n + 1), np.zeros(n), alone, np.ones(n, bool), 0.0)
+    step_m = grid.plant_spacing_m
+    line = grid.row_line[grid.row].astype(np.int64)
+    block = np.zeros(len(grid), np.int64) if grid.block is None else grid.block[grid.row]
+    section = line // rows * (int(block.max()) + 1) + block
+    at = np.floor((grid.along_m - grid.along_m.min()) / step_m).astype(np.int64)
+    wide = int(at.max()) + 1
+    cells, step = np.unique(section * wide + at, return_inverse=True)
+    begins = np.diff(cells // wide, prepend=-1) != 0
+    first = np.append(np.flatnonzero(begins), len(cells)).astype(np.int64)
+    return _Strips(first, (cells % wide) * step_m, step.astype(np.int64), begins, step_m)
+
+
+@routine
+def _switch(
+    strips: tuple[Ints, Floats, Floats],
+    limits: tuple[float, float, float],
+    step_m: float,
+    on: NDArray[np.bool_],
+) -> None:
+    """Switch each section for the greatest gain, in place.
+
+    The best with a stretch that ends behind step i begins it at the best j that is far enough
+    back; the best before j ends its last stretch at the best e that is far enough before j. Both
+    are running maxima, for what is far enough once stays so: a section takes one pass.
+    """
+    first, start_m, gain = strips
+    for s in range(first.size - 1):
+        a, b = first[s], first[s + 1]
+        ends, began, before = _ends((start_m[a:b], gain[a:b]), limits, step_m)
+        at = int(np.argmax(ends))
+        while at > 0 and ends[at] > 0.0:
+            on[a + began[at] : a + at] = True
+            at = before[at]
+
+
+@routine
+def _ends(
+    section: tuple[Floats, Floats], limits: tuple[float, float, float], step_m: float
+) -> tuple[Floats, Ints, Ints]:
+    """Return the best of the first i steps, the last of them on, ``(n + 1,)``.
+
+    And at which step that stretch began, and where the one before it ended.
+    """
+    start_m, gain = section
+    least_on_m, least_off_m, per_zone = limits
+    n = gain.size
+    ends = np.full(n + 1, -np.inf)
+    began, before = np.zeros(n + 1, np.int64), np.zeros(n + 1, np.int64)
+    ready, of_ready = np.zeros(n), np.zeros(n, np.int64)
+    ahead = np.zeros(n + 1)  # of all gains up to a step
+    e = j = prior_at = from_at = 0
+    prior, from_j = 0.0, -np.inf
+    for i in range(1, n + 1):
+        ahead[i] = ahead[i - 1] + gain[i - 1]
+        here_m, end_m = start_m[i - 1], start_m[i - 1] + step_m
+        while e < i - 1 and here_m - start_m[e] - step_m >= least_off_m - 1e-9:
+            e += 1
+            if ends[e] > prior:
+                prior, prior_at = ends[e], e
+        ready[i - 1], of_ready[i - 1] = prior, prior_at
+        while j < i and end_m - start_m[j] >= least_on_m - 1e-9:
+            if ready[j] - ahead[j] > from_j:
+                from_j, from_at = ready[j] - ahead[j], j
+            j += 1
+        if j > 0:
+            ends[i] = ahead[i] + from_j - per_zone
+            began[i], before[i] = from_at, of_ready[from_at]
+    if j == 0:
+        # a section shorter than the least stretch is sprayed whole, or not at all
+        ends[n] = ahead[n] - per_zone
+    return ends, began, before

@@ -1,0 +1,106 @@
+"""A treatment as ISO 11783-10 task data (ISOXML), as terminals of tractors read it."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree as ET
+
+import shapely
+
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from shapely import MultiPolygon
+
+#: data dictionary identifier 1: setpoint volume per area, counted in 0.01 mm3/m2 (1 l/ha = 10 000)
+_VOLUME_PER_AREA, _PER_L_HA = "0001", 10_000
+_PARTFIELD, _ZONE = "1", "2"
+_OUTER, _INNER = "1", "2"
+_MINOR = {3: "3", 4: "3"}
+_EPOCH = (1980, 1, 1, 0, 0, 0)
+_MOST_LETTERS = 32  # of a designator, as the standard has it
+
+
+def isoxml_taskdata(
+    title: str,
+    boundary: MultiPolygon,
+    zones: Iterable[MultiPolygon],
+    rate_l_ha: float,
+    product: str,
+    *,
+    version: int = 4,
+) -> bytes:
+    """Return a zip with ``TASKDATA/TASKDATA.XML``: a planned task with polygon treatment zones.
+
+    Zone 1 has the rate, zone 0 nothing; where the position is lost or outside the plot the rate
+    is 0 too.
+
+    Parameters
+    ----------
+    title, product
+        Names of the plot and of what is sprayed; cut to 32 letters, as the standard has it.
+    boundary, zones
+        Lon/lat.
+    rate_l_ha
+        Litres a hectare.
+    version
+        Major version of the standard, 3 or 4.
+
+    Raises
+    ------
+    SettingError
+        If there is no such version.
+    """
+    if version not in _MINOR:
+        raise SettingError(f"Task data can be of version 3 or 4, but not of {version}.")
+    root = ET.Element(
+        "ISO11783_TaskData",
+        VersionMajor=str(version),
+        VersionMinor=_MINOR[version],
+        ManagementSoftwareManufacturer="fieldmon",
+        ManagementSoftwareVersion="1",
+        DataTransferOrigin="1",
+    )
+    ET.SubElement(root, "PDT", A="PDT1", B=_named(product or "product"))
+    name = _named(title)
+    # the area is a whole number of square metres, which nobody needs: 0 is "not said"
+    partfield = ET.SubElement(root, "PFD", A="PFD1", C=name, D="0")
+    _polygons(partfield, boundary, _PARTFIELD)
+    task = ET.SubElement(root, "TSK", A="TSK1", B=name, E="PFD1", G="1", H="0", I="0", J="0")
+    _rate(ET.SubElement(task, "TZN", A="0", B="not sprayed"), 0.0)
+    treated = ET.SubElement(task, "TZN", A="1", B="zones")
+    for zone in zones:
+        _polygons(treated, zone, _ZONE)
+    _rate(treated, rate_l_ha)
+    scale = f"{1 / _PER_L_HA:.9f}"
+    ET.SubElement(root, "VPN", A="VPN1", B="0", C=scale, D="1", E="l/ha")
+    written = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        info = zipfile.ZipInfo("TASKDATA/TASKDATA.XML", _EPOCH)
+        archive.writestr(info, written, zipfile.ZIP_DEFLATED)
+    return packed.getvalue()
+
+
+def _rate(zone: ET.Element, rate_l_ha: float) -> None:
+    value = str(round(rate_l_ha * _PER_L_HA))
+    ET.SubElement(zone, "PDV", A=_VOLUME_PER_AREA, B=value, C="PDT1", E="VPN1")
+
+
+def _polygons(parent: ET.Element, area: MultiPolygon, kind: str) -> None:
+    for part in shapely.get_parts(area):
+        polygon = ET.SubElement(parent, "PLN", A=kind)
+        for ring, way in ((part.exterior, _OUTER), *((hole, _INNER) for hole in part.interiors)):
+            line = ET.SubElement(polygon, "LSG", A=way)
+            for lon, lat in ring.coords:
+                ET.SubElement(line, "PNT", A="2", C=f"{lat:.9f}", D=f"{lon:.9f}")
+
+
+def _named(text: str) -> str:
+    """Return text as a designator: of 32 letters at most, and none that XML forbids."""
+    plain = "".join(letter for letter in text if letter.isprintable())
+    return plain[:_MOST_LETTERS]

@@ -1,0 +1,175 @@
+"""Where to treat, as sprayers, farm programs and phones read it: rates by area, lon/lat."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fieldmon.errors import FileProblem, SettingError
+from fieldmon.io.atomic_write import write_whole
+from fieldmon.io.writers.isoxml import isoxml_taskdata
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import geopandas as gpd
+    from shapely import MultiPolygon
+
+_WGS84 = "EPSG:4326"
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can name: equal maps make equal files
+
+
+@dataclass(frozen=True, eq=False)
+class TreatmentMap:
+    """What is to be sprayed where.
+
+    Parameters
+    ----------
+    title
+        Name of the plot.
+    boundary
+        The whole plot, lon/lat.
+    zones
+        Areas to spray, lon/lat; elsewhere the rate is 0.
+    rate_l_ha
+        Litres a hectare in the zones, above 0.
+    product
+        What is sprayed; empty: not said.
+
+    Raises
+    ------
+    SettingError
+        If the rate cannot be, or there is no zone.
+    """
+
+    title: str
+    boundary: MultiPolygon
+    zones: list[MultiPolygon]
+    rate_l_ha: float
+    product: str = ""
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.rate_l_ha < 100_000.0:
+            raise SettingError(
+                "The rate in the zones must lie between 0 and 100 000 litres a hectare, but it is "
+                f"{self.rate_l_ha:g}."
+            )
+        if not self.zones:
+            raise SettingError(
+                "A treatment map needs a zone or more, but spraying pays nowhere. No file is "
+                "written."
+            )
+
+    def __repr__(self) -> str:
+        return f"<TreatmentMap {self.title}: {self.rate_l_ha:g} l/ha>"
+
+
+def write_treatment_map(of: TreatmentMap, to: str | Path) -> Path:
+    """Write a treatment map as the ending of its name tells, whole or not at all.
+
+    ``.xml.zip`` is ISO 11783-10 TASKDATA version 4, ``.v3.xml.zip`` version 3; ``.shp.zip``,
+    ``.gpkg`` and ``.kml`` have a column ``RATE`` and ``UNIT``, ``l/ha``.
+
+    Raises
+    ------
+    SettingError
+        If the ending tells no format.
+    FileProblem
+        If the file cannot be written.
+    """
+    path = Path(to)
+    for ending, make in _FORMATS.items():
+        if path.name.lower().endswith(ending):
+            write_whole(path, make(of))
+            return path
+    raise SettingError(
+        f"A treatment map must be called *{', *'.join(_FORMATS)}, but it is {path.name!r}."
+    )
+
+
+def _frame(of: TreatmentMap) -> gpd.GeoDataFrame:
+    """Return a row a zone and one for the rest of the plot, whose rate is 0."""
+    import geopandas as gpd  # noqa: PLC0415 - half a second to import
+    import shapely  # noqa: PLC0415
+
+    rest = shapely.difference(of.boundary, shapely.union_all(of.zones))
+    areas = [*of.zones, *([rest] if rest.area > 0 else [])]
+    n = len(of.zones)
+    more = len(areas) - n
+    return gpd.GeoDataFrame(
+        {
+            "ZONE": [*range(1, n + 1), *([0] * more)],
+            "RATE": [*([float(of.rate_l_ha)] * n), *([0.0] * more)],
+            "UNIT": ["l/ha"] * len(areas),
+            "PRODUCT": [of.product[:80]] * len(areas),
+        },
+        geometry=areas,
+        crs=_WGS84,
+    )
+
+
+def _gpkg(of: TreatmentMap) -> bytes:
+    return _one_file(of, "treatment.gpkg", "GPKG", layer="treatment")
+
+
+def _kml(of: TreatmentMap) -> bytes:
+    frame = _frame(of)
+    frame["Name"] = [f"zone {zone}" if zone else "not sprayed" for zone in frame["ZONE"]]
+    return _one_file(of, "treatment.kml", "KML", frame)
+
+
+def _shapefile(of: TreatmentMap) -> bytes:
+    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+        _write(_frame(of), Path(folder) / "treatment.shp", "ESRI Shapefile", encoding="UTF-8")
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, "w") as archive:
+            for part in sorted(Path(folder).iterdir()):
+                info = zipfile.ZipInfo(part.name, _EPOCH)
+                archive.writestr(info, part.read_bytes(), zipfile.ZIP_DEFLATED)
+        return packed.getvalue()
+
+
+def _one_file(
+    of: TreatmentMap, name: str, driver: str, frame: gpd.GeoDataFrame | None = None, **more: str
+) -> bytes:
+    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+        path = Path(folder) / name
+        _write(_frame(of) if frame is None else frame, path, driver, **more)
+        return path.read_bytes()
+
+
+def _write(frame: gpd.GeoDataFrame, path: Path, driver: str, **more: str) -> None:
+    import pyogrio  # noqa: PLC0415
+
+    try:
+        pyogrio.write_dataframe(
+            frame, path, driver=driver, geometry_type="MultiPolygon", promote_to_multi=True, **more
+        )
+    except (OSError, pyogrio.errors.DataSourceError) as error:
+        raise FileProblem(
+            f"The treatment map could not be made in the folder for temporary files ({error}). "
+            "Make room there."
+        ) from error
+
+
+def _taskdata(version: int) -> Callable[[TreatmentMap], bytes]:
+    def make(of: TreatmentMap) -> bytes:
+        return isoxml_taskdata(
+            of.title, of.boundary, of.zones, of.rate_l_ha, of.product, version=version
+        )
+
+    return make
+
+
+#: by ending; one whose ending ends another's comes later
+_FORMATS: dict[str, Callable[[TreatmentMap], bytes]] = {
+    ".v3.xml.zip": _taskdata(3),
+    ".xml.zip": _taskdata(4),
+    ".shp.zip": _shapefile,
+    ".gpkg": _gpkg,
+    ".kml": _kml,
+}

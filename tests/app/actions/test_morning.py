@@ -1,0 +1,33 @@
+"""The morning's buttons: the plan is kept, the route goes along, the report is there."""
+
+from datetime import date
+
+from app.words import texts
+from tests.app.driving import go, opened, tap, texts_of
+
+
+def test_without_a_season_one_button_begins_it(app):
+    assert app.button(key="do_begin").label == texts.STEP_BUTTONS["begin"]
+    app.button(key="do_begin").click().run()
+    assert "has begun" in app.success[0].value
+    assert app.selectbox(key="season").value == "Gate 2026"
+
+
+def test_the_plan_is_kept_once_it_is_used(season_app, season):
+    assert not len(season().kept_route(date(2026, 11, 16)))
+    tap(season_app, "do_plan")
+    assert len(season().kept_route(date(2026, 11, 16))) > 100
+    assert texts.PLAN_USED.format(day="2026-11-16") in season_app.success[0].value
+
+
+def test_the_route_goes_along_as_a_file_where_no_phone_reaches_this_machine(season_app):
+    tap(season_app, "do_send")
+    assert texts.SEND_ALONE in texts_of(season_app)
+    assert season_app.selectbox(key="format").value == "gpx"
+
+
+def test_recording_is_one_button_away(season_app):
+    tap(season_app, "do_record")
+    assert season_app.number_input(key="one_row")
+    go(season_app, "today")
+    assert opened("Gate 2026").get("download_button")

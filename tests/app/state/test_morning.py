@@ -1,0 +1,68 @@
+"""The steps of a morning: which are done, and that one at most comes next."""
+
+from datetime import timedelta
+
+import pytest
+
+from app.state import morning
+from tests.app.chosen import DAY, a_plot, chosen, in_season
+from tests.monitoring.seasons import BEGINS, Insects, a_season
+
+
+@pytest.fixture
+def kept(tmp_path):
+    """Return a season that has just begun."""
+    return a_season(tmp_path / "s.gpkg")
+
+
+def steps_of(choices):
+    steps = morning.steps(choices, choices.plan())
+    assert sum(step.next for step in steps) <= 1
+    return {step.name: step for step in steps}
+
+
+def next_of(choices):
+    return next((name for name, step in steps_of(choices).items() if step.next), None)
+
+
+@pytest.mark.usefixtures("session")
+def test_without_a_season_it_comes_first_to_begin_one():
+    choices = chosen(a_plot())
+    assert next_of(choices) == morning.BEGIN
+    assert set(steps_of(choices)) == {morning.BEGIN, morning.SEND, morning.REPORT}
+    assert choices.on == DAY
+
+
+@pytest.mark.usefixtures("session")
+def test_a_day_goes_from_the_plan_to_the_phone_to_the_records_to_the_report(kept):
+    choices = in_season(kept, BEGINS)
+    assert morning.LOOK_BACK not in steps_of(choices), "nothing was before the first day"
+    assert next_of(choices) == morning.PLAN
+    kept.plan(BEGINS)
+    assert next_of(in_season(kept, BEGINS)) == morning.SEND
+    morning.note(choices, morning.SEND)
+    assert next_of(in_season(kept, BEGINS)) == morning.RECORD
+
+
+@pytest.mark.usefixtures("session")
+def test_a_day_that_is_over_asks_for_its_report_then_for_the_next_day(kept):
+    plants = kept.plan(BEGINS).route.plant
+    kept.record(Insects(kept).look(0, plants), "all of it")
+    choices = in_season(kept, BEGINS)
+    if len(choices.plan().route):
+        pytest.fail("the day must be over when its whole route is recorded")
+    assert next_of(choices) == morning.REPORT
+    morning.note(choices, morning.REPORT)
+    assert next_of(choices) == morning.NEXT_DAY
+
+
+@pytest.mark.usefixtures("session")
+def test_a_plan_that_was_kept_but_not_recorded_comes_first_on_the_day_after(kept):
+    kept.plan(BEGINS)
+    after = in_season(kept, BEGINS + timedelta(days=1))
+    assert morning.left_unsaid(after)
+    assert next_of(after) == morning.LOOK_BACK
+    kept.record(Insects(kept).look(0, kept.kept_route(BEGINS)[:3]), "three of it")
+    after = in_season(kept, BEGINS + timedelta(days=1))
+    assert steps_of(after)[morning.LOOK_BACK].done
+    assert morning.day_before(after).inspected == 3

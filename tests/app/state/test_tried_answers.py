@@ -1,0 +1,48 @@
+"""Each answer to a question about a plot's file is tried: what it leads to can be looked at."""
+
+import re
+
+import pytest
+
+from app.state import brought_files, tried_answers
+from fieldmon.errors import ChoiceNeeded, PlotError
+from tests.app.driving import layer, map_of, opened, square, texts_of, upload, zipped
+
+
+def test_other_problems_have_no_answers_to_try(session):
+    assert tried_answers.tried(None) == ()
+    assert tried_answers.tried(PlotError("It must not be so.")) == ()
+    assert tried_answers.tried(ChoiceNeeded("Which?", "crs", ("EPSG:4326",))) == ()
+    assert session is not None
+
+
+@pytest.fixture(scope="module")
+def asked(tmp_path_factory):
+    """Return a session that is asked for a coordinate system."""
+    grid = square().to_crs("EPSG:2039")
+    data = zipped(tmp_path_factory.mktemp("plot"), grid, without=".prj")
+    app = opened()
+    return upload(app, plot=("plot.zip", data))
+
+
+def test_all_candidates_are_drawn_and_named_by_where_they_lie(asked):
+    assert not asked.exception
+    places = layer(asked, "answer-places")["data"]
+    picks = [button for button in asked.button if button.key.startswith("pick ")]
+    assert len(places) == len(picks) > 4
+    assert "EPSG:2039" in picks[0].label
+    assert "Asia/Jerusalem" in picks[0].label
+    lon, lat = places[0]["m"]
+    assert (lon, lat) == pytest.approx((35.1505, 30.3605), abs=1e-3)
+    assert map_of(asked)["taps"]
+    assert layer(asked, "zones")["data"], "borders show where on earth"
+
+
+def test_one_answer_leads_to_the_plot(asked):
+    assert "Which of these is your plot" in texts_of(asked)
+    pick = next(b for b in asked.button if b.key.startswith("pick ") and "EPSG:2039" in b.label)
+    pick.click().run()
+    assert not asked.exception
+    assert re.match(r"Map of plot .*square", map_of(asked)["alt"])
+    file = asked.session_state["brought"][brought_files.PLOT]
+    assert asked.session_state[f"answers {file.asked}"] == (("crs", "EPSG:2039"),)

@@ -1,0 +1,62 @@
+"""`fieldmon decide`: spray or not, and where."""
+
+import geopandas as gpd
+import pytest
+
+from fieldmon.monitoring import Season
+from tests.cli.estate import BEGINS
+
+CHEAP = ["--per-ha", "1", "--per-zone", "0", "--least-on", "0", "--section-rows", "1"]
+
+
+def test_the_verdict_is_the_seasons_and_what_is_assumed_is_said(run, season):
+    code, out, err, _ = run("decide", season, "--threshold", "30%", "--date", BEGINS)
+    assert code == 0, err
+    kept = Season(season)
+    from datetime import date
+
+    said = kept.verdict(date.fromisoformat(BEGINS), 0.3).sentence()
+    assert out.splitlines()[:2] == ["Treat from 30 % of the plants infested on (your own).", said]
+    assert said.startswith("Do not treat: ")
+    assert "Assumed: 100 a hectare" in out
+
+
+def test_the_zones_are_written_for_the_sprayer(run, season):
+    words = ["decide", season, "--threshold", "0.1%", *CHEAP, "--product", "soap"]
+    code, out, err, made = run(*words, "-o", "z.gpkg", "-o", "z.xml.zip", "--rate", "250")
+    assert code == 0, err
+    assert {path.name for path in made} == {"z.gpkg", "z.xml.zip"}
+    zones = gpd.read_file(season.parent / "z.gpkg")
+    assert set(zones["RATE"]) <= {0.0, 250.0}
+    assert (zones["PRODUCT"] == "soap").all()
+    assert "Zones written to z.xml.zip" in out
+
+
+def test_a_threshold_of_leaves_asks_for_leaves_and_then_answers(run, season):
+    words = ["decide", season, "--threshold", "almond"]
+    code, out, _, _ = run(*words)
+    assert code == 0
+    assert "this threshold is of leaves: look at" in out
+    assert "40 leaves, 20 counted: treat" in run(*words, "--leaves", "40", "--counted", "20")[1]
+    assert (
+        "40 leaves, 1 counted: do not treat" in run(*words, "--leaves", "40", "--counted", "1")[1]
+    )
+    assert "more you can decide" in run(*words, "--leaves", "5", "--counted", "1")[1]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--threshold", "rose"], "must be a share of the plants"),
+        (["--threshold", "5%", "--sure", "0.4"], "between 0.5 and 1"),
+        (["--threshold", "5%", "--works", "0"], "treatment works"),
+        (["--threshold", "5%", "--per-ha", "1e9", "-o", "z.gpkg"], "pays nowhere"),
+        (["--threshold", "5%", *CHEAP, "-o", "z.pdf"], "must be called"),
+        (["--threshold", "5%", "--thresholds", "none.csv"], "none.csv"),
+    ],
+)
+def test_what_cannot_be_is_a_sentence_and_nothing_is_written(run, season, words, said):
+    code, _, err, made = run("decide", season, *words)
+    assert code == 2
+    assert said in err
+    assert not made

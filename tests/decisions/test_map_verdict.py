@@ -1,0 +1,73 @@
+"""Verdicts of the chance map: right as often as they say, neighbours together or not."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from fieldmon.decisions.map_verdict import map_verdict
+from fieldmon.errors import SettingError
+from fieldmon.plot.layout import Planting, rectangle
+
+GRID = rectangle(20, 25, Planting(90.0, 4.0, 2.0))
+ALONE = np.zeros(len(GRID.adjacent.plant))
+
+
+def independent(chance):
+    """Return the chance that two neighbours are both infested, were they to share no fate."""
+    of = np.repeat(np.arange(len(GRID)), np.diff(GRID.adjacent.start))
+    return chance[of] * chance[GRID.adjacent.plant]
+
+
+@pytest.mark.parametrize("level", [0.03, 0.05, 0.08])
+def test_of_independent_plants_the_chance_is_binomial(level):
+    chance = np.full(len(GRID), 0.05)
+    said = map_verdict(GRID, chance, level, independent(chance))
+    true = stats.binom(len(GRID), 0.05).sf(np.ceil(level * len(GRID)) - 1)
+    assert said.chance_above == pytest.approx(true, abs=4 * np.sqrt(0.25 / 400))
+
+
+def test_neighbours_that_share_their_fate_make_it_less_sure():
+    chance = np.full(len(GRID), 0.05)
+    together = map_verdict(GRID, chance, 0.07)
+    apart = map_verdict(GRID, chance, 0.07, independent(chance))
+    assert together.high - together.low > apart.high - apart.low
+
+
+def test_it_treats_leaves_or_looks_on_as_sure_as_asked():
+    def verdict(share, **more):
+        return map_verdict(GRID, np.full(len(GRID), share), 0.05, **more).verdict
+
+    assert verdict(0.3) == "treat"
+    assert verdict(0.005) == "do not treat"
+    assert verdict(0.05) == "look on"
+
+
+def test_a_part_of_the_plot_is_asked_about_by_itself():
+    chance = np.where(np.arange(len(GRID)) < 100, 0.4, 0.001)
+    here = np.arange(len(GRID)) < 100
+    assert map_verdict(GRID, chance, 0.1, plants=here).verdict == "treat"
+    assert map_verdict(GRID, chance, 0.1, plants=~here).verdict == "do not treat"
+
+
+def test_the_sentence_answers_the_question():
+    said = map_verdict(GRID, np.full(len(GRID), 0.3), 0.05).sentence()
+    assert said.startswith("Treat: 30.0% of the plants are believed infested (")
+    assert "treating pays from 5.0% on; the chance that it is so much is 100%." in said
+
+
+def test_the_same_question_has_the_same_answer():
+    chance = np.full(len(GRID), 0.05)
+    assert map_verdict(GRID, chance, 0.05) == map_verdict(GRID, chance, 0.05)
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"level": 0.0}, "between 0 and 1"),
+        ({"level": 0.1, "sure": 0.5}, "between 0.5 and 1"),
+        ({"level": 0.1, "plants": np.zeros(500, bool)}, "the area holds none"),
+    ],
+)
+def test_questions_without_an_answer_are_refused(more, said):
+    with pytest.raises(SettingError, match=said):
+        map_verdict(GRID, np.full(len(GRID), 0.1), **more)

@@ -1,0 +1,193 @@
+"""Sequential plans: published examples, an exact walk over the lattice, and simulated looks."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fieldmon.decisions.sequential import (
+    LEAVE,
+    LOOK_ON,
+    TREAT,
+    IwaoPlan,
+    WaldPlan,
+    after,
+    decided,
+    least_more,
+    tried,
+)
+from fieldmon.decisions.taylor import TaylorLaw
+from fieldmon.errors import SettingError
+
+SPREAD = WaldPlan(2, 4, "negative binomial", k=4.6)
+LEAVES = WaldPlan(0.10, 0.22)
+PLANS = {
+    "presence": LEAVES,
+    "poisson": WaldPlan(2, 4, "poisson"),
+    "negative binomial": SPREAD,
+    "unequal": WaldPlan(0.05, 0.15, treats_wrongly=0.2, leaves_wrongly=0.05),
+}
+
+
+def test_the_published_example_ends_with_treatment_at_the_fifth_count():
+    """The tests of the R package sequential.pops 0.1.1 (Rincon et al. 2025)."""
+    assert decided(SPREAD, [2, 5, 6, 2, 7]) == (TREAT, 5)
+    assert decided(SPREAD, [2, 5, 6, 2]) == (LOOK_ON, 4)
+
+
+@pytest.mark.parametrize("plan", PLANS.values(), ids=PLANS)
+def test_between_the_lines_the_likelihood_ratio_is_between_its_limits(plan):
+    """The lines are those of the ratio of likelihoods, taken here from scipy's distributions."""
+    from scipy import stats
+
+    def ratio(x):
+        if plan.counts == "presence":
+            each = stats.bernoulli(plan.high).logpmf(x) - stats.bernoulli(plan.low).logpmf(x)
+        elif plan.counts == "poisson":
+            each = stats.poisson(plan.high).logpmf(x) - stats.poisson(plan.low).logpmf(x)
+        else:
+            of = [stats.nbinom(plan.k, plan.k / (plan.k + m)) for m in (plan.low, plan.high)]
+            each = of[1].logpmf(x) - of[0].logpmf(x)
+        return np.cumsum(each)
+
+    rng = np.random.default_rng(4)
+    for _ in range(30):
+        x = rng.integers(0, 2 if plan.counts == "presence" else 7, 40)
+        log, total, lines = ratio(x), np.cumsum(x), plan.lines(40)
+        assert (
+            (total <= lines.low) == (log <= np.log(plan.leaves_wrongly / (1 - plan.treats_wrongly)))
+        ).all()
+        assert (
+            (total >= lines.high)
+            == (log >= np.log((1 - plan.leaves_wrongly) / plan.treats_wrongly))
+        ).all()
+
+
+def exact(plan, share, most=1500):
+    """Return chance of no treatment and mean looks of a presence plan, cell by cell."""
+    lines, at = plan.lines(most), {0: 1.0}
+    leaves, looks = 0.0, 0.0
+    for n in range(1, most + 1):
+        new = {}
+        for total, chance in at.items():
+            for x, p in ((0, 1 - share), (1, share)):
+                new[total + x] = new.get(total + x, 0.0) + chance * p
+        at = {}
+        for total, chance in new.items():
+            if total <= lines.low[n - 1]:
+                leaves += chance
+            if lines.low[n - 1] < total < lines.high[n - 1]:
+                at[total] = chance
+            else:
+                looks += n * chance
+    assert sum(at.values()) < 1e-6
+    return leaves, looks
+
+
+@pytest.mark.parametrize("share", [0.03, 0.10, 0.15, 0.22, 0.40])
+def test_walds_curve_is_near_the_exact_one_and_says_no_more_looks(share):
+    leaves, looks = exact(LEAVES, share)
+    said = LEAVES.operating_curve(share)
+    assert said.leaves_it[0] == pytest.approx(leaves, abs=0.05)
+    assert said.looks[0] <= looks
+    assert said.looks[0] == pytest.approx(looks, rel=0.25)
+
+
+def test_the_mistakes_are_no_more_frequent_than_tolerated():
+    assert 1 - exact(LEAVES, LEAVES.low)[0] <= LEAVES.treats_wrongly
+    assert exact(LEAVES, LEAVES.high)[0] <= LEAVES.leaves_wrongly
+
+
+@pytest.mark.parametrize("plan", PLANS.values(), ids=PLANS)
+def test_at_its_two_levels_the_curve_has_the_tolerated_mistakes(plan):
+    curve = plan.operating_curve([plan.low, plan.high])
+    assert curve.leaves_it == pytest.approx([1 - plan.treats_wrongly, plan.leaves_wrongly])
+
+
+@pytest.mark.parametrize("plan", PLANS.values(), ids=PLANS)
+def test_the_curve_falls_and_looks_are_most_between_the_levels(plan):
+    means = np.linspace(plan.low / 4, plan.high * 2, 200)
+    curve = plan.operating_curve(means)
+    assert (np.diff(curve.leaves_it) <= 1e-9).all()
+    assert plan.low < means[np.argmax(curve.looks)] < plan.high
+    assert (curve.looks > 0).all()
+
+
+def test_the_curve_has_no_seam_where_the_ratio_stays_where_it_is():
+    one_more, look = LEAVES.evidence
+    flat = -look / one_more
+    near = LEAVES.operating_curve([flat - 1e-6, flat, flat + 1e-6])
+    assert np.ptp(near.leaves_it) < 1e-4
+    assert np.ptp(near.looks) < 1e-2
+
+
+def test_simulated_counts_agree_with_the_curve():
+    rng = np.random.default_rng(1)
+    for mean in (2.0, 2.8, 4.0):
+        counts = rng.negative_binomial(4.6, 4.6 / (4.6 + mean), (4000, 300))
+        trials = tried(SPREAD, counts)
+        curve = SPREAD.operating_curve(mean)
+        assert trials.treats + trials.leaves == 1.0
+        assert trials.leaves == pytest.approx(curve.leaves_it[0], abs=0.08)
+        assert trials.looks.mean() >= curve.looks[0]
+
+
+def test_looks_at_neighbours_end_in_more_mistakes_than_the_formula_says():
+    """Clustered looks are why a plan is tried on simulated plots too."""
+    rng = np.random.default_rng(2)
+    patches = rng.random((3000, 40)) < LEAVES.low
+    trials = tried(LEAVES, np.repeat(patches, 10, axis=1))
+    assert trials.treats > 1.5 * LEAVES.treats_wrongly
+
+
+@given(st.integers(0, 60), st.integers(0, 60))
+def test_a_verdict_comes_no_sooner_than_said_and_can_come_then(looks, infested):
+    infested = min(looks, infested)
+    more = least_more(LEAVES, looks, infested)
+    lines = LEAVES.lines(looks + more + 1)
+
+    def clear(n, total):
+        return n > 0 and (total <= lines.low[n - 1] or total >= lines.high[n - 1])
+
+    possible = [clear(looks + more, infested), clear(looks + more, infested + more)]
+    assert any(possible)
+    for sooner in range(more):
+        assert not clear(looks + sooner, infested)
+        assert not clear(looks + sooner, infested + sooner)
+
+
+def test_a_total_is_judged_as_its_counts_are_one_by_one():
+    rng = np.random.default_rng(5)
+    for counts in rng.random((40, 25)) < 0.2:
+        for n in range(1, 26):
+            verdict, looks = decided(LEAVES, counts[:n])
+            if looks == n:
+                assert after(LEAVES, n, counts[:n].sum()) == verdict
+
+
+def test_iwaos_lines_are_a_confidence_interval_round_the_threshold():
+    plan = IwaoPlan(5.0, TaylorLaw())
+    lines = plan.lines(400)
+    assert (lines.low + lines.high) / 2 == pytest.approx(5.0 * np.arange(1, 401))
+    error = np.sqrt(TaylorLaw().variance(5.0) / 100)
+    assert (lines.high[99] / 100 - 5.0) / error == pytest.approx(1.645)
+    assert decided(plan, [0] * 10)[0] == LEAVE
+    assert decided(plan, [12] * 40)[0] == TREAT
+    assert decided(IwaoPlan(0.22), [0, 1, 0, 0] * 4) == (LOOK_ON, 16)
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        (lambda: WaldPlan(0.2, 0.1), "must rise from above 0 to below 1"),
+        (lambda: WaldPlan(0.2, 1.1), "must rise"),
+        (lambda: WaldPlan(2, 4, "negative binomial"), "clustering k"),
+        (lambda: WaldPlan(0.1, 0.2, treats_wrongly=0.6), "treats wrongly must lie between 0"),
+        (lambda: IwaoPlan(1.2), "below 1"),
+        (lambda: IwaoPlan(0.2, z=0.0), "z must be above 0"),
+        (lambda: least_more(WaldPlan(0.1, 0.1000001), 0, 0), "further apart"),
+    ],
+)
+def test_plans_that_cannot_be_are_refused(made, said):
+    with pytest.raises(SettingError, match=said):
+        made()

@@ -1,0 +1,58 @@
+"""Thresholds: the published ones with their sources, and one's own."""
+
+import pytest
+
+from fieldmon.decisions.thresholds import Threshold, published, read_thresholds, threshold_of
+from fieldmon.errors import FileProblem, SettingError
+
+
+def test_the_published_ones_are_those_of_their_sources():
+    almond = threshold_of("almond")
+    assert (almond.level, almond.predators) == (0.22, False)
+    assert "Zalom" in almond.source
+    assert threshold_of("almond with predators").level == 0.436
+    assert threshold_of("peppermint").level == 5
+    assert [threshold_of(f"strawberry {when}").level for when in ("before fruit", "in fruit")] == [
+        5,
+        15,
+    ]
+    assert all(one.source for one in published())
+
+
+def test_a_share_of_the_plants_is_a_threshold_of_ones_own():
+    own = threshold_of("2.5 %")
+    assert own == Threshold("2.5 %", "share of plants", 0.025)
+    assert own.sentence() == "Treat from 2.5 % of the plants infested on (your own)."
+    assert threshold_of("peppermint").sentence().startswith("Treat from 5 a leaf on (Tollerup")
+
+
+@pytest.mark.parametrize("said", ["0%", "100%", "120%", "x%", "rose", "5"])
+def test_what_is_no_threshold_is_refused(said):
+    with pytest.raises(SettingError, match="threshold"):
+        threshold_of(said)
+
+
+def test_ones_own_are_read_from_a_file(tmp_path):
+    path = tmp_path / "own.csv"
+    path.write_text("# ours\nname,measure,level,source\ntomato,share of plants,0.04,our adviser\n")
+    (own,) = read_thresholds(path)
+    assert threshold_of("tomato", [own]) is own
+    assert own.source == "our adviser"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("name,level\na,1\n", "no measure and no source"),
+        ("name,measure,level,source\na,share of plants,much,b\n", "threshold 1: the level must be"),
+        ("name,measure,level,source\na,mites,1,b\n", "threshold 1: .*must count one of"),
+        ("name,measure,level,source\na,share of plants,4,b\n", "must be above 0 and below 1"),
+    ],
+)
+def test_a_file_that_is_wrong_says_where(tmp_path, text, said):
+    path = tmp_path / "own.csv"
+    path.write_text(text)
+    with pytest.raises(FileProblem, match=f"own.csv.*{said}"):
+        read_thresholds(path)
+    with pytest.raises(FileProblem, match=r"none.csv"):
+        read_thresholds(tmp_path / "none.csv")

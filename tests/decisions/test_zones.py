@@ -1,0 +1,143 @@
+"""Zones: of all switchings of a section none is better, and every stretch can be switched."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fieldmon.decisions.zones import Sprayer, TreatmentCosts, Zones, best_zones, outlines
+from fieldmon.errors import SettingError
+from fieldmon.plot.layout import Planting, rectangle
+from tests.crooked import crooked_grids
+
+ROW = rectangle(1, 9, Planting(90.0, 4.0, 2.0))
+CHEAP = TreatmentCosts(per_ha=500.0, per_zone=0.3, infested_plant_day=0.2, days=10.0, works=1.0)
+
+
+def value(on, gain, sprayer, per_zone, step_m=2.0):
+    """Return what a switching of one row is worth, or None if it cannot be switched."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], on, [0]])))
+    starts, ends = edges[::2], edges[1::2]
+    whole = len(on) * step_m
+    if any(
+        (b - a) * step_m < min(sprayer.least_on_m, whole) for a, b in zip(starts, ends, strict=True)
+    ):
+        return None
+    if any(
+        (b - a) * step_m < sprayer.least_off_m for a, b in zip(ends[:-1], starts[1:], strict=True)
+    ):
+        return None
+    return gain[on.astype(bool)].sum() - per_zone * len(starts)
+
+
+@given(
+    st.lists(st.floats(0.0, 0.9), min_size=9, max_size=9),
+    st.sampled_from([0.0, 2.0, 5.0, 8.0, 40.0]),
+    st.sampled_from([0.0, 2.0, 6.0]),
+)
+def test_no_other_switching_of_a_row_is_worth_more(chance, least_on_m, least_off_m):
+    sprayer, chance = Sprayer(1, least_on_m, least_off_m), np.array(chance)
+    zones = best_zones(ROW, chance, sprayer, CHEAP)
+    gain = chance * CHEAP.per_infested_plant - CHEAP.per_ha * 8.0 / 10_000
+    every = (np.array(on) for on in product([0, 1], repeat=9))
+    best = max(v for on in every if (v := value(on, gain, sprayer, CHEAP.per_zone)) is not None)
+    mine = value(zones.treated.astype(int), gain, sprayer, CHEAP.per_zone)
+    assert mine is not None, "it cannot be switched so"
+    assert mine == pytest.approx(best)
+    assert zones.saved - zones.cost == pytest.approx(mine)
+
+
+@given(crooked_grids(60), st.integers(0, 4), st.integers(0, 1000))
+def test_areas_and_plants_add_up_on_any_plot(grid, rows, seed):
+    chance = np.random.default_rng(seed).random(len(grid)) ** 8
+    zones = best_zones(grid, chance, Sprayer(rows), TreatmentCosts(per_ha=300.0))
+    once = grid.vine == np.arange(len(grid))
+    assert zones.inside + zones.outside == pytest.approx(chance[once].sum())
+    assert zones.plot_m2 == pytest.approx(once.sum() * grid.row_spacing_m * grid.plant_spacing_m)
+    assert ((zones.zone >= 0) == zones.treated).all()
+    assert (zones.treated == zones.treated[grid.vine]).all()
+    numbers = np.unique(zones.zone[zones.treated])
+    assert numbers.tolist() == list(range(len(zones)))
+
+
+@given(crooked_grids(60), st.integers(0, 1000))
+def test_a_stretch_is_one_section_and_long_enough(grid, seed):
+    chance = np.random.default_rng(seed).random(len(grid)) ** 6
+    sprayer = Sprayer(2, least_on_m=7.0, least_off_m=5.0)
+    zones = best_zones(grid, chance, sprayer, TreatmentCosts(per_ha=200.0))
+    line = grid.row_line[grid.row]
+    for k in range(len(zones)):
+        mine = zones.zone == k
+        assert np.ptp(line[mine] // 2) == 0
+        section = line // 2 == line[mine][0] // 2
+        long_m = np.ptp(grid.along_m[mine]) + grid.plant_spacing_m
+        whole_m = np.ptp(grid.along_m[section]) + grid.plant_spacing_m
+        # steps are a plant's spacing: ends may lie a step apart from the plants'
+        assert long_m > min(sprayer.least_on_m, whole_m) - 2 * grid.plant_spacing_m
+
+
+def clustered(grid, seed=3):
+    rng = np.random.default_rng(seed)
+    chance = np.full(len(grid), 2e-4)
+    for centre in rng.integers(0, len(grid), 6):
+        apart = np.hypot(*(grid.xy_m - grid.xy_m[centre]).T)
+        chance += 0.5 * np.exp(-apart / 4.0)
+    return np.minimum(chance, 0.95)
+
+
+def test_clusters_are_treated_with_less_than_two_fifths_of_the_area():
+    """The goal: at most 40 % of the whole field, where infested plants stand in clusters."""
+    grid = rectangle(60, 60, Planting(90.0, 4.0, 3.0))
+    chance = clustered(grid)
+    zones = best_zones(
+        grid, chance, Sprayer(2, 6.0, 6.0), TreatmentCosts(per_ha=10.0, per_zone=0.1)
+    )
+    assert zones.inside > 0.8 * chance.sum()
+    assert zones.m2 < 0.4 * zones.plot_m2
+
+
+def test_a_knapsack_treats_the_plants_that_are_worth_it_one_by_one():
+    grid = rectangle(5, 8, Planting(90.0, 4.0, 2.0))
+    chance = np.zeros(40)
+    chance[[3, 17, 18]] = 0.8
+    zones = best_zones(grid, chance, Sprayer(0), CHEAP)
+    assert np.flatnonzero(zones.treated).tolist() == [3, 17, 18]
+    assert len(zones) == 3
+
+
+def test_where_nothing_is_worth_it_nothing_is_treated():
+    zones = best_zones(ROW, np.full(9, 1e-6))
+    assert len(zones) == 0
+    assert zones.sentence().startswith("Treat nowhere")
+    assert (
+        "Treat 0.01 ha in 1 zone, 100% of the plot"
+        in best_zones(ROW, np.full(9, 0.9), Sprayer(1), CHEAP).sentence()
+    )
+
+
+def test_outlines_hold_their_plants_and_no_other():
+    grid = rectangle(6, 20, Planting(90.0, 4.0, 2.0))
+    chance = np.zeros(120)
+    chance[24:32] = 0.9
+    zones = best_zones(grid, chance, Sprayer(1), CHEAP)
+    (area,) = outlines(grid, zones)
+    inside = shapely.contains_xy(area, *grid.lonlat().T)
+    assert (inside == zones.treated).all()
+    assert shapely.area(grid.frame.geometry_m(area)) == pytest.approx(zones.m2, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "made",
+    [lambda: Sprayer(-1), lambda: TreatmentCosts(per_ha=-2.0), lambda: TreatmentCosts(works=0.0)],
+)
+def test_what_cannot_be_is_refused(made):
+    with pytest.raises(SettingError, match="must be"):
+        made()
+
+
+def test_it_says_itself_in_a_line():
+    assert isinstance(best_zones(ROW, np.full(9, 0.5)), Zones)
+    assert repr(best_zones(ROW, np.zeros(9))) == "<Zones: 0 zones of 0 m2>"

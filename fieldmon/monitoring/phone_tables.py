@@ -6,9 +6,9 @@ clauses 7.2 to 7.4 and 8.1), so that other programs show them with the plant.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create
+from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create, insert, touch
 
 if TYPE_CHECKING:
     import sqlite3
@@ -137,3 +137,65 @@ def _relate(db: sqlite3.Connection) -> None:
         "INSERT INTO gpkg_extensions VALUES (?, NULL, 'gpkg_related_tables', ?, 'read-write')",
         [("gpkgext_relations", _STANDARD), ("inspections_photos", _STANDARD)],
     )
+
+
+# -- two copies of a season
+
+_INSPECTION = "i.digest, b.at, b.source, b.who"
+_OF_TELLING = "FROM inspections i JOIN batches b ON b.fid = i.batch WHERE i."
+
+#: rows of a table by the names of its columns
+Rows = list[dict[str, Any]]
+
+
+def brought(db: sqlite3.Connection) -> dict[str, Rows]:
+    """Return what phones brought to a copy; tellings by what their inspections say.
+
+    Numbers of inspections change when copies are merged: they are known by digest and batch.
+    """
+    found = {table.name: _rows(db, table) for table in TABLES}
+    wanted = f"SELECT {_INSPECTION} {_OF_TELLING}fid = ?"
+    for row in found["tellings"]:
+        row["inspection"] = db.execute(wanted, (row["inspection"],)).fetchone()
+    return found
+
+
+def bring_together(db: sqlite3.Connection, copies: list[dict[str, Rows]]) -> None:
+    """Write what phones brought to either copy, once each; what either took back is so."""
+    ends: dict[str, list[str]] = {}
+    for copied in copies:
+        for row in copied["scouts"]:
+            ends.setdefault(row["key_digest"], []).extend([row["ended"]] if row["ended"] else [])
+    wanted = f"SELECT i.fid {_OF_TELLING}digest = ? AND b.at = ? AND b.source = ? AND b.who = ?"
+    for table, known_by in zip(TABLES, ("key_digest", "id", "photo"), strict=True):
+        rows = {row[known_by]: row for copied in reversed(copies) for row in copied[table.name]}
+        made = []
+        for key, row in sorted(rows.items()):
+            if table is SCOUTS:
+                row["ended"] = min(ends[key], default=None)
+            elif table is TELLINGS and row["inspection"] is not None:
+                (row["inspection"],) = db.execute(wanted, row["inspection"]).fetchone() or (None,)
+            made.append(tuple(row[name] for name in table.names))
+        db.execute(f"DELETE FROM {table.name}")  # noqa: S608 - names of ours
+        insert(db, table, made)
+        touch(db, table.name)
+    take_back(db)
+
+
+def take_back(db: sqlite3.Connection) -> list[tuple[int, int]]:
+    """Mark as undone what a telling of the same person takes back, whichever came first.
+
+    Return the batch and the day of each.
+    """
+    rows = db.execute(
+        "SELECT i.fid, i.batch, i.day FROM tellings u JOIN tellings f ON f.id = u.undoes AND "
+        "f.scout = u.scout JOIN inspections i ON i.fid = f.inspection "
+        "WHERE u.undoes NOTNULL AND i.undone = 0"
+    ).fetchall()
+    db.executemany("UPDATE inspections SET undone = 1 WHERE fid = ?", [row[:1] for row in rows])
+    return [(batch, day) for _, batch, day in rows]
+
+
+def _rows(db: sqlite3.Connection, table: GeoPackageTable) -> Rows:
+    found = db.execute(f"SELECT {', '.join(table.names)} FROM {table.name} ORDER BY {table.key}")  # noqa: S608
+    return [dict(zip(table.names, row, strict=True)) for row in found]

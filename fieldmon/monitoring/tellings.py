@@ -266,14 +266,7 @@ def _keep(
 
 
 def _take_back(change: SeasonChange) -> None:
-    """Mark as undone what a telling of the same person takes back, whichever came first."""
-    rows = change.db.execute(
-        "SELECT i.fid, i.batch, i.day FROM tellings u JOIN tellings f ON f.id = u.undoes AND "
-        "f.scout = u.scout JOIN inspections i ON i.fid = f.inspection "
-        "WHERE u.undoes NOTNULL AND i.undone = 0"
-    ).fetchall()
-    for fid, batch, day in rows:
-        change.db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (fid,))
+    for batch, day in phone_tables.take_back(change.db):
         batches.close_if_empty(change.db, batch)
         change.reaches(day)
 

@@ -8,6 +8,7 @@ from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.photos import Photo, keep, photos_of, picture
 from fieldmon.monitoring.salvage import salvage
 from fieldmon.monitoring.tellings import take
+from tests.monitoring.rules import keeps_the_rules
 from tests.monitoring.seasons import BEGINS, state
 from tests.monitoring.telling import JPEG, NOW, a_telling, told, without_phones
 
@@ -40,3 +41,31 @@ def test_what_phones_brought_is_saved_from_a_damaged_file(path, tmp_path):
     assert told(rescued) == told(season)
     assert picture(rescued, "one") == ("image/jpeg", JPEG)
     assert [photo.plant for photo in photos_of(rescued)] == [3]
+
+
+def test_what_phones_brought_to_two_copies_is_in_the_merged_one_once_each(path, tmp_path):
+    here = Season(path)
+    ann = scouts.let_in(here, "Ann")
+    both, taken_back = a_telling(30), a_telling(31)
+    take(here, ann, [both, taken_back], NOW)
+    there = Season(shutil.copy(path, tmp_path / "season.gpkg.copy"))
+    ben = scouts.let_in(here, "Ben")
+    one = a_telling(32, 1)
+    take(here, ben, [one], NOW)
+    keep(here, ben, Photo("one", one.id, JPEG, NOW))
+    with there.store.writing() as db:  # a copy knows no key of another file
+        db.execute("UPDATE scouts SET ended = '2026-04-06'")
+    cem = scouts.let_in(there, "Ann")
+    other = a_telling(33, 1)
+    take(there, cem, [other, a_telling(None, None, undoes=taken_back.id)], NOW)
+    keep(there, cem, Photo("two", other.id, JPEG + b"2", NOW))
+    here.merge(there)
+    ids, rows = told(here)
+    assert len(ids) == len(set(ids)) == 5
+    assert sorted(row[1] for row in rows) == [30, 32, 33]
+    assert {photo.plant: picture(here, photo.id)[1] for photo in photos_of(here)} == {
+        32: JPEG, 33: JPEG + b"2"
+    }  # fmt: skip
+    assert [scout.name for scout in scouts.scouts_of(here)].count("Ben") == 1
+    assert here.verify() == ()
+    keeps_the_rules(path)

@@ -19,7 +19,7 @@ FLOORS = [
     {"samplers"},
     {"planning"},
     {"simulation", "monitoring"},
-    {"studies", "reports"},
+    {"studies", "reports", "drive"},
     {"__init__"},
     {"cli"},
     {"app"},
@@ -50,6 +50,9 @@ ALONE = {
     "cryptography": {"app"},
     "starlette": {"app"},
     "jsonschema": {"app"},
+    "mujoco": {"drive"},
+    "rosbags": {"drive"},
+    "paho": {"drive"},
 }
 FILES = sorted((*(ROOT / "fieldmon").rglob("*.py"), *(ROOT / "app").rglob("*.py")))
 

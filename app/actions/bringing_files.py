@@ -8,6 +8,7 @@ import streamlit as st
 
 from fieldmon.errors import ChoiceNeeded
 
+from ..show import answers_map
 from ..state import brought_files, rasters
 from ..state.brought_files import PLANTS, PLOT, RECORDS, answers, brought
 from ..words import texts
@@ -94,10 +95,11 @@ def say(
     """
     asking = brought_files.asking() if asked is None else asked
     if isinstance(error, ChoiceNeeded):
+        tried = tried if any(one.plots for one in tried) else ()
         if tried:
             st.markdown(f"### {texts.CHOOSE_ON_MAP}")
             with st.expander(texts.CHOOSE):
-                st.markdown(of_error(error))
+                st.warning(of_error(error))
         else:
             st.warning(of_error(error))
         _ask(error, asking, {one.answer: one for one in tried})
@@ -134,6 +136,13 @@ def _label(number: int, answer: str, one: TriedAnswer | None) -> str:
 
 def _answer_from(key: str, option: str, widget: str) -> None:
     brought_files.answer(key, option, st.session_state.get(widget) or "")
+
+
+def take_tapped(problem: FieldmonError, tried: tuple[TriedAnswer, ...], layer: str, n: int) -> None:
+    """Take the answer that was tapped on the map (for callbacks)."""
+    answer = answers_map.tapped(tried, layer, n)
+    if isinstance(problem, ChoiceNeeded) and answer is not None:
+        brought_files.answer(brought_files.asking(), problem.option, answer)
 
 
 def _offer_undo(key: str) -> None:

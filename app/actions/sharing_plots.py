@@ -13,7 +13,7 @@ import streamlit as st
 from fieldmon.io.writers.geojson import RouteNotes, route_geojson
 
 from ..state import shared_plots, widget_memory
-from ..state.shared_plots import Crew, SharedPlots
+from ..state.shared_plots import EstateCrew, SharedPlots
 from ..words import texts
 from ..words.language import number
 
@@ -60,8 +60,8 @@ def show(plots: list[PlotState]) -> SharedPlots:
     return made
 
 
-def _crew() -> Crew:
-    usual = Crew()
+def _crew() -> EstateCrew:
+    usual = EstateCrew()
     columns = st.columns(2)
     chosen = {}
     for k, (name, (least, most, step)) in enumerate(_LIMITS.items()):
@@ -70,10 +70,12 @@ def _crew() -> Crew:
                 st.number_input, texts.PLAN_ALL_CREW[name], least, most, step=step,
                 key=f"crew_{name}", default=getattr(usual, name),
             )  # fmt: skip
-    return Crew(**{name: getattr(usual, name) if v is None else v for name, v in chosen.items()})
+    return EstateCrew(
+        **{name: getattr(usual, name) if v is None else v for name, v in chosen.items()}
+    )
 
 
-def _say(made: SharedPlots, crew: Crew) -> None:
+def _say(made: SharedPlots, crew: EstateCrew) -> None:
     routes = [one.plan.route for one in made.turns]
     plants = sum(len(route) for route in routes)
     finds = sum(route.expected_finds for route in routes)

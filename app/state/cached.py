@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from shapely import MultiLineString
 
     from fieldmon.compute.units import Units
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, Source
@@ -262,6 +263,12 @@ def day_figures(path: str, revision: str, day: str, _season: Season) -> DayFigur
 def progress(path: str, revision: str, day: str, _season: Season) -> Progress:  # noqa: ARG001
     """Return how far the inspections are after a day of a season."""
     return _season.progress(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def learnt(path: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:  # noqa: ARG001
+    """Return what the inspections up to a day of a season tell of the insects."""
+    return _season.learnt(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)

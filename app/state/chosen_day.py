@@ -16,6 +16,7 @@ from . import cached
 
 if TYPE_CHECKING:
     from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.observations import Observations
     from fieldmon.monitoring import DayFigures, Progress
     from fieldmon.planning.plan import DayPlan
@@ -123,6 +124,11 @@ def counts(choices: Choices) -> tuple[cached.Array, cached.Array]:
 def progress(choices: Choices) -> Progress:
     """Return how far a season's inspections are."""
     return cached.progress(choices.key, choices.revision, choices.day, choices.season)
+
+
+def learnt(choices: Choices) -> tuple[Learnt, ...]:
+    """Return what a season's inspections tell of the insects."""
+    return cached.learnt(choices.key, choices.revision, choices.day, choices.season)
 
 
 def figures(choices: Choices, day: str) -> DayFigures:

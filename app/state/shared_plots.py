@@ -39,7 +39,7 @@ DUE_DAYS = 3
 
 
 @dataclass(frozen=True)
-class Crew:
+class EstateCrew:
     """Who shares the plots, and how long going from one plot to the next takes."""
 
     robots: int = 1
@@ -101,7 +101,7 @@ def due(plots: Iterable[PlotState]) -> list[PlotState]:
     return wanted or [one for one in some if one.days_since]
 
 
-def planned(plots: list[PlotState], crew: Crew, progress: Progress) -> SharedPlots:
+def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> SharedPlots:
     """Return the plan of these plots for a crew."""
     ready, problems = [], []
     for k, plot in enumerate(plots):

@@ -78,6 +78,7 @@ ASSUMED = "\\* assumed: {what}."
 ASSUMED_WHAT = {
     "row_spacing_m": "rows {value} apart",
     "plant_spacing_m": "plants {value} apart",
+    "half_canopy_m": "plants reach {value} to each side",
     "background_chance": "{value} % of plants infested where nothing is known",
     "speed_m_s": "{value} km/h",
     "detects": "an inspection finds {value} % of what is there",
@@ -302,7 +303,8 @@ TODAY_DONE = Plural(
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
 #: as `fieldmon.io.writers.handoff` says them, which takes long to load
 READERS = {
-    "nav2": "robots with Nav2 (ROS 2)", "waypoints": "robots of any kind",
+    "nav2": "robots with Nav2 (ROS 2)", "nav2-pauses": "robots with Nav2 and a plugin for pauses",
+    "waypoints": "robots of any kind",
     "geojson": "QGIS, phones, web maps", "gpkg": "QGIS, QField, ArcGIS",
     "shapefile": "older map programs and consoles", "csv": "spreadsheets",
     "kml": "Google Earth, map apps on phones", "gpx": "GPS handhelds and hiking apps",
@@ -495,6 +497,17 @@ ROW_NEVER, ROW_TODAY = "never", "today"
 NEVER_ROWS = Plural(
     "{n} of {all} rows was never inspected.", "{n} of {all} rows were never inspected."
 )
+LEARNT_TITLE = "What the inspections tell of the insects"
+LEARNT = {
+    "detection": "An inspection finds {value} of what is there ({low} to {high}).",
+    "infested at the start": "{value} plants were infested at the start ({low} to {high}).",
+    "arrivals a night": "{value} plants a night are infested from outside ({low} to {high}).",
+    "jumps beyond neighbours": (
+        "They jump farther than to the next plant: with a chance of {value}."
+    ),
+    "length of jumps": "If so, jumps go {value} plants on average ({low} to {high}).",
+}
+NOT_LEARNT = "This season traces finds to the plants next to them only, as it did when it began."
 
 # -- scouting
 SCOUT_NEEDS = (

@@ -44,6 +44,13 @@ class ChangeOptions:
     spread: Annotated[
         float | None, typer.Option(help="Chance a night to infest a neighbour, as believed.")
     ] = None
+    trace: Annotated[
+        bool | None,
+        typer.Option(
+            "--trace/--no-trace",
+            help="Trace finds beyond the plants next to them, and learn how far insects jump.",
+        ),
+    ] = None
 
     def changed(self, settings: MonitoringSettings) -> MonitoringSettings:
         """Return a season's settings as they are to be."""
@@ -64,7 +71,9 @@ class ChangeOptions:
             new = replace(new, starts=clock(self.start))
         if self.spread is not None:
             rate = replace(settings.belief.spread, rate_per_day=self.spread)
-            new = replace(new, belief=replace(settings.belief, spread=rate))
+            new = replace(new, belief=replace(new.belief, spread=rate))
+        if self.trace is not None:
+            new = replace(new, belief=replace(new.belief, traces=self.trace))
         return new
 
     def _of_several(self, settings: MonitoringSettings) -> MonitoringSettings:

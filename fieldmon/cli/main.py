@@ -11,6 +11,7 @@ from fieldmon.cli.change import change
 from fieldmon.cli.compare import compare
 from fieldmon.cli.correct import correct
 from fieldmon.cli.decide import decide
+from fieldmon.cli.drive import drive
 from fieldmon.cli.init import init
 from fieldmon.cli.merge import merge
 from fieldmon.cli.plan import plan
@@ -19,6 +20,7 @@ from fieldmon.cli.record import record
 from fieldmon.cli.report import report
 from fieldmon.cli.salvage import salvage
 from fieldmon.cli.simulate import simulate
+from fieldmon.cli.stand_in import stand_in
 from fieldmon.cli.status import status
 from fieldmon.cli.treat import treat
 from fieldmon.cli.undo import undo
@@ -53,6 +55,8 @@ app.command()(plan)
 app.command()(init)
 app.command()(simulate)
 app.command()(compare)
+app.command()(drive)
+app.command("stand-in")(stand_in)
 
 
 def main() -> None:

@@ -50,7 +50,7 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
             plot, chance, members, progress=count, passing_m=options.passing or 0.0
         )
     _tell(planned, begins)
-    assumed = (one for member in members for one in assumed_by((), prior, member.robot))
+    assumed = (one for member in members for one in assumed_by((), prior, member.robot, plot.grid))
     tell_assumed({str(one): one for one in assumed}.values())
     _write(planned, begins, plot.field.name, files)
     write_chance_map(options.chance_map, plot, chance)

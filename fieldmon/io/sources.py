@@ -63,6 +63,7 @@ class PlantingChoices:
     plant_spacing_m: float | None = None
     headland_m: float | None = None
     faces: int | None = None
+    half_canopy_m: float | None = None
 
     def given(self) -> dict[str, float]:
         """Return what is said, by name."""

@@ -13,9 +13,12 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
+from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.plot.travel import driven_s, robot_clock
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
@@ -45,12 +49,21 @@ class BeliefSettings:
         outside. The thesis's 30 to 80 % are meant for its simulator.
     treated
         Whether plants found infested are treated at once (the thesis's rule), or only flagged.
+    traces
+        Whether finds are traced beyond the plants next to them, and the season's own inspections
+        tell how far insects jump, how many arrive and how many are overlooked. Seasons begun
+        before that was known go on without.
     """
 
     spread: Spread = field(
         default_factory=lambda: Spread(rate_per_day=0.02, arrivals_per_day=0.0002)
     )
     treated: bool = True
+    traces: bool = True
+
+    def first_morning(self, grid: PlantGrid, chance: NDArray[np.float64]) -> Belief:
+        """Return what is believed at first, from a chance map ``(n,)``."""
+        return (TracedPairs if self.traces else PairApproximation).of(grid, chance)
 
     def evening(
         self,
@@ -187,7 +200,11 @@ class History:
         evening = self.evening(morning, day)
         if not self.belief.treated:  # what was found is known: it is not out there any more
             evening = evening.treated(np.where(self.states(day) == PRESENT, 0.0, 1.0))
-        return estimate_plot(self.grid, evening.chance, evening.pair_chance)
+        return estimate_plot(self.grid, evening.chance, evening.pair_chance, doubt=evening.doubt)
+
+    def learnt(self, morning: Belief, day: int) -> tuple[Learnt, ...]:
+        """Return what the inspections up to the evening of a day tell of the insects."""
+        return learnt_from(self.evening(morning, day), self.detection)
 
     def last_inspected(self, day: int) -> NDArray[np.int32]:
         """Return ``(n,)`` the day of each plant's last inspection up to `day`, or `NEVER`."""
@@ -246,6 +263,7 @@ class History:
             robot=robot,
             chance=believed.chance,
             pair_chance=believed.pair_chance,
+            traces=believed.traces,
             last_inspected=last,
             day=day,
             at=int(today.plant[-1]) if len(today) else resting,
@@ -302,5 +320,6 @@ def _gone_s(shift: Shift, today: Inspections, resting: int, now_s: float | None)
         return max(0.0, float(today.second[-1]) - shift.starts_s)
     robot = shift.robot
     clock = robot_clock(robot, robot.day_s)
-    drive_s = driven_s(shift.aisles.travel, clock, np.append(np.int64(resting), today.plant))
+    travel = shift.aisles.for_robot(robot).travel
+    drive_s = driven_s(travel, clock, np.append(np.int64(resting), today.plant))
     return drive_s + robot.visit_s * len(today)

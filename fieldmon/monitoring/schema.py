@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 5
+VERSION = 6
 #: the first fieldmon that reads files of this version
 NEEDS = "0.2"
 #: what the settings say of a team where there is none
@@ -188,6 +188,12 @@ HOT_SPOTS = GeoPackageTable(
     "MULTIPOLYGON",
     "Where finds cluster more than chance allows, as of now.",
 )
+LEARNT = GeoPackageTable(
+    "learnt",
+    ("name TEXT NOT NULL UNIQUE", "value REAL", "low REAL", "high REAL"),
+    None,
+    "What the inspections so far tell of the insects: best guess and interval of 90 %.",
+)
 OUTSIDE_CHANGES = GeoPackageTable(
     "outside_changes",
     (
@@ -211,7 +217,7 @@ CHANCE = GeoPackageTable(
 TABLES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
     *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
-    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES),
+    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT),
     *phone_tables.TABLES,
 )
 #: layers from which everything else follows: what must be saved from a damaged file
@@ -323,8 +329,13 @@ def _teams_come(db: sqlite3.Connection) -> None:
     )
 
 
+def _estimates_come(db: sqlite3.Connection) -> None:
+    """Version 4 did not keep what inspections tell of the insects."""
+    create(db, LEARNT)
+
+
 def _phones_come(db: sqlite3.Connection) -> None:
-    """Version 4 knew of no phones."""
+    """Version 5 knew of no phones."""
     phone_tables.phones_come(db)
     add_photo_styles(db)
 
@@ -334,5 +345,6 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     1: _treatments_come,
     2: _changes_are_noticed,
     3: _teams_come,
-    4: _phones_come,
+    4: _estimates_come,
+    5: _phones_come,
 }

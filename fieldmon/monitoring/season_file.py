@@ -6,6 +6,7 @@ import threading
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +18,6 @@ from fieldmon.decisions.map_verdict import map_verdict
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.hotspots import record_states
 from fieldmon.infestation.observations import Observations, usable
-from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.monitoring import (
@@ -27,6 +27,7 @@ from fieldmon.monitoring import (
     inspection_table,
     merging,
     outside_changes,
+    qgis_project,
     routes,
     settings_log,
     tables,
@@ -57,7 +58,6 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable, Iterator
     from datetime import date, time
-    from pathlib import Path
 
     from numpy.typing import NDArray
     from shapely import MultiPolygon
@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.tables import KeptMessage
     from fieldmon.planning.members import TeamMember
@@ -177,6 +178,7 @@ class Season:
             settings_log.write(db, as_json(settings))
             set_meta(db, "revision", "0")
             derived_layers.refresh(db, plot, history, first.morning)
+            qgis_project.keep(db, Path(path).name)
         return cls(path)
 
     @property
@@ -203,7 +205,7 @@ class Season:
     def assumed(self) -> tuple[Assumed, ...]:
         """Return what the season's figures rest on though nobody said it."""
         settings = self.settings
-        made = assumed_by(self.plot.assumed, settings.prior, settings.robot)
+        made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
         rate = settings.belief.spread.rate_per_day
         if rate != BeliefSettings().spread.rate_per_day:
             return made
@@ -399,6 +401,7 @@ class Season:
         who: str = "",
         *,
         confirmed: bool = False,
+        into: int | None = None,
     ) -> Recorded:
         """Add inspections; those that the season holds already change nothing.
 
@@ -410,6 +413,8 @@ class Season:
             File or screen it comes from; the person, where the inspections name none.
         confirmed
             Whether results count that contradict what is recorded of the same plant and day.
+        into
+            Batch to add them to, as `Recorded` numbers it; None: a new one.
 
         Raises
         ------
@@ -425,12 +430,14 @@ class Season:
             if not confirmed:
                 contradictions(inspections, held).refuse(self.label)
             news = inspections.take(~said_before(inspections, held))
-            batch = batches.begin(db, "findings", source, who)
+            batch = batches.begin(db, "findings", source, who) if into is None else into
+            if into is not None:
+                batches.must_count(db, into)
             made = inspection_table.rows(
                 news, self.plot.grid, self.label, _settings(db), (batch, who)
             )
             new = inspection_table.store(db, made)
-            batches.end(db, batch, new)
+            batches.end(db, batch, new, grows=into is not None)
             if new:
                 self._refresh(db, _settings(db).day(inspections.date.min().item()))
         return Recorded(batch if new else None, new, len(inspections) - new)
@@ -553,6 +560,13 @@ class Season:
             day = contents.settings.day(on)
             return Status.of(contents.history, contents.morning(day), day)
 
+    def learnt(self, on: date) -> tuple[Learnt, ...]:
+        """Return what the inspections up to the evening of a day tell of the insects."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.learnt(contents.morning(day), day)
+
     def progress(self, on: date) -> Progress:
         """Return how far the inspections are after a day's work; nothing is estimated for it."""
         now = self._now()
@@ -650,13 +664,14 @@ class Season:
         self._last = None
         now = self._read(db)
         derived_layers.refresh(db, self.plot, now.history, now.morning, since)
+        qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
 
 
 def _nothing_yet(
     plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
 ) -> History:
-    belief = PairApproximation.of(plot.grid, prior)
+    belief = settings.belief.first_morning(plot.grid, prior)
     known = usable(records, np.datetime64(settings.begins, "D")).observations
     return History(
         plot.grid,

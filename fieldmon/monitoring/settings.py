@@ -151,7 +151,8 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
         plain = {name: json.loads(text) for name, text in parts.items()}
         season, chooses = plain["season"], plain["sampler"]
         team = plain.get("team", {"members": []})
-        belief = plain["beliefs"]
+        # before finds were traced, seasons knew of neighbours only, and go on so
+        belief = {"traces": False, **plain["beliefs"]}
         return MonitoringSettings(
             begins=date.fromisoformat(season["begins"]),
             starts=time.fromisoformat(season["starts"]),

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.planning.team import TeamMember
+    from fieldmon.planning.members import TeamMember
 
     Float = NDArray[np.float64]
 

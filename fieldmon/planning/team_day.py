@@ -26,11 +26,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.tracing import Traces
     from fieldmon.planning.members import Teamwork
     from fieldmon.planning.sections import AisleWorth
     from fieldmon.plot.passing import Leg, Legs
     from fieldmon.samplers.base import Sampler, Scene, WouldFind
 
+    #: chances of plants and of pairs, and how far insects jump
+    _Believed = tuple[NDArray[np.float64], NDArray[np.float64] | None, Traces | None]
     #: what is believed after inspections: plants, whether each was a find, and its detection
     Learn = Callable[[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]], Belief]
 
@@ -193,7 +196,7 @@ class _Day:
         ]
         first = team[0].scene
         self.today: NDArray[np.bool_] = first.last_inspected == first.day
-        self.chance, self.pair_chance = first.chance, first.pair_chance
+        self.believed: _Believed = first.chance, first.pair_chance, first.traces
         self.known: list[_Told] = []
         self.valued: tuple[tuple[float, int], AisleWorth] | None = None
         self.events: list[tuple[float, int, int, int, _Event]] = []
@@ -370,7 +373,7 @@ class _Day:
         for told in news:
             self.workers[told.k].told += 1
         self.known += news
-        self.chance, self.pair_chance = self._after(self.known)
+        self.believed = self._after(self.known)
         if not self._shared_anew(now_s):
             for other in self.workers:
                 near = self._beside([t.plant for t in news if t.found and t.k != other.k])
@@ -385,12 +388,12 @@ class _Day:
             if stop.leave_s <= now_s + _ROUNDING_S
         ]
 
-    def _after(self, told: list[_Told]) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+    def _after(self, told: list[_Told]) -> _Believed:
         """Return what is believed after some stops, in order of the clock."""
         assert self.learn is not None  # noqa: S101 - asked before
         _, _, plants, found, detects = (np.array(column) for column in zip(*told, strict=True))
         belief = self.learn(plants.astype(np.int32), found, detects)
-        return belief.chance, belief.pair_chance
+        return belief.chance, belief.pair_chance, belief.traces
 
     def _beside(self, plants: list[int]) -> NDArray[np.int32]:
         start, near = self.grid.adjacent
@@ -465,7 +468,7 @@ class _Day:
         key = now_s, len(self.known)
         if self.valued is None or self.valued[0] != key:
             robots = [worker.scene.robot for worker in self.workers]
-            chance = np.where(self._closed(now_s), 0.0, self.chance)
+            chance = np.where(self._closed(now_s), 0.0, self.believed[0])
             self.valued = key, aisle_worth(self.workers[0].scene.aisles, robots, chance)
         return self.valued[1]
 
@@ -517,13 +520,14 @@ class _Day:
 
     def _walk(self, worker: _Worker, now_s: float) -> None:
         """Have the sampler plan the rest of a worker's day in its section."""
-        scene, chance, pairs = worker.scene, self.chance, self.pair_chance
+        scene, believed = worker.scene, self.believed
         if own := self._untold(worker, now_s) if self._hears() else []:
-            chance, pairs = self._after(sorted([*self.known, *own]))
+            believed = self._after(sorted([*self.known, *own]))
         shut = self._closed(now_s) | (self.section[self.corridor] != worker.k)
         last = np.where(shut, scene.day, scene.last_inspected).astype(np.int32)
-        scene = replace(scene, chance=chance, pair_chance=pairs, last_inspected=last,
-                        at=worker.at, seconds_left=worker.until_s - now_s)  # fmt: skip
+        chance, pairs, traces = believed
+        scene = replace(scene, chance=chance, pair_chance=pairs, traces=traces,
+                        last_inspected=last, at=worker.at, seconds_left=worker.until_s - now_s)  # fmt: skip
         worker.plan = work_day(scene, self.sampler, worker.post.would_find)
         worker.plan_from_s, worker.next, worker.anew = now_s, 0, False
 

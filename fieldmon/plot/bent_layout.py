@@ -366,6 +366,7 @@ def _assembled(
         aisle.astype(np.int32),
         aisles.start,
         aisles.xy_m,
+        planting.half_canopy_m,
     )
 
 

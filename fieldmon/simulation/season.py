@@ -9,8 +9,8 @@ import numpy as np
 
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread, night
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.workday import draw_detections, work_day
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 
@@ -45,17 +45,33 @@ class SeasonSettings:
         How findings change the chance map; None: with the robot's own detection.
     believe
         How plot and first chance map become a belief.
+    pests
+        Who is infested the next morning, from the plants, those infested in the evening and the
+        night's key; None: as `spread` says.
+    hidden_nights
+        Nights for which a new infestation spreads and no inspection finds it; 0 for those of the
+        first morning.
     """
 
     n_days: int = 25
     spread: Spread = field(default_factory=Spread)
     believed_spread: Spread | None = None
     learning: Learning | None = None
-    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = PairApproximation.of
+    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = TracedPairs.of
+    pests: Callable[[PlantGrid, NDArray[np.bool_], np.uint64], NDArray[np.bool_]] | None = None
+    hidden_nights: int = 0
 
     def __post_init__(self) -> None:
         if self.n_days < 1:
             raise SettingError(f"A season must have 1 day or more, but n_days is {self.n_days}.")
+
+    def night(
+        self, grid: PlantGrid, infested: NDArray[np.bool_], key: np.uint64
+    ) -> NDArray[np.bool_]:
+        """Return who is infested the next morning, ``(n,)``."""
+        if self.pests is not None:
+            return self.pests(grid, infested, key)
+        return night(grid, infested, self.spread, key)
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +161,11 @@ class MorningBeliefs:
         self._works: list[Workday] = []
         self._last: tuple[int, Belief] | None = None
 
+    @property
+    def known(self) -> int:
+        """Return the number of the first day whose work it has not heard of."""
+        return len(self._works)
+
     def add(self, work: Workday) -> None:
         """Hear of the next day's work."""
         self._works.append(work)
@@ -204,11 +225,17 @@ class SeasonOnItsWay:
         self.last_inspected = np.full(len(self.infested), NEVER, np.int32)
         self.ever_infested, self.ever_found = int(np.count_nonzero(self.infested)), 0
         self.trail = np.empty(0, np.int32)
+        self.shows_on = np.zeros(len(self.infested), np.int32)
 
     def work(self, number: int, own_key: np.uint64, inspect_key: np.uint64) -> SimulatedDay:
         """Work for a day; return what came of it."""
-        would_find = draw_detections(self.infested, self.detects, inspect_key)
+        would_find = draw_detections(self.showing(number), self.detects, inspect_key)
         return self.worked(number, work_day(self.scene(number, own_key), self.sampler, would_find))
+
+    def showing(self, number: int) -> NDArray[np.bool_]:
+        """Return where an inspection may find something on a day, ``(n,)``."""
+        showing: NDArray[np.bool_] = self.infested & (self.shows_on <= number)
+        return showing
 
     def worked(self, number: int, work: Workday, each: tuple[Workday, ...] = ()) -> SimulatedDay:
         """Note what was done on a day; return it."""
@@ -229,9 +256,11 @@ class SeasonOnItsWay:
     def pass_night(self, work: Workday, key: np.uint64) -> None:
         """Destroy what was found, and let the others spread."""
         self.mornings.add(work)
+        day_after = self.mornings.known
         evening = self.infested.copy()
         evening[work.plant[work.found]] = False
-        self.infested = night(self.aisles.grid, evening, self.settings.spread, key)
+        self.infested = self.settings.night(self.aisles.grid, evening, key)
+        self.shows_on[self.infested & ~evening] = day_after + self.settings.hidden_nights
         # nobody recovers at night
         self.ever_infested += int(np.count_nonzero(self.infested) - np.count_nonzero(evening))
         self.trail = work.plant if len(work) else self.trail
@@ -244,6 +273,7 @@ class SeasonOnItsWay:
             robot=self.robot,
             chance=self.first_chance if belief is None else belief.chance,
             pair_chance=None if belief is None else belief.pair_chance,
+            traces=None if belief is None else belief.traces,
             last_inspected=self.last_inspected,
             day=number,
             at=resting_place(self.robot, self.trail),

@@ -130,7 +130,7 @@ class _TeamSeason(SeasonOnItsWay):
                 at=resting_place(robot, trail), trail=trail,
             )  # fmt: skip
             detects = self.sampler.inspection_times(robot).detects
-            would_find = draw_detections(self.infested, detects, inspect_key)
+            would_find = draw_detections(self.showing(number), detects, inspect_key)
             posts.append(Posted(scene, member.starts_s, would_find))
         learn = self._learner(number) if self.sampler.reads_chance else None
         each = team_day(posts, self.sampler, self.teamwork, learn)

@@ -41,9 +41,7 @@ class Hand:
         self.page.goto(f"{self.address}/{path}")
         self.page.locator("[data-testid=stApp]").wait_for(timeout=_MOST_MS)
         self.rest()
-        self.page.get_by_text("Inspect").or_(
-            self.page.get_by_text("Plants to inspect")
-        ).first.wait_for(timeout=_MOST_MS)
+        self.page.get_by_text("Plants to inspect").first.wait_for(timeout=_MOST_MS)
         self.rest()
 
     def rest(self) -> None:

@@ -87,3 +87,11 @@ def test_it_says_so_in_a_sentence():
 def test_an_impossible_sureness_is_refused(sure):
     with pytest.raises(SettingError, match="between 0 and 1"):
         estimate_plot(GRID, np.full(400, 0.05), sure=sure)
+
+
+def test_doubt_widens_the_interval_and_moves_nothing_else():
+    grid = rectangle(20, 20)
+    chance = np.full(400, 0.05)
+    sure, doubted = estimate_plot(grid, chance), estimate_plot(grid, chance, doubt=0.5)
+    assert doubted.low < sure.low < sure.high < doubted.high
+    assert (doubted.expected, doubted.chance_clean) == (sure.expected, sure.chance_clean)

@@ -45,7 +45,7 @@ def told(season):
 
 
 def without_phones(path):
-    """Make a file one of version 4."""
+    """Make a file one of version 5."""
     ours = [table.name for table in phone_tables.TABLES]
     views = ["inspections_photos", "photo_places"]
     with closing(sqlite3.connect(path)) as db:
@@ -57,5 +57,5 @@ def without_phones(path):
             db.execute("DELETE FROM gpkg_geometry_columns WHERE table_name = ?", (name,))
             db.execute("DELETE FROM gpkg_contents WHERE table_name = ?", (name,))
             db.execute("DELETE FROM layer_styles WHERE f_table_name = ?", (name,))
-        db.execute("UPDATE fieldmon SET value = '4' WHERE key = 'version'")
+        db.execute("UPDATE fieldmon SET value = '5' WHERE key = 'version'")
         db.commit()

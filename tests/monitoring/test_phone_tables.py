@@ -21,7 +21,7 @@ def schema_of(path):
     return made, told, styled
 
 
-def test_a_file_of_version_4_becomes_what_a_new_one_is(path, tmp_path):
+def test_a_file_of_version_5_becomes_what_a_new_one_is(path, tmp_path):
     old = shutil.copy(path, tmp_path / "old.gpkg")
     without_phones(old)
     season = Season(old)

@@ -25,7 +25,7 @@ def test_every_table_is_laid_out_with_its_columns_and_told_of(db):
 
 
 def test_what_must_be_saved_is_all_but_what_follows_from_it():
-    derived = {schema.DAYS, schema.PLANT_STATE, schema.HOT_SPOTS}
+    derived = {schema.DAYS, schema.PLANT_STATE, schema.HOT_SPOTS, schema.LEARNT}
     assert set(schema.TABLES) - set(schema.CAUSES) == derived
 
 
@@ -87,6 +87,8 @@ def as_of_version_2(db):
         db.execute(f"DROP TRIGGER {name}")
     db.execute("DROP TABLE outside_changes")
     db.execute("DELETE FROM gpkg_contents WHERE table_name = 'outside_changes'")
+    db.execute("DROP TABLE learnt")
+    db.execute("DELETE FROM gpkg_contents WHERE table_name = 'learnt'")
     db.execute("DROP INDEX routes_revision")
     db.execute("ALTER TABLE routes DROP COLUMN who")
     db.execute("CREATE UNIQUE INDEX routes_revision ON routes (day, revision)")

@@ -64,6 +64,7 @@ def route_shapefile(plan: HandoffPlan) -> bytes:
         with zipfile.ZipFile(packed, "w") as archive:
             for part in sorted(folder.iterdir()):
                 info = zipfile.ZipInfo(part.name, _EPOCH)
+                info.external_attr = 0o644 << 16  # else nobody may read what is unpacked
                 archive.writestr(info, part.read_bytes(), zipfile.ZIP_DEFLATED)
         return packed.getvalue()
 

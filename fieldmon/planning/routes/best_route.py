@@ -252,8 +252,8 @@ def _posed(
     plot: Plot | Aisles, reward: ArrayLike, robot: Robot | None, seconds: float | None
 ) -> _Posed:
     """Check a problem, and leave out what no day reaches."""
-    aisles = plot if isinstance(plot, Aisles) else plot.aisles
     robot = robot or Robot()
+    aisles = (plot if isinstance(plot, Aisles) else plot.aisles).for_robot(robot)
     time_s = robot.day_s if seconds is None else float(seconds)
     values = _checked(reward, len(aisles.grid), time_s)
     clock = robot_clock(robot, time_s)
@@ -362,7 +362,7 @@ def _reachable(aisles: Aisles, clock: Clock) -> NDArray[np.bool_]:
     """Tell of each plant ``(n,)`` whether a day for it alone is long enough."""
     way_s = aisles.distance_m(GATE, np.arange(len(aisles.grid))) / clock.speed_m_s
     total: Float = way_s * (2.0 if clock.returns else 1.0) + clock.visit_s
-    return total <= clock.seconds_left
+    return (total <= clock.seconds_left) & ~aisles.shut
 
 
 def _seconds(aisles: Aisles, clock: Clock, stops: Int) -> float:

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.spread import night
 from fieldmon.simulation.experiment import Experiment
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import simulated_days
@@ -112,7 +111,7 @@ def _clairvoyant(
         evening = day.infested.copy()
         evening[day.work.plant[day.work.found]] = False
         key = streams.key("spread", day.number)
-        oracle.truth = night(scenario.aisles.grid, evening, scenario.spread, key)
+        oracle.truth = scenario.settings.night(scenario.aisles.grid, evening, key)
 
 
 def _outcome(scenario: Scenario, seed: int, contender: str, made: SeasonMetrics) -> SeasonOutcome:

@@ -11,7 +11,7 @@ import numpy as np
 
 from app.actions import sharing_plots
 from app.state import estate, shared_plots
-from app.state.shared_plots import Crew
+from app.state.shared_plots import EstateCrew
 from app.words import texts
 from tests.app.driving import go, layer, map_of, press, texts_of
 
@@ -39,7 +39,7 @@ def test_all_plots_are_planned_by_one_button_and_shown_on_the_map(app):
 
 def test_the_files_hold_each_route_and_a_table(session):  # noqa: ARG001 - read within it
     nursery = [one for one in estate.plots()[0] if one.name == "Nursery"]
-    made = shared_plots.planned(nursery, Crew(robot_hours=1), lambda *_: None)
+    made = shared_plots.planned(nursery, EstateCrew(robot_hours=1), lambda *_: None)
     (turn,) = made.turns
     with zipfile.ZipFile(io.BytesIO(sharing_plots.packed(made))) as archive:
         assert sorted(archive.namelist()) == ["01-Nursery.geojson", "plan.csv"]
@@ -58,6 +58,6 @@ def test_who_has_no_plot_is_said_to_be_free(monkeypatch):
         container=lambda **_: nullcontext(), caption=lambda _: None,
         markdown=said.append, warning=said.append,
     ))  # fmt: skip
-    sharing_plots._say(shared_plots.SharedPlots((), (), ("broken",)), Crew(robots=2))
+    sharing_plots._say(shared_plots.SharedPlots((), (), ("broken",)), EstateCrew(robots=2))
     assert "Free today: robot 1, robot 2." in said
     assert "broken" in said

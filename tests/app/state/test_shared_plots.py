@@ -9,7 +9,7 @@ import shapely
 
 from app.state import estate, shared_plots
 from app.state.estate import PlotState
-from app.state.shared_plots import Crew
+from app.state.shared_plots import EstateCrew
 
 OUTLINE = shapely.MultiPolygon([shapely.box(0, 0, 1, 1)])
 
@@ -27,7 +27,7 @@ def test_due_is_what_was_not_seen_for_three_days_or_ever():
 
 
 def test_a_crew_has_names_and_hours():
-    members = Crew(robots=1, robot_hours=5, scouts=2, scout_hours=3).members()
+    members = EstateCrew(robots=1, robot_hours=5, scouts=2, scout_hours=3).members()
     assert [one.name for one in members] == ["robot 1", "scout 1", "scout 2"]
     assert [one.robot.hours for one in members] == [5, 3, 3]
     assert members[1].robot.speed_m_s != members[0].robot.speed_m_s
@@ -38,7 +38,7 @@ def test_the_sample_s_plots_are_shared_by_two():
     plots, _ = estate.plots()
     some = [one for one in plots if one.name in {"Gate", "Nursery", "Bend"}]
     told = []
-    made = shared_plots.planned(some, Crew(robots=1, robot_hours=3, scouts=1, scout_hours=2),
+    made = shared_plots.planned(some, EstateCrew(robots=1, robot_hours=3, scouts=1, scout_hours=2),
                                 lambda k, n: told.append((k, n)))  # fmt: skip
     assert made.problems == ()
     assert {one.plot.name for one in made.turns} | {one.name for one in made.waiting} == {
@@ -61,7 +61,9 @@ def test_a_season_is_planned_by_what_it_knows_and_one_that_is_gone_is_said(
 ):
     shutil.copy(begun_file, seasons_folder)
     (own,), _ = estate.plots()
-    made = shared_plots.planned([own, plot("gone", None)], Crew(robot_hours=1), lambda *_: None)
+    made = shared_plots.planned(
+        [own, plot("gone", None)], EstateCrew(robot_hours=1), lambda *_: None
+    )
     (turn,) = made.turns
     assert turn.plot is own
     assert turn.sampler == "adaptive"

@@ -60,3 +60,11 @@ class ObservationError(FieldmonError):
 
 class ContradictionError(ObservationError):
     """Results contradict what is recorded of the same day: confirm them, or leave them out."""
+
+
+class AccessError(FieldmonError):
+    """A key is unknown or was taken back: ask whoever leads the season for a new one."""
+
+
+class LimitError(FieldmonError):
+    """More was sent than is taken at once or in a day: send less, or later."""

@@ -26,7 +26,7 @@ FLOORS = [
 ]
 FLOOR = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
 #: likewise within the app
-APP_FLOORS = ["words", "state", "show", "actions", "views", "startup", "streamlit_app"]
+APP_FLOORS = ["words", "state", "show", "actions", "api", "views", "startup", "streamlit_app"]
 #: libraries that only some rooms may know
 ALONE = {
     "pyproj": {"plot", "io"},
@@ -46,6 +46,10 @@ ALONE = {
     "PIL": {"reports", "app"},
     "fpdf": {"reports"},
     "fontTools": {"reports"},
+    "segno": {"app"},
+    "cryptography": {"app"},
+    "starlette": {"app"},
+    "jsonschema": {"app"},
     "mujoco": {"drive"},
     "rosbags": {"drive"},
     "paho": {"drive"},

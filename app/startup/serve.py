@@ -24,10 +24,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.errors import FieldmonError
 from fieldmon.io.sandbox import process
 
-from ..state import map_file, map_store, map_tiles
-from . import addresses, preload
+from ..state import map_file, map_store, map_tiles, scout_page
+from . import addresses, gate, lan, preload
 from .upload_limits import Uploads, is_upload
 
 if TYPE_CHECKING:
@@ -59,6 +60,8 @@ _GOODBYE_S = 5
 _STREAMLITS_OWN = frozenset({"/static", "/media", "/component", "/app", "/healthz"})
 # as Python knows them: what a machine says of scripts may keep browsers from running them
 _KINDS = mimetypes.MimeTypes()
+# closed in by themselves, see there
+_FOR_PHONES = (scout_page.PATH, "/api/")
 # one reading process looks tiles up, one after the other: each takes a millisecond
 _TILES = ThreadPoolExecutor(1, "tiles")
 _LOG = logging.getLogger(__name__)
@@ -75,13 +78,16 @@ class Server:
 
     async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
         """Answer a request, or run until the server stops."""
-        if scope["type"] == "http":
-            send = _closed_in(send, scope)
         if scope["type"] == "lifespan":
             await self._run(receive, send)
-        elif await self._refused(scope, receive, send):
-            return
-        elif is_upload(scope["path"]):
+        elif not await self._refused(scope, receive, send):
+            outside = scope["type"] == "http" and scope["path"].startswith(_FOR_PHONES)
+            await (_answer_phone if outside else self._answer_browser)(scope, receive, send)
+
+    async def _answer_browser(self, scope: Message, receive: Receive, send: Send) -> None:
+        if scope["type"] == "http":
+            send = _closed_in(send, scope)
+        if is_upload(scope["path"]):
             await self._loaded.wait()
             await self._streamlit(scope, self._uploads.timed(receive), send)
         elif scope.get("method") == "GET" and is_page(scope["path"]):
@@ -169,6 +175,30 @@ async def _hand_out_map(path: str, send: Send) -> None:
     await _answer(send, 200, *found, [(b"cache-control", _OWN_FOR_GOOD)])
 
 
+async def _answer_phone(scope: Message, receive: Receive, send: Send) -> None:
+    """Hand out the scout's page, or answer by the interface of a season."""
+    if scope["path"].startswith(scout_page.PATH):
+        await _hand_out_scout_page(scope, send)
+    else:
+        interface = await asyncio.to_thread(_interface)
+        await interface(scope, receive, send)
+
+
+async def _hand_out_scout_page(scope: Message, send: Send) -> None:
+    """Hand out the page that works offline; it holds nothing of any season."""
+    found = (await asyncio.to_thread(scout_page.files)).get(scope["path"])
+    if found is None or scope["method"] not in {"GET", "HEAD"}:
+        await _answer(send, 404, "text/plain", b"", [(b"cache-control", b"no-store")])
+        return
+    guards = [
+        (b"cache-control", _ASK),
+        (b"content-security-policy", scout_page.POLICY.encode()),
+        (b"referrer-policy", b"no-referrer"),
+        (b"cross-origin-resource-policy", b"same-origin"),
+    ]
+    await _answer(send, 200, found.kind, found.data, guards)
+
+
 async def _hand_out_tile(path: str, send: Send) -> None:
     looked_up = asyncio.get_running_loop().run_in_executor(_TILES, map_tiles.SHELF.get, path)
     if (found := await looked_up) is None:
@@ -206,6 +236,12 @@ def is_page(path: str) -> bool:
     return re.fullmatch(r"/[a-z]+", path) is not None and path not in _STREAMLITS_OWN
 
 
+def _interface() -> Any:  # noqa: ANN401 - an ASGI application
+    from ..api import season_api  # noqa: PLC0415 - libraries that nobody waits for at the start
+
+    return season_api.application()
+
+
 def _streamlit() -> Any:  # noqa: ANN401 - half a second to import
     return import_module("streamlit.starlette").App(PAGE)
 
@@ -214,6 +250,16 @@ def _has_screen() -> bool:
     """Return whether a browser can show itself; in a terminal it would only be in the way."""
     screens = ("DISPLAY", "WAYLAND_DISPLAY")
     return not sys.platform.startswith("linux") or any(map(os.environ.get, screens))
+
+
+def _as_reached() -> Any:  # noqa: ANN401 - an ASGI application
+    """Return the app; behind a server that others reach it asks for a password."""
+    address = os.environ.get(lan.ADDRESS)
+    if not address:
+        return Server()
+    password = os.environ.get(lan.PASSWORD) or gate.new_password()
+    lan.say_password(password, address)
+    return gate.Gate(Server(), password)
 
 
 def main() -> None:
@@ -227,13 +273,19 @@ def main() -> None:
     import uvicorn  # noqa: PLC0415 - the browser starts meanwhile
 
     sys.setswitchinterval(_TURN_S)
-    config = uvicorn.Config(
-        Server(), access_log=False, log_level="warning", ws="websockets-sansio", lifespan="on",
-        ws_per_message_deflate=False, ws_ping_interval=30, ws_ping_timeout=30,
-        timeout_graceful_shutdown=_GOODBYE_S,
-    )  # fmt: skip
+    settings: dict[str, Any] = {
+        "access_log": False, "log_level": "warning", "ws": "websockets-sansio", "lifespan": "on",
+        "ws_per_message_deflate": False, "ws_ping_interval": 30, "ws_ping_timeout": 30,
+        "timeout_graceful_shutdown": _GOODBYE_S,
+    }  # fmt: skip
     logging.getLogger("uvicorn.access").disabled = True  # Streamlit writes down every request
-    uvicorn.Server(config).run(sockets=[line])
+    if lan.LAN in os.environ:
+        try:
+            lan.serve(Server(), port, line, settings)
+        except FieldmonError as error:
+            sys.exit(f"Error: {error}")
+    else:
+        uvicorn.Server(uvicorn.Config(_as_reached(), **settings)).run(sockets=[line])
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.io import prepare, read
 from fieldmon.io.rasters.read import looks_like_heights as _looks_like_heights
 from fieldmon.io.rasters.read import read_backdrop, read_relief
-from fieldmon.monitoring import Season, worked_route
+from fieldmon.monitoring import worked_route
 from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from, plan_in
 from fieldmon.reports import season as reports
@@ -33,6 +33,7 @@ from fieldmon.simulation.start import season_start
 
 from ..words import language, texts
 from ..words.language import Late
+from . import opened_seasons
 from .comparison import Comparison
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ if TYPE_CHECKING:
         RecordSource,
         RiskSource,
     )
-    from fieldmon.monitoring import DayFigures, KeptMessage, Progress
+    from fieldmon.monitoring import DayFigures, KeptMessage, Progress, Season
     from fieldmon.planning.route import Route
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.field import Field
@@ -209,7 +210,7 @@ def season(path: Path) -> Season:
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def _season(path: Path, inode: int) -> Season:  # noqa: ARG001 - another file of the same name
-    return Season(path)
+    return opened_seasons.opened(path)
 
 
 @st.cache_resource(max_entries=_FEW)

@@ -23,6 +23,7 @@ def show(choices: Choices) -> None:
         st.markdown(texts.NEEDS_SEASON)
         beginning.show(choices)
         return
+    recording.show_said_otherwise(choices)
     recording.show(choices)
     with st.expander(texts.BATCHES, expanded=True):
         recording.show_batches(choices)

@@ -9,7 +9,7 @@ import streamlit as st
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 
-from ..actions import choosing, scouting
+from ..actions import choosing, inviting, scouting
 from ..show import field_map, map_layers
 from ..show.maps import marks
 from ..show.next_stop import next_stop
@@ -44,6 +44,7 @@ def show(choices: Choices) -> None:
             st.button(texts.SCOUT_LONGER, key="scout_hour", on_click=scouting.longer,
                       args=(choices,))  # fmt: skip
         _undo(choices)
+        inviting.show_folded(choices)
         return
     stop = next_stop(plan, progress.inspected_today, choices.units)
     st.markdown(f"## {stop.arrow} {stop.place}")
@@ -63,6 +64,7 @@ def show(choices: Choices) -> None:
     _undo(choices)
     here = marks.places([stop.lonlat], "next", (255, 190, 0), texts.NEXT)
     field_map.want(map_layers.day_map(choices, above=[here], first="state"))
+    inviting.show_folded(choices)
 
 
 def _undo(choices: Choices) -> None:

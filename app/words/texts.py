@@ -618,6 +618,90 @@ PRIOR_INTRO = (
 )
 PRIOR_PART, PRIOR_OWN = "Scenario or sweep", "This plot"
 
+# -- the scout's page, which works without a network: its script fills the blanks
+SCOUT_PAGE = {
+    "map_of": "Map",
+    "map": "Map of the plot: arrow keys move it, + and - bring it closer",
+    "zoom_in": "Closer", "zoom_out": "Farther", "to_next": "To the next plant",
+    "whole_plot": "The whole plot",
+    "progress": "{done} done, {left} to go", "time_left": "{hours}:{minutes} h left",
+    "time_over": "The hours are over",
+    "waiting": "{n} to send", "all_sent": "All sent", "some_refused": "{n} not taken",
+    "menu": "Menu", "close": "Close", "ok": "OK", "cancel": "Cancel",
+    "scan": "Scan the code that the app shows: Scout, On a phone.",
+    "not_loaded": "{season}: nothing is loaded yet. A network is needed once.",
+    "load_day": "Load the day", "old_day": "This route is of {day}: load today's",
+    "loading": "Loading ...", "route_done": "The route is done.",
+    "place": "Row {row}, plant {plant}", "no_position": "No position yet", "there": "You are there",
+    "away": "{m} m away", "chance": "Chance {n} %", "off_route": "Off the route",
+    "who_says": "{who}: {result}",
+    "clean": "Clean", "found": "Found", "skipped": "Could not inspect",
+    "count": "Pests", "leaves": "Leaves looked at", "stage": "Stage", "fewer": "{what}: one fewer",
+    "more": "{what}: one more", "stage_egg": "Eggs", "stage_young": "Young",
+    "stage_adult": "Adults", "stage_web": "Webs", "save_found": "Save the find",
+    "photo": "Photo", "note_button": "Note", "undo": "Undo", "here": "I am at another plant",
+    "other_plant": "Another plant", "back_to_route": "Back to the route",
+    "photos": "Photos: {n}", "drop_photos": "Throw these photos away?",
+    "row": "Row", "plant": "Plant", "no_such_plant": "There is no such plant.",
+    "no_picture": "This is no picture that the phone can read.",
+    "phone_full": "The phone is full: this was NOT kept. Make room and try again.",
+    "not_kept": "This was NOT kept ({why}). Try again.",
+    "plan_rest": "Plan the rest anew", "ahead_takes": "What is ahead takes {minutes} minutes.",
+    "your_rows": "Your part: rows {low} to {high}.",
+    "no_network": "There is no network now. All that you do is kept on this phone.",
+    "state_idle": "Nothing was sent yet.", "state_sending": "Sending ...",
+    "state_sent": "The season has everything.",
+    "state_offline": "No network: all is kept on this phone and goes in by itself later.",
+    "state_ended": "The key no longer holds. All is kept on this phone: ask for a new code and "
+    "scan it.",
+    "refused": "Not taken", "send_again": "Send again what was not taken",
+    "save_file": "Save what is not sent to a file",
+    "hand": "Hand", "left": "Left", "right": "Right", "theme": "Light", "auto": "As the phone",
+    "sun": "Sun", "dark": "Dark", "language": "Language",
+    "stays": "The phone keeps this page's records until they are sent.",
+    "may_be_cleared": "A phone short of room may clear pages: add this one to the home screen.",
+}  # fmt: skip
+INVITE = "On a phone, without a network"
+INVITE_NOTE = (
+    "Each person scans a code once, with the network, and then works from gate to gate without "
+    "one. What was recorded goes in by itself afterwards. A code is shown once: who has it may "
+    "record findings of this season until you take it back."
+)
+INVITE_LOCAL = (
+    "Phones cannot reach the app as it runs now: start it with `fieldmon app --lan`. The code "
+    "below works on this machine only."
+)
+INVITE_NAME, INVITE_FIRST, INVITE_LAST = "Name", "From row", "To row"
+INVITE_BUTTON, TAKE_BACK = "Make a code", "Take back"
+INVITE_CODE = "Code for {name}"
+INVITED = "{name}, rows {low} to {high}"
+TAKEN_BACK = "{name} can no longer read or record anything of this season."
+SAID_OTHERWISE = "Said otherwise of the same plant on this day. Look again, and undo what is wrong:"
+SAID_BY = "Row {row}, plant {plant}: {said}"
+
+# -- other devices: who may open the app, and how a phone comes to trust it
+LAN_PAGE = {
+    "ask": "Password", "open": "Open", "wrong": "This is not the password.",
+    "wait": "Too many tries: wait a minute.",
+    "where": "It stands in the window in which fieldmon app was started.",
+    "title": "Let this phone trust this fieldmon",
+    "why": "Once for each phone: position, and work without a network, need a connection that the "
+    "phone trusts.",
+    "compare": "The certificate's fingerprint (SHA-256) must be the one that stands in the window "
+    "of fieldmon app:",
+    "download": "Download the certificate",
+    "android": "Android", "iphone": "iPhone",
+    "android_1": "Download the certificate.",
+    "android_2": "Settings, Security, Encryption and credentials, Install a certificate, CA "
+    "certificate: choose the file.",
+    "android_3": "Scan your own code, and add the page to the home screen.",
+    "iphone_1": "Open this page in Safari, download the certificate, and allow it.",
+    "iphone_2": "Settings, Profile downloaded: install it. Then General, About, Certificate trust "
+    "settings: switch it on.",
+    "iphone_3": "Scan your own code in Safari, and add the page to the home screen before the "
+    "first tap.",
+}  # fmt: skip
+
 
 class _Texts(ModuleType):
     """A module whose constants are read in the session's language."""

@@ -13,13 +13,14 @@ from fieldmon.cli.waiting import WAITING
 from fieldmon.errors import SettingError
 
 _GOODBYE_S = 10
+_HERE = "127.0.0.1"
 
 
-def open_app(
+def open_app(  # noqa: PLR0913, PLR0917 - the command's options
     port: Annotated[int, typer.Option(help="Port on this machine.", min=1, max=65535)] = 8501,
     address: Annotated[
         str, typer.Option(help="Address to listen on; others may only see it beyond 127.0.0.1.")
-    ] = "127.0.0.1",
+    ] = _HERE,
     seasons: Annotated[
         Path, typer.Option(help="Folder in which seasons are kept; made when one begins.")
     ] = Path("seasons"),
@@ -31,6 +32,18 @@ def open_app(
         ),
     ] = None,
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,  # noqa: FBT002
+    lan: Annotated[  # noqa: FBT002 - typer's way
+        bool,
+        typer.Option(
+            "--lan",
+            help="Let phones on the local network in: encrypted, behind a password, with codes to "
+            "scan.",
+        ),
+    ] = False,
+    reached_at: Annotated[
+        str,
+        typer.Option(help="Address at which others reach the app behind a server of your own."),
+    ] = "",
 ) -> None:
     """Open the app in the browser. It needs no internet; stop it with Ctrl-C."""
     import socket  # noqa: PLC0415
@@ -38,6 +51,9 @@ def open_app(
     from fieldmon.io.sandbox.process import own_path  # noqa: PLC0415
 
     server = _server()
+    others = _others(lan, address, reached_at)
+    if lan:
+        address = _HERE
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
@@ -55,11 +71,32 @@ def open_app(
         "STREAMLIT_SERVER_ADDRESS": address,
         "STREAMLIT_SERVER_PORT": str(port),
         "FIELDMON_SEASONS": str(seasons.absolute()),
-        "FIELDMON_NAMES": ",".join(name or os.environ.get("FIELDMON_NAMES", "").split(",")),
+        "FIELDMON_NAMES": _names(name, reached_at),
         "PYTHONPATH": own_path(),
+        **others,
     }
     with WAITING.silent():
         raise typer.Exit(_run(command, env))
+
+
+def _others(lan: bool, address: str, reached_at: str) -> dict[str, str]:  # noqa: FBT001
+    """Return what tells the server of other devices; raise `SettingError` if it cannot be so."""
+    if reached_at and not reached_at.startswith("https://"):
+        raise SettingError(
+            "The address at which others reach the app must begin with https://, for phones give "
+            f"no position to others, but it is {reached_at!r}."
+        )
+    told = {"FIELDMON_ADDRESS": reached_at.rstrip("/")} if reached_at else {}
+    if lan:
+        told["FIELDMON_LAN"] = "" if address == _HERE else address
+    return told
+
+
+def _names(told: list[str] | None, reached_at: str) -> str:
+    """Return the names by which browsers may ask, that of a server before us among them."""
+    names = told or os.environ.get("FIELDMON_NAMES", "").split(",")
+    before = reached_at.partition("://")[2].partition("/")[0].partition(":")[0]
+    return ",".join([*names, before] if before else names)
 
 
 def _run(command: list[str], env: dict[str, str]) -> int:

@@ -147,10 +147,15 @@ def undo_one(db: sqlite3.Connection, inspection: int) -> str:
             )
         )
     db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
-    left = db.execute(
-        "SELECT count(*) FROM inspections WHERE batch = ? AND undone = 0", (row[4],)
-    ).fetchone()[0]
-    if not left:
-        db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (row[4],))
+    close_if_empty(db, row[4])
     touch(db, schema.INSPECTIONS.name)
     return f"Undone: row {row[0]}, plant {row[1]} on {row[2]} ({row[3]})."
+
+
+def close_if_empty(db: sqlite3.Connection, batch: int) -> None:
+    """Mark a batch of findings as undone if none of them counts any more."""
+    db.execute(
+        "UPDATE batches SET undone = 1 WHERE fid = ? AND NOT EXISTS "
+        "(SELECT 1 FROM inspections WHERE batch = batches.fid AND undone = 0)",
+        (batch,),
+    )

@@ -69,16 +69,19 @@ class GeoPackageTable:
         Geometry type (``"POINT"``...), or None for a table without geometry.
     about
         A sentence for whoever opens the file.
+    key
+        Name of the column that numbers the rows.
     """
 
     name: str
     columns: tuple[str, ...]
     shape: str | None
     about: str
+    key: str = "fid"
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Return the names of the columns, geometry first where there is one."""
+        """Return the names of the columns but the key, geometry first where there is one."""
         own = tuple(column.split()[0] for column in self.columns)
         return ("geom", *own) if self.shape else own
 
@@ -95,7 +98,8 @@ def found(db: sqlite3.Connection) -> None:
 def create(db: sqlite3.Connection, table: GeoPackageTable) -> None:
     """Add a table, and tell the GeoPackage's contents of it."""
     geom = (f"geom {table.shape}",) if table.shape else ()
-    body = ", ".join(("fid INTEGER PRIMARY KEY AUTOINCREMENT", *geom, *table.columns))
+    key = f"{table.key} INTEGER PRIMARY KEY AUTOINCREMENT"
+    body = ", ".join((key, *geom, *table.columns))
     db.execute(f"CREATE TABLE {table.name} ({body})")
     announce(db, table)
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import schema
+from fieldmon.monitoring import phone_tables, schema
 from fieldmon.monitoring.geopackage import touch
 
 if TYPE_CHECKING:
@@ -56,6 +56,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:
     """
     _refuse_strangers(db, other)
     copies = [{table.name: _rows(one, table) for table in TAKEN} for one in (db, other)]
+    phones = [phone_tables.brought(one) for one in (db, other)]
     batches = _merged_batches(copies)
     for table in (schema.INSPECTIONS, schema.TREATMENTS):
         rows = _merged_findings(copies, table.name, batches)
@@ -71,6 +72,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:
             row["batch"] = _number(batches, copied, row["batch"])
     changes = _once(copies, "outside_changes", schema.OUTSIDE_CHANGES.names, ("at",))
     _write(db, schema.OUTSIDE_CHANGES, changes)
+    phone_tables.bring_together(db, phones)
     return said
 
 

@@ -162,6 +162,24 @@ STYLES = {
 }
 
 
+# QGIS shows it over a photo's place, where map tips are on
+_PHOTO_TIP = (
+    '<mapTip>&lt;img width="480" src="data:[% content_type %];base64,'
+    '[% to_base64(data) %]"&gt;&lt;br&gt;[% result %], [% date %], [% scout %]</mapTip>'
+)
+PHOTO_STYLES = {
+    "photo_places": _single(Symbol("marker", YELLOW, 3.0, "square")).replace(
+        ' styleCategories="Symbology">', f' styleCategories="Symbology|MapTips">{_PHOTO_TIP}'
+    ),
+    "tellings": _single(Symbol("marker", GREY, 1.2, "cross")),
+}
+
+
+def add_photo_styles(db: sqlite3.Connection) -> None:
+    """Add the styles of what phones bring."""
+    _add(db, PHOTO_STYLES)
+
+
 def add_styles(db: sqlite3.Connection) -> None:
     """Add a default style for each layer."""
     db.execute(_TABLE)
@@ -169,7 +187,11 @@ def add_styles(db: sqlite3.Connection) -> None:
         "INSERT INTO gpkg_contents (table_name, data_type, identifier) "
         "VALUES ('layer_styles', 'attributes', 'layer_styles')"
     )
-    for layer, qml in STYLES.items():
+    _add(db, STYLES)
+
+
+def _add(db: sqlite3.Connection, styles: dict[str, str]) -> None:
+    for layer, qml in styles.items():
         db.execute(
             "INSERT INTO layer_styles (f_table_catalog, f_table_schema, f_table_name, "
             "f_geometry_column, styleName, styleQML, styleSLD, useAsDefault, description, owner) "

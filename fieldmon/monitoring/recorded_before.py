@@ -99,6 +99,15 @@ def contradictions(brought: Inspections, held: Inspections) -> Contradictions:
     return Contradictions(at, brought.plant[at], brought.date[at], recorded, brought.result[at])
 
 
+def contradicting(held: Inspections) -> Inspections:
+    """Return those of which another says otherwise of the same plant and day, plant by plant."""
+    done = held.inspected
+    results = _held(done, done)
+    both = [k for k, key in enumerate(_keys(done)) if len(results[key]) > 1]
+    said = done.take(np.array(both, np.intp))
+    return said.take(np.argsort(said.plant, kind="stable"))
+
+
 def said_before(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:
     """Return ``(k,)`` whether each adds nothing: the same is held, and it has no time or count.
 

@@ -69,7 +69,7 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
     with Store.new(to) as new:
         new.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES ('revision', '0')")
         for table in tables:
-            names = ("fid", *table.names)
+            names = (table.key, *table.names)
             marks = ", ".join("?" * len(names))
             new.executemany(
                 f"INSERT OR IGNORE INTO {table.name} ({', '.join(names)}) VALUES ({marks})",  # noqa: S608 - ours
@@ -115,7 +115,7 @@ def _rows(db: sqlite3.Connection, table: GeoPackageTable) -> tuple[list[tuple[ob
     """
     got: dict[int, tuple[object, ...]] = {}
     complete = False
-    wanted = f"SELECT fid, {', '.join(table.names)} FROM {table.name} ORDER BY fid"  # noqa: S608 - ours
+    wanted = f"SELECT {table.key}, {', '.join(table.names)} FROM {table.name} ORDER BY {table.key}"  # noqa: S608 - ours
     for order in ("ASC", "DESC"):
         try:
             for row in db.execute(f"{wanted} {order} LIMIT {_MOST_ROWS}"):

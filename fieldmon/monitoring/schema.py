@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fieldmon.monitoring import phone_tables
 from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create, found
-from fieldmon.monitoring.qgis_styles import add_styles
+from fieldmon.monitoring.qgis_styles import add_photo_styles, add_styles
 
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 5
+VERSION = 6
 #: the first fieldmon that reads files of this version
 NEEDS = "0.2"
 #: what the settings say of a team where there is none
@@ -217,11 +218,13 @@ TABLES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
     *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
     *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT),
+    *phone_tables.TABLES,
 )
 #: layers from which everything else follows: what must be saved from a damaged file
 CAUSES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, PLOTS, PLACES, ROWS, PLANTS),
     *(OBSERVATIONS, INSPECTIONS, TREATMENTS, ROUTES, STOPS, OUTSIDE_CHANGES),
+    *phone_tables.TABLES,
 )
 _INSPECTED = (
     "coalesce(old.result, '') || ' at row ' || coalesce(old.line, '') || ', plant ' "
@@ -264,13 +267,15 @@ def lay_out(db: sqlite3.Connection) -> None:
     """Make an empty database the file of a season, without content."""
     found(db)
     for table in TABLES:
-        create(db, table)
+        if table not in phone_tables.TABLES:
+            create(db, table)
     db.execute(_CHANCE_VIEW)
     announce(db, CHANCE)
     for index in _INDEXES:
         db.execute(index)
     watch(db)
     add_styles(db)
+    _phones_come(db)
 
 
 def watch(db: sqlite3.Connection) -> None:
@@ -329,10 +334,17 @@ def _estimates_come(db: sqlite3.Connection) -> None:
     create(db, LEARNT)
 
 
+def _phones_come(db: sqlite3.Connection) -> None:
+    """Version 5 knew of no phones."""
+    phone_tables.phones_come(db)
+    add_photo_styles(db)
+
+
 #: what makes a file of version k one of version k + 1; `watch` follows the last
 MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     1: _treatments_come,
     2: _changes_are_noticed,
     3: _teams_come,
     4: _estimates_come,
+    5: _phones_come,
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -36,7 +37,12 @@ from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
 from fieldmon.monitoring.merging import Merged
-from fieldmon.monitoring.recorded_before import Contradictions, contradictions, said_before
+from fieldmon.monitoring.recorded_before import (
+    Contradictions,
+    contradicting,
+    contradictions,
+    said_before,
+)
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
@@ -50,7 +56,7 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
     from datetime import date, time
 
     from numpy.typing import NDArray
@@ -67,6 +73,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
+    from fieldmon.samplers.base import Scene
 
     Floats = NDArray[np.float64]
 
@@ -85,6 +92,25 @@ class _Contents:
             number = len(self.mornings) - 1
             self.mornings.append(self.history.night_after(self.mornings[number], number))
         return self.mornings[day]
+
+
+class SeasonChange:
+    """One change of a season within its transaction.
+
+    Parameters
+    ----------
+    db
+        The file, for this transaction alone.
+    """
+
+    def __init__(self, db: sqlite3.Connection) -> None:
+        self.db = db
+        #: the first day that is another now; None: none is
+        self.since: int | None = None
+
+    def reaches(self, day: int) -> None:
+        """Say that a day is not what it was."""
+        self.since = day if self.since is None else min(self.since, day)
 
 
 class Season:
@@ -336,6 +362,23 @@ class Season:
                 given[aisle[routes.plants(db, day, member.name)]] = k
         return given if (given >= 0).any() else None
 
+    def scene(self, on: date, now: time | None = None, who: str = "") -> Scene:
+        """Return a day as it stands after what was recorded of it; `now` as in `plan`.
+
+        Of a team it is that of the one named, or of the first.
+        """
+        with self._lock:
+            contents = self._now()
+            settings, day = contents.settings, contents.settings.day(on)
+            now_s = None if now is None else seconds(now)
+            morning = contents.morning(day)
+            if not settings.team:
+                shift = self._shift(settings, settings.robot)
+                return contents.history.scene(shift, day, morning, now_s)
+            member = settings.member(who) if who else settings.team[0]
+            shift = self._shift(settings, member.robot, member)
+            return contents.history.scene(shift, day, morning, now_s, member.name)
+
     def kept_route(self, on: date, who: str = "") -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none.
 
@@ -398,6 +441,23 @@ class Season:
             if new:
                 self._refresh(db, _settings(db).day(inspections.date.min().item()))
         return Recorded(batch if new else None, new, len(inspections) - new)
+
+    @contextmanager
+    def changing(self) -> Iterator[SeasonChange]:
+        """Give the file for one change: all is kept with what follows from it, or nothing."""
+        with self._lock, self.store.writing() as db:
+            change = SeasonChange(db)
+            yield change
+            if change.since is not None:
+                self._refresh(db, change.since)
+
+    def settings_in(self, db: sqlite3.Connection) -> MonitoringSettings:
+        """Return what is chosen for the season, as a transaction sees it."""
+        return self._read(db).settings
+
+    def contradicting(self, on: date) -> Inspections:
+        """Return a day's inspections of plants that were both clean and found on it."""
+        return contradicting(self.history.inspections.on(on))
 
     def treat(
         self, on: date, efficacy: float, area: MultiPolygon | None = None, product: str = ""

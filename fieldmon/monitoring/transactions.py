@@ -132,6 +132,8 @@ class Store:
     def writing(self) -> Iterator[sqlite3.Connection]:
         """Give the file for one transaction, alone: all of it is kept, or nothing."""
         with _sentences(self.path), closing(_connect(self.path)) as db:
+            # EXTRA: once this returns, not even a power cut brings the old state back
+            db.execute("PRAGMA synchronous = EXTRA")
             _into_one_file(db)
             db.execute("BEGIN IMMEDIATE")
             set_meta(db, OPEN, "1")  # what is changed from here on is changed by us

@@ -11,6 +11,8 @@ import urllib.request
 import psutil
 import pytest
 
+from fieldmon.cli import app as app_command
+
 
 def test_a_port_in_use_is_a_sentence(run):
     with socket.socket() as taken:
@@ -19,6 +21,53 @@ def test_a_port_in_use_is_a_sentence(run):
         code, _, err, _ = run("app", "--port", taken.getsockname()[1])
     assert code == 2
     assert "must be free" in err
+
+
+@pytest.fixture
+def started(monkeypatch):
+    """Let the command start nothing; return what it would have told the server."""
+    told = []
+    monkeypatch.setattr(app_command, "_run", lambda _, env: told.append(env) or 0)
+    monkeypatch.setenv("FIELDMON_ADDRESS", "")
+    return told
+
+
+def free_port():
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        return free.getsockname()[1]
+
+
+def test_other_devices_come_only_where_it_is_said(run, started):
+    for words, wanted in (
+        ((), {}),
+        (("--lan",), {"FIELDMON_LAN": ""}),
+        (("--lan", "--address", "192.168.1.5"), {"FIELDMON_LAN": "192.168.1.5"}),
+        (("--reached-at", "https://a.example/"), {"FIELDMON_ADDRESS": "https://a.example"}),
+    ):
+        run("app", "--no-browser", "--port", free_port(), *words)
+        env = started.pop()
+        assert env["STREAMLIT_SERVER_ADDRESS"] == "127.0.0.1"
+        assert ("a.example" in env["FIELDMON_NAMES"]) == ("--reached-at" in words)
+        named = {name: env[name] for name in ("FIELDMON_LAN", "FIELDMON_ADDRESS") if env.get(name)
+                 or name in wanted}  # fmt: skip
+        assert named == wanted
+
+
+def test_others_come_to_an_encrypted_address_only(run, started):
+    code, _, err, _ = run("app", "--port", free_port(), "--reached-at", "http://a.example")
+    assert code == 2
+    assert "must begin with https://" in err
+    assert started == []
+
+
+def test_an_address_that_is_not_private_is_a_sentence(tmp_path):
+    command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser", "--lan", "--port",
+               str(free_port()), "--address", "8.8.8.8"]  # fmt: skip
+    env = os.environ | {"FIELDMON_AUTHORITY": str(tmp_path)}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=env)
+    assert done.returncode == 1
+    assert "must be private" in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 def answers(url):

@@ -164,3 +164,14 @@ def test_another_season_is_not_asked_about_what_waits_in_this_one(season_app, se
     begun(season_app, "Other")
     go(season_app, "record")
     assert not season_app.warning
+
+
+def test_what_two_people_said_otherwise_is_shown_with_who_said_it(season_app, season):
+    plant, day = np.array([7]), np.datetime64("2026-11-16")
+    season().record(Inspections.of(plant, np.array([1]), day), "", "Ann")
+    season().record(Inspections.of(plant, np.array([0]), day), "", "Ben", confirmed=True)
+    go(season_app, "record")
+    (shown,) = [one.value for one in season_app.info if "Said otherwise" in one.value]
+    assert "Ann" in shown
+    assert "Ben" in shown
+    assert "plant 8" in shown

@@ -26,7 +26,13 @@ def asked(server, path, method="GET", within_s=5.0, headers=HOST):
         return {"type": "http.disconnect"}
 
     async def ask():
-        scope = {"type": "http", "method": method, "path": path, "headers": headers}
+        scope = {
+            "type": "http",
+            "method": method,
+            "path": path,
+            "headers": headers,
+            "query_string": b"",
+        }
         await asyncio.wait_for(server(scope, receive, send), within_s)
 
     # in a thread of its own: a browser's tests leave a loop running in this one
@@ -115,6 +121,22 @@ def test_the_outline_needs_no_tables_no_statistics_and_nothing_compiled():
         [sys.executable, "-c", code], check=True, capture_output=True, text=True
     )  # fmt: skip
     assert said.stdout.strip() == "[]"
+
+
+def test_the_scouts_page_is_handed_out_before_streamlit_is_there_and_is_guarded():
+    status, headers, body = asked(Server(), "/scouting/")
+    assert status == 200
+    assert b"scout.js" in body
+    assert b"default-src 'none'" in headers[b"content-security-policy"]
+    assert asked(Server(), "/scouting/none.js")[0] == 404
+    assert asked(Server(), "/scouting/", "POST")[0] == 404
+
+
+def test_the_interface_of_a_season_answers_before_streamlit_is_there():
+    status, headers, body = asked(Server(), "/api/v1/nothing")
+    assert status == 404
+    assert headers[b"cache-control"] == b"no-store"
+    assert b"openapi.json" in body
 
 
 def test_a_tile_of_somebody_s_own_map_is_handed_out_and_where_there_is_none_nothing(tmp_path):

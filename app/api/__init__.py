@@ -1,0 +1,1 @@
+"""The HTTP interface of a season: fetch the day, tell findings, ask for the rest."""

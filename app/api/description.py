@@ -1,0 +1,282 @@
+"""The interface's own description (OpenAPI 3.1), by which what is sent is checked.
+
+No Streamlit in here.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.monitoring import photos, tellings
+
+#: findings in one request
+MOST_FINDINGS = 500
+#: bytes of a request that is no photo
+MOST_BYTES = 1 << 20
+VERSION = "1"
+PATH = f"/api/v{VERSION}"
+
+ID: dict[str, Any] = {
+    "type": "string",
+    "format": "uuid",
+    "pattern": "^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$",
+    "description": "Made where the record is made, once: sending it again changes nothing.",
+}
+_MOMENT = {
+    "type": "string",
+    "format": "date-time",
+    "pattern": r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:\d\d)$",
+}
+_PLACE = {
+    "lon": {"type": ["number", "null"], "minimum": -180, "maximum": 180},
+    "lat": {"type": ["number", "null"], "minimum": -90, "maximum": 90},
+    "accuracy_m": {"type": ["number", "null"], "minimum": 0, "maximum": 1e7},
+}
+_DATE = {"type": ["string", "null"], "pattern": r"^20\d\d-\d\d-\d\d$"}
+
+FINDING: dict[str, Any] = {
+    "type": "object",
+    "description": "What was seen at one plant, or `undoes`: an earlier finding taken back.",
+    "required": ["id", "at"],
+    "additionalProperties": False,
+    "properties": {
+        "id": ID,
+        "at": _MOMENT | {"description": "When, by the clock of the phone."},
+        "plant": {
+            "type": ["integer", "null"],
+            "minimum": 0,
+            "maximum": 2**31 - 1,
+            "description": "From 0, as in plot.",
+        },
+        "result": {"enum": [*RESULT_NAMES.values(), None]},
+        "count": {"type": ["number", "null"], "minimum": 0, "maximum": 1e9},
+        "stage": {"type": "string", "maxLength": 60},
+        "leaves": {"type": ["number", "null"], "minimum": 0, "maximum": 1e9},
+        "notes": {"type": "string", "maxLength": 2000},
+        **_PLACE,
+        "on": _DATE | {"description": "The day meant, where it is not today: it has no time then."},
+        "off_route": {"type": "boolean"},
+        "undoes": {"anyOf": [ID, {"const": ""}]},
+    },
+}
+FINDINGS: dict[str, Any] = {
+    "type": "object",
+    "required": ["sent", "findings"],
+    "additionalProperties": False,
+    "properties": {
+        "sent": _MOMENT | {"description": "The phone's clock as it sends: it may be wrong."},
+        "findings": {"type": "array", "maxItems": MOST_FINDINGS, "items": FINDING},
+    },
+}
+ASKED: dict[str, Any] = {
+    "type": "object",
+    "additionalProperties": False,
+    "properties": {
+        "on": _DATE,
+        "seconds_left": {"type": ["number", "null"], "minimum": 0, "maximum": 86_400},
+    },
+}
+TAKEN: dict[str, Any] = {
+    "type": "object",
+    "properties": {
+        "taken": {
+            "type": "array",
+            "description": "Each finding sent. What stands here is on the disk.",
+            "items": {
+                "type": "object",
+                "properties": {
+                    "id": ID,
+                    "new": {"type": "boolean"},
+                    "problem": {
+                        "type": "string",
+                        "description": "Why it is kept and does not count; empty: it counts.",
+                    },
+                },
+            },
+        }
+    },
+}
+_LIST = {"type": "array", "items": {"type": "integer"}}
+_NUMBERS = {"type": "array", "items": {"type": "number"}}
+_SAID = {
+    "type": "array",
+    "items": {
+        "type": "object",
+        "properties": {
+            "plant": {"type": "integer"},
+            "result": {"enum": [*RESULT_NAMES.values()]},
+            "count": {"type": ["number", "null"]},
+            "second": {"type": ["number", "null"], "description": "Since local midnight."},
+            "who": {"type": "string"},
+        },
+    },
+}
+ROUTE: dict[str, Any] = {
+    "type": "object",
+    "properties": {
+        "plants": _LIST | {"description": "In order."},
+        "walk_s": _NUMBERS | {"description": "Seconds of the way to each from the one before."},
+        "end_s": {"type": "number", "description": "Seconds at the end, the way back included."},
+        "line": {"type": "array", "items": _NUMBERS, "description": "The way, lon/lat."},
+    },
+}
+PLOT: dict[str, Any] = {
+    "type": "object",
+    "description": "Plants in columns, row by row; it never changes within a season.",
+    "properties": {
+        "name": {"type": "string"},
+        "boundary": {"type": "object", "description": "GeoJSON."},
+        "no_go": {"type": "object", "description": "GeoJSON."},
+        "gate": {"type": ["array", "null"]},
+        "zone": {"type": "string"},
+        "row_spacing_m": {"type": "number"},
+        "plant_spacing_m": {"type": "number"},
+        "rows": {
+            "type": "object",
+            "properties": {
+                "start": _LIST | {"description": "Plants of row k: start[k] to start[k + 1]."},
+                "row": _LIST | {"description": "Its number on the ground, from 1."},
+                "aisle": _LIST | {"description": "Rows of one number share their aisle."},
+            },
+        },
+        "plants": {
+            "type": "object",
+            "properties": {"lon": _NUMBERS, "lat": _NUMBERS, "number": _LIST},
+        },
+    },
+}
+DAY: dict[str, Any] = {
+    "type": "object",
+    "required": ["day", "live", "route", "plot"],
+    "properties": {
+        "season": {"type": "string"},
+        "scout": {"type": "string"},
+        "rows": {"type": ["array", "null"], "description": "First and last row of one's part."},
+        "plot": {"type": "string", "description": "Changes if the plot does: fetch it anew."},
+        "day": {"type": "string", "format": "date"},
+        "live": {"type": "boolean", "description": "Whether it is today on the plot."},
+        "starts": {"type": "string"},
+        "robot": {"type": "object"},
+        "seconds_left": {"type": "number"},
+        "route": ROUTE,
+        "chance": _LIST | {"description": "Of each plant, in thousandths."},
+        "found": _LIST,
+        "clean": _LIST,
+        "today": _SAID,
+        "contradicting": _SAID,
+        "hot_spots": {"type": "array", "items": {"type": "object"}},
+        "photos": {"type": "array", "items": {"type": "object"}},
+    },
+}
+ERROR: dict[str, Any] = {
+    "type": "object",
+    "required": ["error"],
+    "properties": {"error": {"type": "string", "description": "A sentence for a person."}},
+}
+
+_REFUSALS = {
+    "401": "There is no key that holds for this season.",
+    "403": "The request comes from another site.",
+    "413": "It is too large.",
+    "422": "It is not as described; nothing of it was taken.",
+    "429": "Too many for a day.",
+    "503": "The disk is full or the season's file is held by another program: try again.",
+}
+
+
+def _answer(schema: dict[str, Any], said: str) -> dict[str, Any]:
+    return {"description": said, "content": {"application/json": {"schema": schema}}}
+
+
+def _operation(
+    said: str, answer: dict[str, Any], more: dict[str, Any] | None = None
+) -> dict[str, Any]:
+    refused = {code: _answer(ERROR, why) for code, why in _REFUSALS.items()}
+    return {"summary": said, "responses": {"200": answer} | refused, **(more or {})}
+
+
+def _body(schema: dict[str, Any]) -> dict[str, Any]:
+    return {"requestBody": {"required": True, "content": {"application/json": {"schema": schema}}}}
+
+
+def _query(**schemas: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "parameters": [
+            {"name": name, "in": "query", "required": "default" not in one, "schema": one}
+            for name, one in schemas.items()
+        ]
+    }
+
+
+_PICTURE = {
+    "description": "The photo, byte for byte.",
+    "content": {"image/*": {"schema": {"type": "string", "format": "binary"}}},
+}
+_AT = {"name": "season", "in": "path", "required": True, "schema": {"type": "string"}}
+_PHOTO = {"name": "photo", "in": "path", "required": True, "schema": ID}
+_MAYBE = {"type": "number", "default": None}
+_OF_PHOTO = {
+    "finding": ID | {"description": "The finding that it belongs to, which may come later."},
+    "at": _MOMENT,
+    "lon": _MAYBE,
+    "lat": _MAYBE,
+    "accuracy_m": _MAYBE,
+}
+
+
+def description() -> dict[str, Any]:
+    """Return the OpenAPI document."""
+    season = f"{PATH}/seasons/{{season}}"
+    kept = _answer({"type": "object", "properties": {"new": {"type": "boolean"}}}, "On the disk.")
+    send_photo = _query(**_OF_PHOTO) | {
+        "requestBody": {
+            "required": True,
+            "description": f"JPEG, PNG or WebP of {photos.MOST_BYTES // 2**20} MB at most; "
+            f"{photos.MOST_A_DAY} a person and day. `Content-Digest: sha-256=:...:` is checked.",
+            "content": _PICTURE["content"],
+        }
+    }
+    return {
+        "openapi": "3.1.0",
+        "info": {
+            "title": "A season of fieldmon",
+            "version": VERSION,
+            "description": "Fetch the day, tell findings, ask for the rest. Whatever is sent "
+            "twice is taken once, and answers come when it is on the disk. One person may tell "
+            f"{tellings.MOST_A_DAY} findings a day.",
+        },
+        "components": {"securitySchemes": {"key": {"type": "http", "scheme": "bearer"}}},
+        "security": [{"key": []}],
+        "paths": {
+            f"{season}/plot": {
+                "parameters": [_AT],
+                "get": _operation("Rows and plants.", _answer(PLOT, "The plot.")),
+            },
+            f"{season}/day": {
+                "parameters": [_AT],
+                "get": _operation(
+                    "A day as it stands; the route is given out.",
+                    _answer(DAY, "The day."),
+                    _query(on=_DATE | {"default": None}),
+                ),
+            },
+            f"{season}/route": {
+                "parameters": [_AT],
+                "post": _operation(
+                    "The rest of the day, planned anew.",
+                    _answer({"type": "object", "properties": {"route": ROUTE}}, "The rest."),
+                    _body(ASKED),
+                ),
+            },
+            f"{season}/findings": {
+                "parameters": [_AT],
+                "post": _operation("Tell findings.", _answer(TAKEN, "Taken."), _body(FINDINGS)),
+            },
+            f"{season}/photos/{{photo}}": {
+                "parameters": [_AT, _PHOTO],
+                "get": _operation("A photo.", _PICTURE),
+                "put": _operation("Send a photo.", kept, send_photo),
+            },
+        },
+    }

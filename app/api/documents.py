@@ -1,0 +1,177 @@
+"""What a season tells a phone or a robot, as JSON. No Streamlit in here.
+
+Plants are numbered as in the season's file, from 0; columns of the plot are in that order.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from fieldmon.compute.digest import digest
+from fieldmon.errors import SettingError
+from fieldmon.infestation.hotspots import hot_spots
+from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
+from fieldmon.monitoring.derived_layers import spot_area
+from fieldmon.monitoring.photos import photos_of
+from fieldmon.plot.local_clock import local_clock, utc_now
+
+if TYPE_CHECKING:
+    from datetime import date
+
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.inspections import Inspections
+    from fieldmon.monitoring import Season
+    from fieldmon.monitoring.scouts import Scout
+    from fieldmon.planning.route import Route
+
+# seven digits of a degree are a centimetre
+_DIGITS = 7
+_FEW = 8
+
+
+@lru_cache(maxsize=_FEW)
+def plot_document(season: Season) -> tuple[str, bytes]:
+    """Return a short name of what the plot is, and its document; it never changes."""
+    grid, field = season.plot.grid, season.plot.field
+    lonlat = np.round(grid.lonlat(), _DIGITS)
+    document = {
+        "name": field.name,
+        "boundary": _geometry(field.boundary),
+        "no_go": _geometry(field.no_go),
+        "gate": None if field.gate is None else [round(v, _DIGITS) for v in field.gate],
+        "zone": local_clock(field).zone,
+        "row_spacing_m": grid.row_spacing_m,
+        "plant_spacing_m": grid.plant_spacing_m,
+        "rows": {
+            "start": grid.row_start.tolist(),
+            "row": season.label.line[grid.row_start[:-1]].tolist(),
+            "aisle": grid.corridor.tolist(),
+        },
+        "plants": {
+            "lon": lonlat[:, 0].tolist(),
+            "lat": lonlat[:, 1].tolist(),
+            "number": season.label.number.tolist(),
+        },
+    }
+    made = _json(document)
+    return digest(made, length=16), made
+
+
+def day_document(season: Season, scout: Scout, on: date | None) -> bytes:
+    """Return a day as it stands: the route left for this person, what is believed and known."""
+    on = _day(season, on)
+    number = season.settings.day(on)
+    part = Part(scout.rows, scout.name)
+    route, history = route_ahead(season, on, part), season.history
+    member = part.member(season)
+    scene = season.scene(on, who="" if member is None else member.name)
+    robot = scene.robot
+    known = history.known(number)
+    document = {
+        "season": season.path.stem,
+        "scout": scout.name,
+        "rows": scout.rows,
+        "plot": plot_document(season)[0],
+        "day": on.isoformat(),
+        "live": on == _today(season),
+        "starts": f"{season.settings.starts:%H:%M}",
+        "robot": {
+            "hours": robot.hours,
+            "speed_m_s": robot.speed_m_s,
+            "row_change_s": robot.row_change_s,
+            "visit_s": robot.visit_s,
+            "returns": robot.returns,
+        },
+        "seconds_left": scene.seconds_left,
+        "route": _route(route),
+        # evening: what was found today counts
+        "chance": np.round(season.evening(on) * 1000).astype(int).tolist(),
+        "found": np.flatnonzero(known == PRESENT).tolist(),
+        "clean": np.flatnonzero(known == ABSENT).tolist(),
+        "today": _said(history.inspections.on(on)),
+        "contradicting": _said(season.contradicting(on)),
+        "hot_spots": _hot_spots(season, known),
+        "photos": [photo._asdict() for photo in photos_of(season)],
+    }
+    return _json(document)
+
+
+def rest_document(
+    season: Season, scout: Scout, on: date | None, seconds_left: float | None
+) -> bytes:
+    """Return the rest of a day, planned anew with all that is known."""
+    on = _day(season, on)
+    route = planned_again(season, on, Part(scout.rows, scout.name), seconds_left)
+    return _json({"day": on.isoformat(), "route": _route(route)})
+
+
+def _day(season: Season, on: date | None) -> date:
+    """Return the day asked for; else today, or where that is not of the season, its last day."""
+    if on is not None:
+        season.settings.day(on)  # or raise
+        return on
+    today = _today(season)
+    try:
+        season.settings.day(today)
+    except SettingError:
+        return season.last_date()
+    return today
+
+
+def _today(season: Season) -> date:
+    return local_clock(season.plot.field).at(utc_now()).date()
+
+
+def _route(route: Route) -> dict[str, Any]:
+    leave_s = np.concatenate([[0.0], route.leave_s[:-1]])
+    walk_s = route.arrive_s - leave_s if len(route) else route.arrive_s
+    line = np.round(route.line_lonlat(), _DIGITS) if len(route) else np.empty((0, 2))
+    return {
+        "plants": route.plant.tolist(),
+        "walk_s": np.round(walk_s, 1).tolist(),
+        "end_s": round(route.end_s, 1),
+        "line": line.tolist(),
+    }
+
+
+def _said(inspections: Inspections) -> list[dict[str, Any]]:
+    columns = zip(
+        inspections.plant.tolist(),
+        inspections.result.tolist(),
+        inspections.count.tolist(),
+        inspections.second.tolist(),
+        inspections.who,
+        strict=True,
+    )
+    return [
+        {
+            "plant": plant,
+            "result": RESULT_NAMES[result],
+            "count": None if np.isnan(count) else count,
+            "second": None if np.isnan(second) else second,
+            "who": str(who),
+        }
+        for plant, result, count, second, who in columns
+    ]
+
+
+def _hot_spots(season: Season, known: NDArray[np.int8]) -> list[Any]:
+    spots = hot_spots(season.plot.grid, known)
+    return [_geometry(spot_area(season.plot, spots, h)) for h in range(len(spots))]
+
+
+def _geometry(geometry: shapely.Geometry) -> Any:  # noqa: ANN401 - GeoJSON
+    rounded = shapely.transform(geometry, lambda xy: np.round(xy, _DIGITS))
+    return json.loads(shapely.to_geojson(rounded))
+
+
+def _json(document: object) -> bytes:
+    return json.dumps(document, separators=(",", ":"), ensure_ascii=False).encode()

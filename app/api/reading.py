@@ -1,0 +1,128 @@
+"""What phones send, checked by the interface's own description and read. No Streamlit in here."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from datetime import date, datetime
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.errors import ObservationError
+from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.monitoring.photos import Photo
+from fieldmon.monitoring.tellings import Telling
+
+from . import description
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_CODES = {name: code for code, name in RESULT_NAMES.items()}
+
+
+def findings(body: bytes) -> tuple[list[Telling], datetime]:
+    """Return what is told, and the phone's clock; raise `ObservationError` if it is not so."""
+    sent = _checked(body, "FINDINGS")
+    return [_telling(one) for one in sent["findings"]], _moment(sent["sent"])
+
+
+def asked(body: bytes) -> tuple[date | None, float | None]:
+    """Return the day and the seconds left, for whoever asks for the rest of a day."""
+    sent = _checked(body or b"{}", "ASKED")
+    return day(sent.get("on")), sent.get("seconds_left")
+
+
+def day(text: str | None) -> date | None:
+    """Return a day, or None where none is said."""
+    try:
+        return date.fromisoformat(text) if text else None
+    except ValueError as error:
+        raise ObservationError(f"A day must be as 2026-11-18, but it is {text!r}.") from error
+
+
+def photo(name: str, query: Mapping[str, str], data: bytes) -> Photo:
+    """Return a photo with what its address says of it."""
+    _matches(name, description.ID)
+    for known in ("finding", "at"):
+        if known not in query:
+            raise ObservationError(f"A photo's address must say its {known}, but it does not.")
+    _matches(query["finding"], description.ID)
+    lon, lat = (_number(query, name, most) for name, most in (("lon", 180.0), ("lat", 90.0)))
+    lonlat = None if lon is None or lat is None else (lon, lat)
+    accuracy_m = _number(query, "accuracy_m", 1e7)
+    return Photo(name, query["finding"], data, _moment(query["at"]), lonlat, accuracy_m)
+
+
+def _telling(sent: dict[str, Any]) -> Telling:
+    lon, lat = sent.get("lon"), sent.get("lat")
+    result = sent.get("result")
+    return Telling(
+        id=sent["id"],
+        at=_moment(sent["at"]),
+        plant=sent.get("plant"),
+        result=None if result is None else _CODES[result],
+        count=sent.get("count"),
+        stage=sent.get("stage", ""),
+        leaves=sent.get("leaves"),
+        notes=sent.get("notes", ""),
+        lonlat=None if lon is None or lat is None else (lon, lat),
+        accuracy_m=sent.get("accuracy_m"),
+        on=day(sent.get("on")),
+        off_route=sent.get("off_route", False),
+        undoes=sent.get("undoes", ""),
+    )
+
+
+def _moment(text: str) -> datetime:
+    try:
+        moment = datetime.fromisoformat(text)
+    except ValueError as error:
+        raise ObservationError(f"A time must be one that exists, but it is {text!r}.") from error
+    if moment.tzinfo is None:
+        raise ObservationError(f"A time must name its zone, but it is {text!r}.")
+    return moment
+
+
+def _number(query: Mapping[str, str], name: str, most: float) -> float | None:
+    text = query.get(name)
+    if not text:
+        return None
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not abs(number) <= most:
+        raise ObservationError(f"{name} must be a number up to {most:g}, but it is {text[:60]!r}.")
+    return number
+
+
+def _checked(body: bytes, name: str) -> Any:  # noqa: ANN401 - as described
+    try:
+        sent = json.loads(body, parse_constant=_refused)
+    except (ValueError, RecursionError) as error:
+        raise ObservationError(f"What is sent must be JSON, but it is not ({error}).") from error
+    for error in _validator(name).iter_errors(sent):
+        where = "/".join(map(str, error.absolute_path)) or "it"
+        raise ObservationError(
+            f"What is sent must be as {description.PATH}/openapi.json says, but {where} is not: "
+            f"{error.message[:200]}."
+        )
+    return sent
+
+
+def _matches(text: str, schema: dict[str, Any]) -> None:
+    if not re.fullmatch(schema["pattern"].strip("^$"), text):
+        raise ObservationError(f"An id must be a UUID, but it is {text[:60]!r}.")
+
+
+def _refused(constant: str) -> Any:  # noqa: ANN401
+    raise ValueError(f"{constant} is no number")
+
+
+@cache
+def _validator(name: str) -> Any:  # noqa: ANN401 - a tenth of a second to import
+    from jsonschema import Draft202012Validator  # noqa: PLC0415
+
+    return Draft202012Validator(getattr(description, name))

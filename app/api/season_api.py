@@ -1,0 +1,215 @@
+"""The HTTP interface as an application: who asks is known by a key, or learns nothing.
+
+What is answered with 200 is on the disk. No Streamlit in here.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import logging
+from functools import cache
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Any
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
+
+from fieldmon.errors import AccessError, FieldmonError, FileProblem, LimitError, ObservationError
+from fieldmon.monitoring import photos, scouts, tellings
+
+from ..state import opened_seasons, seasons_folder
+from . import description, documents, reading
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable
+
+    from fieldmon.monitoring import Season
+    from fieldmon.monitoring.scouts import Scout
+
+    Answer = Callable[[Request], Awaitable[Response]]
+
+_LOG = logging.getLogger(__name__)
+_HEADERS = {
+    "cache-control": "no-store",
+    "content-security-policy": "default-src 'none'; frame-ancestors 'none'",
+    "cross-origin-resource-policy": "same-origin",
+    "referrer-policy": "no-referrer",
+    "x-content-type-options": "nosniff",
+}
+_CODES = {AccessError: 401, LimitError: 429, FileProblem: 503}
+
+
+async def _plot(request: Request) -> Response:
+    season, _ = await _asked_by(request)
+    name, made = await run_in_threadpool(documents.plot_document, season)
+    mark = f'"{name}"'
+    if request.headers.get("if-none-match") == mark:
+        return Response(status_code=304, headers=_HEADERS | {"etag": mark})
+    return _json(made, etag=mark)
+
+
+async def _day(request: Request) -> Response:
+    season, scout = await _asked_by(request)
+    on = reading.day(request.query_params.get("on"))
+    return _json(await run_in_threadpool(documents.day_document, season, scout, on))
+
+
+async def _route(request: Request) -> Response:
+    season, scout = await _asked_by(request)
+    on, seconds_left = reading.asked(await _body(request, description.MOST_BYTES))
+    asked = (season, scout, on, seconds_left)
+    return _json(await run_in_threadpool(documents.rest_document, *asked))
+
+
+async def _findings(request: Request) -> Response:
+    season, _ = await _asked_by(request)
+    told, sent = reading.findings(await _body(request, description.MOST_BYTES))
+    taken = await run_in_threadpool(tellings.take, season, _key(request), told, sent)
+    answer = [{"id": one.id, "new": one.new, "problem": one.problem} for one in taken]
+    return JSONResponse({"taken": answer}, headers=_HEADERS)
+
+
+async def _send_photo(request: Request) -> Response:
+    season, _ = await _asked_by(request)
+    body = await _body(request, photos.MOST_BYTES)
+    _hold_to_digest(request, body)
+    sent = reading.photo(request.path_params["photo"], request.query_params, body)
+    new = await run_in_threadpool(photos.keep, season, _key(request), sent)
+    return JSONResponse({"new": new}, headers=_HEADERS)
+
+
+async def _get_photo(request: Request) -> Response:
+    season, _ = await _asked_by(request)
+    kept = await run_in_threadpool(photos.picture, season, request.path_params["photo"])
+    if kept is None:
+        raise HTTPException(404, "There is no such photo in this season.")
+    return Response(kept[1], media_type=kept[0], headers=_HEADERS)
+
+
+async def _described(_: Request) -> Response:
+    return JSONResponse(description.description(), headers=_HEADERS)
+
+
+# -- who asks
+
+
+def _key(request: Request) -> str:
+    kind, _, key = request.headers.get("authorization", "").partition(" ")
+    return key.strip() if kind.lower() == "bearer" else ""
+
+
+async def _asked_by(request: Request) -> tuple[Season, Scout]:
+    """Return the season and who asks; who has no key does not learn which seasons there are."""
+    return await run_in_threadpool(_opened, request.path_params["season"], _key(request))
+
+
+def _opened(name: str, key: str) -> tuple[Season, Scout]:
+    if key:
+        try:
+            season = opened_seasons.opened(seasons_folder.path_of(name))
+        except FieldmonError:
+            key = ""
+        else:
+            return season, scouts.who(season, key)
+    raise AccessError(
+        "There must be a key that holds for this season, but there is none. Ask whoever leads the "
+        "season for a new one."
+    )
+
+
+def _is_foreign(request: Request) -> bool:
+    """Return whether a browser says that another site asks."""
+    origin = request.headers.get("origin")
+    if request.headers.get("sec-fetch-site") in {"cross-site", "same-site"}:
+        return True
+    return origin is not None and origin.partition("://")[2] != request.headers.get("host")
+
+
+# -- what is sent and answered
+
+
+async def _body(request: Request, most: int) -> bytes:
+    """Return what is sent, whole; what is too large is not read to its end."""
+    too_large = HTTPException(413, f"What is sent must have {most} bytes at most.")
+    said = request.headers.get("content-length", "")
+    if said.isdigit() and int(said) > most:
+        raise too_large
+    body = bytearray()
+    async for part in request.stream():
+        body += part
+        if len(body) > most:
+            raise too_large
+    return bytes(body)
+
+
+def _hold_to_digest(request: Request, body: bytes) -> None:
+    """Raise `ObservationError` if not what was meant has arrived (RFC 9530)."""
+    said = request.headers.get("content-digest", "")
+    if said.startswith("sha-256=:"):
+        wanted = said.removeprefix("sha-256=:").rstrip(":")
+        if base64.b64encode(hashlib.sha256(body).digest()).decode() != wanted:
+            raise ObservationError("A photo must arrive as it was sent, but it did not.")
+
+
+def _json(made: bytes, **more: str) -> Response:
+    return Response(made, media_type="application/json", headers=_HEADERS | more)
+
+
+def _refused(code: int, sentence: str) -> Response:
+    more = {"www-authenticate": "Bearer"} if code == HTTPStatus.UNAUTHORIZED else {}
+    return JSONResponse({"error": sentence}, code, headers=_HEADERS | more)
+
+
+def _guarded(answer: Answer) -> Answer:
+    """Return what answers, with every problem a sentence."""
+
+    async def guarded(request: Request) -> Response:
+        try:
+            if _is_foreign(request):
+                return _refused(403, "Requests must come from this site, but this one does not.")
+            return await answer(request)
+        except FieldmonError as error:
+            return _refused(_CODES.get(type(error), 422), str(error))
+        except HTTPException as error:
+            return _refused(error.status_code, error.detail)
+        except ClientDisconnect:
+            return Response(status_code=499)  # nobody reads it
+        except Exception:  # noqa: BLE001 - a phone must be told to try again
+            _LOG.exception("A request could not be answered.")
+            return _refused(500, "Something went wrong here; nothing is lost. Try again.")
+
+    return guarded
+
+
+async def _not_found(_: Request, __: Any) -> Response:  # noqa: ANN401 - as Starlette asks
+    return _refused(404, f"There is nothing here; see {description.PATH}/openapi.json.")
+
+
+async def _wrong_method(_: Request, __: Any) -> Response:  # noqa: ANN401
+    return _refused(405, f"This is not how to ask; see {description.PATH}/openapi.json.")
+
+
+@cache
+def application() -> Starlette:
+    """Return the interface, an ASGI application."""
+    from starlette.middleware import Middleware  # noqa: PLC0415
+    from starlette.middleware.gzip import GZipMiddleware  # noqa: PLC0415
+
+    season = f"{description.PATH}/seasons/{{season}}"
+    routes = [
+        Route(f"{description.PATH}/openapi.json", _guarded(_described), methods=["GET"]),
+        Route(f"{season}/plot", _guarded(_plot), methods=["GET"]),
+        Route(f"{season}/day", _guarded(_day), methods=["GET"]),
+        Route(f"{season}/route", _guarded(_route), methods=["POST"]),
+        Route(f"{season}/findings", _guarded(_findings), methods=["POST"]),
+        Route(f"{season}/photos/{{photo}}", _guarded(_send_photo), methods=["PUT"]),
+        Route(f"{season}/photos/{{photo}}", _guarded(_get_photo), methods=["GET"]),
+    ]
+    refusals = {404: _not_found, 405: _wrong_method}
+    packed = [Middleware(GZipMiddleware, minimum_size=10_000, compresslevel=4)]
+    return Starlette(routes=routes, exception_handlers=refusals, middleware=packed)  # type: ignore[arg-type]

@@ -1,0 +1,104 @@
+// Where things are on the plot: degrees to metres, nearest plants, neighbours, ways between them.
+
+const A = 6378137, E2 = 0.00669437999014; // WGS 84
+
+/** Metres per degree of longitude and of latitude at a latitude. */
+export function metresPerDegree(lat) {
+  const s = Math.sin((lat * Math.PI) / 180), w = 1 - E2 * s * s, turn = Math.PI / 180;
+  return [(A / Math.sqrt(w)) * Math.cos((lat * Math.PI) / 180) * turn, ((A * (1 - E2)) / w ** 1.5) * turn];
+}
+
+/** What the phone keeps of the plot's document: plants in metres east and north of its middle. */
+export function laidOut(document, digest) {
+  const { lon, lat, number } = document.plants, n = lon.length;
+  const lon0 = (low(lon) + high(lon)) / 2, lat0 = (low(lat) + high(lat)) / 2;
+  const [kx, ky] = metresPerDegree(lat0);
+  const x = new Float32Array(n), y = new Float32Array(n);
+  for (let i = 0; i < n; i++) { x[i] = (lon[i] - lon0) * kx; y[i] = (lat[i] - lat0) * ky; }
+  const plot = {
+    digest, name: document.name, zone: document.zone, lon0, lat0, kx, ky, x, y,
+    number: Int32Array.from(number), start: Int32Array.from(document.rows.start),
+    row: Int32Array.from(document.rows.row), aisle: Int32Array.from(document.rows.aisle),
+    rowSpacing: document.row_spacing_m, plantSpacing: document.plant_spacing_m,
+  };
+  plot.boundary = rings(document.boundary).map((ring) => ring.map((at) => metres(plot, at)));
+  return plot;
+}
+
+const low = (values) => values.reduce((a, b) => (b < a ? b : a), Infinity);
+const high = (values) => values.reduce((a, b) => (b > a ? b : a), -Infinity);
+
+/** The rings of a GeoJSON polygon or of several. */
+export function rings(geometry) {
+  if (geometry.type === "Polygon") return geometry.coordinates;
+  if (geometry.type === "MultiPolygon") return geometry.coordinates.flat();
+  return (geometry.geometries ?? []).flatMap(rings);
+}
+
+export const metres = (plot, [lon, lat]) => [(lon - plot.lon0) * plot.kx, (lat - plot.lat0) * plot.ky];
+
+/** Piece of row in which a plant stands. */
+export function pieceOf(plot, plant) {
+  let a = 0, b = plot.start.length - 1;
+  while (b - a > 1) { const m = (a + b) >> 1; if (plot.start[m] <= plant) a = m; else b = m; }
+  return a;
+}
+
+export const rowOf = (plot, plant) => plot.row[pieceOf(plot, plant)];
+
+/** The plant with a row and a number as people count, or -1. */
+export function plantAt(plot, row, number) {
+  for (let k = 0; k < plot.row.length; k++) {
+    if (plot.row[k] !== row) continue;
+    for (let i = plot.start[k]; i < plot.start[k + 1]; i++) if (plot.number[i] === number) return i;
+  }
+  return -1;
+}
+
+/** The plant nearest to a place, and how far it is. */
+export function nearest(plot, x, y) {
+  let best = Infinity, plant = -1;
+  for (let i = 0; i < plot.x.length; i++) {
+    const dx = plot.x[i] - x, dy = plot.y[i] - y, d = dx * dx + dy * dy;
+    if (d < best) { best = d; plant = i; }
+  }
+  return { plant, metres: Math.sqrt(best) };
+}
+
+export function apart(plot, a, b) { return Math.hypot(plot.x[a] - plot.x[b], plot.y[a] - plot.y[b]); }
+
+/** Which plant a position offers: the nearest, and only if it is within the position's accuracy. */
+export function offered(plot, position) {
+  if (!position) return -1;
+  const found = nearest(plot, position.x, position.y);
+  return found.metres <= position.accuracy ? found.plant : -1;
+}
+
+/** The plants next to one: in its row, and across in the rows on both sides. */
+export function neighbours(plot, plant) {
+  const piece = pieceOf(plot, plant), found = [];
+  if (plant > plot.start[piece]) found.push(plant - 1);
+  if (plant + 1 < plot.start[piece + 1]) found.push(plant + 1);
+  for (const side of [-1, 1]) {
+    let best = 1.5 * plot.rowSpacing, across = -1;
+    for (let k = 0; k < plot.row.length; k++) {
+      if (plot.row[k] !== plot.row[piece] + side) continue;
+      for (let i = plot.start[k]; i < plot.start[k + 1]; i++) {
+        const d = apart(plot, plant, i);
+        if (d < best) { best = d; across = i; }
+      }
+    }
+    if (across >= 0) found.push(across);
+  }
+  return found;
+}
+
+/** Seconds of the way between two plants; nobody walks through a row. */
+export function walkSeconds(plot, robot, a, b) {
+  if (a < 0 || b < 0) return 0;
+  const from = pieceOf(plot, a), to = pieceOf(plot, b), speed = robot.speed_m_s;
+  if (from === to || plot.aisle[from] === plot.aisle[to]) return apart(plot, a, b) / speed;
+  const ends = [(k) => plot.start[k], (k) => plot.start[k + 1] - 1];
+  const ways = ends.map((end) => apart(plot, a, end(from)) + apart(plot, end(from), end(to)) + apart(plot, end(to), b));
+  return Math.min(...ways) / speed + robot.row_change_s;
+}

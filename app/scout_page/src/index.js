@@ -1,0 +1,50 @@
+// The scout's page: what was there last is shown first, the network comes second.
+
+import { Field } from "./field.js";
+import { Page } from "./page.js";
+import { Runner } from "./runner.js";
+import { openStore } from "./store.js";
+import { Sync } from "./sync.js";
+import { phones } from "./words.js";
+
+const isApple = "standalone" in navigator;
+
+/** Who may do what, from the address that the code holds; the key is then out of sight. */
+function accessOfAddress() {
+  const said = new URLSearchParams(location.hash.slice(1));
+  if (!said.get("season") || !said.get("key")) return {};
+  // an iPhone's home screen keeps the address, and nothing else of the browser
+  if (!isApple) history.replaceState(null, "", location.pathname);
+  const access = { season: said.get("season"), key: said.get("key"), on: said.get("on") || null };
+  return { access, language: said.get("lang") };
+}
+
+async function begin() {
+  if (isApple) document.querySelector("link[rel=manifest]")?.remove();
+  const { access, language } = accessOfAddress();
+  const store = await openStore();
+  const field = new Field(store);
+  const page = new Page(document.getElementById("page"), field, store);
+  const [choices] = await Promise.all([store.get("choices"), field.open(access)]);
+  await page.build({ language: phones(), theme: "auto", hand: "right", ...choices, ...(language && !choices ? { language } : {}) });
+  page.map.look(field.plant);
+  document.documentElement.dataset.ready = Math.round(performance.now());
+  await later(page, field, store, access);
+}
+
+/** What a first screen does not need. */
+async function later(page, field, store, access) {
+  const runner = new Runner(new Sync(store), field, (state) => page.sending(state));
+  const others = new BroadcastChannel("fieldmon");
+  page.onTold = () => { runner.now(); others.postMessage("told"); };
+  // another window of this page told something
+  others.onmessage = async () => { await field.open(); await page.refresh(); };
+  if ("serviceWorker" in navigator) navigator.serviceWorker.register("worker.js", { updateViaCache: "none" }).catch(() => {});
+  page.persisted = (await navigator.storage?.persist?.()) ?? false;
+  navigator.geolocation?.watchPosition(({ coords }) => { field.moved(coords); page.moved(); }, () => {}, { enableHighAccuracy: true, maximumAge: 2000 });
+  setInterval(() => page.refresh(), 30000);
+  if (access && !field.day) await page.load();
+  runner.now();
+}
+
+begin();

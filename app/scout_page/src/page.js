@@ -1,0 +1,320 @@
+// What is seen and touched: the map, the next plant, large buttons, and a menu.
+
+import { plantAt, rowOf } from "./geo.js";
+import { PlotMap } from "./map.js";
+import { scaled } from "./photo.js";
+import { LANGUAGES, say, speak } from "./words.js";
+
+const STAGES = ["egg", "young", "adult", "web"];
+
+function h(name, values = {}, ...inner) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(values)) {
+    if (key.startsWith("on")) made.addEventListener(key.slice(2), value);
+    else if (value === true) made.setAttribute(key, "");
+    else if (value !== false && value != null) made.setAttribute(key, value);
+  }
+  made.append(...inner.filter((one) => one != null && one !== false));
+  return made;
+}
+
+export class Page {
+  constructor(root, field, store) {
+    Object.assign(this, { root, field, store });
+    this.state = "idle";
+    this.left = { records: 0, photos: 0, refused: [] };
+  }
+
+  /** Lay the page out in the language, theme and hand chosen. */
+  async build(choices) {
+    this.choices = choices;
+    this.choices.language = await speak(choices.language);
+    this.#dress();
+    this.canvas = h("canvas", { id: "map", tabindex: "0", role: "img", "aria-label": say("map") });
+    this.bar = h("header", { id: "bar" });
+    this.note = h("p", { id: "note", role: "status", "aria-live": "polite" });
+    this.sheet = h("main", { id: "sheet" });
+    this.menu = h("dialog", { id: "menu" });
+    const tool = (name, act, sign) => h("button", { type: "button", class: "tool", title: say(name), "aria-label": say(name), onclick: act }, sign);
+    const tools = h("div", { id: "tools" }, tool("zoom_in", () => this.map.zoom(1.6), "+"), tool("zoom_out", () => this.map.zoom(1 / 1.6), "−"),
+      tool("to_next", () => this.map.look(this.field.plant), "◎"), tool("whole_plot", () => this.map.fit(), "⛶"));
+    this.root.replaceChildren(this.bar, h("section", { id: "stage", "aria-label": say("map_of") }, this.canvas, tools, this.note), this.sheet, this.menu);
+    this.map = new PlotMap(this.canvas, { picked: (plant) => this.#act(() => this.field.goTo(plant)) });
+    this.map.theme = this.theme;
+    this.#laidOut = null;
+    await this.refresh();
+  }
+
+  #laidOut = null;
+
+  get theme() {
+    const { theme } = this.choices;
+    return theme === "auto" ? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "sun") : theme;
+  }
+
+  #dress() {
+    document.documentElement.dataset.theme = this.theme;
+    document.documentElement.dataset.hand = this.choices.hand;
+  }
+
+  async choose(changes) {
+    Object.assign(this.choices, changes);
+    await this.store.put({ choices: this.choices });
+    await this.build(this.choices);
+    this.#openMenu();
+  }
+
+  /** How sending goes. */
+  async sending(state) {
+    this.state = state;
+    this.left = await this.store.left();
+    this.#drawBar();
+    if (this.menu.open && this.menu.dataset.of === "menu") this.#openMenu();
+    if (state === "sent") this.#drawMap();
+  }
+
+  async refresh() {
+    this.left = await this.store.left();
+    this.#drawBar();
+    this.#drawSheet();
+    this.#drawMap();
+  }
+
+  /** Do something, and say so where it could not be kept. */
+  async #act(work, beat) {
+    try {
+      await work();
+      if (beat) navigator.vibrate?.(beat);
+      this.#say("");
+    } catch (error) {
+      navigator.vibrate?.([200, 100, 200]);
+      this.#say(say(error?.name === "QuotaExceededError" ? "phone_full" : "not_kept", { why: error?.message ?? "" }), true);
+    }
+    this.#drawBar();
+    this.#drawSheet();
+    this.#drawMap();
+    this.store.left().then((left) => { this.left = left; this.#drawBar(); });
+  }
+
+  #say(text, bad = false) {
+    this.note.textContent = text;
+    this.note.classList.toggle("bad", bad);
+  }
+
+  // -- map
+
+  #drawMap() {
+    const { field } = this;
+    if (!field.plot || !field.day) return;
+    if (this.#laidOut !== field.day) { this.#laidOut = field.day; this.map.lay(field.plot, field.day.chance, field.day.spots); }
+    this.map.show({ ...field.known(), ahead: field.ahead, next: field.plant, position: field.position });
+  }
+
+  moved() {
+    this.#drawMap();
+    this.#drawPlace();
+  }
+
+  // -- bar
+
+  #drawBar() {
+    const { field } = this;
+    const said = field.day ? [
+      h("b", {}, say("progress", { done: field.own.size, left: field.ahead.length })),
+      h("span", { id: "hours" }, this.#hours()),
+    ] : [h("b", {}, "fieldmon")];
+    const n = this.left.records + this.left.photos;
+    const ended = this.state === "ended", signs = { offline: "⏸", ended: "⚠", sending: "↑", sent: "✓", idle: "" };
+    const text = n ? say("waiting", { n }) : this.left.refused.length ? say("some_refused", { n: this.left.refused.length }) : say("all_sent");
+    this.bar.replaceChildren(h("div", { class: "said" }, ...said),
+      h("span", { id: "sync", class: ended || this.left.refused.length ? "bad" : "", "data-state": this.state, "data-left": n }, `${signs[this.state]} ${text}`),
+      h("button", { type: "button", id: "open_menu", "aria-label": say("menu"), onclick: () => this.#openMenu() }, "☰"));
+  }
+
+  #hours() {
+    const left = this.field.secondsLeft(), minutes = Math.round(left / 60);
+    return left > 0 ? say("time_left", { hours: Math.floor(minutes / 60), minutes: String(minutes % 60).padStart(2, "0") }) : say("time_over");
+  }
+
+  // -- the next plant
+
+  #drawSheet() {
+    const { field } = this;
+    if (!field.access) return this.sheet.replaceChildren(h("p", { class: "large" }, say("scan")));
+    if (!field.day) {
+      return this.sheet.replaceChildren(h("p", { class: "large" }, say("not_loaded", { season: field.season })),
+        h("button", { type: "button", class: "wide main", onclick: () => this.load() }, say("load_day")));
+    }
+    const { draft } = field;
+    if (draft.plant < 0) {
+      return this.sheet.replaceChildren(...this.#old(), h("p", { class: "large", id: "place", "data-plant": -1 }, say("route_done")), this.#others(), this.#back());
+    }
+    this.place = h("div", { id: "place", "data-plant": draft.plant });
+    this.#drawPlace();
+    this.sheet.replaceChildren(...this.#old(), this.place, draft.open ? this.#details() : this.#buttons(), this.#others());
+  }
+
+  #old() {
+    const { field } = this;
+    return field.isOld() ? [h("button", { type: "button", class: "wide bad", onclick: () => this.load() }, say("old_day", { day: field.day.day }))] : [];
+  }
+
+  #drawPlace() {
+    const { field, place } = this;
+    if (!place || field.plant < 0 || !field.day) return;
+    const { plot, plant } = field, away = field.metresAway();
+    const values = { row: rowOf(plot, plant), plant: plot.number[plant] };
+    const where = away == null ? say("no_position") : field.isThere() ? say("there") : say("away", { m: Math.round(away) });
+    place.replaceChildren(
+      h("h1", {}, say("place", values)),
+      h("p", {}, h("span", { class: field.isThere() ? "good" : "" }, where), h("span", {}, say("chance", { n: (field.day.chance[plant] / 10).toFixed(field.day.chance[plant] < 100 ? 1 : 0) })),
+        field.offRoute && h("span", { class: "tag" }, say("off_route"))),
+    );
+    const contradicting = (field.day.contradicting ?? []).filter((one) => one.plant === plant);
+    if (contradicting.length) place.append(h("p", { class: "bad" }, contradicting.map((one) => say("who_says", { who: one.who, result: say(one.result) })).join(", ")));
+    const known = (field.day.today ?? []).filter((one) => one.plant === plant && !contradicting.length);
+    if (known.length) place.append(h("p", {}, known.map((one) => say("who_says", { who: one.who, result: say(one.result) })).join(", ")));
+  }
+
+  #buttons() {
+    const tap = (result, beat) => h("button", { type: "button", class: result, id: result, onclick: () => this.#tell(result, beat) }, say(result));
+    const found = h("button", { type: "button", class: "found", id: "found", onclick: () => this.#act(() => this.field.note({ open: true })) }, say("found"));
+    return h("div", { id: "answers" }, tap("clean", 30), found, tap("skipped", 30));
+  }
+
+  async #tell(result, beat) {
+    await this.#act(() => this.field.tell(result), beat);
+    this.map.look(this.field.plant);
+    this.onTold?.();
+  }
+
+  /** Count, stage, leaves and a note of a find. */
+  #details() {
+    const { draft } = this.field, save = (changes) => this.field.note(changes).catch((error) => this.#act(() => Promise.reject(error)));
+    const number = (name) => {
+      const input = h("input", { type: "number", inputmode: "numeric", min: "0", max: "1000000", id: name, value: draft[name] ?? "",
+        oninput: () => save({ [name]: input.value === "" ? null : Math.max(0, Number(input.value)) }) });
+      const step = (by) => () => { input.value = Math.max(0, (Number(input.value) || 0) + by); input.dispatchEvent(new Event("input")); };
+      return h("div", { class: "number" }, h("label", { for: name }, say(name)),
+        h("button", { type: "button", "aria-label": say("fewer", { what: say(name) }), onclick: step(-1) }, "−"), input,
+        h("button", { type: "button", "aria-label": say("more", { what: say(name) }), onclick: step(1) }, "+"));
+    };
+    const stages = h("div", { class: "chips", role: "group", "aria-label": say("stage") }, ...STAGES.map((stage) => h("button", {
+      type: "button", "aria-pressed": String(draft.stage === stage),
+      onclick: () => this.#act(() => this.field.note({ stage: draft.stage === stage ? "" : stage })) }, say(`stage_${stage}`))));
+    return h("div", { id: "details" }, number("count"), number("leaves"), stages,
+      h("div", { class: "pair" },
+        h("button", { type: "button", id: "cancel", onclick: () => this.#act(() => this.field.note({ open: false })) }, say("cancel")),
+        h("button", { type: "button", class: "found", id: "save", onclick: () => this.#tell("found", [60, 40, 60]) }, say("save_found"))));
+  }
+
+  /** Photo, note, undo, another plant. */
+  #others() {
+    const { field } = this, { draft } = field;
+    const input = h("input", { type: "file", accept: "image/*", capture: "environment", id: "camera", class: "hidden", tabindex: "-1", "aria-hidden": "true",
+      onchange: () => this.#photo(input.files[0]) });
+    const small = (name, act, more = {}) => h("button", { type: "button", id: name, onclick: act, ...more }, say(name));
+    const last = field.lastRecord(), offers = field.offered();
+    return h("div", { id: "others" }, input,
+      draft.plant >= 0 && small("photo", () => input.click()),
+      draft.plant >= 0 && small("note_button", () => this.#note(), { "aria-pressed": String(Boolean(draft.notes)) }),
+      last && h("button", { type: "button", id: "undo", onclick: () => this.#act(() => this.field.undo(), 30).then(() => this.onTold?.()) }, `↶ ${say("undo")}`),
+      offers >= 0 && offers !== draft.plant && small("here", () => this.#act(() => field.goTo(offers))),
+      small("other_plant", () => this.#other()),
+      field.offRoute && field.ahead.length > 0 && small("back_to_route", () => this.#act(() => field.goBack())),
+      draft.photos > 0 && h("button", { type: "button", class: "tag", id: "photos", onclick: () => confirm(say("drop_photos")) && this.#act(() => field.dropPhotos()) }, say("photos", { n: draft.photos })),
+      draft.notes ? h("p", { class: "noted" }, draft.notes) : null);
+  }
+
+  #back() { return h("button", { type: "button", class: "wide", onclick: () => this.planRest() }, say("plan_rest")); }
+
+  async #photo(file) {
+    if (!file) return;
+    let made;
+    try { made = await scaled(file); } catch { return this.#say(say("no_picture"), true); }
+    await this.#act(() => this.field.addPhoto(made), 30);
+  }
+
+  #note() {
+    const text = h("textarea", { id: "notes", maxlength: "2000", rows: "4", "aria-label": say("note_button") });
+    text.value = this.field.draft.notes ?? "";
+    this.#ask(say("note_button"), text, () => this.#act(() => this.field.note({ notes: text.value.trim() })));
+    text.focus();
+  }
+
+  #other() {
+    const field = (name) => h("input", { type: "number", inputmode: "numeric", min: "1", id: `other_${name}`, required: true });
+    const row = field("row"), plant = field("plant");
+    this.#ask(say("other_plant"), h("div", { class: "pair" }, h("label", {}, say("row"), row), h("label", {}, say("plant"), plant)), () => {
+      const found = plantAt(this.field.plot, Number(row.value), Number(plant.value));
+      if (found < 0) this.#say(say("no_such_plant"), true);
+      else this.#act(() => this.field.goTo(found)).then(() => this.map.look(found));
+    });
+    row.focus();
+  }
+
+  #ask(title, inner, done) {
+    const form = h("form", { method: "dialog", onsubmit: done }, h("h2", {}, title), inner,
+      h("div", { class: "pair" }, h("button", { type: "button", onclick: () => this.menu.close() }, say("cancel")), h("button", { class: "main", id: "ok" }, say("ok"))));
+    this.#show(form, title, "form");
+  }
+
+  #show(inner, title, of) {
+    this.menu.dataset.of = of;
+    this.menu.setAttribute("aria-label", title);
+    this.menu.replaceChildren(inner);
+    if (!this.menu.open) this.menu.showModal();
+  }
+
+  // -- menu
+
+  #openMenu() {
+    const { field, choices } = this;
+    const act = (name, work) => h("button", { type: "button", class: "wide", id: name, onclick: work }, say(name));
+    const pick = (name, options) => h("fieldset", {}, h("legend", {}, say(name)), ...options.map(([value, text]) => h("button", {
+      type: "button", lang: name === "language" ? value : null, "aria-pressed": String(choices[name] === value), onclick: () => this.choose({ [name]: value }) }, text)));
+    const refused = this.left.refused.map((one) => h("li", {}, one.problem || say("refused")));
+    const inner = h("div", {}, h("h2", {}, field.day ? `${field.day.scout}, ${field.day.day}` : "fieldmon"),
+      field.day && h("p", {}, say("ahead_takes", { minutes: Math.round(field.secondsAhead() / 60) })),
+      field.day?.rows && h("p", {}, say("your_rows", { low: field.day.rows[0], high: field.day.rows[1] })),
+      h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
+      refused.length ? h("ul", { class: "bad" }, ...refused) : null,
+      field.access && act("load_day", () => this.load()),
+      field.day && act("plan_rest", () => this.planRest()),
+      refused.length ? act("send_again", () => this.store.again().then(() => this.onTold?.())) : null,
+      this.left.records + this.left.photos + refused.length > 0 && act("save_file", () => this.#saveFile()),
+      pick("hand", [["left", say("left")], ["right", say("right")]]),
+      pick("theme", [["auto", say("auto")], ["sun", say("sun")], ["dark", say("dark")]]),
+      pick("language", Object.entries(LANGUAGES)),
+      h("p", { class: "small" }, this.persisted ? say("stays") : say("may_be_cleared")),
+      h("button", { type: "button", class: "wide main", id: "close", onclick: () => this.menu.close() }, say("close")));
+    this.#show(inner, say("menu"), "menu");
+  }
+
+  load() { return this.#network(() => this.field.load()); }
+
+  planRest() { return this.#network(() => this.field.planRest()); }
+
+  async #network(work) {
+    if (this.menu.open) this.menu.close();
+    this.#say(say("loading"));
+    try {
+      await work();
+      this.#say("");
+    } catch (error) {
+      const known = { KeyEnded: "state_ended", NotNow: "no_network" }[error?.constructor?.name];
+      this.#say(known ? say(known) : error.message, true);
+    }
+    await this.refresh();
+    this.map.fit();
+    if (this.field.plant >= 0) this.map.look(this.field.plant);
+    this.onTold?.();
+  }
+
+  async #saveFile() {
+    const text = JSON.stringify(await this.store.unsent());
+    const link = h("a", { href: URL.createObjectURL(new Blob([text], { type: "application/json" })), download: `fieldmon-${this.field.season}-${Date.now()}.json` });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+  }
+}

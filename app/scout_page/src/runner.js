@@ -1,0 +1,49 @@
+// When things are sent: after each tap, when a network comes, and again and again until all is there.
+
+import { KeyEnded } from "./sync.js";
+
+const SOON_MS = 3000, LATEST_MS = 60000, NEWS_MS = 60000;
+
+export class Runner {
+  constructor(sync, field, tell) {
+    Object.assign(this, { sync, field, tell, wait: SOON_MS, state: "idle", news: 0 });
+    addEventListener("online", () => this.now());
+    document.addEventListener("visibilitychange", () => { if (!document.hidden) this.now(); });
+  }
+
+  now() { this.wait = SOON_MS; this.#later(0); }
+
+  #later(ms) {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.#run(), ms);
+  }
+
+  async #run() {
+    if (this.running) { this.again = true; return; }
+    this.running = true;
+    const alone = navigator.locks ? (work) => navigator.locks.request("fieldmon sync", work) : (work) => work();
+    try {
+      this.#say("sending");
+      await alone(() => this.sync.send());
+      await this.#news();
+      this.#say("sent");
+      this.wait = SOON_MS;
+      this.#later(NEWS_MS);
+    } catch (error) {
+      this.#say(error instanceof KeyEnded ? "ended" : "offline");
+      this.#later(this.wait);
+      this.wait = Math.min(this.wait * 2, LATEST_MS);
+    }
+    this.running = false;
+    if (this.again) { this.again = false; this.#later(0); }
+  }
+
+  async #news() {
+    await this.field.reread();
+    if (Date.now() - this.news < NEWS_MS) return;
+    this.news = Date.now();
+    await this.field.refresh();
+  }
+
+  #say(state) { this.state = state; this.tell(state); }
+}

@@ -1,0 +1,151 @@
+import "fake-indexeddb/auto";
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Field } from "../src/field.js";
+import { openStore } from "../src/store.js";
+import { KeyEnded, NotNow, Sync } from "../src/sync.js";
+import { aDay, ASeason } from "./scene.mjs";
+
+let stores = 0;
+const ACCESS = { season: "Gate", key: "k1", on: null };
+const PICTURE = () => ({ bytes: Uint8Array.from({ length: 5000 }, (_, k) => (k * 7) % 256).buffer, type: "image/jpeg" });
+
+async function aField(season = new ASeason()) {
+  const name = `test ${stores++}`, store = await openStore(name);
+  const options = { ask: season.ask, clock: () => new Date("2026-11-22T08:00:00Z") };
+  const field = new Field(store, options);
+  await field.open(ACCESS);
+  await field.load();
+  return { season, store, field, sync: new Sync(store, season.ask),
+    again: async () => { const other = new Field(await openStore(name), options); await other.open(); return other; } };
+}
+
+test("a tap is kept before the next plant comes, and comes back after a kill", async () => {
+  const { field, again } = await aField();
+  assert.equal(field.plant, 0);
+  await field.tell("clean");
+  await field.note({ open: true, count: 4, stage: "adult", notes: "webs" });
+  const other = await again();
+  assert.equal(other.plant, 1);
+  assert.deepEqual([other.draft.count, other.draft.stage, other.draft.notes, other.draft.open], [4, "adult", "webs", true]);
+  assert.deepEqual(other.records.map((one) => [one.plant, one.result, one.state]), [[0, "clean", "waiting"]]);
+  assert.deepEqual(other.ahead, [1, 2, 10, 11]);
+});
+
+test("a find brings its neighbours, and undo brings back what was before", async () => {
+  const { field, again } = await aField();
+  await field.note({ open: true, count: 3, leaves: 5, stage: "egg" });
+  await field.tell("found");
+  assert.deepEqual(field.ahead, [1, 5, 2, 10, 11]);
+  assert.equal(field.records[0].count, 3);
+  await field.undo();
+  assert.deepEqual(field.ahead, [0, 1, 2, 10, 11]);
+  assert.equal(field.plant, 0);
+  assert.equal(field.own.size, 0);
+  assert.equal((await again()).records.length, 2, "nothing is deleted");
+});
+
+test("a free find is off the route, and the route goes on", async () => {
+  const { field } = await aField();
+  await field.goTo(14);
+  assert.ok(field.offRoute);
+  await field.tell("found");
+  assert.deepEqual([field.records[0].plant, field.records[0].off_route], [14, true]);
+  assert.ok(field.ahead.includes(0) && field.ahead[0] === 13);
+});
+
+test("all goes in once, byte for byte, and only then is forgotten", async () => {
+  const { season, store, field, sync } = await aField();
+  await field.addPhoto(PICTURE());
+  await sync.send();
+  assert.equal(season.photos.size, 0, "a photo of what is not said yet stays");
+  await field.tell("found");
+  await field.tell("clean");
+  await field.undo();
+  assert.deepEqual(await store.left().then(({ records, photos }) => [records, photos]), [3, 1]);
+  await sync.send();
+  await sync.send();
+  assert.equal(season.taken.size, 3);
+  const [bytes] = [...season.photos.values()];
+  assert.deepEqual(Buffer.from(bytes), Buffer.from(PICTURE().bytes));
+  assert.deepEqual(await store.left(), { records: 0, photos: 0, refused: [] });
+  assert.equal(await store.db.count("photos"), 0);
+});
+
+test("however it breaks, nothing is lost and nothing is doubled", async () => {
+  const { season, store, field, sync } = await aField();
+  for (let k = 0; k < 4; k++) { await field.addPhoto(PICTURE()); await field.tell(k % 2 ? "clean" : "found"); }
+  const kinds = ["before", "after", "half", 500, 502, 429, 200];
+  for (let round = 0; round < 200; round++) {
+    season.breaks = [...Array(round % 4).fill(null), kinds[round % kinds.length]];
+    await sync.send().catch((error) => assert.ok(error instanceof NotNow, error));
+    const left = await store.left();
+    assert.equal(left.refused.length, 0);
+    for (const one of await store.records("Gate")) assert.ok(one.state === "waiting" || season.taken.has(one.id));
+    if (round % 20 === 0) { await field.reread(); await field.goTo(round % 15); await field.tell("clean"); }
+  }
+  season.breaks = [];
+  await sync.send();
+  const records = await store.records("Gate");
+  assert.deepEqual([...season.taken.keys()].sort(), records.map((one) => one.id).sort());
+  assert.equal(season.photos.size, 4);
+});
+
+test("one that is refused does not hold up the others, and is not thrown away", async () => {
+  const { season, store, field, sync } = await aField();
+  await field.tell("clean");
+  await field.note({ notes: "poison" });
+  await field.tell("clean");
+  await field.tell("clean");
+  await sync.send();
+  assert.equal(season.taken.size, 2);
+  const left = await store.left();
+  assert.deepEqual(left.refused.map((one) => one.problem), ["not as described"]);
+  assert.equal((await store.unsent()).findings.length, 1);
+  await store.again();
+  assert.equal((await store.left()).records, 1);
+});
+
+test("a key taken back keeps everything here until there is a new one", async () => {
+  const { season, store, field, sync } = await aField();
+  await field.addPhoto(PICTURE());
+  await field.tell("found");
+  season.keys = ["k2"];
+  await assert.rejects(sync.send(), KeyEnded);
+  assert.deepEqual(await store.left().then(({ records, photos }) => [records, photos]), [1, 1]);
+  await store.allow({ season: "Gate", key: "k2" });
+  await sync.send();
+  assert.deepEqual([season.taken.size, season.photos.size], [1, 1]);
+});
+
+test("what others found is seen, and not inspected twice; the way stays", async () => {
+  const { season, field } = await aField();
+  await field.tell("clean");
+  season.day = aDay([7, 8], { today: [{ plant: 10, result: "found", who: "Ben", count: null, second: 1 }], found: [10] });
+  await field.refresh();
+  assert.deepEqual(field.ahead, [1, 2, 11]);
+  assert.ok(field.known().found.has(10));
+});
+
+test("the full planner plans the rest when the network is there", async () => {
+  const { field } = await aField();
+  await field.planRest();
+  assert.deepEqual([field.ahead, field.plant], [[14, 13], 14]);
+});
+
+test("a route of yesterday is called so", async () => {
+  const { field } = await aField();
+  assert.equal(field.isOld(), false);
+  field.clock = () => new Date("2026-11-22T22:30:00Z"); // past midnight on the plot
+  assert.equal(field.isOld(), true);
+});
+
+test("another season on the same phone does not mix with the first, whose records still go in", async () => {
+  const { season, store, field, sync } = await aField();
+  await field.tell("clean");
+  await field.open({ season: "Other", key: "k9", on: null });
+  assert.deepEqual([field.day, field.records.length], [null, 0]);
+  await sync.send();
+  assert.equal(season.taken.size, 1);
+  assert.ok(season.asked.at(-1).includes("/Gate/"));
+});

@@ -1,0 +1,41 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { apart, metres, metresPerDegree, nearest, neighbours, offered, pieceOf, plantAt, rowOf, walkSeconds } from "../src/geo.js";
+import { laid } from "./scene.mjs";
+
+const plot = laid(), robot = { speed_m_s: 1, row_change_s: 3 };
+
+test("a degree is as long as on WGS 84 (at 30 degrees north: 96.486 and 110.852 km)", () => {
+  const [kx, ky] = metresPerDegree(30);
+  assert.ok(Math.abs(kx - 96486.3) < 1 && Math.abs(ky - 110852.4) < 1, `${kx} ${ky}`);
+});
+
+test("plants are apart as on the ground", () => {
+  assert.ok(Math.abs(apart(plot, 0, 1) - 2) < 0.02);
+  assert.ok(Math.abs(apart(plot, 0, 5) - 3) < 0.02);
+});
+
+test("a plant is known by its row and number, and has them", () => {
+  for (let plant = 0; plant < 15; plant++) assert.equal(plantAt(plot, rowOf(plot, plant), plot.number[plant]), plant);
+  assert.equal(plantAt(plot, 4, 1), -1);
+  assert.deepEqual([0, 4, 5, 14].map((plant) => pieceOf(plot, plant)), [0, 0, 1, 2]);
+});
+
+test("neighbours stand in the row and across", () => {
+  assert.deepEqual(neighbours(plot, 7).sort((a, b) => a - b), [2, 6, 8, 12]);
+  assert.deepEqual(neighbours(plot, 0).sort((a, b) => a - b), [1, 5]);
+});
+
+test("a position offers a plant only within its accuracy", () => {
+  const [x, y] = metres(plot, [35 + 4.5 / 96486, 30 + 3.2 / 110852]);
+  assert.equal(nearest(plot, x, y).plant, 7);
+  assert.equal(offered(plot, { x, y, accuracy: 1 }), 7);
+  assert.equal(offered(plot, { x: x + 40, y, accuracy: 5 }), -1);
+  assert.equal(offered(plot, null), -1);
+});
+
+test("nobody walks through a row: the way goes round its end", () => {
+  assert.ok(Math.abs(walkSeconds(plot, robot, 1, 6) - 3) < 0.1, "the same aisle");
+  const round = walkSeconds(plot, robot, 6, 11);
+  assert.ok(round > 2 + 3 + 2 + 3 - 0.2, `${round}`);
+});

@@ -1,0 +1,40 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { afterFind, results, secondsAhead, secondsLeft } from "../src/plan.js";
+import { aDay, laid } from "./scene.mjs";
+
+const plot = laid(), day = aDay();
+
+test("after a find its neighbours come next, then the route as it was", () => {
+  assert.deepEqual(afterFind(plot, day, [1, 2, 10, 11], 0, new Set([0]), 1e5), [1, 5, 2, 10, 11]);
+});
+
+test("what was inspected is not inspected again", () => {
+  assert.deepEqual(afterFind(plot, day, [2], 0, new Set([0, 1, 5]), 1e5), [2]);
+});
+
+test("what does not fit the hours is left out at the end, and neighbours only come if hours allow", () => {
+  const all = afterFind(plot, day, [1, 2, 10, 11], 0, new Set([0]), 1e5);
+  for (const left of [0, 30, 40, 80, 120, 200, 300]) {
+    const ahead = afterFind(plot, day, [1, 2, 10, 11], 0, new Set([0]), left);
+    assert.deepEqual(ahead, all.slice(0, ahead.length), `${left}`);
+    assert.ok(secondsAhead(plot, day, 0, ahead) <= left, `${left}: ${ahead}`);
+  }
+  assert.deepEqual(afterFind(plot, day, [1, 2], 0, new Set([0]), 0), []);
+});
+
+test("legs take what the server said; others are reckoned", () => {
+  assert.equal(secondsAhead(plot, day, -1, [0, 1, 2]), 3 * 37);
+  assert.ok(Math.abs(secondsAhead(plot, day, 0, [4]) - (8 + 35)) < 0.2);
+});
+
+test("the hours run from the first record", () => {
+  assert.equal(secondsLeft(day, null, 5e6), 14400);
+  assert.equal(secondsLeft(day, 1e6, 1e6 + 60000), 14340);
+  assert.equal(secondsLeft(day, 1e6, 1e12), 0);
+});
+
+test("what was taken back does not count", () => {
+  const records = [{ id: "a", plant: 1, result: "clean" }, { id: "b", plant: 2, result: "found" }, { id: "c", undoes: "a" }];
+  assert.deepEqual([...results(records)].map(([plant, one]) => [plant, one.result]), [[2, "found"]]);
+});

@@ -1,0 +1,177 @@
+"""The app for other devices on the local network: encrypted, behind a password, with codes to scan.
+
+No Streamlit in here.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import os
+import socket
+import sys
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.errors import SettingError
+
+from ..state import scout_page
+from ..words import language, texts
+from .certificates import Certificates, certificates, local_address
+from .gate import Gate, language_of, new_password, page
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from .gate import Application, Message, Receive, Send
+
+#: set where other devices may come: the address to listen on, or empty to find it
+LAN = "FIELDMON_LAN"
+#: the app's address as phones reach it
+ADDRESS = "FIELDMON_ADDRESS"
+#: the password; one is made where it is not set
+PASSWORD = "FIELDMON_PASSWORD"  # noqa: S105 - where it stands, not what it is
+#: where the authority's key is kept
+FOLDER = "FIELDMON_AUTHORITY"
+_CERTIFICATE = "/fieldmon.crt"
+
+
+class TrustPage:
+    """An ASGI application for phones that do not trust the app yet: the certificate, three steps.
+
+    It is not encrypted: it holds nothing secret, and says what to compare.
+    """
+
+    def __init__(self, made: Certificates) -> None:
+        self._made = made
+
+    async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
+        """Hand out the page or the certificate."""
+        if scope["type"] != "http":
+            return
+        await receive()
+        language.use(language_of(scope))
+        answers = {
+            "/": ("text/html; charset=utf-8", self._steps),
+            _CERTIFICATE: ("application/x-x509-ca-cert", lambda: self._made.authority),
+        }
+        kind, body = answers.get(scope["path"], ("text/plain", lambda: b""))
+        headers = [(b"content-type", kind.encode()), (b"cache-control", b"no-store"),
+                   (b"x-content-type-options", b"nosniff")]  # fmt: skip
+        status = 200 if scope["path"] in answers else 404
+        await send({"type": "http.response.start", "status": status, "headers": headers})
+        await send({"type": "http.response.body", "body": body()})
+
+    def _steps(self) -> bytes:
+        words = texts.LAN_PAGE
+        said = {name: escape(words[name]) for name in words}
+        parts = [
+            f"<h2>{said[kind]}</h2><ol>"
+            + "".join(f"<li>{said[f'{kind}_{k}']}</li>" for k in (1, 2, 3))
+            + "</ol>"
+            for kind in ("android", "iphone")
+        ]
+        link = f'<p><a class="button" href="{_CERTIFICATE}">{said["download"]}</a></p>'
+        mark = f'<p>{said["compare"]}<br><code dir="ltr">{self._made.fingerprint}</code></p>'
+        return page(words["title"], f"<p>{said['why']}</p>{link}{mark}{''.join(parts)}")
+
+
+def serve(app: Application, port: int, line: socket.socket, settings: dict[str, Any]) -> None:
+    """Serve this machine on `line`, and other devices encrypted and behind a password.
+
+    Parameters
+    ----------
+    app
+        The app.
+    port
+        For other devices; the next one hands out the certificate.
+    line
+        Where this machine's own browser comes.
+    settings
+        Of the server, as for `line` alone.
+    """
+    address = os.environ.get(LAN) or local_address()
+    kept = Path(os.environ.get(FOLDER) or Path.home() / ".fieldmon")
+    made = certificates(kept, address)
+    password = os.environ.get(PASSWORD) or new_password()
+    own = f"https://{_host(address)}:{port}"
+    os.environ.setdefault(ADDRESS, own)
+    lines = [line, _listening(address, port), _listening(address, port + 1)]
+    _say(own, f"http://{_host(address)}:{port + 1}", password, made)
+    encrypted = {"ssl_certfile": made.chain, "ssl_keyfile": made.key, "lifespan": "off"}
+    apps = [(app, settings), (Gate(app, password), settings | encrypted),
+            (TrustPage(made), settings | {"lifespan": "off"})]  # fmt: skip
+    asyncio.run(_all(apps, lines))
+
+
+def say_password(password: str, address: str) -> None:
+    """Say what opens the app behind a server of its own."""
+    _print(f"Other devices: {address}   password: {password}")
+
+
+async def _all(apps: list[tuple[Application, dict[str, Any]]], lines: list[socket.socket]) -> None:
+    """Run the servers until the first ends."""
+    import uvicorn  # noqa: PLC0415 - the app's own is loaded as late
+
+    class _Follower(uvicorn.Server):
+        @contextlib.contextmanager
+        def capture_signals(self) -> Iterator[None]:
+            yield  # the first server hears them for all
+
+    first, *others = (
+        (uvicorn.Server if k == 0 else _Follower)(uvicorn.Config(app, **settings))
+        for k, (app, settings) in enumerate(apps)
+    )
+    logging.getLogger("uvicorn.access").disabled = True  # each server's settings switch it on
+    tasks = [
+        asyncio.create_task(other.serve(sockets=[line]))
+        for other, line in zip(others, lines[1:], strict=True)
+    ]
+    await first.serve(sockets=[lines[0]])
+    for other in others:
+        other.should_exit = True
+    await asyncio.gather(*tasks)
+
+
+def _listening(address: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in address else socket.AF_INET
+    try:
+        return socket.create_server((address, port), family=family, backlog=2048)
+    except OSError as error:
+        raise SettingError(
+            f"Port {port} at {address} must be free for other devices, but it is not "
+            f"({error.strerror}). Close what uses it, or choose others with --port and --address."
+        ) from error
+
+
+def _host(address: str) -> str:
+    return f"[{address}]" if ":" in address else address
+
+
+def _say(own: str, trust: str, password: str, made: Certificates) -> None:
+    words = texts.LAN_PAGE
+    _print(f"\nOther devices: {own}   password: {password}")
+    _print(f"\n{words['title']} ({trust}):\n{_code(trust)}")
+    for kind in ("android", "iphone"):
+        steps = " ".join(f"{k}. {words[f'{kind}_{k}']}" for k in (1, 2, 3))
+        _print(f"{words[kind]}: {steps}")
+    _print(f"{words['compare']}\n{made.fingerprint}")
+    _print(f"\nThe scout's page ({own}{scout_page.PATH}):\n{_code(own + scout_page.PATH)}")
+    _print("Each person's own code, with a key, is in the app: Today, Scout.")
+
+
+def _code(address: str) -> str:
+    from io import StringIO  # noqa: PLC0415
+
+    import segno  # noqa: PLC0415
+
+    drawn = StringIO()
+    segno.make(address, error="m").terminal(drawn, compact=True)
+    return drawn.getvalue()
+
+
+def _print(text: str) -> None:
+    sys.stdout.write(f"{text}\n")
+    sys.stdout.flush()

@@ -1,0 +1,144 @@
+"""Who may tell a season's findings from a phone or a robot: people, their keys and their rows.
+
+A key is 144 random bits, shown once. The season's file holds its digest alone, which hangs on the
+file's name too: a copy under another name is another season, and a key does not open it.
+"""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fieldmon.compute.digest import digest
+from fieldmon.compute.wording import worded
+from fieldmon.errors import AccessError, SettingError
+from fieldmon.monitoring import phone_tables
+from fieldmon.monitoring.geopackage import insert, touch
+from fieldmon.monitoring.tables import utc_now
+
+if TYPE_CHECKING:
+    import sqlite3
+
+    from fieldmon.monitoring.season_file import Season
+
+_KEY_BYTES = 18
+_LONGEST_NAME = 60
+
+
+@dataclass(frozen=True)
+class Scout:
+    """Somebody who may tell findings.
+
+    Parameters
+    ----------
+    name
+        As the season's findings say it.
+    rows
+        First and last row of this person's part of the plot, from 1; None: the whole plot.
+    made, ended
+        When the key was made and taken back, UTC; empty: it holds.
+    """
+
+    name: str
+    rows: tuple[int, int] | None
+    made: str
+    ended: str = ""
+
+
+def let_in(season: Season, name: str, rows: tuple[int, int] | None = None) -> str:
+    """Make a key for somebody and return it; an earlier key of that name ends at once.
+
+    Raise `SettingError` if there is no name, or if the rows are not on the plot.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> season = fm.Season.create(Path(mkdtemp()) / "gate.gpkg", plot)
+    >>> key = let_in(season, "Ann", rows=(1, 20))
+    >>> who(season, key).name
+    'Ann'
+    """
+    name = name.strip()
+    if not 0 < len(name) <= _LONGEST_NAME:
+        raise SettingError(
+            worded(
+                "A scout must have a name of 1 to {most} letters, but it has {n}.",
+                most=_LONGEST_NAME, n=len(name),
+            )
+        )  # fmt: skip
+    lines = int(season.label.line.max())
+    if rows is not None and not 1 <= rows[0] <= rows[1] <= lines:
+        raise SettingError(
+            worded(
+                "A part must be rows from 1 to {lines} on this plot, but it is {low} to {high}.",
+                lines=lines, low=rows[0], high=rows[1],
+            )
+        )  # fmt: skip
+    key = secrets.token_urlsafe(_KEY_BYTES)
+    first, last = rows or (None, None)
+    with season.store.writing() as db:
+        _end(db, name)
+        row = (name, _key_digest(season, key), utc_now(), None, first, last)
+        insert(db, phone_tables.SCOUTS, [row])
+        touch(db, phone_tables.SCOUTS.name)
+    return key
+
+
+def take_back(season: Season, name: str) -> None:
+    """End the key of somebody, at once; raise `SettingError` if nobody of that name has one."""
+    with season.store.writing() as db:
+        if not _end(db, name):
+            raise SettingError(
+                worded("{name} must have a key that holds, but has none.", name=name)
+            )
+
+
+def scouts_of(season: Season) -> tuple[Scout, ...]:
+    """Return who has a key that holds, in the order in which the keys were made."""
+    with season.store.reading() as db:
+        rows = db.execute(f"SELECT {_COLUMNS} FROM scouts WHERE ended IS NULL ORDER BY fid")  # noqa: S608 - ours
+        return tuple(_scout(row) for row in rows)
+
+
+def who(season: Season, key: str) -> Scout:
+    """Return whose key it is; raise `AccessError` unless it holds on this season."""
+    with season.store.reading() as db:
+        return who_in(db, season, key)
+
+
+def who_in(db: sqlite3.Connection, season: Season, key: str) -> Scout:
+    """Return whose key it is, within a transaction: who is taken back writes nothing more."""
+    row = db.execute(
+        f"SELECT {_COLUMNS} FROM scouts WHERE key_digest = ? AND ended IS NULL",  # noqa: S608 - ours
+        (_key_digest(season, key),),
+    ).fetchone()
+    if row is None:
+        raise AccessError(
+            worded(
+                "There must be a key that holds for this season, but there is none. Ask whoever "
+                "leads the season for a new one."
+            )
+        )
+    return _scout(row)
+
+
+_COLUMNS = "name, first_row, last_row, made, ended"
+
+
+def _scout(row: tuple[str, int | None, int | None, str, str | None]) -> Scout:
+    name, first, last, made, ended = row
+    rows = None if first is None or last is None else (first, last)
+    return Scout(name, rows, made, ended or "")
+
+
+def _end(db: sqlite3.Connection, name: str) -> int:
+    ended = "UPDATE scouts SET ended = ? WHERE name = ? AND ended IS NULL"
+    return db.execute(ended, (utc_now(), name)).rowcount
+
+
+def _key_digest(season: Season, key: str) -> str:
+    return digest(season.path.name, key)

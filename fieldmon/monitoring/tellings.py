@@ -1,0 +1,275 @@
+"""What phones and robots tell of plants: taken once each, whatever comes twice, late or never.
+
+Each telling has an id made where it was told. What is told may come in any order and as often as
+a network breaks; once `take` returns, it is on the disk, and comes to no second inspection.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from datetime import UTC, date, datetime, timedelta
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.digest import digest
+from fieldmon.compute.wording import worded
+from fieldmon.errors import LimitError, ObservationError, SettingError
+from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
+from fieldmon.monitoring import batches, inspection_table, phone_tables, schema, scouts
+from fieldmon.monitoring.geopackage import insert, point_blobs, touch
+from fieldmon.monitoring.settings import seconds
+from fieldmon.plot.local_clock import local_clock, utc_now
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Sequence
+
+    from fieldmon.monitoring.scouts import Scout
+    from fieldmon.monitoring.season_file import Season, SeasonChange
+
+SOURCE = "phone"
+#: what one person may tell in a day: ten times what anybody can inspect
+MOST_A_DAY = 20_000
+# a clock as wrong as this was set wrong; less is the way through the network
+_WRONG = timedelta(minutes=2)
+
+
+@dataclass(frozen=True)
+class Telling:
+    """What somebody tells of one plant, or that an earlier telling is taken back.
+
+    Parameters
+    ----------
+    id
+        Made where it was told, unlike any other: a UUID.
+    at
+        When, by the clock of the phone; it names its zone.
+    plant, result
+        Number in the grid, and `CLEAN`, `FOUND` or `SKIPPED`; None where it only takes back.
+    count, stage, leaves
+        Of a find: pests counted, their stage, leaves looked at.
+    notes
+        Text.
+    lonlat, accuracy_m
+        Where the phone was, and how well it knew.
+    on
+        The day it is meant for, where that is not today: then it has no time.
+    off_route
+        Whether the plant was not on the route.
+    undoes
+        Id of the telling that it takes back.
+    """
+
+    id: str
+    at: datetime
+    plant: int | None = None
+    result: int | None = None
+    count: float | None = None
+    stage: str = ""
+    leaves: float | None = None
+    notes: str = ""
+    lonlat: tuple[float, float] | None = None
+    accuracy_m: float | None = None
+    on: date | None = None
+    off_route: bool = False
+    undoes: str = ""
+
+    def content(self) -> str:
+        """Return all of it as JSON, the same for the same telling only."""
+        return json.dumps(asdict(self), default=str, sort_keys=True, ensure_ascii=False)
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What became of a telling, which is on the disk.
+
+    Parameters
+    ----------
+    id
+        Of the telling.
+    new
+        Whether it was not there before.
+    problem
+        Why it does not count though it is kept; empty: it counts.
+    """
+
+    id: str
+    new: bool
+    problem: str = ""
+
+
+def take(
+    season: Season, key: str, tellings: Sequence[Telling], sent: datetime
+) -> tuple[Taken, ...]:
+    """Keep what was told, each telling once; what is returned is on the disk.
+
+    Where a telling does not fit the season (no such plant, a day before its first), it is kept and
+    does not count. The same plant told by two people is kept twice: see `Season.contradicting`.
+
+    Parameters
+    ----------
+    season
+        The season.
+    key
+        Of whoever tells, see `fieldmon.monitoring.scouts`.
+    tellings
+        In the order in which they were told.
+    sent
+        The phone's clock as it sends: where it is wrong, times are put right by as much.
+
+    Raises
+    ------
+    AccessError
+        If the key does not hold.
+    LimitError
+        If somebody tells more than `MOST_A_DAY`.
+    """
+    received = utc_now()
+    fast = sent - received
+    shift = fast if abs(fast) > _WRONG else timedelta()
+    with season.changing() as change:
+        scout = scouts.who_in(change.db, season, key)
+        known = _known(change.db, [one.id for one in tellings])
+        news = {one.id: one for one in tellings if one.id not in known}
+        _limit(change.db, scout, received, len(news))
+        clocks = received, sent
+        for one in news.values():
+            known[one.id] = one.content(), ""
+        problems = _write(season, change, scout, _Letter(list(news.values()), clocks, shift))
+        if news:
+            _take_back(change)
+    return tuple(
+        Taken(
+            one.id, one.id in news, problems.get(one.id, known[one.id][1]) or _differs(one, known)
+        )
+        for one in tellings
+    )
+
+
+@dataclass(frozen=True)
+class _Letter:
+    """What came at once, and by how much the phone's clock is ahead."""
+
+    tellings: list[Telling]
+    clocks: tuple[datetime, datetime]
+    shift: timedelta
+
+
+def _known(db: sqlite3.Connection, ids: list[str]) -> dict[str, tuple[str, str]]:
+    """Return content and problem of those of the tellings that are there, by id."""
+    wanted = "SELECT content, coalesce(problem, '') FROM tellings WHERE id = ?"
+    rows = ((one, db.execute(wanted, (one,)).fetchone()) for one in ids)
+    return {one: row for one, row in rows if row is not None}
+
+
+def _differs(one: Telling, known: dict[str, tuple[str, str]]) -> str:
+    if known[one.id][0] == one.content():
+        return ""
+    return worded("Another telling has the same id; the first one was kept.")
+
+
+def _limit(db: sqlite3.Connection, scout: Scout, now: datetime, news: int) -> None:
+    since = _text(now - timedelta(days=1))
+    told = "SELECT count(*) FROM tellings WHERE scout = ? AND received > ?"
+    (before,) = db.execute(told, (scout.name, since)).fetchone()
+    if before + news > MOST_A_DAY:
+        raise LimitError(
+            worded(
+                "One person may tell {most} findings a day, but this makes {n}. Wait a day.",
+                most=MOST_A_DAY, n=before + news,
+            )
+        )  # fmt: skip
+
+
+def _write(season: Season, change: SeasonChange, scout: Scout, letter: _Letter) -> dict[str, str]:
+    """Write tellings and their inspections; return what is wrong with those that do not count."""
+    if not letter.tellings:
+        return {}
+    settings = season.settings_in(change.db)  # before anything is written: it is read once
+    batch = batches.begin(change.db, "findings", SOURCE, scout.name)
+    problems: dict[str, str] = {}
+    added = 0
+    for one in letter.tellings:
+        inspection = None
+        if not one.undoes:
+            try:
+                made = _inspection(season, one, one.at - letter.shift)
+                days = (settings, (batch, scout.name))
+                (row,) = inspection_table.rows(made, season.plot.grid, season.label, *days)
+                inspection = _insert(change.db, row, one.id)
+                change.reaches(settings.day(made.date[0].item()))
+                added += 1
+            except (ObservationError, SettingError) as error:
+                problems[one.id] = str(error)
+        _keep(change.db, scout, letter.clocks, (one, inspection, problems.get(one.id)))
+    batches.end(change.db, batch, added)
+    touch(change.db, phone_tables.TELLINGS.name)
+    touch(change.db, schema.INSPECTIONS.name)
+    return problems
+
+
+def _inspection(season: Season, one: Telling, at: datetime) -> Inspections:
+    """Return a telling as an inspection; raise `ObservationError` where it names none."""
+    if one.plant is None or one.result not in RESULT_NAMES:
+        raise ObservationError(
+            worded("A finding must name a plant and a result, but one of them is missing.")
+        )
+    local = local_clock(season.plot.field).at(at)
+    second = np.nan if one.on else seconds(local.time())
+    count = np.nan if one.count is None or one.result != FOUND else one.count
+    return Inspections.of(
+        np.array([one.plant]),
+        np.array([one.result]),
+        np.datetime64(one.on or local.date(), "D"),
+        second=np.array([second]),
+        count=np.array([count]),
+        notes=np.array([one.notes], object),
+    )
+
+
+def _insert(db: sqlite3.Connection, row: tuple[object, ...], told: str) -> int:
+    """Add an inspection and return its number: two people may find the same at one second."""
+    names = schema.INSPECTIONS.names
+    mark = names.index("digest")
+    same = "SELECT 1 FROM inspections WHERE digest = ? AND undone = 0"
+    if db.execute(same, (row[mark],)).fetchone():
+        own = digest(str(row[mark]), told, length=24)
+        row = (*row[:mark], own, *row[mark + 1 :])
+    marks = ", ".join("?" * len(names))
+    into = f"INSERT INTO inspections ({', '.join(names)}) VALUES ({marks})"  # noqa: S608 - ours
+    return int(db.execute(into, row).lastrowid or 0)
+
+
+def _keep(
+    db: sqlite3.Connection,
+    scout: Scout,
+    clocks: tuple[datetime, datetime],
+    told: tuple[Telling, int | None, str | None],
+) -> None:
+    received, sent = clocks
+    one, inspection, problem = told
+    place = None if one.lonlat is None else point_blobs(np.array([one.lonlat]))[0]
+    insert(
+        db,
+        phone_tables.TELLINGS,
+        [
+            (
+                *(place, one.id, scout.name, one.undoes or None),
+                *(one.at.isoformat(), sent.isoformat(), _text(received)),
+                *(one.accuracy_m, one.stage or None, one.leaves, int(one.off_route)),
+                *(inspection, problem, one.content()),
+            )
+        ],
+    )
+
+
+def _take_back(change: SeasonChange) -> None:
+    for batch, day in phone_tables.take_back(change.db):
+        batches.close_if_empty(change.db, batch)
+        change.reaches(day)
+
+
+def _text(moment: datetime) -> str:
+    return moment.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")

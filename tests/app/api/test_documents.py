@@ -1,0 +1,76 @@
+"""A phone is told of the plot and the day what the season says."""
+
+import json
+from datetime import timedelta
+
+import jsonschema
+import numpy as np
+import pytest
+
+from app.api import description
+from app.api.documents import day_document, plot_document, rest_document
+from fieldmon.monitoring import scouts
+from fieldmon.monitoring.day_ahead import route_ahead
+from fieldmon.monitoring.tellings import take
+from tests.monitoring.seasons import BEGINS
+from tests.monitoring.telling import NOW, a_telling
+
+
+@pytest.fixture
+def scout(served):
+    return scouts.who(served.season, served.key)
+
+
+def test_plants_are_where_they_are_with_their_rows(served):
+    name, made = plot_document(served.season)
+    plot = json.loads(made)
+    jsonschema.validate(plot, description.PLOT)
+    grid, label = served.season.plot.grid, served.season.label
+    there = np.stack([plot["plants"]["lon"], plot["plants"]["lat"]], axis=1)
+    assert np.abs(there - grid.lonlat()).max() < 1e-7
+    assert plot["plants"]["number"] == label.number.tolist()
+    start, row = plot["rows"]["start"], plot["rows"]["row"]
+    assert np.repeat(row, np.diff(start)).tolist() == label.line.tolist()
+    assert plot["zone"] == "Asia/Jerusalem"
+    assert plot_document(served.season) == (name, made)
+
+
+def test_the_day_is_what_the_season_says(served, scout):
+    season = served.season
+    day = json.loads(day_document(season, scout, BEGINS))
+    jsonschema.validate(day, description.DAY)
+    route = route_ahead(season, BEGINS)
+    assert day["route"]["plants"] == route.plant.tolist()
+    seconds = np.cumsum(np.array(day["route"]["walk_s"]) + day["robot"]["visit_s"])
+    assert seconds == pytest.approx(route.leave_s, abs=0.1 * len(route))
+    assert day["chance"] == pytest.approx(season.evening(BEGINS) * 1000, abs=0.5)
+    assert [one["result"] for one in day["today"]].count("found") == 1
+    assert {*day["found"]} >= {one["plant"] for one in day["today"] if one["result"] == "found"}
+    assert (day["day"], day["live"], day["scout"]) == ("2026-04-06", False, "Ann")
+    line = np.array(day["route"]["line"])
+    assert np.abs(line - route.line_lonlat()).max() < 1e-7
+
+
+def test_who_has_a_part_is_sent_to_its_rows(served):
+    key = scouts.let_in(served.season, "Ben", (1, 5))
+    day = json.loads(day_document(served.season, scouts.who(served.season, key), BEGINS))
+    label = served.season.label
+    assert day["route"]["plants"]
+    assert label.line[day["route"]["plants"]].max() <= 5
+    assert day["rows"] == [1, 5]
+
+
+def test_where_two_say_otherwise_everybody_is_told(served, scout):
+    other = scouts.let_in(served.season, "Ben")
+    take(served.season, served.key, [a_telling(40, 1, on=BEGINS)], NOW)
+    take(served.season, other, [a_telling(40, 0, on=BEGINS)], NOW)
+    day = json.loads(day_document(served.season, scout, BEGINS))
+    said = {(one["plant"], one["who"], one["result"]) for one in day["contradicting"]}
+    assert said == {(40, "Ann", "found"), (40, "Ben", "clean")}
+
+
+def test_the_rest_is_planned_anew_within_what_is_left(served, scout):
+    rest = json.loads(rest_document(served.season, scout, BEGINS, 1200))["route"]
+    assert 0 < rest["end_s"] <= 1200
+    whole = json.loads(rest_document(served.season, scout, BEGINS + timedelta(days=1), None))
+    assert len(whole["route"]["plants"]) > len(rest["plants"])

@@ -1,0 +1,193 @@
+"""A day on the scout's page without a network, in a real browser that is killed, and the way back.
+
+`FIELDMON_DAY=120 FIELDMON_PHOTOS=20` for the whole day that a release is held to.
+"""
+
+import hashlib
+import os
+import random
+
+import pytest
+
+from app.state.scout_page import invitation
+from fieldmon.monitoring import Season, photos, scouts
+from fieldmon.monitoring.day_ahead import route_ahead
+from fieldmon.plot.grid import row_label
+from tests.app.scouting import Line, PhoneBrowser, a_picture, kept
+from tests.monitoring.rules import keeps_the_rules
+from tests.monitoring.seasons import BEGINS, a_season
+from tests.monitoring.telling import told
+
+PLANTS = int(os.environ.get("FIELDMON_DAY", "12"))
+PHOTOS = int(os.environ.get("FIELDMON_PHOTOS", "3"))
+SENT = "#sync[data-state=sent][data-left='0']"
+
+
+@pytest.fixture(scope="module")
+def season(tmp_path_factory):
+    season = a_season(tmp_path_factory.mktemp("scouted") / "Gate 2026.gpkg")
+    season.plan(BEGINS)
+    return season
+
+
+@pytest.fixture
+def line(season, monkeypatch):
+    monkeypatch.setenv("FIELDMON_SEASONS", str(season.path.parent))
+    line = Line()
+    line.come()
+    yield line
+    line.go()
+
+
+@pytest.fixture
+def phone(browser, tmp_path):
+    phone = PhoneBrowser(browser, tmp_path / "phone")
+    yield phone
+    phone.close()
+
+
+def invited(phone, line, season, name="Ann"):
+    """Scan the code with the network, until all that is needed is on the phone."""
+    key = scouts.let_in(season, name)
+    phone.page.goto(invitation(line.address, season.path.stem, key, str(BEGINS), "en"))
+    phone.page.locator("#clean").wait_for()
+    phone.page.evaluate("navigator.serviceWorker.ready.then(() => null)")
+    phone.page.wait_for_function("() => navigator.serviceWorker.controller !== null")
+    return key
+
+
+def plant_of(page):
+    return int(page.locator("#place").get_attribute("data-plant"))
+
+
+def told_now(page, result, count=None):
+    """Say what was found at the next plant; return it once the page has gone on."""
+    plant = plant_of(page)
+    if result == "found":
+        page.locator("#found").click()
+        if count is not None:
+            page.locator("#count").fill(str(count))
+        page.locator("#save").click()
+    else:
+        page.locator(f"#{result}").click()
+    page.locator(f"#place:not([data-plant='{plant}'])").wait_for()
+    return plant, result
+
+
+@pytest.mark.timeout(1800)
+def test_a_day_without_a_network_among_kills_loses_and_doubles_nothing(season, line, phone):
+    invited(phone, line, season)
+    line.go()
+    rng, said = random.Random(4), []
+    pictured = set(rng.sample(range(PLANTS), PHOTOS))
+    broken = ["reload", "tab", "browser"] * max(1, PLANTS // 12)
+    breaks = dict(zip(rng.sample(range(PLANTS), len(broken)), broken, strict=True))
+    for k in range(PLANTS):
+        page = phone.page
+        if k in pictured:
+            page.locator("#camera").set_input_files(a_picture(k))
+            page.locator("#photos").wait_for()
+        if k in breaks:  # with the photo taken, and nothing said yet
+            before = plant_of(page)
+            {"reload": page.reload, "tab": phone.crash_tab, "browser": phone.kill}[breaks[k]]()
+            page = phone.page
+            if breaks[k] != "reload":
+                page.goto(f"{line.address}/scouting/")
+            page.locator("#clean").wait_for()
+            assert plant_of(page) == before
+            assert (page.locator("#photos").count() == 1) == (k in pictured)
+        result = rng.choice(["clean", "clean", "clean", "found", "skipped"])
+        said.append(told_now(page, result, 3 if result == "found" else None))
+    there = kept(phone.page)
+    assert sorted((one["plant"], one["result"]) for one in there.records) == sorted(said)
+    assert len(there.photos) == PHOTOS
+    line.come()
+    phone.page.evaluate("dispatchEvent(new Event('online'))")
+    phone.page.locator(SENT).wait_for(timeout=120_000)
+    holds(season, there, said)
+    assert kept(phone.page).photos == {}, "what the season has needs no room on the phone"
+
+
+def holds(season, there, said):
+    """Hold the season to what the phone had: records once, photos byte for byte."""
+    season = Season(season.path)
+    ids, rows = told(season)
+    assert sorted(ids) == sorted(one["id"] for one in there.records)
+    assert sorted((plant, result) for _, plant, result in rows) == sorted(said)
+    for name, (_, _, digest) in there.photos.items():
+        kind, data = photos.picture(season, name)
+        assert (kind, hashlib.sha256(data).hexdigest()) == ("image/jpeg", digest)
+    assert len(photos.photos_of(season)) == PHOTOS
+    keeps_the_rules(season.path)
+
+
+def test_what_a_scout_does_in_the_field(season, line, browser, tmp_path):
+    start = route_ahead(season, BEGINS).plant[0]
+    lon, lat = season.plot.grid.lonlat([start])[0]
+    here = {"longitude": lon, "latitude": lat, "accuracy": 4}
+    phone = PhoneBrowser(browser, tmp_path / "other", geolocation=here)
+    try:
+        _in_the_field(phone, line, season)
+    finally:
+        phone.close()
+
+
+def _in_the_field(phone, line, season):
+    label, plot = season.label, season.plot
+    key = invited(phone, line, season, "Ben")
+    page = phone.page
+    page.locator("#place .good", has_text="You are there").wait_for()
+    first = plant_of(page)
+    row, number = (int(each[0]) for each in row_label(plot.grid, [first]))
+    assert f"Row {row}, plant {number}" in page.locator("h1").inner_text()
+    # the neighbours of a find come next
+    told_now(page, "found", 7)
+    assert plant_of(page) in _neighbours(plot, first)
+    page.locator("#undo").click()
+    page.locator(f"#place[data-plant='{first}']").wait_for()
+    # off the route, by its row and number, with a note
+    page.locator("#other_plant").click()
+    other = int((plot.grid.row_start[3] + plot.grid.row_start[4]) // 2)
+    page.locator("#other_row").fill(str(label.line[other]))
+    page.locator("#other_plant").last.fill(str(label.number[other]))
+    page.locator("#ok").click()
+    page.locator(f"#place[data-plant='{other}']").wait_for()
+    page.locator("#note_button").click()
+    page.locator("#notes").fill("webs ב")
+    page.locator("#ok").click()
+    told_now(page, "found", 2)
+    page.locator(SENT).wait_for(timeout=60_000)
+    rows = [row for row in told(Season(season.path))[1] if row[1] == other]
+    assert [row[2] for row in rows] == ["found"]
+    # the key is taken back: nothing goes in, nothing is lost
+    scouts.take_back(season, "Ben")
+    told_now(page, "clean")
+    page.locator("#sync[data-state=ended][data-left='1']").wait_for(timeout=60_000)
+    assert key not in page.url
+
+
+def _neighbours(plot, plant):
+    start, others = plot.grid.adjacent
+    return others[start[plant] : start[plant + 1]]
+
+
+@pytest.mark.parametrize("language", ["he", "en"])
+def test_it_reads_from_the_right_and_its_targets_are_thumbs(season, line, phone, language):
+    key = scouts.let_in(season, "Cem")
+    page = phone.page
+    page.goto(invitation(line.address, season.path.stem, key, str(BEGINS), language))
+    page.locator("#clean").wait_for()
+    assert page.locator("html").get_attribute("dir") == ("rtl" if language == "he" else "ltr")
+    sizes = page.evaluate(
+        "[...document.querySelectorAll('button')].filter((b) => b.offsetParent)"
+        ".map((b) => [b.offsetWidth, b.offsetHeight, b.scrollWidth <= b.clientWidth + 1])"
+    )
+    assert all(width >= 56 and height >= 56 and fits for width, height, fits in sizes)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    clean, found = (page.locator(name).bounding_box()["x"] for name in ("#clean", "#found"))
+    assert clean > found, "under the right thumb"
+    page.locator("#open_menu").click()
+    page.locator("fieldset").first.locator("button").first.click()  # the left hand
+    page.locator("#close").click()
+    clean, found = (page.locator(name).bounding_box()["x"] for name in ("#clean", "#found"))
+    assert clean < found, "under the left thumb"

@@ -1,0 +1,25 @@
+"""The scout's page speaks every language of the app, with the same blanks."""
+
+import json
+import re
+
+import pytest
+
+from app.words import language
+from app.words.scout_words import page_words
+
+
+@pytest.mark.parametrize("name", [one for one in language.LANGUAGES if one != language.ENGLISH])
+def test_every_text_is_said_with_the_same_blanks(name):
+    english, said = json.loads(page_words("en")), json.loads(page_words(name))
+    assert english.keys() == said.keys()
+    blanks = lambda text: sorted(re.findall(r"\{\w+\}", text))  # noqa: E731
+    assert [key for key in said if blanks(said[key]) != blanks(english[key])] == []
+    same = [key for key in said if said[key] == english[key] and key != "who_says"]
+    assert len(same) < 3
+
+
+def test_asking_changes_no_sessions_language():
+    before = language.current()
+    page_words("he")
+    assert language.current() == before

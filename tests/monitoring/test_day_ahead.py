@@ -1,0 +1,77 @@
+"""What is left of a day, for whoever leaves now."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.day_ahead import Part, inside, planned_again, route_ahead
+from fieldmon.planning.members import team_of
+from tests.monitoring.seasons import BEGINS, a_season
+
+
+@pytest.fixture
+def season(path):
+    return Season(path)
+
+
+def test_it_is_the_route_given_out_without_what_was_done(season):
+    given = season.kept_route(BEGINS)
+    done = season.history.inspections.plant
+    assert route_ahead(season, BEGINS).plant.tolist() == [p for p in given if p not in done]
+
+
+def test_where_none_was_given_out_one_is(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    route = route_ahead(fresh, BEGINS)
+    assert len(route) > 20
+    assert fresh.kept_route(BEGINS).tolist() == route.plant.tolist()
+    again = route_ahead(fresh, BEGINS)
+    assert again.plant.tolist() == route.plant.tolist()
+    # the same way costs the same, planned or given out
+    assert again.arrive_s == pytest.approx(route.arrive_s, abs=1e-6)
+    assert again.end_s == pytest.approx(route.end_s, abs=1e-6)
+
+
+def test_a_part_has_stops_in_its_rows_only_and_is_given_out_to_nobody_else(season):
+    given = season.kept_route(BEGINS)
+    route = planned_again(season, BEGINS, Part((1, 3)))
+    assert inside(season, (1, 3))[route.plant].all()
+    assert len(route)
+    assert season.kept_route(BEGINS).tolist() == given.tolist()
+    ahead = route_ahead(season, BEGINS, Part((1, 3)))
+    assert inside(season, (1, 3))[ahead.plant].all()
+
+
+def test_the_rest_planned_again_fits_what_is_left_of_the_hours(season):
+    done = season.history.inspections.plant
+    short = planned_again(season, BEGINS, seconds_left=900)
+    assert 0 < short.end_s <= 900
+    assert not np.isin(short.plant, done).any()
+    assert len(planned_again(season, BEGINS, seconds_left=0)) == 0
+
+
+def test_nothing_is_left_where_all_was_inspected(season):
+    everything = np.arange(len(season.plot.grid))
+    season.record(
+        Inspections.of(everything, np.zeros(len(everything), np.int8), BEGINS), confirmed=True
+    )
+    assert len(route_ahead(season, BEGINS)) == 0
+
+
+def test_each_of_a_team_has_the_route_that_the_teams_plan_gives(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    alone = fresh.settings
+    team = tuple(
+        replace(one, name=name)
+        for one, name in zip(team_of(2, alone.robot), ("Ann", "Ben"), strict=True)
+    )
+    fresh.change(replace(alone, team=team), alone)
+    ann, ben = (route_ahead(fresh, BEGINS, Part(name=name)) for name in ("ann", "Ben"))
+    assert len(ann)
+    assert len(ben)
+    assert not set(ann.plant) & set(ben.plant)
+    short = planned_again(fresh, BEGINS, Part(name="Ben"), seconds_left=1200)
+    assert 0 < short.end_s <= 1200

@@ -1,0 +1,65 @@
+"""Keys: who has one may tell findings of one season, until it is taken back."""
+
+import shutil
+
+import pytest
+
+from fieldmon.errors import AccessError, SettingError
+from fieldmon.monitoring import Season, scouts
+
+
+@pytest.fixture
+def season(path):
+    return Season(path)
+
+
+def test_a_key_says_whose_it_is_and_of_which_rows(season):
+    key = scouts.let_in(season, " Ann ", (1, 3))
+    scout = scouts.who(season, key)
+    assert (scout.name, scout.rows) == ("Ann", (1, 3))
+    assert [one.name for one in scouts.scouts_of(season)] == ["Ann"]
+
+
+def test_the_file_holds_no_key(season):
+    key = scouts.let_in(season, "Ann")
+    assert key.encode() not in season.path.read_bytes()
+    assert len(key) == 24
+
+
+@pytest.mark.parametrize("key", ["", "x", "a" * 24])
+def test_no_key_opens_nothing(season, key):
+    scouts.let_in(season, "Ann")
+    with pytest.raises(AccessError):
+        scouts.who(season, key)
+
+
+def test_a_key_of_one_season_opens_no_copy_of_it(season, tmp_path):
+    key = scouts.let_in(season, "Ann")
+    with pytest.raises(AccessError):
+        scouts.who(Season(shutil.copy(season.path, tmp_path / "copy.gpkg")), key)
+
+
+def test_a_key_taken_back_ends_and_a_new_one_of_that_name_ends_the_old(season):
+    first = scouts.let_in(season, "Ann")
+    second = scouts.let_in(season, "Ann")
+    with pytest.raises(AccessError):
+        scouts.who(season, first)
+    assert scouts.who(season, second).name == "Ann"
+    scouts.take_back(season, "Ann")
+    with pytest.raises(AccessError):
+        scouts.who(season, second)
+    assert scouts.scouts_of(season) == ()
+    with pytest.raises(SettingError, match="Ann must have a key"):
+        scouts.take_back(season, "Ann")
+
+
+@pytest.mark.parametrize("name", ["", "  ", "n" * 61])
+def test_a_scout_has_a_name(season, name):
+    with pytest.raises(SettingError, match="1 to 60 letters"):
+        scouts.let_in(season, name)
+
+
+@pytest.mark.parametrize("rows", [(0, 2), (3, 2), (1, 10_000)])
+def test_a_part_is_rows_of_the_plot(season, rows):
+    with pytest.raises(SettingError, match="rows from 1 to"):
+        scouts.let_in(season, "Ann", rows)

@@ -1,0 +1,149 @@
+"""What phones tell is taken once each, in any order, however often it comes."""
+
+import random
+from datetime import date, timedelta
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import AccessError, LimitError
+from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.monitoring import Season, scouts, tellings
+from fieldmon.monitoring.tellings import take
+from tests.monitoring.seasons import BEGINS, state
+from tests.monitoring.telling import NOW, a_days_tellings, a_telling, told
+
+
+@pytest.fixture
+def season(path):
+    return Season(path)
+
+
+@pytest.fixture
+def key(season):
+    return scouts.let_in(season, "Ann")
+
+
+@pytest.fixture(autouse=True)
+def _now(monkeypatch):
+    monkeypatch.setattr(tellings, "utc_now", lambda: NOW)
+
+
+def test_each_telling_is_one_inspection_however_often_and_in_whatever_order_it_comes(season, key):
+    before = state(season.path)
+    day = a_days_tellings(season)
+    rng = random.Random(1)
+    for _ in range(6):
+        some = rng.sample(day, rng.randint(1, len(day)))
+        take(season, key, some, NOW)
+    last = take(season, key, day, NOW)
+    assert [one.id for one in last] == [one.id for one in day]
+    assert {one.problem for one in take(season, key, day, NOW)} == {""}
+    ids, rows = told(season)
+    assert sorted(ids) == sorted(one.id for one in day)
+    names = {CLEAN: "clean", FOUND: "found"}
+    assert sorted(rows) == sorted((one.id, one.plant, names[one.result]) for one in day)
+    assert state(season.path) == before + len(day)
+
+
+def test_what_is_taken_back_does_not_count_whichever_came_first(season, key):
+    kept, gone, early = a_telling(33), a_telling(34), a_telling(35)
+    take(season, key, [a_telling(None, None, undoes=early.id)], NOW)
+    take(season, key, [kept, gone, early], NOW)
+    take(season, key, [a_telling(None, None, undoes=gone.id)], NOW)
+    ids, rows = told(season)
+    assert len(ids) == 5
+    assert [one for one, *_ in rows] == [kept.id]
+    assert season.history.inspections.plant.tolist().count(34) == 0
+    season.store.check()
+    assert season.verify() == ()
+
+
+def test_nobody_takes_back_what_somebody_else_told(season, key):
+    one = a_telling(3)
+    take(season, key, [one], NOW)
+    other = scouts.let_in(season, "Ben")
+    take(season, other, [a_telling(None, None, undoes=one.id)], NOW)
+    assert [row[0] for row in told(season)[1]] == [one.id]
+
+
+def test_two_people_at_one_plant_are_both_kept_and_the_contradiction_shown(season, key):
+    other = scouts.let_in(season, "Ben")
+    take(season, key, [a_telling(20, FOUND), a_telling(21)], NOW)
+    take(season, other, [a_telling(20, CLEAN), a_telling(21)], NOW)
+    assert len(told(season)[1]) == 4
+    against = season.contradicting(BEGINS)
+    assert against.plant.tolist() == [20, 20]
+    assert sorted(zip(against.who, against.result.tolist(), strict=True)) == [
+        ("Ann", 1),
+        ("Ben", 0),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "why"),
+    [
+        ({"plant": 10**6}, "plant's number"),
+        ({"plant": None}, "must name a plant"),
+        ({"result": 7}, "must name a plant and a result"),
+        ({"on": date(2001, 1, 1)}, "of this season"),
+        ({"result": FOUND, "count": -1.0}, "A count must be 0 or more"),
+    ],
+)
+def test_what_does_not_fit_is_kept_and_does_not_count(season, key, wrong, why):
+    good, bad = a_telling(3), a_telling(**({"plant": 4} | wrong))
+    first, second = take(season, key, [bad, good], NOW)
+    assert why in first.problem
+    assert second.problem == ""
+    ids, rows = told(season)
+    assert ids == [bad.id, good.id]
+    assert [row[0] for row in rows] == [good.id]
+    assert why in take(season, key, [bad], NOW)[0].problem, "as often as it comes"
+
+
+def test_another_telling_with_the_same_id_does_not_replace_the_first(season, key):
+    one = a_telling(3)
+    take(season, key, [one], NOW)
+    (answer,) = take(season, key, [a_telling(4, id=one.id)], NOW)
+    assert (answer.new, "same id" in answer.problem) == (False, True)
+    assert [row[1] for row in told(season)[1]] == [3]
+
+
+@pytest.mark.parametrize(
+    ("ahead", "clock"), [(0, "09:00:00"), (20, "09:00:20"), (-7 * 3600, "09:00:00")]
+)
+def test_a_wrong_clock_is_put_right_and_both_times_are_kept(season, key, ahead, clock):
+    """The phone says when it sends; a clock that is hours off was set wrong."""
+    phone = NOW + timedelta(seconds=ahead)
+    take(season, key, [a_telling(3, at=phone)], phone)
+    with season.store.reading() as db:
+        kept = db.execute("SELECT at_phone, sent_phone, received FROM tellings").fetchone()
+        (row,) = db.execute(
+            "SELECT date, time FROM inspections WHERE fid = (SELECT inspection FROM tellings)"
+        )
+    assert row == ("2026-04-06", clock)
+    assert kept[:2] == (phone.isoformat(), phone.isoformat())
+    assert kept[2].startswith("2026-04-06T06:00:00")
+
+
+def test_what_is_meant_for_another_day_has_no_time(season, key):
+    other = BEGINS + timedelta(days=2)
+    take(season, key, [a_telling(3, on=other)], NOW)
+    done = season.history.inspections.on(other)
+    assert done.plant.tolist() == [3]
+    assert np.isnan(done.second).all()
+
+
+def test_a_key_that_was_taken_back_writes_nothing(season, key):
+    scouts.take_back(season, "Ann")
+    with pytest.raises(AccessError):
+        take(season, key, [a_telling(3)], NOW)
+    assert told(season) == ([], [])
+
+
+def test_more_than_anybody_can_inspect_is_not_taken(season, key, monkeypatch):
+    monkeypatch.setattr(tellings, "MOST_A_DAY", 3)
+    take(season, key, [a_telling(k) for k in range(3)], NOW)
+    with pytest.raises(LimitError, match="3 findings a day"):
+        take(season, key, [a_telling(4)], NOW)
+    assert len(told(season)[0]) == 3

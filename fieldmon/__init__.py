@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
     from fieldmon.plot.layout import Planting
     from fieldmon.plot.plot import Plot
-    from fieldmon.plot.robot import Robot, Viewpoints, scout
+    from fieldmon.plot.robot import Robot, Viewpoints, rover, scout
     from fieldmon.samplers import SAMPLERS
     from fieldmon.simulation.library import draw_start, simulate
     from fieldmon.simulation.metrics import SeasonMetrics
@@ -76,7 +76,7 @@ _MODULES = {
     "plot.field": ("Field",),
     "plot.layout": ("Planting",),
     "plot.plot": ("Plot",),
-    "plot.robot": ("Robot", "Viewpoints", "scout"),
+    "plot.robot": ("Robot", "Viewpoints", "rover", "scout"),
     "samplers": ("SAMPLERS",),
     "simulation.library": ("draw_start", "simulate"),
     "simulation.metrics": ("SeasonMetrics",),
@@ -130,6 +130,7 @@ __all__ = [
     "read_plots",
     "read_records",
     "routes",
+    "rover",
     "scout",
     "simulate",
 ]

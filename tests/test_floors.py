@@ -19,7 +19,7 @@ FLOORS = [
     {"samplers"},
     {"planning"},
     {"simulation", "monitoring"},
-    {"studies", "reports"},
+    {"studies", "reports", "drive"},
     {"__init__"},
     {"cli"},
     {"app"},
@@ -46,6 +46,9 @@ ALONE = {
     "PIL": {"reports", "app"},
     "fpdf": {"reports"},
     "fontTools": {"reports"},
+    "mujoco": {"drive"},
+    "rosbags": {"drive"},
+    "paho": {"drive"},
 }
 FILES = sorted((*(ROOT / "fieldmon").rglob("*.py"), *(ROOT / "app").rglob("*.py")))
 

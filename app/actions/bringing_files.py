@@ -95,10 +95,11 @@ def say(
     """
     asking = brought_files.asking() if asked is None else asked
     if isinstance(error, ChoiceNeeded):
+        tried = tried if any(one.plots for one in tried) else ()
         if tried:
             st.markdown(f"### {texts.CHOOSE_ON_MAP}")
             with st.expander(texts.CHOOSE):
-                st.markdown(of_error(error))
+                st.warning(of_error(error))
         else:
             st.warning(of_error(error))
         _ask(error, asking, {one.answer: one for one in tried})

@@ -30,7 +30,7 @@ from ..state import (
     work_day,
 )
 from ..state.brought_files import FileMessage
-from ..state.choices import Choices, Chosen
+from ..state.choices import WHOSE_DAY, Choices, Chosen
 from ..state.work_day import Calendar
 from ..words import language, texts
 from ..words.strategies import sampler_does
@@ -171,6 +171,15 @@ def _choose_day(source: str, key: str, calendar: Calendar) -> None:
         work_day.back_to_today(source)
     else:
         work_day.choose(source, day)
+
+
+def whose_day(choices: Choices) -> None:
+    """Let one of a season's team be chosen, whose day is shown and whose findings are recorded."""
+    if len(choices.team) > 1:
+        widget_memory.show(
+            st.segmented_control, texts.WHOSE_DAY, list(choices.team), key=WHOSE_DAY,
+            default=choices.team[0], required=True,
+        )  # fmt: skip
 
 
 def mark_day(choices: Choices) -> None:

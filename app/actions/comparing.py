@@ -12,6 +12,8 @@ from ..state.comparison import ComparisonSettings, Strategy
 from ..words import texts
 from ..words.strategies import sampler_name
 
+MOST_ROBOTS = 5
+
 if TYPE_CHECKING:
     from ..state.choices import Choices
 
@@ -32,8 +34,13 @@ def settings(choices: Choices) -> ComparisonSettings:
         texts.STRATEGY_INSPECTION_S, sorted({20, 25, 30, 35, 40, 45, own_s}), [own_s],
         key=f"strategy_inspection_s {own_s}",
     )  # fmt: skip
+    robots = widget_memory.show(
+        left.multiselect, texts.STRATEGY_ROBOTS, list(range(1, MOST_ROBOTS + 1)),
+        key="strategy_robots", default=[1], help=texts.STRATEGY_ROBOTS_HELP,
+    )  # fmt: skip
     strategies = tuple(
-        Strategy(name, float(h), float(s)) for name, h, s in product(samplers, hours, seconds)
+        Strategy(name, float(h), float(s), k)
+        for name, h, s, k in product(samplers, hours, seconds, sorted(robots))
     )
     first, *others = st.columns(4)
     seeds = first.number_input(texts.SEEDS, 1, 500, 20, help=texts.SEEDS_HELP, key="seeds")

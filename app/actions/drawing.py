@@ -13,7 +13,7 @@ from fieldmon.plot.layout import Planting
 
 from ..show import field_map, map_layers
 from ..show.map_view import Drawable, MapAnswers, MapContent
-from ..show.maps import colours, deck, labels, legends, marks, plant_layers
+from ..show.maps import colours, deck, legends, marks, plant_layers
 from ..state import cached, notices, widget_memory
 from ..state.chosen_units import units
 from ..state.plot_edits import CUT, GATE, NO_GO, PATH, ROW, Edit, points_of
@@ -132,7 +132,7 @@ def content(
     """
     field, kind = choices.plot.field, _kind()
     layers = [
-        *_as_it_was(before), deck.boundary(field, dark=choices.dark), *_plain_plants(choices),
+        *map_layers.plan(choices), *_as_it_was(before), *_plain_plants(choices),
         *_row_lines(choices), *marks.blocks(field, dark=choices.dark), *marks.paths(field),
         *marks.records(records, dark=choices.dark),
     ]  # fmt: skip
@@ -149,8 +149,9 @@ def content(
         draw = Drawable(_SHAPES[kind], kind, texts.DRAW_HINTS[kind], _corners(field))
     made = MapContent(
         **field_map.of_plot(choices), layers=layers, switches=map_layers.switches(layers),
-        legend=legends.signs(dark=choices.dark)[2:], draw=draw,
-        labels=labels.rows(choices.plot.grid),
+        legend=[*legends.signs(dark=choices.dark)[2:], *legends.plan(field, dark=choices.dark)],
+        draw=draw,
+        labels=map_layers.words(choices),
     )  # fmt: skip
     return made, MapAnswers(drawn=partial(_drawn, choices))
 

@@ -33,7 +33,8 @@ def show(choices: Choices, plan: DayPlan) -> None:
     else:
         st.info(texts.SEND_ALONE)
     st.markdown(texts.SEND_FILE)
-    notes = RouteNotes(choices.plot.field.name, choices.sampler, chosen_day.starts(choices, plan))
+    starts = chosen_day.starts(choices, plan)
+    notes = RouteNotes(choices.plot.field.name, choices.sampler, starts, choices.who)
     _files(choices, HandoffPlan(plan.route, notes))
 
 

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
 
 
-def take(choices: Choices, plants: list[int]) -> None:
+def take(choices: Choices, plants: tuple[int, ...]) -> None:
     """Take plants as picked (for callbacks)."""
-    wishes.pick(choices.place, tuple(k for k in plants if k < len(choices.plot.grid)))
+    wishes.pick(choices.place, tuple(k for k in plants if 0 <= k < len(choices.plot.grid)))
 
 
 def layers(choices: Choices) -> list:
@@ -38,7 +38,7 @@ def show(choices: Choices, plan: DayPlan) -> None:
         with st.container(horizontal=True):
             for key, label in (("also", texts.PICKED_ALSO), ("never", texts.PICKED_NEVER)):
                 st.button(label, key=f"picked_{key}", on_click=_wish, args=(choices, key, some))
-            st.button(texts.PICKED_NONE, key="picked_none", on_click=take, args=(choices, []))
+            st.button(texts.PICKED_NONE, key="picked_none", on_click=take, args=(choices, ()))
     wanted = choices.wishes
     if not wanted:
         return
@@ -59,7 +59,7 @@ def _wish(choices: Choices, kind: str, plants: tuple[int, ...]) -> None:
     now = choices.wishes
     new = now.also(plants) if kind == "also" else now.never(plants)
     wishes.want(choices.place, choices.day, new)
-    take(choices, [])
+    take(choices, ())
 
 
 def _drop(choices: Choices) -> None:

@@ -1,22 +1,15 @@
-"""Boxes for rasters of this session: missing plants, risk, a picture of the ground."""
+"""Boxes for rasters of this session: missing plants, risk."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import streamlit as st
 
-from fieldmon.errors import FieldmonError
 from fieldmon.infestation.raster_risk import RELATIVE
 
-from ..show.maps import marks
 from ..state import rasters, widget_memory
 from ..state.brought_files import brought
 from ..words import texts
 from . import bringing_files
-
-if TYPE_CHECKING:
-    from ..state.choices import Choices
 
 
 def show_missing() -> None:
@@ -42,21 +35,3 @@ def show_risk() -> None:
                                key=rasters.RISK_SHARE, default=2.0)  # fmt: skip
             widget_memory.show(st.toggle, texts.RISK_LOW, key=rasters.RISK_LOW, default=False)
         bringing_files.show_kept_raster(rasters.RISK)
-
-
-def show_backdrop() -> None:
-    """Show the box for a picture of the ground."""
-    bringing_files.show_raster(texts.BACKDROP, rasters.BACKDROP)
-    bringing_files.show_kept_raster(rasters.BACKDROP)
-
-
-def backdrop_layers(choices: Choices) -> list:
-    """Return the picture's layer, if there is one that lies about the plot; else it is said."""
-    try:
-        picture = rasters.backdrop(choices)
-    except FieldmonError as error:
-        bringing_files.say(error)
-        return []
-    if picture is None:
-        return []
-    return [marks.backdrop(picture.data_uri, picture.corners_lonlat.tolist())]

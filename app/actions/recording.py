@@ -158,7 +158,7 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
 def _recorded(choices: Choices, results: Inspections, source: str) -> str:
     """Record results; those that contradict what is recorded wait until somebody says so."""
     try:
-        done = choices.season.record(results, source)
+        done = choices.season.record(results, source, choices.who or "")
     except ContradictionError:
         unconfirmed.keep(Unconfirmed(choices.key, results, source))
         return ""
@@ -210,7 +210,8 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
     waiting = unconfirmed.of(choices.key)
     if waiting is None:
         return ""
-    done = choices.season.record(waiting.results.take(which), waiting.source, confirmed=True)
+    taken, who = waiting.results.take(which), choices.who or ""
+    done = choices.season.record(taken, waiting.source, who, confirmed=True)
     unconfirmed.drop()
     return texts.RECORDED.format(new=done.new, known=done.known)
 

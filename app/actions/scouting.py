@@ -43,7 +43,7 @@ def _tap(choices: Choices, plant: int, result: int) -> str:
         np.array([plant]), np.array([result]), np.datetime64(choices.day),
         second=np.array([second]), count=np.array([counted]),
     )  # fmt: skip
-    choices.season.record(results, SOURCE)
+    choices.season.record(results, SOURCE, choices.who or "")
     return ""
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from ..words.units import UnitsInLanguage
 
-_LENGTHS = frozenset({"row_spacing_m", "plant_spacing_m"})
+_LENGTHS = frozenset({"row_spacing_m", "plant_spacing_m", "half_canopy_m"})
 
 
 def sentence(assumed: Sequence[Assumed], units: UnitsInLanguage) -> str:

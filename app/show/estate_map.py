@@ -8,12 +8,14 @@ import numpy as np
 import shapely
 from pydeck import Layer
 
+from ..state.shared_plots import DUE_DAYS
 from ..words import texts
 from .map_view import MapContent
 from .maps import legends
 
 if TYPE_CHECKING:
     from ..state.estate import PlotState
+    from ..state.shared_plots import PlannedTurn
     from .maps.colours import Colour
 
 #: the layer in which a tapped plot is looked up
@@ -21,7 +23,11 @@ PLOTS = "plots"
 _COLOURS: dict[str, Colour] = {
     "fresh": (46, 139, 87), "due": (230, 159, 0), "late": (200, 60, 40), "new": (130, 140, 135),
 }  # fmt: skip
-_DUE, _LATE = 3, 7
+_LATE = 7
+# who works, told apart for the colour-blind too (Okabe and Ito); their names say it as well
+_WHO: tuple[Colour, ...] = (
+    (0, 114, 178), (213, 94, 0), (0, 158, 115), (204, 121, 167), (86, 180, 233), (230, 159, 0),
+)  # fmt: skip
 
 
 def state_of(plot: PlotState) -> str:
@@ -30,7 +36,7 @@ def state_of(plot: PlotState) -> str:
         return "new"
     if plot.days_since is None or plot.days_since >= _LATE:
         return "late"
-    return "due" if plot.days_since >= _DUE else "fresh"
+    return "due" if plot.days_since >= DUE_DAYS else "fresh"
 
 
 def said(plot: PlotState) -> str:
@@ -43,8 +49,8 @@ def said(plot: PlotState) -> str:
     return texts.PLOTS_TIP.format(name=name, expected=plot.expected, seen=seen)
 
 
-def content(plots: list[PlotState]) -> MapContent:
-    """Return the map of the plots."""
+def content(plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()) -> MapContent:
+    """Return the map of the plots, with the routes of a day's plan."""
     parts = [
         (number, ring)
         for number, plot in enumerate(plots)
@@ -66,15 +72,44 @@ def content(plots: list[PlotState]) -> MapContent:
     )  # fmt: skip
     states = dict.fromkeys(map(state_of, plots))
     items = [("square", _COLOURS[name], texts.PLOTS_STATES[name]) for name in states]
+    of_plot = {id(turn.plot): turn for turn in turns}
     names = [
         {"p": shapely.get_coordinates(plot.outline.representative_point())[0].round(7).tolist(),
-         "t": plot.name, "k": "name"}
+         "t": _named(plot, of_plot.get(id(plot))), "k": "name"}
         for plot in plots
     ]  # fmt: skip
+    who = {turn.number: turn.who for turn in turns}
+    workers = [("line", _WHO[k % len(_WHO)], name) for k, name in sorted(who.items())]
+    legend = [legends.part("", items), *([legends.part("", workers)] if workers else [])]
     alt = texts.PLOTS_ALT.format(n=len(plots), names=", ".join(plot.name for plot in plots))
     return MapContent(
-        "all plots", bounds, alt, [areas], legend=[legends.part("", items)], labels=names
+        "all plots", bounds, alt, [areas, *_routes(turns)], legend=legend, labels=names
     )
+
+
+def _named(plot: PlotState, turn: PlannedTurn | None) -> str:
+    if turn is None:
+        return plot.name
+    return texts.PLOTS_LABEL.format(
+        name=texts.isolated(plot.name), who=turn.who, start=f"{turn.begins:%H:%M}",
+        end=f"{turn.ends:%H:%M}",
+    )  # fmt: skip
+
+
+def _routes(turns: tuple[PlannedTurn, ...]) -> list[Layer]:
+    rows = [
+        {"path": np.round(turn.plan.route.line_lonlat(), 7).tolist(),
+         "c": list(_WHO[turn.number % len(_WHO)])}
+        for turn in turns
+    ]  # fmt: skip
+    if not rows:
+        return []
+    return [
+        Layer("PathLayer", rows, id="casing", get_path="path", get_color=[255, 255, 255, 220],
+              get_width=1.6, width_min_pixels=3, width_max_pixels=6, joint_rounded=True),
+        Layer("PathLayer", rows, id="route", get_path="path", get_color="c", get_width=0.8,
+              width_min_pixels=1.6, width_max_pixels=3, joint_rounded=True),
+    ]  # fmt: skip
 
 
 def plot_tapped(plots: list[PlotState], index: int) -> PlotState | None:

@@ -8,7 +8,7 @@ import streamlit as st
 
 from ..state import chosen_day
 from ..words import texts
-from . import map_view
+from . import ground, map_view
 from .maps import deck
 
 if TYPE_CHECKING:
@@ -51,4 +51,6 @@ def of_plot(choices: Choices, stops: int = 0) -> dict[str, object]:
     alt = texts.MAP_ALT.format(
         name=choices.plot.field.name, plants=len(grid), finds=finds, stops=stops
     )
-    return {"place": choices.place, "bounds": deck.of_grid(grid), "alt": alt}
+    return {"place": choices.place, "bounds": deck.of_grid(grid), "alt": alt,
+            "ground": ground.of(choices),
+            "title": choices.plot.field.name, "when": choices.units.day(choices.day)}  # fmt: skip

@@ -12,7 +12,7 @@ from ..state import cached, chosen_day
 from ..words import language, texts
 from . import field_map
 from .map_view import Frames, MapContent, Switch
-from .maps import colours, deck, labels, legends, marks, plant_layers, route_layers
+from .maps import colours, labels, legends, marks, plan_layers, plant_layers, route_layers
 from .maps.plant_layers import PlantNotes
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ PARTS = {
     "numbers": (),
     "rows": ("row-lines",),
     "before": ("rows-before", "boundary-before"),
-    "backdrop": ("backdrop",),
+    "plan": ("headland", "rows-ground", "aisles", "no-go", "hatch"),
 }
 # more days than these are a film in steps of several
 _FRAMES = 60
@@ -36,7 +36,7 @@ _FINDS = ("finds0", "finds1", "found")
 
 
 def day_map(
-    choices: Choices, *, below: list | None = None, above: list | None = None,
+    choices: Choices, *, above: list | None = None,
     first: str = "chance", off: tuple[str, ...] = ("records",),
 ) -> MapContent:  # fmt: skip
     """Return the map of the chosen day; `first` names the shade that is on before any is chosen."""
@@ -44,8 +44,7 @@ def day_map(
     route = driven.route
     shades = shaded(choices, first)
     layers = [
-        *(below or []),
-        deck.boundary(choices.plot.field, dark=choices.dark),
+        *plan(choices),
         *marks.with_hot(plants(choices), _hot_layers(choices)),
         *route_of(choices, route),
         *marks.records(choices.records, dark=choices.dark),
@@ -58,7 +57,7 @@ def day_map(
         **field_map.of_plot(choices, len(route)), layers=layers,
         switches=switches(layers, off, ("numbers", "rows")), shades=shades,
         legend=legend(choices), play=play,
-        labels=[*labels.stops(route), *labels.rows(choices.plot.grid)],
+        labels=[*labels.stops(route), *words(choices)],
     )  # fmt: skip
 
 
@@ -104,7 +103,21 @@ def legend(choices: Choices) -> list[legends.LegendPart]:
     """Return the legend of a day's map."""
     dark = choices.dark
     return [legends.by_chance(dark=dark), legends.by_state(), legends.by_age(dark=dark),
-            *legends.signs(dark=dark)]  # fmt: skip
+            *legends.signs(dark=dark), *legends.plan(choices.plot.field, dark=dark)]  # fmt: skip
+
+
+def plan(choices: Choices) -> list:
+    """Return the plot as a plan, below its plants; made once."""
+    plot, dark = choices.plot, choices.dark
+    return cached.layers(
+        f"plan {choices.key} {dark}", lambda: plan_layers.plan(plot.grid, plot.field, dark=dark)
+    )
+
+
+def words(choices: Choices) -> list[labels.Label]:
+    """Return what is written on a plan, the most important first."""
+    plot = choices.plot
+    return [*labels.places(plot), *labels.rows(plot.grid), *labels.blocks(plot.grid)]
 
 
 def plants(choices: Choices) -> list:
@@ -116,23 +129,55 @@ def plants(choices: Choices) -> list:
 def _plants(choices: Choices) -> list:
     grid = choices.plot.grid
     chance, state = chosen_day.chance(choices), chosen_day.states(choices)
+    known = _known(choices, state)
     by_chance = colours.by_chance(chance, dark=choices.dark)
     ages = []
     if choices.season is not None:
         by_age = colours.by_age(chosen_day.ages(choices), dark=choices.dark)
-        ages = [plant_layers.plants(grid, by_age, name="plants-age")]
+        ages = [plant_layers.plants(grid, by_age, PlantNotes(known=known), "plants-age")]
     return [
-        plant_layers.plants(grid, by_chance, PlantNotes(chance), "plants-chance"),
+        plant_layers.plants(grid, by_chance, PlantNotes(chance, known=known), "plants-chance"),
         *ages,
-        *in_states(choices, state),
+        *in_states(choices, state, known),
     ]
 
 
-def in_states(choices: Choices, state: np.ndarray) -> list:
+def _known(choices: Choices, state: np.ndarray) -> tuple[tuple[str, ...], np.ndarray]:
+    """Return what is known of plants in sentences, and which of them holds for each."""
+    looks = finds = np.zeros(len(state), np.int64)
+    if choices.season is not None:
+        looks, finds = chosen_day.counts(choices)
+    ages = np.maximum(chosen_day.ages(choices), -1)
+    # one number a plant: sorting those is a hundred times as fast as sorting rows of four
+    known = (((finds << 12) + looks << 20) + ages + 1 << 2) + state
+    # what differs between plants that were never looked at is not said
+    _, first, which = np.unique(
+        np.where(state < 0, -1, known), return_index=True, return_inverse=True
+    )
+    several = np.stack([state, ages, looks, finds], axis=1)[first].tolist()
+    return tuple(_said(*one) for one in several), which
+
+
+def _said(state: int, age: int, looks: int, finds: int) -> str:
+    if state < 0:
+        return texts.TIP_NEVER
+    result = texts.HISTORY_RESULTS[state]
+    seen = texts.TIP_SEEN_TODAY if age == 0 else texts.TIP_SEEN_BEFORE
+    said = result if age < 0 else seen.format(result=result, n=age)
+    if looks > 1:
+        said += texts.TIP_LOOKS.format(n=looks)
+    if finds > 1:
+        said += texts.TIP_FINDS.format(n=finds)
+    return said
+
+
+def in_states(
+    choices: Choices, state: np.ndarray, known: tuple[tuple[str, ...], np.ndarray] | None = None
+) -> list:
     """Return plants shaded by their state, and the rings of finds."""
     grid, names = choices.plot.grid, texts.LEGEND_STATES
     said = tuple(texts.TIP_STATE.format(state=names[name]) for name in ("never", "clean", "found"))
-    notes = PlantNotes(by_rank=said)
+    notes = PlantNotes(known=known) if known else PlantNotes(by_rank=said)
     return [
         plant_layers.plants(grid, colours.by_state(state), notes, "plants-state"),
         *plant_layers.finds(grid, state),

@@ -7,13 +7,16 @@ the browser's; the server hears of taps, of finished drawings and of selections.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import streamlit as st
 
 from ..state import browser, chosen_units
 from ..state.map_file import ADDRESS
 from ..words import language, texts
+from .ground import GroundShown
 from .maps import deck
 
 if TYPE_CHECKING:
@@ -29,10 +32,12 @@ if TYPE_CHECKING:
     #: takes the kind of what was drawn and its corners, lon/lat
     Drawn = Callable[[str, tuple[tuple[float, float], ...]], None]
     #: takes the plants that were selected
-    Selected = Callable[[list[int]], None]
+    Selected = Callable[[tuple[int, ...]], None]
 
 #: the one map of a page
 KEY = "map"
+# as many as the browser offers
+_MOST_PICKED = 20_000
 # the script is fetched once; the component is run with every answer of the server
 _LOADER = """export default (component) => {
   const place = component.parentElement;
@@ -107,6 +112,10 @@ class MapContent:
         The days of a season, to be slid over and played, or None.
     draw
         What clicks draw, or None.
+    ground
+        What lies under all of it.
+    title, when
+        What a picture of it is headed with.
     """
 
     place: str
@@ -120,15 +129,22 @@ class MapContent:
     play: dict[str, Any] | None = None
     frames: Frames | None = None
     draw: Drawable | None = None
+    ground: GroundShown = field(default_factory=GroundShown)
+    title: str = ""
+    when: str = ""
 
 
 @dataclass(frozen=True, eq=False)
 class MapAnswers:
-    """Who hears of what is done on the map; where nobody does, it cannot be done."""
+    """Who hears of what is done on the map; where nobody does, it cannot be done.
+
+    `picked` are the plants that are selected by now.
+    """
 
     tapped: Tapped | None = None
     drawn: Drawn | None = None
     selected: Selected | None = None
+    picked: tuple[int, ...] = ()
 
 
 def show(content: MapContent, answers: MapAnswers | None = None) -> None:
@@ -146,19 +162,21 @@ def show(content: MapContent, answers: MapAnswers | None = None) -> None:
 
 def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
     """Return what the browser is sent."""
-    draw = content.draw
+    draw, below = content.draw, content.ground
     return {
         "place": content.place,
         "bounds": content.bounds,
         "alt": content.alt,
-        "layers": [deck.published(layer) for layer in content.layers],
+        "layers": [deck.published(layer) for layer in (*below.layers, *content.layers)],
         "switches": [
             {"key": s.key, "label": s.label, "layers": [*s.layers], "off": not s.on}
-            for s in content.switches
+            for s in (*content.switches, *_of_ground(below))
         ],
         "shades": [
             {"key": s.key, "label": s.label, "layers": [*s.layers]} for s in content.shades
         ],
+        "ground": {"ids": [layer.id for layer in below.layers], "credit": below.credit,
+                   "picture": below.is_picture},
         "legend": content.legend,
         "labels": content.labels,
         "play": content.play,
@@ -168,12 +186,20 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
                           "points": [list(p) for p in draw.points]},
         "taps": answers.tapped is not None,
         "select": answers.selected is not None,
+        "picked": _runs(answers.picked),
+        "title": content.title,
+        "when": content.when,
         "dark": browser.is_dark(),
         "lengths": chosen_units.units().lengths(),
         "words": texts.MAP_WORDS,
         "language": language.current(),
         "direction": "rtl" if language.is_right_to_left() else "ltr",
     }  # fmt: skip
+
+
+def _of_ground(below: GroundShown) -> tuple[Switch, ...]:
+    ids = tuple(layer.id for layer in below.layers)
+    return (Switch("ground", texts.MAP_LAYERS["ground"], ids),) if ids else ()
 
 
 def _sent(frames: Frames) -> dict[str, Any]:
@@ -189,4 +215,16 @@ def _heard(answers: MapAnswers) -> None:
         points = tuple((float(lon), float(lat)) for lon, lat in made["points"])
         answers.drawn(str(made["kind"]), points)
     if (some := state.get("selected")) and answers.selected:
-        answers.selected([int(plant) for plant in some["plants"]])
+        runs = ((int(first), int(last)) for first, last in some["runs"])
+        plants = chain.from_iterable(range(first, last + 1) for first, last in runs)
+        answers.selected(tuple(islice(plants, _MOST_PICKED)))
+
+
+def _runs(plants: tuple[int, ...]) -> list[list[int]]:
+    """Return plants as runs of numbers, first and last of each: few, for whole rows."""
+    if not plants:
+        return []
+    numbers = np.unique(plants)
+    ends = np.flatnonzero(np.diff(numbers) != 1)
+    first, last = np.append(0, ends + 1), np.append(ends, len(numbers) - 1)
+    return np.stack([numbers[first], numbers[last]], axis=1).tolist()

@@ -29,15 +29,16 @@ _ROW, _PLANT, _TAPPED = "history row", "history plant", "history tapped"
 
 def want(
     choices: Choices, content: MapContent, selected: Selected | None = None,
-    tapped: Tapped | None = None,
+    tapped: Tapped | None = None, picked: tuple[int, ...] = (),
 ) -> None:  # fmt: skip
     """Want a map on which a tap chooses the plant whose history is shown, with a ring round it.
 
-    `selected` hears of the plants that are selected on it, `tapped` of what is tapped instead.
+    `selected` hears of the plants that are selected on it, `tapped` of what is tapped instead;
+    `picked` are the plants selected by now.
     """
     chosen = replace(content, layers=[*content.layers, *layers(choices)])
-    heard = MapAnswers(tapped or partial(take_plant, choices), selected=selected)
-    field_map.want(chosen, heard)
+    taking = tapped or partial(take_plant, choices)
+    field_map.want(chosen, MapAnswers(taking, selected=selected, picked=picked))
 
 
 def take_plant(choices: Choices, layer: str, index: int) -> None:
@@ -81,6 +82,7 @@ def show(choices: Choices) -> None:
     if choices.season is not None:
         first = chosen_day.morning(choices, str(choices.season.settings.begins))
     st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
+    st.caption(texts.HISTORY_CHANCE)
     st.markdown(_on_route(choices, plant))
     if _taken_as_treated(choices, plant):
         st.caption(texts.HISTORY_TREATED)

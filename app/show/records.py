@@ -14,6 +14,8 @@ from ..words import texts
 if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
 
+    from ..state.choices import Choices
+
 _SEEN = {"found": PRESENT, "clean": ABSENT}
 
 
@@ -29,3 +31,13 @@ def records_until(records: Observations) -> tuple[Observations, str]:
         return records, ""
     counts = {name: int((shown.present == value).sum()) for name, value in _SEEN.items()}
     return shown, texts.RECORDS_SHOWN.format(shown=len(shown), all=len(records), **counts)
+
+
+def say(choices: Choices, said: str) -> None:
+    """Say which records are shown, and what is not known of them."""
+    if not len(choices.records):
+        st.caption(texts.RECORDS_NONE)
+        return
+    st.caption(said)
+    if np.isnat(choices.records.day).any():
+        st.caption(texts.UNDATED)

@@ -13,7 +13,7 @@ from fieldmon.samplers.base import NEVER, Scene
 from ..words import texts
 from . import field_map, map_layers
 from .map_view import MapContent, Switch
-from .maps import colours, deck, labels, legends, marks, route_layers
+from .maps import colours, labels, legends, marks, route_layers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,7 +46,7 @@ def content(
         map_layers.in_states(choices, state), marks.hot(grid, hot_spots(grid, state), dark=dark)
     )
     layers = [
-        deck.boundary(choices.plot.field, dark=dark), *shown,
+        *map_layers.plan(choices), *shown,
         *route_layers.route(driven, dark=dark),
         *(marks.truth(grid, _left(day), dark=dark) if truth else []),
     ]  # fmt: skip
@@ -56,7 +56,8 @@ def content(
         **field_map.of_plot(choices, len(driven)), layers=layers,
         switches=map_layers.switches(layers),
         shades=(Switch("state", texts.SHADES["state"], ("plants-state",)),),
-        legend=[*map_layers.legend(choices), *more], labels=labels.stops(driven),
+        legend=[*map_layers.legend(choices), *more],
+        labels=[*labels.stops(driven), *map_layers.words(choices)],
     )  # fmt: skip
 
 

@@ -14,13 +14,15 @@ from ..words.strategies import strategy_name
 
 if TYPE_CHECKING:
     from fieldmon.simulation.statistics import SummaryStatistics
+    from fieldmon.simulation.team_worth import MarginalGain
 
     from ..state.comparison import Outcome, Strategy
 
 
 def name(strategy: Strategy) -> str:
     """Return what to call a strategy."""
-    return strategy_name(strategy.sampler, strategy.hours, strategy.inspection_s)
+    alone = strategy.sampler, strategy.hours, strategy.inspection_s
+    return strategy_name(*alone, strategy.robots)
 
 
 def sentence(ranked: list[Outcome]) -> str:
@@ -37,6 +39,25 @@ def sentence(ranked: list[Outcome]) -> str:
     )  # fmt: skip
 
 
+def robots_sentence(gains: list[MarginalGain]) -> str:
+    """Return what each further robot would save on this plot."""
+    if any(isnan(gain.saved.low) for gain in gains):
+        return texts.GAIN_NONE
+    if [(g.fewer, g.robots) for g in gains] != [(k, k + 1) for k in range(1, len(gains) + 1)]:
+        return " ".join(
+            texts.GAIN.format(robots=gain.robots, fewer=gain.fewer, **_saved(gain))
+            for gain in gains
+        )
+    more = "".join(texts.GAIN_MORE[str(gain.robots)].format(**_saved(gain)) for gain in gains[1:])
+    return texts.GAIN_FIRST.format(more=more, **_saved(gains[0]))
+
+
+def _saved(gain: MarginalGain) -> dict[str, float]:
+    """Return what is saved, without a minus before nothing."""
+    return {"saved": round(gain.saved.mean) + 0.0, "low": round(gain.saved.low) + 0.0,
+            "high": round(gain.saved.high) + 0.0}  # fmt: skip
+
+
 def table(ranked: list[Outcome]) -> pd.DataFrame:
     """Return what each strategy came to, the best first and marked."""
     base = ranked[0].loss.mean
@@ -48,12 +69,16 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
             texts.COLUMN_VISITED: [
                 texts.IN_PERCENT.format(value=number(o.visited_pct, ".1f")) for o in ranked
             ],
-            texts.COLUMN_HALF: [
-                "-" if o.half_day is None else number(o.half_day, "g") for o in ranked
-            ],
+            texts.COLUMN_HALF: [_day(o.half_day) for o in ranked],
+            texts.COLUMN_MOST: [_day(o.most_day) for o in ranked],
+            texts.COLUMN_WORKED: [number(o.worked_h, ",.0f") for o in ranked],
             texts.COLUMN_VERDICT: [_word(o, base) for o in ranked],
         }
     )
+
+
+def _day(day: float | None) -> str:
+    return "-" if day is None else number(day, "g")
 
 
 def _share(e: SummaryStatistics) -> SummaryStatistics:

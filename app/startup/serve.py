@@ -17,6 +17,7 @@ import socket
 import sys
 import threading
 import webbrowser
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack
 from importlib import import_module
 from importlib.util import find_spec
@@ -25,8 +26,9 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.io.sandbox import process
 
-from ..state import map_file, map_store
-from . import preload
+from ..state import map_file, map_store, map_tiles
+from . import addresses, preload
+from .upload_limits import Uploads, is_upload
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -44,6 +46,12 @@ _WHERE = b"""<head>
 <script>window.__streamlit = {BACKEND_BASE_URL: new URL(".", location.href).href}</script>"""
 _FOR_GOOD, _ASK = b"public, immutable, max-age=31536000", b"no-cache"
 _OWN_FOR_GOOD = b"private, immutable, max-age=86400"
+# Streamlit's page writes scripts and styles into itself, and charts are made of compiled text
+_POLICY = (
+    b"default-src 'self' data: blob:; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
+    b"style-src 'self' 'unsafe-inline'; connect-src 'self' data: blob: ws://HOST wss://HOST; "
+    b"frame-ancestors 'self'; form-action 'self'; base-uri 'self'; object-src 'none'"
+)
 # one thread must not keep the others waiting while libraries load (Python's default is 5 ms)
 _TURN_S = 0.0005
 _GOODBYE_S = 5
@@ -51,6 +59,8 @@ _GOODBYE_S = 5
 _STREAMLITS_OWN = frozenset({"/static", "/media", "/component", "/app", "/healthz"})
 # as Python knows them: what a machine says of scripts may keep browsers from running them
 _KINDS = mimetypes.MimeTypes()
+# one reading process looks tiles up, one after the other: each takes a millisecond
+_TILES = ThreadPoolExecutor(1, "tiles")
 _LOG = logging.getLogger(__name__)
 
 
@@ -61,20 +71,45 @@ class Server:
         self._files = page_files() | {map_file.ADDRESS: map_file.FILE}
         self._streamlit: Any = None
         self._loaded = asyncio.Event()
+        self._names, self._uploads = addresses.own_names(), Uploads()
 
     async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
         """Answer a request, or run until the server stops."""
+        if scope["type"] == "http":
+            send = _closed_in(send, scope)
         if scope["type"] == "lifespan":
             await self._run(receive, send)
+        elif await self._refused(scope, receive, send):
+            return
+        elif is_upload(scope["path"]):
+            await self._loaded.wait()
+            await self._streamlit(scope, self._uploads.timed(receive), send)
         elif scope.get("method") == "GET" and is_page(scope["path"]):
             await self._hand_out("/", send)
         elif scope["path"] in self._files and scope.get("method") == "GET":
             await self._hand_out(scope["path"], send)
         elif scope["type"] == "http" and scope["path"].startswith(map_store.PATH):
             await _hand_out_map(scope["path"], send)
+        elif scope["type"] == "http" and scope["path"].startswith(map_tiles.PATH):
+            await _hand_out_tile(scope["path"], send)
         else:
             await self._loaded.wait()
             await self._streamlit(scope, receive, send)
+
+    async def _refused(self, scope: Message, receive: Receive, send: Send) -> bool:
+        """Answer what is not to be answered; return whether it was that."""
+        headers = list(scope.get("headers", ()))
+        why, status = addresses.refusal(scope, headers, self._names), 403
+        if why is None and scope["type"] == "http":
+            why, status = self._uploads.refusal(scope["method"], scope["path"], headers), 413
+        if why is None:
+            return False
+        if scope["type"] == "websocket":
+            await receive()
+            await send({"type": "websocket.close", "code": 1008, "reason": why[:120]})
+        else:
+            await _answer(send, status, "text/plain; charset=utf-8", why.encode(), [])
+        return True
 
     async def _hand_out(self, path: str, send: Send) -> None:
         body = self._files[path].read_bytes()
@@ -112,10 +147,33 @@ class Server:
         preload.start()
 
 
+def _closed_in(send: Send, scope: Message) -> Send:
+    """Let a page fetch and send nothing but from and to this server, whatever stands in it."""
+    host = dict(scope.get("headers", ())).get(b"host", b"")
+    policy = _POLICY.replace(b"HOST", host) if addresses.is_host(host) else _POLICY
+
+    async def send_closed_in(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = [*message.get("headers", ()), (b"content-security-policy", policy)]
+            message = {**message, "headers": [*headers, (b"referrer-policy", b"same-origin")]}
+        await send(message)
+
+    return send_closed_in
+
+
 async def _hand_out_map(path: str, send: Send) -> None:
     found = map_store.STORE.get(path)
     if found is None:
         await _answer(send, 404, "text/plain", b"", [(b"cache-control", b"no-store")])
+        return
+    await _answer(send, 200, *found, [(b"cache-control", _OWN_FOR_GOOD)])
+
+
+async def _hand_out_tile(path: str, send: Send) -> None:
+    looked_up = asyncio.get_running_loop().run_in_executor(_TILES, map_tiles.SHELF.get, path)
+    if (found := await looked_up) is None:
+        # no picture there: the map knows, and need not ask again
+        await _answer(send, 204, "text/plain", b"", [(b"cache-control", b"private, max-age=600")])
         return
     await _answer(send, 200, *found, [(b"cache-control", _OWN_FOR_GOOD)])
 

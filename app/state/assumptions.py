@@ -28,4 +28,4 @@ def of(choices: Choices) -> tuple[Assumed, ...]:
     """Return what the figures of a day rest on though nobody said it."""
     if choices.season is not None:
         return choices.season.assumed()
-    return assumed_by(choices.plot.assumed, choices.prior, choices.robot)
+    return assumed_by(choices.plot.assumed, choices.prior, choices.robot, choices.plot.grid)

@@ -7,6 +7,7 @@ leaves out, beside a key that stands for them.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
@@ -19,10 +20,11 @@ from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.infestation.spread import Spread
 from fieldmon.io import prepare, read
-from fieldmon.io.rasters.read import read_backdrop
+from fieldmon.io.rasters.read import looks_like_heights as _looks_like_heights
+from fieldmon.io.rasters.read import read_backdrop, read_relief
 from fieldmon.monitoring import Season, worked_route
 from fieldmon.planning.day_bound import with_bound
-from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from
+from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from, plan_in
 from fieldmon.reports import season as reports
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
@@ -42,6 +44,7 @@ if TYPE_CHECKING:
     from shapely import MultiLineString
 
     from fieldmon.compute.units import Units
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, Source
@@ -62,6 +65,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.reports.content import Report
+    from fieldmon.samplers.base import Scene
 
     from .comparison import ComparisonSettings
 
@@ -218,24 +222,53 @@ def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:  # n
 def season_plan(
     path: str,  # noqa: ARG001
     revision: str,  # noqa: ARG001
-    day: str,
+    of: tuple[str, str | None],
     _season: Season,
     wishes: Wishes,
 ) -> DayPlan:
-    """Return what is left of a season's day."""
-    return with_bound(_season.plan(np.datetime64(day).item(), keep=False, wishes=wishes))
+    """Return what is left of a season's day for one of its team, or for the one who works."""
+    day, who = of
+    planned = _season.plan(np.datetime64(day).item(), keep=False, wishes=wishes, who=who)
+    # what no route of one could exceed says little of one whose aisles others share
+    return planned if who else with_bound(planned)
 
 
 @st.cache_resource(max_entries=_FEW)
-def kept_route(path: str, revision: str, day: str, _season: Season) -> Array:  # noqa: ARG001
+@st.cache_resource(max_entries=_FEW)
+def season_scene(path: str, revision: str, day: str, _season: Season) -> Scene:  # noqa: ARG001
+    """Return what is known and believed on a season's day before it is planned."""
+    return _season.plan(np.datetime64(day).item(), keep=False).scene
+
+
+@st.cache_resource(max_entries=_DAYS)
+def turn_plan(key: str, robot: Robot, sampler_name: str, _scene: Scene) -> DayPlan:  # noqa: ARG001
+    """Return the day of one who has only some hours for a plot; `key` stands for the scene."""
+    scene = replace(_scene, robot=robot, seconds_left=robot.day_s)
+    return plan_in(scene, sampler(sampler_name))
+
+
+@st.cache_resource(max_entries=_FEW)
+def kept_route(
+    path: str,  # noqa: ARG001
+    revision: str,  # noqa: ARG001
+    of: tuple[str, str | None],
+    _season: Season,
+) -> Array:
     """Return the plants of the route that was given out for a day; empty if none was."""
-    return _season.kept_route(np.datetime64(day).item())
+    day, who = of
+    return _season.kept_route(np.datetime64(day).item(), who or "")
 
 
 @st.cache_resource(max_entries=_FEW)
-def worked(path: str, revision: str, day: str, _season: Season) -> Route:  # noqa: ARG001
+def worked(
+    path: str,  # noqa: ARG001
+    revision: str,  # noqa: ARG001
+    of: tuple[str, str | None],
+    _season: Season,
+) -> Route:
     """Return a day's route as it was worked; empty if nothing was recorded."""
-    return worked_route(_season, np.datetime64(day).item())
+    day, who = of
+    return worked_route(_season, np.datetime64(day).item(), who)
 
 
 @st.cache_resource(max_entries=_FEW)
@@ -254,6 +287,12 @@ def day_figures(path: str, revision: str, day: str, _season: Season) -> DayFigur
 def progress(path: str, revision: str, day: str, _season: Season) -> Progress:  # noqa: ARG001
     """Return how far the inspections are after a day of a season."""
     return _season.progress(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def learnt(path: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:  # noqa: ARG001
+    """Return what the inspections up to a day of a season tell of the insects."""
+    return _season.learnt(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
@@ -288,9 +327,21 @@ def season_report(
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
-def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Backdrop:  # noqa: ARG001
+def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Imported[Backdrop]:  # noqa: ARG001
     """Return a picture of the ground about a plot."""
-    return read_backdrop(_source, options, _near).value
+    return read_backdrop(_source, options, _near)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
+def relief(key: str, options: RasterOptions, _source: Source, _near: Field) -> Imported[Backdrop]:  # noqa: ARG001
+    """Return the relief about a plot, of a raster of heights."""
+    return read_relief(_source, options, _near)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
+def looks_like_heights(key: str, options: RasterOptions, _source: Source) -> bool:  # noqa: ARG001
+    """Return whether a raster is more likely heights than a picture."""
+    return _looks_like_heights(_source, options)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)

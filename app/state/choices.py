@@ -12,7 +12,7 @@ from fieldmon.plot.local_clock import LocalClock, local_clock
 from fieldmon.samplers import sampler
 
 from ..words import texts
-from . import browser, cached, wishes
+from . import browser, cached, widget_memory, wishes
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
     from ..words.units import UnitsInLanguage
     from .brought_files import FileMessage, LeftOut
+
+#: the box that says whose day of a team is shown
+WHOSE_DAY = "whose_day"
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,10 +116,26 @@ class Choices:
         """Return what people want of the day besides."""
         return wishes.of(self.place, self.day)
 
+    @property
+    def team(self) -> tuple[str, ...]:
+        """Return the names of a season's team; none where one works."""
+        if self.season is None:
+            return ()
+        return tuple(member.name for member in self.season.settings.team)
+
+    @property
+    def who(self) -> str | None:
+        """Return whose day is shown, of a season's team; None where one works."""
+        if not (team := self.team):
+            return None
+        chosen = widget_memory.value(WHOSE_DAY)
+        return chosen if chosen in team else team[0]
+
     def plan(self) -> DayPlan:
         """Return the planned day: what is left of it, once something of it was recorded."""
         if self.season is not None:
-            return cached.season_plan(self.key, self.revision, self.day, self.season, self.wishes)
+            of = self.day, self.who
+            return cached.season_plan(self.key, self.revision, of, self.season, self.wishes)
         known = self.records, self.risk
         settings = PlanSettings(self.robot, sampler(self.sampler), self.prior)
         return cached.day_plan(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.observations import usable
 from fieldmon.monitoring import day_was_worked
 
@@ -16,6 +16,7 @@ from . import cached
 
 if TYPE_CHECKING:
     from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.observations import Observations
     from fieldmon.monitoring import DayFigures, Progress
     from fieldmon.planning.plan import DayPlan
@@ -39,24 +40,33 @@ class DayRoute:
 
 def starts(choices: Choices, plan: DayPlan) -> datetime:
     """Return the local time at which the planned route, or what is left of it, starts."""
-    begins = STARTS if choices.season is None else choices.season.settings.starts
     gone = timedelta(seconds=plan.scene.robot.day_s - plan.scene.seconds_left)
-    return datetime.combine(choices.on, begins) + gone
+    return _work_begins(choices) + gone
+
+
+def _work_begins(choices: Choices) -> datetime:
+    """Return the local time at which the day's work starts for the one whose day is shown."""
+    if choices.season is None:
+        return datetime.combine(choices.on, STARTS)
+    settings = choices.season.settings
+    late_s = settings.member(choices.who).starts_s if choices.who else 0.0
+    return datetime.combine(choices.on, settings.starts) + timedelta(seconds=late_s)
 
 
 def route(choices: Choices) -> DayRoute:
     """Return the route as it was driven on a day that was worked, or as it is planned."""
     plan, season = choices.plan(), choices.season
     if season is not None and day_was_worked(season, choices.on, plan.route):
-        done = cached.worked(choices.key, choices.revision, choices.day, season)
-        begins = datetime.combine(choices.on, season.settings.starts)
-        return DayRoute(done, begins, worked=True)
+        of = choices.day, choices.who
+        done = cached.worked(choices.key, choices.revision, of, season)
+        return DayRoute(done, _work_begins(choices), worked=True)
     return DayRoute(plan.route, starts(choices, plan))
 
 
 def given_out(choices: Choices) -> cached.Array:
     """Return the plants of the route that a season keeps as given out for the day, or none."""
-    return cached.kept_route(choices.key, choices.revision, choices.day, choices.season)
+    of = choices.day, choices.who
+    return cached.kept_route(choices.key, choices.revision, of, choices.season)
 
 
 def chance(choices: Choices) -> cached.Array:
@@ -102,9 +112,23 @@ def ages(choices: Choices) -> cached.Array:
     return np.where(last < 0, recorded, day - last)
 
 
+def counts(choices: Choices) -> tuple[cached.Array, cached.Array]:
+    """Return how often each plant was inspected, and found, in a season up to the day, ``(n,)``."""
+    done = choices.season.history.inspections
+    here = (done.date <= np.datetime64(choices.day)) & (done.result != SKIPPED)
+    n = len(choices.plot.grid)
+    finds = here & (done.result == FOUND)
+    return np.bincount(done.plant[here], minlength=n), np.bincount(done.plant[finds], minlength=n)
+
+
 def progress(choices: Choices) -> Progress:
     """Return how far a season's inspections are."""
     return cached.progress(choices.key, choices.revision, choices.day, choices.season)
+
+
+def learnt(choices: Choices) -> tuple[Learnt, ...]:
+    """Return what a season's inspections tell of the insects."""
+    return cached.learnt(choices.key, choices.revision, choices.day, choices.season)
 
 
 def figures(choices: Choices, day: str) -> DayFigures:

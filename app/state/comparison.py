@@ -8,16 +8,19 @@ are drawn from streams that know nothing of the strategy. So differences are tak
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fieldmon.errors import FieldmonError
+from fieldmon.planning.members import Teamwork
 from fieldmon.simulation import executor
 from fieldmon.simulation.design import Combination
 from fieldmon.simulation.experiment import Experiment, Memory, run
 from fieldmon.simulation.statistics import half_interval, summary_statistics
+from fieldmon.simulation.team_season import Team
+from fieldmon.simulation.team_worth import marginal_gains
 from fieldmon.simulation.worker import simulated_season
 
 if TYPE_CHECKING:
@@ -27,8 +30,12 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.statistics import SummaryStatistics
+    from fieldmon.simulation.team_worth import MarginalGain
 
     Floats = NDArray[np.float64]
+
+#: several robots hear of each other's finds every half hour
+TEAMWORK = Teamwork(contact_s=1800.0)
 
 
 @dataclass(frozen=True, order=True)
@@ -43,11 +50,14 @@ class Strategy:
         Working day.
     inspection_s
         Seconds at a plant; more of them find more of what is there (the thesis's viewpoints).
+    robots
+        How many work so, together.
     """
 
     sampler: str
     hours: float
     inspection_s: float
+    robots: int = 1
 
 
 @dataclass(frozen=True)
@@ -93,6 +103,10 @@ class Outcome:
         First day with half of all infestations found; the median over seeds, None if it is never.
     behind
         Loss beyond that of the best strategy, seed by seed; None for the best.
+    most_day
+        First day with 80 % of all infestations found; the median over seeds, None if it is never.
+    worked_h
+        Hours worked in a season, of all robots.
     """
 
     strategy: Strategy
@@ -101,6 +115,8 @@ class Outcome:
     visited_pct: float
     half_day: float | None
     behind: SummaryStatistics | None
+    most_day: float | None = None
+    worked_h: float = 0.0
 
 
 class Comparison:
@@ -174,7 +190,9 @@ class Comparison:
         levels = Combination(
             strategy.sampler, strategy.hours, strategy.inspection_s, settings.share, settings.rate
         )
-        return simulated_season(self._prepared, self._robot, levels, seeds.start, settings.n_days)
+        team = Team(strategy.robots, TEAMWORK)
+        season = seeds.start, settings.n_days
+        return simulated_season(self._prepared, self._robot, levels, *season, team)
 
 
 def outcomes(seasons: dict[Strategy, list[SeasonMetrics]]) -> list[Outcome]:
@@ -193,8 +211,10 @@ def outcomes(seasons: dict[Strategy, list[SeasonMetrics]]) -> list[Outcome]:
             summary_statistics(losses[strategy]),
             summary_statistics(np.array([s.detection_pct[-1] for s in seasons[strategy]])),
             float(np.mean([s.visited_pct.mean() for s in seasons[strategy]])),
-            _half_day(seasons[strategy]),
+            _median_day(seasons[strategy], 50.0),
             None if strategy == ranked[0] else summary_statistics(losses[strategy] - best),
+            _median_day(seasons[strategy], 80.0),
+            float(np.mean([s.worked_h.sum() for s in seasons[strategy]])),
         )
         for strategy in ranked
     ]
@@ -210,7 +230,17 @@ def curve(made: list[SeasonMetrics]) -> tuple[Floats, Floats, Floats]:
     return mean, np.maximum(mean - half, 0.0), np.minimum(mean + half, 100.0)
 
 
-def _half_day(made: list[SeasonMetrics]) -> float | None:
-    reached = [np.inf if (day := s.first_day(50.0)) is None else day for s in made]
+def gains(seasons: dict[Strategy, list[SeasonMetrics]]) -> list[list[MarginalGain]]:
+    """Return what more robots save, for each way to work that several numbers of them have."""
+    ways: dict[Strategy, dict[int, Floats]] = {}
+    for strategy, made in seasons.items():
+        if made:
+            losses = np.array([s.infested_plant_days for s in made], float)
+            ways.setdefault(replace(strategy, robots=1), {})[strategy.robots] = losses
+    return [marginal_gains(losses) for losses in ways.values() if len(losses) > 1]
+
+
+def _median_day(made: list[SeasonMetrics], level_pct: float) -> float | None:
+    reached = [np.inf if (day := s.first_day(level_pct)) is None else day for s in made]
     middle = float(np.median(reached))
     return middle if np.isfinite(middle) else None

@@ -35,7 +35,7 @@ _MANIFEST = "files.json"
 #: boxes that say how files are read and plants are laid
 _BOXES = frozenset(
     {"row_bearing", "row_spacing", "plant_spacing", "headland", "both_faces", "feature"}
-    | {"missing_below", "risk_meaning", "risk_share", "risk_low", "background_pct"}
+    | {"ground_shows", "missing_below", "risk_meaning", "risk_share", "risk_low", "background_pct"}
 )
 
 
@@ -61,6 +61,16 @@ def clean(now: float) -> None:
         with suppress(OSError):
             if now - kept.stat().st_mtime > KEEP_S:
                 shutil.rmtree(kept)
+
+
+def written(name: str, file: str, data: bytes) -> Path:
+    """Return where some bytes lie as a file of this person's own; they are written once."""
+    here = folder() / name
+    here.mkdir(mode=0o700, exist_ok=True)
+    os.utime(here)
+    if not (here / file).exists():
+        write_whole(here / file, data)
+    return here / file
 
 
 def _restore(word: str) -> None:

@@ -66,7 +66,7 @@ def day_before(choices: Choices) -> DayFigures:
 def left_unsaid(choices: Choices) -> bool:
     """Return whether a route was kept for the day before, and nothing recorded of it."""
     before = str(choices.on - timedelta(days=1))
-    kept = cached.kept_route(choices.key, choices.revision, before, choices.season)
+    kept = cached.kept_route(choices.key, choices.revision, (before, choices.who), choices.season)
     return bool(len(kept)) and not day_before(choices).inspected
 
 

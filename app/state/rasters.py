@@ -18,16 +18,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fieldmon.io.import_report import Imported
-    from fieldmon.io.rasters.values import Backdrop
     from fieldmon.plot.plot import Plot
 
     from .brought_files import File, FileMessage
-    from .choices import Choices
 
 S = TypeVar("S", "CanopySource", "RiskSource")
 T = TypeVar("T")
 #: what the rasters are kept as
-MISSING, RISK, BACKDROP = "missing_plants", "risk", "backdrop"
+MISSING, RISK = "missing_plants", "risk"
 #: the keys of the boxes that say how they are read
 MISSING_BELOW, RISK_MEANING = "missing_below", "risk_meaning"
 RISK_SHARE, RISK_LOW = "risk_share", "risk_low"
@@ -42,16 +40,6 @@ def without_missing(plot: Plot, key: str) -> tuple[Plot, tuple[FileMessage, ...]
 def risk(plot: Plot, key: str) -> tuple[cached.Array | None, tuple[FileMessage, ...], str]:
     """Return the risk of each plant ``(n,)`` or None, what the import said, and the longer key."""
     return _read(RISK, key, _risk, cached.risk, plot)
-
-
-def backdrop(choices: Choices) -> Backdrop | None:
-    """Return the picture of the ground about the plot, if one was brought."""
-    file = brought().get(BACKDROP)
-    if file is None:
-        return None
-    options = settled(file, RasterOptions())
-    key = f"{file.key} {options} {choices.key}"
-    return cached.backdrop(key, options, file.source, choices.plot.field)
 
 
 def problem(kind: str) -> FieldmonError | None:

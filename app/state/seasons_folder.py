@@ -33,7 +33,15 @@ def names() -> list[str]:
     """Return the names of the seasons there, in order."""
     here = folder()
     files: Iterable[Path] = here.glob(f"*{_ENDING}") if here.is_dir() else ()
-    return sorted(file.stem for file in files if is_season(file))
+    return sorted(file.stem for file in files if _lies_there(file) and is_season(file))
+
+
+def _lies_there(file: Path) -> bool:
+    """Tell whether a file lies in the folder itself: a link may lead anywhere."""
+    try:
+        return file.resolve().parent == folder().resolve()
+    except OSError:
+        return False
 
 
 def path_of(name: str) -> Path:
@@ -42,7 +50,10 @@ def path_of(name: str) -> Path:
         raise SettingError(texts.SEASON_NAMED.format(name=name))
     if len(name) > _LONGEST:
         raise SettingError(texts.SEASON_LONG.format(most=_LONGEST, n=len(name)))
-    return folder() / f"{name}{_ENDING}"
+    path = folder() / f"{name}{_ENDING}"
+    if not _lies_there(path):
+        raise SettingError(texts.SEASON_NAMED.format(name=name))
+    return path
 
 
 def new_path(name: str) -> Path:

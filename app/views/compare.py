@@ -9,7 +9,7 @@ import streamlit as st
 from ..actions import changing, comparing
 from ..show import charts, field_map, map_layers, verdicts
 from ..state import cached, chosen_day
-from ..state.comparison import Comparison, curve, outcomes
+from ..state.comparison import Comparison, curve, gains, outcomes
 from ..words import texts
 from ..words.language import of_error
 
@@ -53,14 +53,18 @@ def _results(choices: Choices, running: Comparison, *, at_work: bool) -> None:
     if not ranked:
         st.info(texts.COMPARE_EMPTY)
         return
-    st.markdown(verdicts.sentence(ranked))
+    for said in (verdicts.sentence(ranked), *map(verdicts.robots_sentence, gains(seasons))):
+        st.markdown(said)
     curves = {verdicts.name(one): curve(walked) for one, walked in seasons.items()}
     st.altair_chart(charts.bands(curves, (texts.DAY_AXIS, texts.DETECTION_AXIS)),
                     alt=texts.DETECTION_AXIS)  # fmt: skip
     st.dataframe(verdicts.table(ranked), hide_index=True)
+    alone = [o.strategy for o in ranked if o.strategy.robots == 1]
+    if not alone:
+        return
     with st.container(horizontal=True, vertical_alignment="bottom"):
         strategy = st.selectbox(
-            texts.STRATEGY, [o.strategy for o in ranked], format_func=verdicts.name, width=340,
+            texts.STRATEGY, alone, format_func=verdicts.name, width=340,
             key=f"use_strategy {running.settings.strategies}",
         )  # fmt: skip
         st.button(texts.USE_THIS, key="use_this", on_click=changing.use,

@@ -1,4 +1,4 @@
-"""Plants and hot spots: what is known of a plant, where finds cluster, a picture of the ground."""
+"""Plants and hot spots: what is known of a plant, where finds cluster."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import streamlit as st
 
 from fieldmon.reports.sentences import hot_spot_meanings
 
-from ..actions import rasters
 from ..show import map_layers, plant_history
 from ..state import chosen_day
 from ..words import texts
@@ -20,10 +19,7 @@ if TYPE_CHECKING:
 
 def show(choices: Choices) -> None:
     """Show hot spots in words and a plant's history, of any day of the season."""
-    with st.expander(texts.BACKDROP_TITLE):
-        rasters.show_backdrop()
-    below = rasters.backdrop_layers(choices)
-    plant_history.want(choices, map_layers.day_map(choices, below=below))
+    plant_history.want(choices, map_layers.day_map(choices))
     st.markdown(f"### {texts.HOT_TITLE}")
     said = hot_spot_meanings(choices.plot.grid, chosen_day.hot_spots(choices))
     st.markdown("\n".join(f"- {in_words(meaning)}" for meaning in said))

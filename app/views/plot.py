@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
-import numpy as np
 import streamlit as st
 
-from fieldmon.errors import ChoiceNeeded, PlotError
+from fieldmon.errors import PlotError
 
-from ..actions import bringing_files, drawing, rasters
-from ..show import answers_map, field_map, plot_figures
+from ..actions import answering, bringing_files, drawing, laying_ground, rasters
+from ..show import field_map, plot_figures
+from ..show import records as records_shown
 from ..show.assumed import sentence
-from ..show.map_view import MapAnswers
-from ..show.records import records_until
-from ..state import brought_files, browser, chosen_day, plot_before, plot_files, plot_source, rooms
+from ..state import chosen_day, plot_before, plot_files, plot_source, rooms
 from ..state.row_settings import is_said
-from ..state.tried_answers import tried
 from ..words import texts
 from ..words.language import in_words
 
@@ -25,7 +21,6 @@ if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
 
     from ..state.choices import Choices
-    from ..state.tried_answers import TriedAnswer
 
 
 def bring(problem: FieldmonError | None) -> None:
@@ -36,24 +31,13 @@ def bring(problem: FieldmonError | None) -> None:
     if plot_source.chosen() == plot_source.FILES:
         bringing_files.show()
     if problem is not None:
-        answers = tried(problem)
-        bringing_files.say(problem, tried=answers)
-        looked_at = answers_map.content(answers, browser.is_dark())
-        if looked_at is not None:
-            field_map.want(looked_at, MapAnswers(tapped=partial(_tapped, problem, answers)))
+        answering.show(problem)
         laying = plot_files.laying()
         # what was set by hand may be what is wrong: it must stay within reach
         if isinstance(problem, PlotError) and is_said(laying):
             drawing.rows(laying)
         if isinstance(problem, PlotError):
             drawing.undo_last(laying)
-
-
-def _tapped(problem: FieldmonError, tried: tuple[TriedAnswer, ...], layer: str, n: int) -> None:
-    """Take the answer that was tapped on the map."""
-    answer = answers_map.tapped(tried, layer, n)
-    if isinstance(problem, ChoiceNeeded) and answer is not None:
-        brought_files.answer(brought_files.asking(), problem.option, answer)
 
 
 def show(choices: Choices) -> None:
@@ -69,7 +53,7 @@ def show(choices: Choices) -> None:
     if plot_source.chosen() == plot_source.FILES:
         with st.expander(texts.FILES):
             bringing_files.show()
-    records, said = records_until(choices.records)
+    records, said = records_shown.records_until(choices.records)
     if choices.season is None:
         drawing.tools(choices)
         drawing.rows(choices.plot_key, measured=choices.plot.field.plants is not None)
@@ -78,18 +62,10 @@ def show(choices: Choices) -> None:
         rasters.show_risk()
     else:
         st.info(texts.FIXED)
+    laying_ground.show(choices)
     with st.expander(texts.MESSAGES, expanded=True):
         bringing_files.show_messages(choices.messages)
         for message in chosen_day.messages_on_records(choices):
             st.markdown(f"- {in_words(message)}")
-    _say_records(choices, said)
+    records_shown.say(choices, said)
     field_map.want(*drawing.content(choices, records, before))
-
-
-def _say_records(choices: Choices, said: str) -> None:
-    if not len(choices.records):
-        st.caption(texts.RECORDS_NONE)
-        return
-    st.caption(said)
-    if np.isnat(choices.records.day).any():
-        st.caption(texts.UNDATED)

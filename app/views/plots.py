@@ -5,11 +5,10 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-import pandas as pd
 import streamlit as st
 
-from ..actions import ways_in
-from ..show import estate_map, field_map
+from ..actions import sharing_plots, ways_in
+from ..show import estate_map, estate_table, field_map
 from ..show.map_view import MapAnswers
 from ..state import estate, rooms
 from ..words import texts
@@ -21,23 +20,20 @@ if TYPE_CHECKING:
 def show() -> None:
     """Show the plots."""
     plots, problems = estate.plots()
-    with st.container(key="lead"):
-        st.markdown(texts.PLOTS_TITLE.format(n=len(plots)))
-    ways_in.show()
+    with st.container(key="head"):
+        st.markdown(f"### {texts.PLOTS_TITLE.format(n=len(plots))}")
+    if not sharing_plots.is_on():
+        ways_in.show()
+    sharing_plots.show_button(plots)
     for problem in problems:
         st.warning(problem)
-    field_map.want(estate_map.content(plots), MapAnswers(tapped=partial(_tapped, plots)))
+    turns = sharing_plots.show(plots).turns if sharing_plots.is_on() else ()
+    field_map.want(estate_map.content(plots, turns), MapAnswers(tapped=partial(_tapped, plots)))
     st.caption(texts.PLOTS_PICK)
-    names = texts.PLOTS_COLUMNS
-    columns = {names["name"]: [plot.name for plot in plots]}
-    if any(plot.expected is not None for plot in plots):
-        columns[names["days_since"]] = [plot.days_since for plot in plots]
-        columns[names["expected"]] = [plot.expected for plot in plots]
-    table = pd.DataFrame(columns)
+    table, config = estate_table.of(plots, turns)
     st.dataframe(
         table, hide_index=True, key="plots_table", selection_mode="single-row",
-        on_select=partial(_picked, plots),
-        column_config={names["expected"]: st.column_config.NumberColumn(format="%.0f")},
+        on_select=partial(_picked, plots), column_config=config,
     )  # fmt: skip
 
 

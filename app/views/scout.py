@@ -9,7 +9,7 @@ import streamlit as st
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 
-from ..actions import scouting
+from ..actions import choosing, scouting
 from ..show import field_map, map_layers
 from ..show.maps import marks
 from ..show.next_stop import next_stop
@@ -33,6 +33,7 @@ def show(choices: Choices) -> None:
     scouting.give_out(choices)
     with st.container():  # empty or not: buttons that move are there twice for a moment
         scouting.ask_start(choices)
+    choosing.whose_day(choices)
     plan, progress = choices.plan(), chosen_day.progress(choices)
     if not len(plan.route):
         field_map.want(map_layers.day_map(choices, first="state"))

@@ -33,6 +33,7 @@ def show(choices: Choices) -> None:
     _again(progress)
     assuming.show(choices)
     _charts(choices, days, progress)
+    _learnt(choices)
 
 
 def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
@@ -58,6 +59,18 @@ def _again(progress: Progress) -> None:
         again = progress.finds - progress.found
         said = texts.FOUND_AGAIN.format(finds=progress.finds, plants=progress.found, again=again)
         st.caption(said)
+
+
+def _learnt(choices: Choices) -> None:
+    """Say what the inspections tell of the insects."""
+    st.markdown(f"**{texts.LEARNT_TITLE}**")
+    learnt = chosen_day.learnt(choices)
+    if not learnt:
+        st.caption(texts.NOT_LEARNT)
+    for one in learnt:
+        form = ".0%" if one.is_share else ".1f"
+        figures = {name: number(getattr(one, name), form) for name in ("value", "low", "high")}
+        st.markdown(f"- {texts.LEARNT[one.name].format(**figures)}")
 
 
 def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> None:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..actions import assuming, beginning, morning, picking
+from ..actions import assuming, beginning, choosing, morning, picking
 from ..show import day, map_layers, plant_history
-from ..state import chosen_day
+from ..state import chosen_day, wishes
 from ..state.chosen_day import DayRoute
 from ..words import texts
 
@@ -19,13 +19,15 @@ if TYPE_CHECKING:
 
 def show(choices: Choices) -> None:
     """Plan the day and show it."""
+    choosing.whose_day(choices)
     plan = choices.plan()
     with st.container(key="lead"):
         st.markdown(day.headline(choices, plan))
     day.said_of_day(choices, plan)
     morning.show(choices, plan)
     content = map_layers.day_map(choices, above=picking.layers(choices))
-    plant_history.want(choices, content, partial(picking.take, choices))
+    picked = wishes.picked(choices.place)
+    plant_history.want(choices, content, partial(picking.take, choices), picked=picked)
     picking.show(choices, plan)
     plant_history.show_chosen(choices)
     day.route_figures(choices, plan)

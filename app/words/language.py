@@ -8,6 +8,7 @@ as the language writes them, and a text that names a count takes the form that t
 from __future__ import annotations
 
 import gettext
+import re
 from contextvars import ContextVar
 from functools import cache
 from io import BytesIO
@@ -33,6 +34,10 @@ FOLDER = Path(__file__).with_name("languages")
 LIBRARY = "fieldmon"
 #: names, signs and files, which are the same in every language
 SAME = frozenset({"TITLE", "ARROWS", "MAP_WORDS.picture_name", "MAP_WORDS.film_name"})
+
+# signs that embed, override or isolate a direction, and their ends (Unicode Standard Annex 9)
+_TURNING = re.compile("[\u202a-\u202e\u2066-\u2069]")
+_LEADING = re.compile(r"\](?=[\[(:])|!(?=\[)|:(?=//)|www(?=\.)|(?<=\S)@(?=\S)", re.IGNORECASE)
 
 _NOW: ContextVar[str | None] = ContextVar("language", default=None)
 _ASKED: list[Callable[[], str]] = []
@@ -199,13 +204,24 @@ class _Unknown(gettext.NullTranslations):
 def in_words(sentence: str) -> str:
     """Return a sentence of the library in the current language.
 
-    One that nobody has translated stays English, and is marked as such.
+    One that nobody has translated stays English, and is marked as such. Names of files and plots
+    stand in it, so nothing in it leads anywhere.
     """
     language = current()
     if language == ENGLISH or not sentence:
-        return str(sentence)
+        return leading_nowhere(str(sentence))
     said = _said(sentence, language)
-    return marked_as_english(sentence) if said is None else said
+    return leading_nowhere(marked_as_english(sentence) if said is None else said)
+
+
+def leading_nowhere(text: str, *, turning: bool = True) -> str:
+    """Return a text of a file in which nothing becomes a link or a picture of the internet.
+
+    What Markdown or a browser would take for one is parted by a sign that nobody sees. Unless
+    `turning`, signs that turn the direction are left out.
+    """
+    text = text if turning else _TURNING.sub("", text)
+    return _LEADING.sub("\\g<0>\u2060", text)
 
 
 def of_error(error: BaseException) -> str:

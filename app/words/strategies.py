@@ -26,8 +26,9 @@ def _parts(sampler: str) -> tuple[str, str]:
     return name, does
 
 
-def strategy_name(sampler: str, hours: float, inspection_s: float) -> str:
+def strategy_name(sampler: str, hours: float, inspection_s: float, robots: int = 1) -> str:
     """Return what to call a strategy: a sampler, its hours a day, its seconds at a plant."""
-    return texts.STRATEGY_NAME.format(
+    alone = texts.STRATEGY_NAME.format(
         sampler=sampler_name(sampler), hours=hours, seconds=inspection_s
     )
+    return alone if robots == 1 else texts.STRATEGY_TEAM.format(robots=robots, strategy=alone)

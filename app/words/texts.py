@@ -15,8 +15,11 @@ from .language import Plural
 
 
 def isolated(name: str) -> str:
-    """Return a name that reads right inside any sentence, whatever its script and direction."""
-    return f"\u2068{name}\u2069"
+    """Return a name that reads right inside any sentence, whatever its script and direction.
+
+    Signs of its own that turn the direction end with it, and it leads nowhere.
+    """
+    return f"\u2068{language.leading_nowhere(name, turning=False)}\u2069"
 
 
 TITLE = "fieldmon"
@@ -77,6 +80,7 @@ ASSUMED = "\\* assumed: {what}."
 ASSUMED_WHAT = {
     "row_spacing_m": "rows {value} apart",
     "plant_spacing_m": "plants {value} apart",
+    "half_canopy_m": "plants reach {value} to each side",
     "background_chance": "{value} % of plants infested where nothing is known",
     "speed_m_s": "{value} km/h",
     "detects": "an inspection finds {value} % of what is there",
@@ -132,8 +136,13 @@ MAP_WORDS = {
     "draw_hint": "Click on the map.", "draw_back": "Back", "draw_drop": "Drop",
     "draw_done": "Finish",
     "play_season": "Play the season", "day": "Day", "film": "Save the season as a film",
-    "film_name": "season.webm",
-    "lasso_hint": "Draw round the plants.", "corners": "{n} point(s)",
+    "film_name": "season",
+    "lasso_hint": "Draw round the plants; with Shift, to those selected before.",
+    "select_rows": "Select rows", "rows_hint": "Tap plants or row numbers: a whole row each.",
+    "too_many": "At most {most} plants can be selected at once.",
+    "keys": "Map. Arrow keys move it, plus and minus zoom, Enter opens what is under the cross, "
+            "Escape leaves.", "corners": "{n} point(s)",
+    "ground": "Ground", "ground_away": "The ground's pictures cannot be reached.",
     "scale": "The scale bar is {bar} long; the arrow points north.",
 }  # fmt: skip
 SEASON_INTRO = (
@@ -209,6 +218,30 @@ PLOTS_TIP_NEW = "{name}: no season yet"
 PLOTS_SEEN = {0: "seen today", None: "never seen",
               "n": Plural("seen {n} day ago", "seen {n} days ago")}  # fmt: skip
 PLOTS_PICK = "Click a plot on the map, or a row here."
+PLAN_ALL = "Plan all that are due"
+PLAN_ALL_OFF = "Without the plan"
+PLAN_ALL_CREW = {"robots": "Robots", "robot_hours": "Hours of each robot", "scouts": "Scouts",
+                 "scout_hours": "Hours of each scout",
+                 "move_min": "Minutes from plot to plot"}  # fmt: skip
+ROBOT_NAMED, SCOUT_NAMED = "robot {n}", "scout {n}"
+PLAN_ALL_LEAD = Plural(
+    "{plants} plants on {n} plot; expect {finds:.0f} finds.",
+    "{plants} plants on {n} plots; expect {finds:.0f} finds.",
+)
+PLAN_ALL_NONE = "Nothing is due today: every plot was seen today."
+PLAN_ALL_RULE = (
+    "Plots come in the order of the infested plants expected there. Each goes to whoever then has "
+    "most time for it, and everybody shares his hours among his plots by what is expected. A plot "
+    "that would get less than a quarter of an hour waits. From plot to plot takes so many minutes, "
+    "wherever they lie."
+)
+PLAN_ALL_WAITING = "No time today: {names}."
+PLAN_ALL_FREE = "Free today: {names}."
+PLAN_ALL_WORKING = "Planning the plots ..."
+PLAN_ALL_DOWNLOAD = "Download all routes"
+PLAN_ALL_COLUMNS = {"who": "who", "from": "from", "to": "to", "plants": "plants to inspect",
+                    "finds": "finds expected"}  # fmt: skip
+PLOTS_LABEL = "{name}\n{who}, {start}-{end}"
 WAYS_IN = {"sample": "Try the sample", "file": "My plot", "season": "Open a season"}
 NO_SEASONS = (
     "There is no season here yet. One begins with a plot: bring yours or try the sample, then "
@@ -272,7 +305,8 @@ TODAY_DONE = Plural(
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
 #: as `fieldmon.io.writers.handoff` says them, which takes long to load
 READERS = {
-    "nav2": "robots with Nav2 (ROS 2)", "waypoints": "robots of any kind",
+    "nav2": "robots with Nav2 (ROS 2)", "nav2-pauses": "robots with Nav2 and a plugin for pauses",
+    "waypoints": "robots of any kind",
     "geojson": "QGIS, phones, web maps", "gpkg": "QGIS, QField, ArcGIS",
     "shapefile": "older map programs and consoles", "csv": "spreadsheets",
     "kml": "Google Earth, map apps on phones", "gpx": "GPS handhelds and hiking apps",
@@ -286,9 +320,15 @@ TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start a
 TIP_ALONE, NEXT_ALONE = "plant {plant}{note}", "Plant {plant}"
 SCOUT_LAST_ALONE = "Last: plant {plant}: {result}"
 TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
+TIP_SEEN_TODAY, TIP_NEVER = "{result} today", "never inspected"
+TIP_SEEN_BEFORE = Plural("{result} {n} day ago", "{result} {n} days ago")
+TIP_LOOKS = Plural(", inspected {n} time", ", inspected {n} times")
+TIP_FINDS = Plural(", found {n} time", ", found {n} times")
 TIP_HOT = "hot spot: {found} found of {inspected} inspected"
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
-TIP_INFESTED, TIP_CORNER = "infested", "corner"
+TIP_INFESTED, TIP_CORNER, TIP_NO_GO = "infested", "corner", "no-go area: not driven through"
+LABEL_GATE, LABEL_NO_GO, LABEL_BLOCK = "gate", "no-go", "block {n}"
+LEGEND_HEADLAND, LEGEND_AISLE, LEGEND_NO_GO = "headland", "aisle", "no-go area"
 
 # -- plot and records
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
@@ -355,12 +395,15 @@ SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspe
           "age": "days since inspected"}  # fmt: skip
 MAP_LAYERS = {"before": "as it was before", "route": "route", "numbers": "stop numbers",
               "hot": "hot spots", "records": "records", "rows": "row numbers",
-              "backdrop": "picture"}  # fmt: skip
-BACKDROP_TITLE, HOT_TITLE = "Picture of the ground", "Hot spots"
-BACKDROP = "Picture of the ground (GeoTIFF)"
+              "plan": "plan of the plot", "ground": "ground"}  # fmt: skip
+HOT_TITLE = "Hot spots"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
 HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
 HISTORY_NOW = "Chance of infestation now: **{now:.1%}** (first morning: {first:.1%})."
+HISTORY_CHANCE = (
+    "A chance says all that is believed of one plant, so it has no interval of its own; sums of "
+    "many plants have one, see Season."
+)
 HISTORY_TREATED = (
     "It was found infested, and in this season plants found are taken as treated at once: from "
     "then on it counts as clean, and its chance grows again as insects come from its neighbours."
@@ -370,6 +413,38 @@ HISTORY_NO_STOP = "Not on the day's route."
 HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
 HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}
+
+# -- the ground under the plot
+GROUND = "Ground under the plot"
+GROUND_NOTE = (
+    "So that the plot is recognised at a glance. A file stays on this machine; nothing is asked of "
+    "the internet for it."
+)
+GROUND_FILE = "Picture or heights (GeoTIFF), or a map in tiles (MBTiles, PMTiles)"
+GROUND_SHOWS = "The file shows"
+GROUND_KINDS = {"picture": "a picture of the ground", "heights": "heights, drawn as relief"}
+GROUND_KEPT = "Kept with the season: {name}"
+WEB_MAP = "Map from the internet"
+WEB_MAPS = {"": "none", "osm": "OpenStreetMap", "other": "another, by its address"}
+WEB_MAP_ADDRESS = "Address of its tiles"
+WEB_MAP_HELP = (
+    "As a provider of aerial pictures writes it, with {z}, {x} and {y} ({-y} where rows count from "
+    "the south). Whether you may use it, the provider says."
+)
+WEB_MAP_LIKE = (
+    "The address of a map must begin with https:// and hold {{z}}, {{x}} and {{y}} after the "
+    "server's name, but it is {address!r}. Copy it as the provider writes it."
+)
+WEB_MAP_ASK = (
+    "**Ask {host} for pictures?** Each browser that shows this plot then asks {host} for pictures "
+    "of the area in view. {host} learns that browser's internet address, and which area is looked "
+    "at and when. It is told nothing else: no plants, no finds, no names."
+)
+WEB_MAP_SEASON = "This holds for this season on this machine, until you take it back."
+WEB_MAP_SESSION = "This holds until you close this page, or take it back."
+WEB_MAP_AGREE = "Agree: show pictures from {host}"
+WEB_MAP_AGREED = "Pictures come from {host}, as agreed on {day}: it sees which area is looked at."
+WEB_MAP_BACK = "Stop asking {host}"
 
 # -- the season
 NEEDS_SEASON = (
@@ -440,6 +515,17 @@ ROW_NEVER, ROW_TODAY = "never", "today"
 NEVER_ROWS = Plural(
     "{n} of {all} rows was never inspected.", "{n} of {all} rows were never inspected."
 )
+LEARNT_TITLE = "What the inspections tell of the insects"
+LEARNT = {
+    "detection": "An inspection finds {value} of what is there ({low} to {high}).",
+    "infested at the start": "{value} plants were infested at the start ({low} to {high}).",
+    "arrivals a night": "{value} plants a night are infested from outside ({low} to {high}).",
+    "jumps beyond neighbours": (
+        "They jump farther than to the next plant: with a chance of {value}."
+    ),
+    "length of jumps": "If so, jumps go {value} plants on average ({low} to {high}).",
+}
+NOT_LEARNT = "This season traces finds to the plants next to them only, as it did when it began."
 
 # -- scouting
 SCOUT_NEEDS = (
@@ -472,7 +558,12 @@ COMPARE_INTRO = (
     "strategy meets the same insects. Less loss (infested plants times days) is better."
 )
 STRATEGY_SAMPLERS, STRATEGY_HOURS = "Samplers", "Working hours"
-STRATEGY_INSPECTION_S = "Seconds at a plant"
+WHOSE_DAY = "Whose day"
+STRATEGY_INSPECTION_S, STRATEGY_ROBOTS = "Seconds at a plant", "Robots"
+STRATEGY_ROBOTS_HELP = (
+    "Several share the aisles out by what is believed, and hear of each other's finds every half "
+    "hour; who reads no chances keeps to a section of its own."
+)
 SEEDS, SEEDS_HELP = "Seasons each", "More seasons, narrower intervals."
 RUN, STOP, GO_ON = "Compare", "Stop", "Go on"
 COMPARE_PROGRESS = "{done} of {total} seasons simulated"
@@ -484,6 +575,7 @@ ONE_SEASON = "(one season: no interval)"
 COLUMN_STRATEGY, COLUMN_LOSS = "strategy", "infested plant-days"
 COLUMN_FOUND = "found at the end"
 COLUMN_VISITED, COLUMN_HALF, COLUMN_VERDICT = "inspected a day", "half found on day", "verdict"
+COLUMN_MOST, COLUMN_WORKED = "80 % found on day", "hours worked"
 STRATEGY = "Strategy"
 USE_THIS = "Use this strategy"
 VERDICT = (
@@ -496,6 +588,20 @@ VERDICT_TIED = (
 )
 NOW_USED = "{name} is in use now."
 STRATEGY_NAME = "{sampler} · {hours:g} h · {seconds:g} s"
+STRATEGY_TEAM = "{robots} × {strategy}"
+GAIN = (
+    "{robots} robots instead of {fewer} would save {saved:,.0f} ({low:,.0f} to {high:,.0f}) "
+    "infested plant-days."
+)
+GAIN_FIRST = (
+    "A second robot would save {saved:,.0f} ({low:,.0f} to {high:,.0f}) infested plant-days{more}."
+)
+GAIN_MORE = {
+    "3": "; a third {saved:,.0f} ({low:,.0f} to {high:,.0f})",
+    "4": "; a fourth {saved:,.0f} ({low:,.0f} to {high:,.0f})",
+    "5": "; a fifth {saved:,.0f} ({low:,.0f} to {high:,.0f})",
+}
+GAIN_NONE = "Of one season no interval is known: simulate more to see what a robot would save."
 
 # -- the report
 REPORT_ABOUT, REPORT_KINDS = "About", {"day": "the day", "season": "the season"}

@@ -23,6 +23,13 @@ def open_app(
     seasons: Annotated[
         Path, typer.Option(help="Folder in which seasons are kept; made when one begins.")
     ] = Path("seasons"),
+    name: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Name by which browsers ask for this machine, in a network or behind a proxy; "
+            "may be repeated. Its own name and numbers are known."
+        ),
+    ] = None,
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,  # noqa: FBT002
 ) -> None:
     """Open the app in the browser. It needs no internet; stop it with Ctrl-C."""
@@ -48,6 +55,7 @@ def open_app(
         "STREAMLIT_SERVER_ADDRESS": address,
         "STREAMLIT_SERVER_PORT": str(port),
         "FIELDMON_SEASONS": str(seasons.absolute()),
+        "FIELDMON_NAMES": ",".join(name or os.environ.get("FIELDMON_NAMES", "").split(",")),
         "PYTHONPATH": own_path(),
     }
     with WAITING.silent():

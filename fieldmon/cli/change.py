@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.option_groups import with_options
-from fieldmon.cli.options import MOST_EVERY, Hours, Look, SeasonFile, Speed, WorkerOptions
+from fieldmon.cli.options import (
+    MOST_EVERY,
+    Hours,
+    Look,
+    Robots,
+    SeasonFile,
+    Speed,
+    WorkerOptions,
+)
+from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock
 from fieldmon.errors import SettingError
 from fieldmon.samplers import kind_of
@@ -30,17 +39,30 @@ class ChangeOptions:
     hours: Hours = None
     look: Look = None
     speed: Speed = None
+    robots: Robots = None
     start: Annotated[str | None, typer.Option(help="Local time the work starts, HH:MM.")] = None
     spread: Annotated[
         float | None, typer.Option(help="Chance a night to infest a neighbour, as believed.")
+    ] = None
+    trace: Annotated[
+        bool | None,
+        typer.Option(
+            "--trace/--no-trace",
+            help="Trace finds beyond the plants next to them, and learn how far insects jump.",
+        ),
     ] = None
 
     def changed(self, settings: MonitoringSettings) -> MonitoringSettings:
         """Return a season's settings as they are to be."""
         from dataclasses import replace  # noqa: PLC0415
 
-        robot = WorkerOptions(self.hours, self.look, self.speed).given()
+        worker = WorkerOptions(self.hours, self.look, self.speed)
+        robot = worker.given()
         new = replace(settings, robot=replace(settings.robot, **robot))  # type: ignore[arg-type]
+        team = [replace(one, robot=replace(one.robot, **robot)) for one in settings.team]  # type: ignore[arg-type]
+        new = replace(new, team=tuple(team))
+        if self.robots is not None:
+            new = self._of_several(new)
         if self.sampler is not None:
             new = replace(new, sampler=self.sampler, sampler_settings={})
         if self.every is not None:
@@ -49,8 +71,23 @@ class ChangeOptions:
             new = replace(new, starts=clock(self.start))
         if self.spread is not None:
             rate = replace(settings.belief.spread, rate_per_day=self.spread)
-            new = replace(new, belief=replace(settings.belief, spread=rate))
+            new = replace(new, belief=replace(new.belief, spread=rate))
+        if self.trace is not None:
+            new = replace(new, belief=replace(new.belief, traces=self.trace))
         return new
+
+    def _of_several(self, settings: MonitoringSettings) -> MonitoringSettings:
+        """Return settings with the team of ``--robots``; one robot is no team."""
+        from dataclasses import replace  # noqa: PLC0415
+
+        from fieldmon.planning.members import team_of  # noqa: PLC0415
+
+        robots = self.robots or ""
+        if robots.isdigit():
+            n = int(robots)
+            return replace(settings, team=() if n == 1 else team_of(n, settings.robot))
+        team, first = members_of(robots, settings.starts, WorkerOptions())
+        return replace(settings, team=team, starts=first)
 
 
 def _every(name: str, every: int) -> dict[str, float]:

@@ -11,24 +11,29 @@ import typer
 from fieldmon.cli.messages import tell_unusable
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
+    Contact,
     Every,
     Feature,
+    LeastGain,
     MaybePlotFile,
     OneSampler,
     PlotFiles,
     Records,
+    Robots,
     StartTime,
     WorkerOptions,
     sampler_settings,
 )
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
+from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import WorkStart, clock, day
 
 if TYPE_CHECKING:
-    from datetime import datetime
+    from datetime import datetime, time
 
     from fieldmon.monitoring import MonitoringSettings
+    from fieldmon.planning.members import TeamMember
 
 
 @dataclass(frozen=True)
@@ -55,19 +60,26 @@ class InitOptions:
         float, typer.Option(help="Chance a night that a plant infests its neighbour, as believed.")
     ] = 0.02
     seed: Annotated[int, typer.Option(help="For samplers that draw.")] = 1
+    robots: Robots = None
+    contact: Contact = 0.0
+    least_gain: LeastGain = 0.5
     worker: WorkerOptions = field(default_factory=WorkerOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
 
-    def starts(self) -> WorkStart:
-        """Return when the first day's work starts, as it was told."""
-        return WorkStart(day(self.begins, "--begins"), clock(self.start))
+    def team(self) -> tuple[tuple[TeamMember, ...], time]:
+        """Return who works if several do, and when the first day's work starts, as told."""
+        start = clock(self.start)
+        if self.robots in {None, "1"}:
+            return (), start
+        return members_of(self.robots or "", start, self.worker)
 
-    def settings(self, begins: datetime) -> MonitoringSettings:
+    def settings(self, begins: datetime, team: tuple[TeamMember, ...]) -> MonitoringSettings:
         """Return how the season is worked."""
         from dataclasses import replace  # noqa: PLC0415
 
         from fieldmon.monitoring import MonitoringSettings  # noqa: PLC0415
         from fieldmon.monitoring.history import BeliefSettings  # noqa: PLC0415
+        from fieldmon.planning.members import Teamwork  # noqa: PLC0415
 
         belief = BeliefSettings(treated=not self.flag_only)
         return MonitoringSettings(
@@ -78,6 +90,8 @@ class InitOptions:
             sampler_settings(self.sampler, self.every),
             belief=replace(belief, spread=replace(belief.spread, rate_per_day=self.spread)),
             seed=self.seed,
+            team=team,
+            teamwork=Teamwork(contact_s=60.0 * self.contact, least_gain=self.least_gain),
         )
 
 
@@ -87,16 +101,20 @@ def init(options: InitOptions) -> None:
 
     QGIS and QField open it as it is. Then, every day: fieldmon plan, the work, fieldmon record.
 
+    With --robots each of a team has a route file of its own every day.
+
     Example: fieldmon init season.gpkg estate.zip --feature Gate --observations mites.csv
+    Example: fieldmon init season.gpkg estate.zip --feature Gate --robots 2
     """
     import numpy as np  # noqa: PLC0415
 
     from fieldmon.monitoring import KeptMessage, Season  # noqa: PLC0415
 
-    path, starts = options.season, options.starts()
+    path, (team, at) = options.season, options.team()
+    starts = WorkStart(day(options.begins, "--begins"), at)
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
-    settings = options.settings(starts.on_plot(known.plot.field))
+    settings = options.settings(starts.on_plot(known.plot.field), team)
     tell_unusable(known.records, np.datetime64(settings.begins, "D"))
     messages = [KeptMessage.of(said.source, said.message) for said in known.messages]
     season = Season.create(path, known.plot, known.records, settings, messages, known.risk)

@@ -6,15 +6,21 @@ import typer
 
 from fieldmon.cli import problems, study
 from fieldmon.cli.app import open_app
+from fieldmon.cli.backup import backup
 from fieldmon.cli.change import change
+from fieldmon.cli.compare import compare
+from fieldmon.cli.correct import correct
 from fieldmon.cli.decide import decide
+from fieldmon.cli.drive import drive
 from fieldmon.cli.init import init
+from fieldmon.cli.merge import merge
 from fieldmon.cli.plan import plan
 from fieldmon.cli.plots import plots
 from fieldmon.cli.record import record
 from fieldmon.cli.report import report
 from fieldmon.cli.salvage import salvage
 from fieldmon.cli.simulate import simulate
+from fieldmon.cli.stand_in import stand_in
 from fieldmon.cli.status import status
 from fieldmon.cli.treat import treat
 from fieldmon.cli.undo import undo
@@ -39,12 +45,18 @@ app.command()(undo)
 app.command()(decide)
 app.command()(treat)
 app.command()(change)
+app.command()(correct)
+app.command()(merge)
+app.command()(backup)
 app.command()(salvage)
 app.command("app")(open_app)
 app.command()(plots)
 app.command()(plan)
 app.command()(init)
 app.command()(simulate)
+app.command()(compare)
+app.command()(drive)
+app.command("stand-in")(stand_in)
 
 
 def main() -> None:

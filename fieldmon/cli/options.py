@@ -116,6 +116,10 @@ Bearing = Annotated[
 RowSpacing = Annotated[float | None, typer.Option(help="Metres from row to row.")]
 PlantSpacing = Annotated[float | None, typer.Option(help="Metres from plant to plant in a row.")]
 Headland = Annotated[float | None, typer.Option(help="Metres free of plants at both row ends.")]
+HalfCanopy = Annotated[
+    float | None,
+    typer.Option(help="Metres that plants reach to each side of their middle; for --width."),
+]
 BothFaces = Annotated[
     bool, typer.Option("--both-faces", help="Inspect both faces of each row, each from its aisle.")
 ]
@@ -131,6 +135,35 @@ Speed = Annotated[float | None, typer.Option(help="Driving speed, km/h.")]
 RowChange = Annotated[float | None, typer.Option(help="Seconds added for changing rows.")]
 Turn = Annotated[
     float | None, typer.Option(help="Seconds to turn to the other side of the same aisle.")
+]
+Robots = Annotated[
+    str | None,
+    typer.Option(
+        help="How many robots, or a table of robots and scouts (CSV: name, who, hours, speed_km_h, "
+        "look_s, detection, start, lon, lat). Each has a route file of its own."
+    ),
+]
+Contact = Annotated[
+    float, typer.Option(min=0.0, help="Minutes between contacts; 0: finds are heard of at once.")
+]
+LeastGain = Annotated[
+    float,
+    typer.Option(min=0.0, help="Finds that must be gained for anyone to be sent elsewhere."),
+]
+Width = Annotated[
+    float | None,
+    typer.Option(
+        help="Width of the robot, metres: ways keep off canopies, narrow aisles are shut."
+    ),
+]
+Length = Annotated[
+    float | None, typer.Option(help="Length of the robot, metres, for its turns; as its width.")
+]
+Rover = Annotated[
+    bool,
+    typer.Option(
+        "--rover", help="A robot 0.58 m wide with the times of simulated drives (docs: drive)."
+    ),
 ]
 OneSampler = Annotated[SamplerName, typer.Option(help="Who chooses.")]
 Every = Annotated[
@@ -171,6 +204,9 @@ class WorkerOptions:
     row_change: RowChange = None
     turn: Turn = None
     scout: Scout = False
+    rover: Rover = False
+    width: Width = None
+    length: Length = None
 
     def given(self) -> dict[str, float]:
         """Return what was said, as settings of `Robot`."""
@@ -180,6 +216,8 @@ class WorkerOptions:
             "speed_m_s": None if self.speed is None else self.speed / 3.6,
             "row_change_s": self.row_change,
             "turn_180_s": self.turn,
+            "width_m": self.width,
+            "length_m": self.length,
         }
         return {name: value for name, value in said.items() if value is not None}
 
@@ -189,7 +227,9 @@ class WorkerOptions:
 
         from fieldmon.plot import robot  # noqa: PLC0415
 
-        base = robot.scout() if self.scout else robot.Robot()
+        if self.scout and self.rover:
+            raise SettingError("A scout is no rover: give one of --scout and --rover.")
+        base = robot.scout() if self.scout else robot.rover() if self.rover else robot.Robot()
         return replace(base, **self.given())  # type: ignore[arg-type]
 
 
@@ -201,6 +241,7 @@ class RowOptions:
     row_spacing: RowSpacing = None
     plant_spacing: PlantSpacing = None
     headland: Headland = None
+    half_canopy: HalfCanopy = None
     both_faces: BothFaces = False
     no_rows: NoRows = False
 
@@ -210,7 +251,8 @@ class RowOptions:
 
         faces = 2 if self.both_faces else None
         spacings = self.row_spacing, self.plant_spacing, self.headland
-        return PlantingChoices(self.bearing, *spacings, faces, not self.no_rows)
+        in_rows = not self.no_rows
+        return PlantingChoices(self.bearing, *spacings, faces, self.half_canopy, in_rows)
 
 
 @dataclass(frozen=True)

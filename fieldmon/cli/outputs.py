@@ -46,4 +46,5 @@ def day_in_words(route: Route) -> str:
         f"{route.drive_m / 1000:.2f} km; about {route.expected_finds:.1f} of them infested, "
         f"about {route.expected_found:.1f} of these would be found."
     )
-    return f"{said}\n{route.bound_sentence}" if route.bound_sentence else said
+    more = (route.bound_sentence, route.aisles.told_shut())
+    return "\n".join([said, *(one for one in more if one)])

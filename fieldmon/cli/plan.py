@@ -19,6 +19,7 @@ from fieldmon.cli.options import (
     Outputs,
     PlotFiles,
     Records,
+    Robots,
     StartTime,
     WorkDate,
     WorkerOptions,
@@ -39,11 +40,12 @@ Now = Annotated[
     str | None,
     typer.Option(help="Of a season: plan the rest of the day from this local time, HH:MM."),
 ]
-Robots = Annotated[
-    str | None,
+Passing = Annotated[
+    float | None,
     typer.Option(
-        help="How many robots, or a table of robots and scouts (CSV: name, who, hours, speed_km_h, "
-        "look_s, detection, start, lon, lat). Each has a route file of its own."
+        min=0.0,
+        help="With --robots: metres of headland that two need to pass each other; where it is "
+        "narrower nobody meets another head-on. They pass each other anywhere if not given.",
     ),
 ]
 EveryPlot = Annotated[
@@ -71,6 +73,7 @@ class PlanOptions:
     every_plot: EveryPlot = False
     bound: Bounded = True
     robots: Robots = None
+    passing: Passing = None
 
     def starts(self) -> WorkStart:
         """Return when the work starts, as it was told."""
@@ -106,12 +109,15 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
     if options.plot is not None and is_season(options.plot):
         if options.robots is not None:
             raise SettingError(
-                "--robots plans a plot file, but this is a season: it has one robot."
+                "--robots goes with a plot file, but this is a season, which keeps who works. "
+                "Change that with: fieldmon change --robots"
             )
         plan_season(context, options, options.plot)
         return
     if options.now is not None:
         raise SettingError("--now needs a season (see fieldmon init), but this is a plot file.")
+    if options.passing is not None and options.robots is None:
+        raise SettingError("--passing goes with --robots: one alone meets nobody.")
     if options.robots is not None:
         plan_team(context, options, options.robots)
     elif options.every_plot:
@@ -144,7 +150,7 @@ def _plan_one(options: PlanOptions) -> None:
     if options.bound:
         today = with_bound(today)
     typer.echo(day_in_words(today.route))
-    tell_assumed(assumed_by((), settings.prior, robot))
+    tell_assumed(assumed_by((), settings.prior, robot, known.plot.grid))
     notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
     write_routes(replace(today.route, notes=notes), options.output)
     write_chance_map(options.chance_map, known.plot, today.chance)

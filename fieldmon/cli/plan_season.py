@@ -8,13 +8,16 @@ import typer
 
 from fieldmon.cli.messages import tell_assumed
 from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
+from fieldmon.cli.team_files import files_of_each, tell_member, write_member
 from fieldmon.cli.times import clock, day, day_on
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from datetime import date
     from pathlib import Path
 
     from fieldmon.cli.plan import PlanOptions
+    from fieldmon.monitoring import Season
 
 # what a plan of a season may be told; all else was chosen when it began
 _OF_A_PLAN = {"plot", "output", "on", "now", "chance_map", "bound"}
@@ -28,6 +31,9 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     _refuse_what_was_chosen(context)
     season = Season(file)
     on, now = day_on(season.plot.field, day(options.on)), options.now
+    if season.settings.team:
+        _plan_team(season, options, on)
+        return
     today = season.plan(on, None if now is None else clock(now, "--now"))
     if options.bound and len(today.route):
         today = with_bound(today)
@@ -44,6 +50,31 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     tell_assumed(season.assumed())
     write_routes(route, options.output)
     write_chance_map(options.chance_map, season.plot, today.chance)
+
+
+def _plan_team(season: Season, options: PlanOptions, on: date) -> None:
+    """Plan what is left of a day for each of a team; write a file for each."""
+    from fieldmon.planning.team import bound_of_days  # noqa: PLC0415
+
+    team = season.settings.team
+    files = files_of_each(options.output, team)
+    days = season.plan_each(on, None if options.now is None else clock(options.now, "--now"))
+    if not any(len(today.route) for today in days):
+        raise SettingError(
+            f"Somebody must have time to reach another plant and come back, but nobody has on "
+            f"{on}. Plan another day with --date."
+        )
+    done = len(season.history.on(days[0].scene.day))
+    typer.echo(f"{on}{f': {done} done' if done else ''}")
+    for member, today in zip(team, days, strict=True):
+        if (notes := today.route.notes) is not None and notes.start is not None:
+            tell_member(member.name, notes.start, today.route)
+    if options.bound and (said := bound_of_days(days)):
+        typer.echo(said)
+    tell_assumed(season.assumed())
+    for member, today, paths in zip(team, days, files, strict=True):
+        write_member(member.name, today.route, paths)
+    write_chance_map(options.chance_map, season.plot, days[0].chance)
 
 
 def _refuse_what_was_chosen(context: typer.Context) -> None:

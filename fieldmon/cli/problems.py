@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
+# of a name that cannot be one
+_LONGEST = 80
+
+
 def run(command: Callable[..., object]) -> None:
     """Run the command line; end with its exit code."""
     try:
@@ -31,6 +35,14 @@ def run(command: Callable[..., object]) -> None:
         sys.exit(0)
     except OverflowError as error:
         _end(f"A number is too large to work with ({error}). Give a smaller one.", 2)
+    except OSError as error:
+        name = str(error.filename or "A file")
+        name = name if len(name) <= _LONGEST else f"{name[:_LONGEST]}..."
+        _end(
+            f"{name} must be a file or folder that this machine can use, but it is not "
+            f"({error.strerror or error}). Check its name, its permissions and the disk.",
+            2,
+        )
     except Exception as error:  # noqa: BLE001 - no traceback ever reaches a person
         _unexpected(error)
 

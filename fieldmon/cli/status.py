@@ -67,6 +67,10 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     )
     yield f"  found of all           {now.detection_pct:6.1f} %, as believed"
     yield f"  chance it is clean     {100 * ahead.chance_clean:6.1f} %"
+    for number, learnt in enumerate(now.learnt):
+        yield f"  {'' if number else 'as inspections tell':22} {learnt.sentence()}"
+    if not now.learnt:
+        yield "  finds are traced       to neighbours only; fieldmon change --trace goes farther"
     spots = now.hot_spots
     yield f"  hot spots              {len(spots):6d}" + "".join(
         f"; {spots.found[h]} finds where {spots.expected[h]:.1f} were expected"

@@ -36,10 +36,11 @@ def beliefs(
         calibration,
         report_html,
     )
-    from fieldmon.studies.samplers.scenarios import all_scenarios  # noqa: PLC0415
+    from fieldmon.studies.samplers.scenarios import all_scenarios, in_worlds  # noqa: PLC0415
 
     must_be_folder(output)
-    chosen = next((each for each in all_scenarios() if each.name.startswith(scenario)), None)
+    known = (*all_scenarios(), *in_worlds())
+    chosen = next((each for each in known if each.name.startswith(scenario)), None)
     if chosen is None:
         raise SettingError(f"A scenario must begin with {scenario!r}, but none does.")
     made = {}
@@ -47,8 +48,9 @@ def beliefs(
         made[name] = c = calibration([chosen], named(sampler), believe, seeds)
         typer.echo(
             f"{name:24} Brier {c.brier:.5f}, log score {c.log_score:.4f} "
-            f"(as suspicious or not {c.suspicious_log_score:.4f}), 90 % interval holds "
-            f"{c.covered:.0%}, {1000 * c.seconds_a_day:.0f} ms a day"
+            f"(as suspicious or not {c.suspicious_log_score:.4f}), skill {c.skill:.2f}, intervals "
+            f"of 90 and 50 % hold {c.covered:.0%} and {c.half_covered:.0%}, "
+            f"{1000 * c.seconds_a_day:.0f} ms a day"
         )
     about = f"{chosen.name}; {seeds} seasons of 12 days inspected by {sampler}."
     write_all(output, {"beliefs.html": report_html(made, about)})

@@ -47,12 +47,15 @@ def samplers(
     A study that was stopped goes on where its table ends. With 10 seeds it takes about half an
     hour on two free cores.
 
+    Scenarios named "world" are not among the usual ones: there the insects do what no chance map
+    was told. --scenario "world, B, 12 h" --seeds 20 tells most ratios to a tenth.
+
     On mapped plots (`--maps`) no plant infects another: the share of inspections with a find.
 
     Example: fieldmon study samplers --scenario "B, spread 30% to one" --seeds 20 -o study
     """
     from fieldmon.studies.samplers.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.samplers.summary import sentences  # noqa: PLC0415
+    from fieldmon.studies.samplers.summary import ratio_lines, sentences  # noqa: PLC0415
 
     must_be_folder(output)
     if maps is not None:
@@ -63,7 +66,7 @@ def samplers(
         return
     table = output / "samplers.csv"
     shown = _outcomes(_scenarios(scenario, full=full), seeds, table)
-    for sentence in sentences(shown):
+    for sentence in (*ratio_lines(shown), *sentences(shown)):
         typer.echo(sentence)
     typer.echo(f"Written: {table}")
     write_all(output, {"samplers.html": report_html(shown)})
@@ -71,11 +74,16 @@ def samplers(
 
 def _scenarios(beginnings: list[str] | None, *, full: bool) -> list[Scenario]:
     """Return the scenarios that are meant."""
-    from fieldmon.studies.samplers.scenarios import all_scenarios, usual_scenarios  # noqa: PLC0415
+    from fieldmon.studies.samplers.scenarios import (  # noqa: PLC0415
+        all_scenarios,
+        in_worlds,
+        usual_scenarios,
+    )
 
     scenarios = all_scenarios() if full else usual_scenarios()
     if not beginnings:
         return scenarios
+    scenarios = [*scenarios, *in_worlds()]
     meant = [each for each in scenarios if each.name.startswith(tuple(beginnings))]
     if not meant:
         raise SettingError(f"A scenario must begin with {' or '.join(beginnings)}, but none does.")
@@ -86,11 +94,11 @@ def _outcomes(scenarios: list[Scenario], seeds: int, file: Path) -> list[SeasonO
     """Simulate what the table lacks, and keep it there; return the outcomes asked for."""
     from fieldmon.simulation import executor  # noqa: PLC0415
     from fieldmon.simulation.experiment import run  # noqa: PLC0415
-    from fieldmon.studies.samplers.outcome_table import OutcomeTable  # noqa: PLC0415
-    from fieldmon.studies.samplers.seasons import study_of  # noqa: PLC0415
+    from fieldmon.studies.outcome_table import OutcomeTable  # noqa: PLC0415
+    from fieldmon.studies.samplers.seasons import SeasonOutcome, study_of  # noqa: PLC0415
 
     study = study_of(scenarios, range(seeds))
-    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()])
+    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], SeasonOutcome)
     with counting("Seasons") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
     return table.asked()

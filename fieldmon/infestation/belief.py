@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.spread import Spread
+    from fieldmon.infestation.tracing import Traces
 
 #: no plant is ever taken as certainly clean or certainly infested: evidence must be able to undo it
 LEAST_CHANCE, MOST_CHANCE = 1e-6, 1.0 - 1e-6
@@ -64,6 +65,16 @@ class Belief(Protocol):
     @property
     def pair_chance(self) -> NDArray[np.float64] | None:
         """Chance that two plants side by side are both infested, ``(e,)``; None: no idea."""
+        ...
+
+    @property
+    def traces(self) -> Traces | None:
+        """What a day needs to trace a find to plants farther than beside it; None: no idea."""
+        ...
+
+    @property
+    def doubt(self) -> float:
+        """How far the expected number infested may be off as rates are not known, as a share."""
         ...
 
     def learn(

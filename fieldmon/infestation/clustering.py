@@ -1,4 +1,4 @@
-"""How much infested plants stand together, as a day's inspections beside its finds tell it."""
+"""How infested plants stand together, as a day's inspections beside its finds tell it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import part
+from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.infestation.belief import bounded_pair_chance
 
 if TYPE_CHECKING:
@@ -20,6 +20,14 @@ CLUSTERING = 0.25
 # how many finds beside finds the belief's own idea of clusters is worth; the most it grows a day
 _PRIOR_FINDS, _MOST_SCALE = 3.0, 1.5
 _NEXT = np.uint64(1)
+# how infested plants may stand: chance that the neighbour of one along the row, and that of one
+# across, is infested too; side by side, in rows, across rows, apart; and how likely each is before
+# anything was inspected (our choice: insects that jump are seen within a day's finds)
+_BESIDE = np.array([[0.5, 0.5], [0.75, 0.1], [0.1, 0.75], [0.15, 0.15]])
+_LIKELY = np.log(np.array([0.64, 0.14, 0.1, 0.12]))
+_STANDS, _APART = 4, 3
+# neighbours of one find share their fate, so each counts half; and nothing is settled for good
+_TEMPER, _SETTLED = 0.5, 6.0
 
 
 class ClusterEstimate(NamedTuple):
@@ -35,16 +43,44 @@ class ClusterEstimate(NamedTuple):
         ``(2,)`` finds beside finds: those there were, and those expected, both beyond what
         independent plants would give. A few expected ones are added to both, so that a day of
         few finds changes little.
+    evidence
+        ``(4,)`` logarithms of how likely all that was found beside finds this season is where
+        infested plants stand side by side, in rows, across rows, or apart.
     """
 
     outcome: NDArray[np.int8]
     detects: NDArray[np.float64]
     finds: NDArray[np.float64]
+    evidence: NDArray[np.float64]
 
     @classmethod
-    def none(cls, n: int) -> ClusterEstimate:
-        """Return what is known of `n` plants before anybody inspected."""
-        return cls(np.full(n, -1, np.int8), np.zeros(n), np.full(2, _PRIOR_FINDS))
+    def none(cls, n: int, evidence: NDArray[np.float64] | None = None) -> ClusterEstimate:
+        """Return what is known of `n` plants on a morning, with the evidence of days before."""
+        since = no_evidence() if evidence is None else evidence.copy()
+        return cls(np.full(n, -1, np.int8), np.zeros(n), np.full(2, _PRIOR_FINDS), since)
+
+
+def no_evidence() -> NDArray[np.float64]:
+    """Return what speaks for each way to stand before anything was found, ``(4,)``."""
+    return np.zeros(_STANDS)
+
+
+def kept_evidence(evidence: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a day's evidence as it counts on the next: it can still be overturned."""
+    kept: NDArray[np.float64] = np.maximum(evidence - evidence.max(), -_SETTLED)
+    return kept
+
+
+@inlined
+def chance_apart(evidence: NDArray[np.float64]) -> float:
+    """Return the chance that infested plants stand apart: that insects jump beyond neighbours."""
+    most = -np.inf
+    for k in range(_STANDS):
+        most = max(most, evidence[k] + _LIKELY[k])
+    total = 0.0
+    for k in range(_STANDS):
+        total += np.exp(evidence[k] + _LIKELY[k] - most)
+    return float(np.exp(evidence[_APART] + _LIKELY[_APART] - most) / total)
 
 
 @part
@@ -66,11 +102,37 @@ def update_clusters(
         if clusters.outcome[j] < 0:
             continue
         if found:
+            _update_evidence(morning, clusters, (i, j, e), clusters.detects[j])
             clusters.finds[0] += clusters.outcome[j] - clusters.detects[j] * chance[j]
             clusters.finds[1] += clusters.detects[j] * (pair_chance[e] / chance[i] - chance[j])
         if clusters.outcome[j] == 1:
+            _update_evidence(morning, clusters, (j, i, e), detects)
             clusters.finds[0] += found - detects * chance[i]
             clusters.finds[1] += detects * (pair_chance[e] / chance[j] - chance[i])
+
+
+@inlined
+def _update_evidence(
+    morning: tuple[NDArray[np.float64], NDArray[np.float64]],
+    clusters: ClusterEstimate,
+    pair: tuple[int, int, int],
+    detects: float,
+) -> None:
+    """Note what the plant beside a find says of how infested plants stand.
+
+    Where less is expected beside it than on a fresh plot, as after earlier inspections, every way
+    to stand expects less in proportion.
+    """
+    chance, pair_chance = morning
+    find, other, e = pair
+    along = 0 if abs(find - other) == 1 else 1
+    excess = pair_chance[e] / chance[find] - chance[other]
+    fresh = min(max(excess / CLUSTERING, 0.0), 1.0)
+    for k in range(_STANDS):
+        infested = chance[other] + (1.0 - chance[other]) * _BESIDE[k, along] * fresh
+        found = detects * infested
+        likely = found if clusters.outcome[other] == 1 else 1.0 - found
+        clusters.evidence[k] += _TEMPER * np.log(likely)
 
 
 @part
@@ -96,3 +158,20 @@ def scale_clustering(
             q = chance[np.uint32(linked.plant[e])]
             scaled = p * q + scale * (pair_chance[e] - p * q)
             pair_chance[e] = bounded_pair_chance(scaled, p, q)
+
+
+@loop
+def learn_clustering(
+    believed: tuple[NDArray[np.float64], NDArray[np.float64]],
+    linked: Linked,
+    inspections: tuple[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]],
+    clusters: ClusterEstimate,
+) -> None:
+    """Learn from a day's inspections beside its finds how much infested plants stand together.
+
+    `believed` is ``chance (n,)`` and ``pair_chance (e,)``, the second changed in place.
+    """
+    plants, found, detects = inspections
+    for k in range(plants.size):
+        update_clusters(believed, linked, (0 + plants[k], found[k], detects[k]), clusters)
+    scale_clustering(believed, linked, clustering_scale(clusters))

@@ -42,6 +42,8 @@ class Ensemble:
     fields: NDArray[np.bool_]
     chances: RandomStreams
     steps: int = 0
+    traces: None = None
+    doubt: float = 0.0
 
     @classmethod
     def of(

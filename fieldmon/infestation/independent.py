@@ -28,6 +28,8 @@ class IndependentPlants:
     grid: PlantGrid
     chance: NDArray[np.float64]
     pair_chance: None = None
+    traces: None = None
+    doubt: float = 0.0
 
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning

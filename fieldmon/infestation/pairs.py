@@ -18,9 +18,7 @@ from fieldmon.infestation.belief import (
 from fieldmon.infestation.clustering import (
     CLUSTERING,
     ClusterEstimate,
-    clustering_scale,
-    scale_clustering,
-    update_clusters,
+    learn_clustering,
 )
 from fieldmon.infestation.pair_nights import night_of_pairs
 
@@ -49,6 +47,8 @@ class PairApproximation:
     grid: PlantGrid
     chance: NDArray[np.float64]
     pair_chance: NDArray[np.float64]
+    traces: None = None
+    doubt: float = 0.0
 
     @classmethod
     def of(
@@ -65,7 +65,7 @@ class PairApproximation:
         n, linked = len(self.chance), self.grid.linked
         believed = self.chance.copy(), self.pair_chance.copy()
         inspections = plants, found, learning.detects(len(plants))
-        _learn_clustering(believed, linked, inspections, ClusterEstimate.none(n))
+        learn_clustering(believed, linked, inspections, ClusterEstimate.none(n))
         _learn_pairs(believed, linked, inspections, learning.treated, Neighbourhood.of(n))
         return PairApproximation(self.grid, *believed)
 
@@ -231,20 +231,6 @@ def _conditional(p: float, q: float, pair_chance: float, after: float) -> float:
     """Return the chance of a plant, q until now, when its neighbour's goes from p to `after`."""
     both = bounded_pair_chance(pair_chance, p, q)
     return bounded_chance(both / p * after + (q - both) / (1.0 - p) * (1.0 - after))
-
-
-@loop
-def _learn_clustering(
-    believed: tuple[NDArray[np.float64], NDArray[np.float64]],
-    linked: Linked,
-    inspections: tuple[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]],
-    clusters: ClusterEstimate,
-) -> None:
-    """Learn from a day's inspections beside its finds how much infested plants stand together."""
-    plants, found, detects = inspections
-    for k in range(plants.size):
-        update_clusters(believed, linked, (_0 + plants[k], found[k], detects[k]), clusters)
-    scale_clustering(believed, linked, clustering_scale(clusters))
 
 
 @loop

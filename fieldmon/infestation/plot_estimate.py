@@ -9,6 +9,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.special import gammaincinv
 
 from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.random_streams import coin
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     _Table = tuple[NDArray[np.int64], NDArray[np.int64], Floats, Floats, Floats]
 
 _DRAWS = 400
+# steps of this spread evenly over [0, 1)
+_GOLDEN = 0.6180339887498949
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,7 @@ def estimate_plot(
     pair_chance: NDArray[np.float64] | None = None,
     sure: float = 0.9,
     key: np.uint64 = np.uint64(0),  # noqa: B008 - a number, not a call with effects
+    doubt: float = 0.0,
 ) -> PlotEstimate:
     """Return what a chance map ``(n,)`` says of the whole plot.
 
@@ -73,6 +77,8 @@ def estimate_plot(
         Chance that the interval holds the number.
     key
         Which fields are drawn for the interval: the same key, the same answer.
+    doubt
+        How far the expected number may be off beyond that, as a share (`Belief.doubt`).
     """
     if not 0.0 < sure < 1.0:
         raise SettingError(f"'sure' must be a chance between 0 and 1, but it is {sure}.")
@@ -84,8 +90,17 @@ def estimate_plot(
     expected = float(chance.sum())
     # round the loops of a lattice the drawn fields are a little off the map: put right together
     counts = drawn * (expected / max(float(drawn.mean()), 1e-9))
+    if doubt > 0.0:
+        counts = counts * _doubted(doubt)
     low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
     return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), clean)
+
+
+def _doubted(doubt: float) -> Floats:
+    """Return what the number in each drawn field is multiplied by: even draws of a gamma."""
+    places = ((np.arange(_DRAWS) + 1) * _GOLDEN) % 1.0
+    factors: Floats = gammaincinv(doubt**-2.0, places) * doubt**2.0
+    return factors
 
 
 def _drawn(table: _Table, key: np.uint64, n: int) -> NDArray[np.int64]:

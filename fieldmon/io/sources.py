@@ -73,6 +73,7 @@ class PlantingChoices:
     plant_spacing_m: float | None = None
     headland_m: float | None = None
     faces: int | None = None
+    half_canopy_m: float | None = None
     in_rows: bool = True
 
     def given(self) -> dict[str, float]:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from fieldmon.monitoring.batches import Batch, Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.inspection_table import counting_copy
+from fieldmon.monitoring.merging import Merged
+from fieldmon.monitoring.outside_changes import OutsideChange
 from fieldmon.monitoring.recorded_before import Contradictions
 from fieldmon.monitoring.season_file import Season
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.tables import KeptMessage
-from fieldmon.monitoring.transactions import Store, is_season
+from fieldmon.monitoring.transactions import Store, copy_season, is_season
 from fieldmon.monitoring.worked_route import day_was_worked, worked_route
 
 __all__ = [
@@ -18,12 +20,15 @@ __all__ = [
     "Contradictions",
     "DayFigures",
     "KeptMessage",
+    "Merged",
     "MonitoringSettings",
+    "OutsideChange",
     "Progress",
     "Recorded",
     "Season",
     "Status",
     "Store",
+    "copy_season",
     "counting_copy",
     "day_was_worked",
     "is_season",

@@ -14,7 +14,11 @@ from fieldmon.monitoring.tables import utc_now
 if TYPE_CHECKING:
     import sqlite3
 
-_TABLE_OF = {"findings": "inspections", "treatment": "treatments"}
+_TABLE_OF = {
+    "findings": "inspections",
+    "corrections": "inspections",
+    "treatment": "treatments",
+}
 
 
 @dataclass(frozen=True)
@@ -28,7 +32,7 @@ class Batch:
     at
         When it was recorded, UTC.
     kind
-        ``"findings"`` or ``"treatment"``.
+        ``"findings"``, ``"treatment"``, or ``"corrections"`` of what another program changed.
     source, who
         File or screen it came from, and the person.
     rows
@@ -72,9 +76,21 @@ def begin(db: sqlite3.Connection, kind: str, source: str, who: str) -> int:
     return int(cursor.lastrowid or 0)
 
 
-def end(db: sqlite3.Connection, batch: int, rows: int) -> None:
-    """Note how much a batch added; one that added nothing was none."""
-    if rows:
+def must_count(db: sqlite3.Connection, batch: int) -> None:
+    """Raise `SettingError` unless a batch of findings is there and was not undone."""
+    row = db.execute("SELECT kind, undone FROM batches WHERE fid = ?", (batch,)).fetchone()
+    if row is None or row[0] != "findings" or row[1]:
+        raise SettingError(
+            f"A batch to add findings to must still count, but batch {batch} does not. "
+            "See what was recorded with: fieldmon status --batches"
+        )
+
+
+def end(db: sqlite3.Connection, batch: int, rows: int, *, grows: bool = False) -> None:
+    """Note how much a batch added; one that added nothing was none, unless it only `grows`."""
+    if grows:
+        db.execute("UPDATE batches SET rows = rows + ? WHERE fid = ?", (rows, batch))
+    elif rows:
         db.execute("UPDATE batches SET rows = ? WHERE fid = ?", (rows, batch))
     else:
         db.execute("DELETE FROM batches WHERE fid = ?", (batch,))

@@ -55,6 +55,9 @@ def refresh(
     insert(db, schema.DAYS, rows)
     spots = _write_spots(db, plot, history, days[-1])
     _write_states(db, history, spots, (days[-1], morning(days[-1])))
+    db.execute(f"DELETE FROM {schema.LEARNT.name}")  # noqa: S608 - ours
+    learnt = history.learnt(morning(days[-1]), days[-1])
+    insert(db, schema.LEARNT, [(one.name, one.value, one.low, one.high) for one in learnt])
 
 
 def _day_row(history: History, morning: Belief, day: int) -> tuple[object, ...]:

@@ -13,18 +13,23 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
+from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.plot.travel import driven_s, robot_clock
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from datetime import date
 
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
@@ -44,12 +49,21 @@ class BeliefSettings:
         outside. The thesis's 30 to 80 % are meant for its simulator.
     treated
         Whether plants found infested are treated at once (the thesis's rule), or only flagged.
+    traces
+        Whether finds are traced beyond the plants next to them, and the season's own inspections
+        tell how far insects jump, how many arrive and how many are overlooked. Seasons begun
+        before that was known go on without.
     """
 
     spread: Spread = field(
         default_factory=lambda: Spread(rate_per_day=0.02, arrivals_per_day=0.0002)
     )
     treated: bool = True
+    traces: bool = True
+
+    def first_morning(self, grid: PlantGrid, chance: NDArray[np.float64]) -> Belief:
+        """Return what is believed at first, from a chance map ``(n,)``."""
+        return (TracedPairs if self.traces else PairApproximation).of(grid, chance)
 
     def evening(
         self,
@@ -125,6 +139,8 @@ class History:
     recorded
         ``(n,)`` what the records say from which the season began: 1 infested, 0 clean, -1 nothing;
         None: there are none.
+    detection_of
+        The same chance for those of a team, by their names without capitals.
     """
 
     grid: PlantGrid
@@ -135,6 +151,7 @@ class History:
     belief: BeliefSettings = field(default_factory=BeliefSettings)
     detection: float = 0.84
     recorded: NDArray[np.int8] | None = None
+    detection_of: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if (np.diff(self.days) < 0).any():
@@ -165,18 +182,29 @@ class History:
     def evening(self, morning: Belief, day: int) -> Belief:
         """Return what is believed after what was found and treated on a day."""
         done = self.on(day).inspected
-        believed = self.belief.evening(morning, done.plant, done.result == FOUND, self.detection)
+        found = done.result == FOUND
+        believed = self.belief.evening(morning, done.plant, found, self._detection(done))
         for treatment in self.treatments:
             if treatment.day == day:
                 believed = believed.treated(np.where(treatment.plants, 1 - treatment.efficacy, 1.0))
         return believed
+
+    def _detection(self, done: Inspections) -> float | NDArray[np.float64]:
+        if not self.detection_of:
+            return self.detection
+        names = [str(who).casefold() for who in done.who]
+        return np.array([self.detection_of.get(name, self.detection) for name in names], float)
 
     def estimate(self, morning: Belief, day: int) -> PlotEstimate:
         """Return how many plants are infested and not found yet, after a day's work."""
         evening = self.evening(morning, day)
         if not self.belief.treated:  # what was found is known: it is not out there any more
             evening = evening.treated(np.where(self.states(day) == PRESENT, 0.0, 1.0))
-        return estimate_plot(self.grid, evening.chance, evening.pair_chance)
+        return estimate_plot(self.grid, evening.chance, evening.pair_chance, doubt=evening.doubt)
+
+    def learnt(self, morning: Belief, day: int) -> tuple[Learnt, ...]:
+        """Return what the inspections up to the evening of a day tell of the insects."""
+        return learnt_from(self.evening(morning, day), self.detection)
 
     def last_inspected(self, day: int) -> NDArray[np.int32]:
         """Return ``(n,)`` the day of each plant's last inspection up to `day`, or `NEVER`."""
@@ -199,7 +227,14 @@ class History:
         state = self.states(day)
         return state if self.recorded is None else np.maximum(state, self.recorded)
 
-    def scene(self, shift: Shift, day: int, morning: Belief, now_s: float | None = None) -> Scene:
+    def scene(
+        self,
+        shift: Shift,
+        day: int,
+        morning: Belief,
+        now_s: float | None = None,
+        who: str | None = None,
+    ) -> Scene:
         """Return the scene of a day as it stands after what was recorded of it.
 
         Parameters
@@ -213,18 +248,22 @@ class History:
         now_s
             Seconds since midnight; None: when the last inspection recorded was done, by its own
             time or, where none was noted, by what driving and looking cost.
+        who
+            Whose scene it is, of a team; None: all inspections were made by the one who works.
         """
         aisles, robot = shift.aisles, shift.robot
         today, believed = self.on(day), self.evening(morning, day)
         last = self.last_inspected(day)
         last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
-        trail = self._trail(day)
+        trail = self._trail(day, who)
+        today = made_by(today, who)
         resting = resting_place(robot, trail)
         return Scene(
             aisles=aisles,
             robot=robot,
             chance=believed.chance,
             pair_chance=believed.pair_chance,
+            traces=believed.traces,
             last_inspected=last,
             day=day,
             at=int(today.plant[-1]) if len(today) else resting,
@@ -233,13 +272,20 @@ class History:
             key=shift.streams.key("sampler", day),
         )
 
-    def _trail(self, day: int) -> NDArray[np.int32]:
+    def _trail(self, day: int, who: str | None) -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the last day before `day` on which any was inspected."""
-        earlier = self.until(day - 1)
-        inspected = np.flatnonzero(earlier.result != SKIPPED)
-        if not len(inspected):
-            return earlier.plant[:0]
-        return self.on(int(self.days[inspected[-1]])).inspected.plant
+        earlier = made_by(self.until(day - 1).inspected, who)
+        if not len(earlier):
+            return earlier.plant
+        return earlier.take(earlier.date == earlier.date[-1]).plant
+
+
+def made_by(inspections: Inspections, who: str | None) -> Inspections:
+    """Return those that somebody made; None: all."""
+    if who is None:
+        return inspections
+    names = np.array([str(name).casefold() for name in inspections.who], np.str_)
+    return inspections.take(names == who.casefold())
 
 
 @dataclass(frozen=True, eq=False)
@@ -274,5 +320,6 @@ def _gone_s(shift: Shift, today: Inspections, resting: int, now_s: float | None)
         return max(0.0, float(today.second[-1]) - shift.starts_s)
     robot = shift.robot
     clock = robot_clock(robot, robot.day_s)
-    drive_s = driven_s(shift.aisles.travel, clock, np.append(np.int64(resting), today.plant))
+    travel = shift.aisles.for_robot(robot).travel
+    drive_s = driven_s(travel, clock, np.append(np.int64(resting), today.plant))
     return drive_s + robot.visit_s * len(today)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import sqlite3
 from contextlib import closing
 from functools import lru_cache
@@ -16,6 +15,7 @@ from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import point_blobs, touch
+from fieldmon.monitoring.transactions import copy_season
 
 if TYPE_CHECKING:
     from datetime import date
@@ -35,7 +35,7 @@ _LOT = 1 << 14
 def counting_copy(season: Path, folder: Path) -> Path:
     """Return a copy of a season that holds only the inspections that were not undone there."""
     copy = folder / season.name
-    shutil.copyfile(season, copy)
+    copy_season(season, copy)
     with closing(sqlite3.connect(copy)) as db:
         db.execute("DELETE FROM inspections WHERE undone = 1")
         db.commit()
@@ -152,6 +152,12 @@ def store(db: sqlite3.Connection, made: list[tuple[object, ...]]) -> int:
     return new
 
 
+def n_counting(db: sqlite3.Connection) -> int:
+    """Return how many inspections count."""
+    counts = "SELECT count(*) FROM inspections WHERE undone = 0 AND digest IS NOT NULL"
+    return int(db.execute(counts).fetchone()[0])
+
+
 def load(db: sqlite3.Connection, begins: date) -> Inspections:
     """Return the inspections that count, by day; within a day by time, untimed ones last."""
     found = db.execute(
@@ -178,14 +184,15 @@ def _columns(rows: list[tuple[Any, ...]], texts: dict[str, str]) -> list[NDArray
         np.array(plant, np.int32),
         np.array([_CODES[name] for name in result], np.int8),
         np.array(day, np.int32),
-        np.array([_second(text) for text in time], np.float64),
+        np.array([second_of(text) for text in time], np.float64),
         np.array(count, np.float64),
         *(np.array([texts.setdefault(t, t) for t in column], object) for column in said),
     ]
 
 
 @lru_cache(maxsize=_DAY_S)
-def _second(text: str | None) -> float:
+def second_of(text: str | None) -> float:
+    """Return the seconds since midnight that a clock shows; NaN for none."""
     if text is None:
         return np.nan
     hour, minute, second = (float(part) for part in text.split(":"))

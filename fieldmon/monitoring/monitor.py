@@ -13,7 +13,6 @@ import numpy as np
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.observations import Observations
-from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.planning.plan import plan_in
@@ -122,7 +121,8 @@ class Monitor:
         self.day_number = 0
         self._sampler = sampler_of(sampler) if isinstance(sampler, str) else sampler
         self._streams = RandomStreams(seed)
-        self._belief: Belief = PairApproximation.of(plot.grid, _first_chance(plot, chance))
+        first = _first_chance(plot, chance)
+        self._belief: Belief = self.belief_settings.first_morning(plot.grid, first)
         self._last_inspected = np.full(len(plot.grid), NEVER, np.int32)
         self._trail = np.empty(0, np.int32)
         self._day: MonitorDay | None = None
@@ -181,6 +181,7 @@ class Monitor:
             robot=self.robot,
             chance=self._belief.chance,
             pair_chance=self._belief.pair_chance,
+            traces=self._belief.traces,
             last_inspected=self._last_inspected,
             day=self.day_number,
             at=resting_place(self.robot, self._trail),
@@ -214,6 +215,7 @@ class MonitorDay:
         self._told: list[tuple[PlantToInspect, bool | None]] = []
         self._asked: PlantToInspect | None = None
         self._stops: Stops | None = None
+        self._gone_s = 0.0
         self._would_find: WouldFind
         self._begin(scene, 0.0)
 
@@ -250,6 +252,24 @@ class MonitorDay:
     def detects(self) -> NDArray[np.float64]:
         """Chance with which each of `plants` was inspected to find what is there, ``(k,)``."""
         return np.array([stop.detects for stop, seen in self._told if seen is not None])
+
+    @property
+    def at(self) -> int:
+        """Where the robot stands: the last plant told of, or where the day began (-1: gate)."""
+        return self._told[-1][0].plant if self._told else self._scene.at
+
+    @property
+    def gone_s(self) -> float:
+        """Seconds of the day that are gone, as charged or as told."""
+        return self._gone_s
+
+    def ahead(self, n: int) -> list[int]:
+        """Return up to n plants that follow the one asked for if nothing is found."""
+        if self._stops is None or self._asked is None:
+            return []
+        after = self._stops.plant[self._next + 1 : self._next + 1 + n]
+        plants: list[int] = after.tolist()
+        return plants
 
     def ask(self) -> PlantToInspect | None:
         """Return the plant to inspect next; None where the day's hours allow no other.
@@ -291,6 +311,7 @@ class MonitorDay:
             )
         self._told.append((stop, found))
         self._asked = None
+        self._gone_s = done_s if at_s is None else at_s
         late = at_s is not None and abs(at_s - done_s) > _SAME_S
         if found is None or late:
             self._plan_on(stop.plant, done_s if at_s is None else at_s)
@@ -316,6 +337,7 @@ class MonitorDay:
             self._scene,
             chance=believed.chance,
             pair_chance=believed.pair_chance,
+            traces=believed.traces,
             last_inspected=last,
             at=at,
             seconds_left=max(0.0, monitor.robot.day_s - now_s),

@@ -22,25 +22,28 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import RowLabel
 
 
-def begins(settings: MonitoringSettings, today: DayPlan) -> datetime:
+def begins(settings: MonitoringSettings, today: DayPlan, who: str = "") -> datetime:
     """Return the local time at which a route begins: the start of work, or half-way."""
-    gone_s = settings.robot.day_s - today.scene.seconds_left
+    gone_s = today.scene.robot.day_s - today.scene.seconds_left
+    if who:
+        gone_s += settings.member(who).starts_s
     start = datetime.combine(settings.date(today.scene.day), settings.starts)
     return start + timedelta(seconds=round(gone_s))
 
 
 def keep(
-    db: sqlite3.Connection, settings: MonitoringSettings, label: RowLabel, today: DayPlan
+    db: sqlite3.Connection,
+    settings: MonitoringSettings,
+    label: RowLabel,
+    today: DayPlan,
+    who: str = "",
 ) -> bool:
-    """Keep a day's route, unless it is the one kept last; tell whether it was."""
+    """Keep a day's route, of one of a team, unless it is the one kept last; tell whether it was."""
     day, route = today.scene.day, today.route
-    mark = _digest(today)
-    last = db.execute(
-        "SELECT revision, digest FROM routes WHERE day = ? ORDER BY revision DESC LIMIT 1", (day,)
-    ).fetchone()
+    mark, last = _digest(today), _last(db, today, who)
     if last is not None and last[1] == mark:
         return False
-    begin, line = begins(settings, today), route.line_lonlat()
+    begin, line = begins(settings, today, who), route.line_lonlat()
     row = {
         "geom": blob(LineString(line)) if len(line) > 1 else None,
         "day": day,
@@ -55,6 +58,7 @@ def keep(
         "at_plant": today.scene.at,
         "seconds_left": today.scene.seconds_left,
         "digest": mark,
+        "who": who,
     }
     cursor = db.execute(
         f"INSERT INTO routes ({', '.join(row)}) VALUES ({', '.join('?' * len(row))})",  # noqa: S608 - ours
@@ -80,12 +84,28 @@ def keep(
     return True
 
 
-def plants(db: sqlite3.Connection, day: int) -> NDArray[np.int32]:
+def is_kept(db: sqlite3.Connection, today: DayPlan, who: str = "") -> bool:
+    """Tell whether a day's route, of one of a team, is the one kept last."""
+    last = _last(db, today, who)
+    return last is not None and last[1] == _digest(today)
+
+
+def _last(db: sqlite3.Connection, today: DayPlan, who: str) -> tuple[int, str] | None:
+    """Return revision and digest of the last route kept for a day."""
+    row: tuple[int, str] | None = db.execute(
+        "SELECT revision, digest FROM routes WHERE day = ? AND who = ? "
+        "ORDER BY revision DESC LIMIT 1",
+        (today.scene.day, who),
+    ).fetchone()
+    return row
+
+
+def plants(db: sqlite3.Connection, day: int, who: str = "") -> NDArray[np.int32]:
     """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none."""
     rows = db.execute(
-        "SELECT plant FROM stops WHERE route = "
-        "(SELECT fid FROM routes WHERE day = ? ORDER BY revision DESC LIMIT 1) ORDER BY stop",
-        (day,),
+        "SELECT plant FROM stops WHERE route = (SELECT fid FROM routes WHERE day = ? AND who = ? "
+        "ORDER BY revision DESC LIMIT 1) ORDER BY stop",
+        (day, who),
     )
     return np.array([plant for (plant,) in rows], np.int32)
 

@@ -11,7 +11,11 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 2
+VERSION = 5
+#: the first fieldmon that reads files of this version
+NEEDS = "0.2"
+#: what the settings say of a team where there is none
+NO_TEAM = '{"members": []}'
 
 META = GeoPackageTable(
     "fieldmon", ("key TEXT NOT NULL UNIQUE", "value TEXT"), None, "What this file is."
@@ -149,9 +153,10 @@ ROUTES = GeoPackageTable(
         "at_plant INTEGER",
         "seconds_left REAL",
         "digest TEXT",
+        "who TEXT NOT NULL DEFAULT ''",
     ),
     "LINESTRING",
-    "The line to drive on each day; the highest revision of a day counts.",
+    "The line to drive on each day, for each of a team; the highest revision of a day counts.",
 )
 STOPS = GeoPackageTable(
     "stops",
@@ -182,6 +187,25 @@ HOT_SPOTS = GeoPackageTable(
     "MULTIPOLYGON",
     "Where finds cluster more than chance allows, as of now.",
 )
+LEARNT = GeoPackageTable(
+    "learnt",
+    ("name TEXT NOT NULL UNIQUE", "value REAL", "low REAL", "high REAL"),
+    None,
+    "What the inspections so far tell of the insects: best guess and interval of 90 %.",
+)
+OUTSIDE_CHANGES = GeoPackageTable(
+    "outside_changes",
+    (
+        "at TEXT",
+        "layer TEXT NOT NULL",
+        "row INTEGER NOT NULL",
+        "what TEXT NOT NULL",
+        "was TEXT",
+        "batch INTEGER",
+    ),
+    None,
+    "What other programs changed of what was recorded; batch: the correction that took it.",
+)
 CHANCE = GeoPackageTable(
     "chance",
     (),
@@ -192,13 +216,33 @@ CHANCE = GeoPackageTable(
 TABLES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
     *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
-    *(ROUTES, STOPS, HOT_SPOTS),
+    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT),
 )
 #: layers from which everything else follows: what must be saved from a damaged file
 CAUSES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, PLOTS, PLACES, ROWS, PLANTS),
-    *(OBSERVATIONS, INSPECTIONS, TREATMENTS, ROUTES, STOPS),
+    *(OBSERVATIONS, INSPECTIONS, TREATMENTS, ROUTES, STOPS, OUTSIDE_CHANGES),
 )
+_INSPECTED = (
+    "coalesce(old.result, '') || ' at row ' || coalesce(old.line, '') || ', plant ' "
+    "|| coalesce(old.number, '') || ' on ' || coalesce(old.date, '')"
+)
+#: layers that nobody may change unnoticed: what is shown or known of each row, and those of its
+#: columns that make no difference
+_WATCHED: dict[str, tuple[str, tuple[str, ...]]] = {
+    "inspections": (_INSPECTED, ("notes",)),
+    "treatments": ("coalesce(old.product, '') || ' on ' || coalesce(old.date, '')", ()),
+    "settings": ("old.name || ' = ' || old.value", ()),
+    "batches": ("coalesce(old.source, '')", ()),
+    "plots": ("coalesce(old.name, '')", ()),
+    "places": ("old.kind", ()),
+    "observations": ("coalesce(old.date, '')", ()),
+    "arrays": ("old.name", ()),
+    "routes": ("'day ' || old.day", ()),
+    "stops": ("'route ' || old.route || ', stop ' || old.stop", ()),
+}
+#: in `fieldmon`: "1" while we write ourselves
+OPEN = "open"
 
 _CHANCE_VIEW = """
 CREATE VIEW chance AS
@@ -211,7 +255,7 @@ CREATE VIEW chance AS
 _INDEXES = (
     "CREATE UNIQUE INDEX inspections_once ON inspections (digest) WHERE undone = 0",
     "CREATE UNIQUE INDEX treatments_once ON treatments (digest) WHERE undone = 0",
-    "CREATE UNIQUE INDEX routes_revision ON routes (day, revision)",
+    "CREATE UNIQUE INDEX routes_revision ON routes (day, who, revision)",
     "CREATE INDEX stops_route ON stops (route, stop)",
 )
 
@@ -225,7 +269,33 @@ def lay_out(db: sqlite3.Connection) -> None:
     announce(db, CHANCE)
     for index in _INDEXES:
         db.execute(index)
+    watch(db)
     add_styles(db)
+
+
+def watch(db: sqlite3.Connection) -> None:
+    """Let the file note by itself what other programs change of what was recorded.
+
+    Inspections that they add are drafts, until they are recorded; they have no digest.
+    """
+    theirs = f"(SELECT value FROM fieldmon WHERE key = '{OPEN}') = '0'"  # noqa: S608 - as below
+    for name, (was, free) in _WATCHED.items():
+        columns = [row[1] for row in db.execute(f"PRAGMA table_info({name})")]
+        changed = " OR ".join(f"old.{c} IS NOT new.{c}" for c in columns if c not in free)
+        added = "new.digest IS NOT NULL" if name == "inspections" else "1"
+        for event, row, said, when in (
+            ("update", "old", was, f"({changed})"),
+            ("delete", "old", was, "1"),
+            ("insert", "new", "NULL", added),
+        ):
+            db.execute(f"DROP TRIGGER IF EXISTS {name}_{event}_outside")
+            db.execute(
+                f"CREATE TRIGGER {name}_{event}_outside AFTER {event} ON {name} "  # noqa: S608 - names of ours
+                f"WHEN {theirs} AND {when} BEGIN "
+                "INSERT INTO outside_changes (at, layer, row, what, was) "
+                f"VALUES (strftime('%Y-%m-%dT%H:%M:%fZ', 'now'), '{name}', {row}.fid, "
+                f"'{event}', {said}); END"
+            )
 
 
 def _treatments_come(db: sqlite3.Connection) -> None:
@@ -236,5 +306,33 @@ def _treatments_come(db: sqlite3.Connection) -> None:
     db.execute("ALTER TABLE routes ADD COLUMN seconds_left REAL")
 
 
-#: what makes a file of version k one of version k + 1
-MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {1: _treatments_come}
+def _changes_are_noticed(db: sqlite3.Connection) -> None:
+    """Version 2 did not notice what other programs changed."""
+    create(db, OUTSIDE_CHANGES)
+
+
+def _teams_come(db: sqlite3.Connection) -> None:
+    """Version 3 knew one who works: routes were nobody's, and settings said nothing of a team."""
+    db.execute("ALTER TABLE routes ADD COLUMN who TEXT NOT NULL DEFAULT ''")
+    db.execute("DROP INDEX routes_revision")
+    db.execute(_INDEXES[2])
+    # as if said when the season began, so that a team chosen later can be taken back
+    db.execute(
+        "INSERT OR IGNORE INTO settings (fid, name, value, changed) "
+        "SELECT 0, 'team', ?, changed FROM settings ORDER BY fid LIMIT 1",
+        (NO_TEAM,),
+    )
+
+
+def _estimates_come(db: sqlite3.Connection) -> None:
+    """Version 4 did not keep what inspections tell of the insects."""
+    create(db, LEARNT)
+
+
+#: what makes a file of version k one of version k + 1; `watch` follows the last
+MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
+    1: _treatments_come,
+    2: _changes_are_noticed,
+    3: _teams_come,
+    4: _estimates_come,
+}

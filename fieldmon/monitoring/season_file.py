@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +17,6 @@ from fieldmon.decisions.map_verdict import map_verdict
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.hotspots import record_states
 from fieldmon.infestation.observations import Observations, usable
-from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.monitoring import (
@@ -24,6 +24,9 @@ from fieldmon.monitoring import (
     day_figures,
     derived_layers,
     inspection_table,
+    merging,
+    outside_changes,
+    qgis_project,
     routes,
     settings_log,
     tables,
@@ -32,12 +35,15 @@ from fieldmon.monitoring import (
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
+from fieldmon.monitoring.merging import Merged
 from fieldmon.monitoring.recorded_before import Contradictions, contradictions, said_before
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
 from fieldmon.planning.assumptions import assumed_by
-from fieldmon.planning.plan import plan_in
+from fieldmon.planning.plan import DayPlan, plan_in
+from fieldmon.planning.route import route_of
+from fieldmon.planning.team_day import Posted, team_day
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.grid import RowLabel, row_label
 from fieldmon.plot.local_clock import local_clock
@@ -46,7 +52,6 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable
     from datetime import date, time
-    from pathlib import Path
 
     from numpy.typing import NDArray
     from shapely import MultiPolygon
@@ -54,11 +59,14 @@ if TYPE_CHECKING:
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.tables import KeptMessage
-    from fieldmon.planning.plan import DayPlan
+    from fieldmon.planning.members import TeamMember
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot
+    from fieldmon.plot.travel import Aisles
 
     Floats = NDArray[np.float64]
 
@@ -96,6 +104,7 @@ class Season:
         self._lock = threading.RLock()
         self._last: _Contents | None = None
         self._prior: tuple[object, Floats] | None = None
+        self._aisles: dict[tuple[float, float], Aisles] = {}
         with self.store.reading() as db:
             self.plot: Plot = tables.read_plot(db)
             self.observations: Observations = tables.read_observations(db)
@@ -143,6 +152,7 @@ class Season:
             settings_log.write(db, as_json(settings))
             set_meta(db, "revision", "0")
             derived_layers.refresh(db, plot, history, first.morning)
+            qgis_project.keep(db, Path(path).name)
         return cls(path)
 
     @property
@@ -169,7 +179,7 @@ class Season:
     def assumed(self) -> tuple[Assumed, ...]:
         """Return what the season's figures rest on though nobody said it."""
         settings = self.settings
-        made = assumed_by(self.plot.assumed, settings.prior, settings.robot)
+        made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
         rate = settings.belief.spread.rate_per_day
         if rate != BeliefSettings().spread.rate_per_day:
             return made
@@ -213,7 +223,7 @@ class Season:
 
     def plan(
         self, on: date, now: time | None = None, *, keep: bool = True,
-        wishes: Wishes | None = None,
+        wishes: Wishes | None = None, who: str | None = None,
     ) -> DayPlan:  # fmt: skip
         """Plan what is left of a day from all that is known.
 
@@ -228,34 +238,114 @@ class Season:
             whether the route is kept in the file: the same one once, an empty one never.
         wishes
             What people want of the day besides.
+        who
+            Whose day, of a team; None: the first one's. All are planned, see `plan_each`.
+        """
+        days = self.plan_each(on, now, keep=keep, wishes=wishes)
+        team = self.settings.team
+        return days[team.index(self.settings.member(who)) if who and team else 0]
+
+    def plan_each(
+        self, on: date, now: time | None = None, *, keep: bool = True,
+        wishes: Wishes | None = None,
+    ) -> tuple[DayPlan, ...]:  # fmt: skip
+        """Plan what is left of a day for each of the team, or for the one who works.
+
+        In the order of the team. Aisles that the routes kept of this day gave to one stay its own
+        unless another way to give them out gains enough, see `Teamwork`.
         """
         with self._lock:
             contents = self._now()
-            settings = contents.settings
-            day = settings.day(on)
-            shift = Shift(
-                self.plot.aisles,
-                settings.robot,
-                seconds(settings.starts),
-                RandomStreams(settings.seed),
-            )
+            settings, day = contents.settings, contents.settings.day(on)
             now_s = None if now is None else seconds(now)
-            scene = contents.history.scene(shift, day, contents.morning(day), now_s)
-            today = plan_in(scene, settings.decides(), wishes)
-            begins = routes.begins(settings, today)
-            notes = RouteNotes(self.plot.field.name, settings.sampler, begins)
-            today = replace(today, route=replace(today.route, notes=notes))
-            if keep and len(today.route):
-                with self.store.writing() as db:
-                    if routes.keep(db, settings, self.label, today):
-                        self._refresh(db, day)
-        return today
+            if settings.team:
+                days = self._team_days(contents, day, now_s, wishes)
+            else:
+                shift = self._shift(settings, settings.robot)
+                scene = contents.history.scene(shift, day, contents.morning(day), now_s)
+                days = (plan_in(scene, settings.decides(), wishes),)
+            noted = tuple(
+                self._noted(settings, today, who)
+                for today, who in zip(days, _names(settings), strict=True)
+            )
+            if keep:
+                self._keep(settings, noted)
+        return noted
 
-    def kept_route(self, on: date) -> NDArray[np.int32]:
-        """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none."""
-        day = self.settings.day(on)
+    def _keep(self, settings: MonitoringSettings, noted: tuple[DayPlan, ...]) -> None:
+        """Keep routes; those that are kept already are not written: that would wait for readers."""
+        named = [
+            (today, who)
+            for today, who in zip(noted, _names(settings), strict=True)
+            if len(today.route)
+        ]
         with self.store.reading() as db:
-            return routes.plants(db, day)
+            if all(routes.is_kept(db, today, who) for today, who in named):
+                return
+        with self.store.writing() as db:
+            kept = [routes.keep(db, settings, self.label, today, who) for today, who in named]
+            if any(kept):
+                self._refresh(db, named[0][0].scene.day)
+
+    def _noted(self, settings: MonitoringSettings, today: DayPlan, who: str) -> DayPlan:
+        begins = routes.begins(settings, today, who)
+        notes = RouteNotes(self.plot.field.name, settings.sampler, begins, who or None)
+        return replace(today, route=replace(today.route, notes=notes))
+
+    def _shift(
+        self, settings: MonitoringSettings, robot: Robot, member: TeamMember | None = None
+    ) -> Shift:
+        starts_s, streams = seconds(settings.starts), RandomStreams(settings.seed)
+        if member is None:
+            return Shift(self.plot.aisles, robot, starts_s, streams)
+        return Shift(self.aisles_from(member.gate), robot, starts_s + member.starts_s, streams)
+
+    def aisles_from(self, gate: tuple[float, float] | None) -> Aisles:
+        """Return the ways on the plot with another gate; None: its own."""
+        if gate is None:
+            return self.plot.aisles
+        if gate not in self._aisles:
+            self._aisles[gate] = self.plot.with_gate(gate).aisles
+        return self._aisles[gate]
+
+    def _team_days(
+        self, contents: _Contents, day: int, now_s: float | None, wishes: Wishes | None
+    ) -> tuple[DayPlan, ...]:
+        settings, history = contents.settings, contents.history
+        scenes, posts = [], []
+        for member in settings.team:
+            shift = self._shift(settings, member.robot, member)
+            scene = history.scene(shift, day, contents.morning(day), now_s, member.name)
+            begun_s = member.starts_s + member.robot.day_s - scene.seconds_left
+            told = scene if wishes is None else wishes.told(scene)
+            scenes.append(scene)
+            posts.append(Posted(told, begun_s, np.zeros(len(scene.chance), np.bool_)))
+        before = self._given_out(settings, day)
+        works = team_day(posts, settings.decides(), settings.teamwork, before=before)
+        return tuple(
+            DayPlan(scene, work, route_of(scene, work))
+            for scene, work in zip(scenes, works, strict=True)
+        )
+
+    def _given_out(self, settings: MonitoringSettings, day: int) -> NDArray[np.int64] | None:
+        """Return who has each aisle by the routes kept of a day, -1: nobody; None: none is kept."""
+        aisle = self.plot.grid.corridor[self.plot.grid.row]
+        given = np.full(int(aisle.max()) + 1, -1)
+        with self.store.reading() as db:
+            for k, member in enumerate(settings.team):
+                given[aisle[routes.plants(db, day, member.name)]] = k
+        return given if (given >= 0).any() else None
+
+    def kept_route(self, on: date, who: str = "") -> NDArray[np.int32]:
+        """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none.
+
+        Of a team it is that of the one named, or of the first.
+        """
+        settings = self.settings
+        if settings.team:
+            who = settings.member(who).name if who else settings.team[0].name
+        with self.store.reading() as db:
+            return routes.plants(db, settings.day(on), who)
 
     def contradictions(self, inspections: Inspections) -> Contradictions:
         """Return those that say otherwise than what is recorded of the same plant and day."""
@@ -268,6 +358,7 @@ class Season:
         who: str = "",
         *,
         confirmed: bool = False,
+        into: int | None = None,
     ) -> Recorded:
         """Add inspections; those that the season holds already change nothing.
 
@@ -279,6 +370,8 @@ class Season:
             File or screen it comes from; the person, where the inspections name none.
         confirmed
             Whether results count that contradict what is recorded of the same plant and day.
+        into
+            Batch to add them to, as `Recorded` numbers it; None: a new one.
 
         Raises
         ------
@@ -294,12 +387,14 @@ class Season:
             if not confirmed:
                 contradictions(inspections, held).refuse(self.label)
             news = inspections.take(~said_before(inspections, held))
-            batch = batches.begin(db, "findings", source, who)
+            batch = batches.begin(db, "findings", source, who) if into is None else into
+            if into is not None:
+                batches.must_count(db, into)
             made = inspection_table.rows(
                 news, self.plot.grid, self.label, _settings(db), (batch, who)
             )
             new = inspection_table.store(db, made)
-            batches.end(db, batch, new)
+            batches.end(db, batch, new, grows=into is not None)
             if new:
                 self._refresh(db, _settings(db).day(inspections.date.min().item()))
         return Recorded(batch if new else None, new, len(inspections) - new)
@@ -340,6 +435,36 @@ class Season:
             self._refresh(db)
         return said
 
+    def correct(self, who: str) -> int:
+        """Take what another program changed of inspections as corrections; return how many.
+
+        They are a batch of their own, of this person; undoing it takes the corrected rows out.
+        Raise `FileProblem` if more than inspections was changed, or what makes no sense.
+        """
+        with self._lock, self.store.writing() as db:
+            outside_changes.refuse_more(db)
+            settings, plot = _settings(db), (self.plot.grid, self.label)
+            n = outside_changes.correct(db, plot, settings, who)
+            if n:
+                self._refresh(db)
+        return n
+
+    def merge(self, other: Season) -> Merged:
+        """Take in what another copy of this season holds: all that is in either, once each.
+
+        The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
+        """
+        with self._lock, self.store.writing() as db:
+            contradict = contradictions(
+                other.history.inspections, self._read(db).history.inspections
+            )
+            before = inspection_table.n_counting(db)
+            with other.store.reading() as theirs:
+                chosen = merging.merge(db, theirs)
+            self._refresh(db)
+            new = inspection_table.n_counting(db) - before
+        return Merged(new, (*contradict.sentences(self.label), *chosen))
+
     # -- what is known
 
     def morning(self, on: date) -> Floats:
@@ -374,6 +499,13 @@ class Season:
             contents = self._now()
             day = contents.settings.day(on)
             return Status.of(contents.history, contents.morning(day), day)
+
+    def learnt(self, on: date) -> tuple[Learnt, ...]:
+        """Return what the inspections up to the evening of a day tell of the insects."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.learnt(contents.morning(day), day)
 
     def progress(self, on: date) -> Progress:
         """Return how far the inspections are after a day's work; nothing is estimated for it."""
@@ -418,7 +550,8 @@ class Season:
             contents = self._now()
             with self.store.reading() as db:
                 kept = db.execute("SELECT day, date, digest FROM days ORDER BY day").fetchall()
-            return tuple(
+            doubt = () if self.store.doubt is None else (self.store.doubt,)
+            return doubt + tuple(
                 f"The chance map of {on} comes out differently from the one used then: it was "
                 "made by another version of fieldmon, or the file was changed by other hands."
                 for day, on, then in kept
@@ -438,6 +571,7 @@ class Season:
 
     def _read(self, db: sqlite3.Connection) -> _Contents:
         """Return what the file says; nothing is read again that did not change."""
+        outside_changes.refuse(db)
         revision = _revision(db)
         if self._last is None or self._last.revision != revision:
             settings = _settings(db)
@@ -470,13 +604,14 @@ class Season:
         self._last = None
         now = self._read(db)
         derived_layers.refresh(db, self.plot, now.history, now.morning, since)
+        qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
 
 
 def _nothing_yet(
     plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
 ) -> History:
-    belief = PairApproximation.of(plot.grid, prior)
+    belief = settings.belief.first_morning(plot.grid, prior)
     known = usable(records, np.datetime64(settings.begins, "D")).observations
     return History(
         plot.grid,
@@ -485,7 +620,13 @@ def _nothing_yet(
         belief=settings.belief,
         detection=settings.robot.detects,
         recorded=record_states(plot.grid, known) if len(known) else None,
+        detection_of={one.name.casefold(): one.robot.detects for one in settings.team},
     )
+
+
+def _names(settings: MonitoringSettings) -> tuple[str, ...]:
+    """Return who works: the names of the team, or nobody's for the one."""
+    return tuple(member.name for member in settings.team) or ("",)
 
 
 def _revision(db: sqlite3.Connection) -> str:

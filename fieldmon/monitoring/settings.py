@@ -14,6 +14,7 @@ from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.planning.members import TeamMember, Teamwork, must_differ
 from fieldmon.plot.robot import Robot, Viewpoints
 from fieldmon.samplers import USUAL, sampler
 
@@ -44,6 +45,11 @@ class MonitoringSettings:
         What is made of findings and nights.
     seed
         For samplers that draw.
+    team
+        Who works, if several do; each starts so long after `starts` as it says. Empty: one works,
+        `robot`.
+    teamwork
+        How they work together.
     """
 
     begins: date
@@ -54,8 +60,12 @@ class MonitoringSettings:
     prior: PriorSettings = field(default_factory=PriorSettings)
     belief: BeliefSettings = field(default_factory=BeliefSettings)
     seed: int = 1
+    team: tuple[TeamMember, ...] = ()
+    teamwork: Teamwork = field(default_factory=Teamwork)
 
     def __post_init__(self) -> None:
+        if self.team:
+            must_differ(self.team)
         if len(self.decides().inspection_times(self.robot).detects) > 1:
             raise SettingError(
                 worded(
@@ -69,6 +79,16 @@ class MonitoringSettings:
     def decides(self) -> Sampler:
         """Return the sampler; raise `SettingError` if there is none of that name."""
         return sampler(self.sampler, **self.sampler_settings)
+
+    def member(self, who: str) -> TeamMember:
+        """Return one of the team by its name; raise `SettingError` if there is none."""
+        for one in self.team:
+            if one.name.casefold() == who.casefold():
+                return one
+        raise SettingError(
+            f"One of the team must be named ({', '.join(one.name for one in self.team)}), but it "
+            f"is {who!r}."
+        )
 
     def day(self, on: date) -> int:
         """Return the number of a date, from 0; raise `SettingError` outside the season."""
@@ -118,6 +138,9 @@ def as_json(settings: MonitoringSettings) -> dict[str, str]:
         "starts": settings.starts.isoformat(),
         "seed": settings.seed,
     }
+    members = [asdict(member) for member in settings.team]
+    together = {"teamwork": asdict(settings.teamwork)} if members else {}
+    plain["team"] = {"members": members, **together}
     plain["sampler"] = {"name": settings.sampler, "settings": dict(settings.sampler_settings)}
     return {name: json.dumps(part, sort_keys=True) for name, part in plain.items()}
 
@@ -126,19 +149,21 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
     """Return the settings that `as_json` wrote; raise `FileProblem` where it cannot be read."""
     try:
         plain = {name: json.loads(text) for name, text in parts.items()}
-        robot, season, chooses = plain["robot"], plain["season"], plain["sampler"]
-        steps = tuple((float(s), float(p)) for s, p in robot["viewpoints"]["steps"])
-        viewpoints = Viewpoints(steps, robot["viewpoints"]["longer"])
-        belief = plain["beliefs"]
+        season, chooses = plain["season"], plain["sampler"]
+        team = plain.get("team", {"members": []})
+        # before finds were traced, seasons knew of neighbours only, and go on so
+        belief = {"traces": False, **plain["beliefs"]}
         return MonitoringSettings(
             begins=date.fromisoformat(season["begins"]),
             starts=time.fromisoformat(season["starts"]),
-            robot=Robot(**{**robot, "viewpoints": viewpoints}),
+            robot=_robot(plain["robot"]),
             sampler=chooses["name"],
             sampler_settings=chooses["settings"],
             prior=PriorSettings(**plain["prior"]),
             belief=BeliefSettings(**{**belief, "spread": Spread(**belief["spread"])}),
             seed=season["seed"],
+            team=tuple(_member(one) for one in team["members"]),
+            teamwork=Teamwork(**team.get("teamwork", {})),
         )
     except (KeyError, TypeError, ValueError, FieldmonError) as error:
         raise FileProblem(
@@ -149,3 +174,15 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
                 error=error,
             )
         ) from error
+
+
+def _robot(plain: dict[str, Any]) -> Robot:
+    steps = tuple((float(s), float(p)) for s, p in plain["viewpoints"]["steps"])
+    viewpoints = Viewpoints(steps, plain["viewpoints"]["longer"])
+    return Robot(**{**plain, "viewpoints": viewpoints})
+
+
+def _member(plain: dict[str, Any]) -> TeamMember:
+    gate = plain["gate"]
+    lonlat = None if gate is None else (float(gate[0]), float(gate[1]))
+    return TeamMember(plain["name"], _robot(plain["robot"]), lonlat, float(plain["starts_s"]))

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring.history import History
 
@@ -40,6 +41,8 @@ class Status:
         Plants inspected and found infested on this day.
     estimate
         How many are infested and not found yet, as believed.
+    learnt
+        What the inspections so far tell of the insects; empty where finds are not traced.
     days_since
         ``(r,)`` days since any plant of each row was inspected; NaN: never.
     hot_spots
@@ -55,6 +58,7 @@ class Status:
     inspected_today: int
     found_today: int
     estimate: PlotEstimate
+    learnt: tuple[Learnt, ...]
     days_since: NDArray[np.float64]
     hot_spots: HotSpots
 
@@ -68,6 +72,7 @@ class Status:
             plants=len(history.grid),
             **vars(progress),
             estimate=history.estimate(morning, day),
+            learnt=history.learnt(morning, day),
             hot_spots=hot_spots(history.grid, history.known(day)),
         )
 

@@ -131,6 +131,8 @@ def _write_grid(db: sqlite3.Connection, grid: PlantGrid) -> None:
     frame = grid.frame
     write_array(db, f"grid.{_FRAME}", np.array([frame.lon, frame.lat, frame.bearing_deg]))
     write_array(db, "grid.spacings", np.array([getattr(grid, name) for name in _SPACINGS]))
+    if grid.half_canopy_m is not None:
+        write_array(db, "grid.half_canopy", np.array([grid.half_canopy_m]))
     area = np.frombuffer(shapely.to_wkb(grid.drivable_m), np.uint8)
     write_array(db, "grid.drivable_wkb", area)
 
@@ -191,6 +193,8 @@ def _grid(arrays: dict[str, NDArray[Any]]) -> PlantGrid:
     in_rows = _IN_ROWS not in values
     values.pop(_IN_ROWS, None)
     area: Any = shapely.from_wkb(values.pop("drivable_wkb").tobytes())
+    if "half_canopy" in values:
+        values["half_canopy_m"] = float(values.pop("half_canopy")[0])
     return PlantGrid(
         frame=Frame(lon, lat, bearing_deg),
         drivable_m=area,

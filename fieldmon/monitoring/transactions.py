@@ -5,14 +5,15 @@ from __future__ import annotations
 import os
 import sqlite3
 import tempfile
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.monitoring import changes_beside
 from fieldmon.monitoring.geopackage import APPLICATION_ID
-from fieldmon.monitoring.schema import MIGRATIONS, VERSION, lay_out
+from fieldmon.monitoring.schema import MIGRATIONS, NEEDS, OPEN, VERSION, lay_out, watch
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,7 +21,9 @@ if TYPE_CHECKING:
 KIND = "season"
 # another window's transaction takes well under a second; a backup program may hold the file longer
 _PATIENCE_S = 30.0
-_MAGIC, _APPLICATION_AT = b"SQLite format 3\x00", 68
+# whether a file is a season at all is asked of many files in passing
+_GLANCE_S = 0.5
+_MAGIC = b"SQLite format 3\x00"
 
 
 def is_season(path: str | Path) -> bool:
@@ -28,18 +31,20 @@ def is_season(path: str | Path) -> bool:
     try:
         if not Path(path).is_file():  # opening a pipe waits until somebody writes into it
             return False
-        with Path(path).open("rb") as file:
-            head = file.read(100)
-    except OSError:
+        # through SQLite: whoever else opens and closes a database takes away the locks that other
+        # threads of the same program hold on it
+        with closing(_connect(Path(path), _GLANCE_S)) as db:
+            mark = db.execute("PRAGMA application_id").fetchone()[0]
+            return mark == APPLICATION_ID and _version(db) is not None
+    except sqlite3.Error as error:
+        if "locked" in str(error):  # whoever opens it waits for longer and says so
+            return True
+    except OSError:  # a name that is too long
         return False
-    mark = head[_APPLICATION_AT : _APPLICATION_AT + 4]
-    if not head.startswith(_MAGIC) or int.from_bytes(mark) != APPLICATION_ID:
-        return False
-    try:
-        with closing(_connect(Path(path))) as db:
-            return _version(db) is not None
-    except sqlite3.Error:
-        return b"fieldmon" in Path(path).read_bytes()[: 1 << 16]
+    with suppress(OSError), Path(path).open("rb") as file:
+        head = file.read(1 << 16)
+        return head.startswith(_MAGIC) and b"fieldmon" in head
+    return False
 
 
 class Store:
@@ -52,24 +57,14 @@ class Store:
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path).absolute()
         if not self.path.is_file():
-            raise FileProblem(
-                worded(
-                    "{path} must be the file of a season, but there is none. "
-                    "Check the name, or begin one with: fieldmon init",
-                    path=path,
-                )
-            )
-        if not _begins_as_database(self.path):
-            raise FileProblem(
-                worded(
-                    "{path} must be the file of a season (a GeoPackage), but "
-                    "it does not begin as one. Check the name; if it was a "
-                    "season, go back to a copy of it.",
-                    path=path,
-                )
-            )
+            raise _no_file(path)
+        has_more = changes_beside.refuse_foreign(self.path)
         with self.reading() as db:
             version = _version(db)
+            is_parted = not has_more and db.execute("PRAGMA journal_mode").fetchone()[0] == "wal"
+            needs = get_meta(db, "needs") if version else None
+        #: what is to be doubted of the file, in a sentence, or None
+        self.doubt = changes_beside.PARTED.format(path=self.path) if is_parted else None
         if version is None:
             raise FileProblem(
                 worded(
@@ -80,57 +75,51 @@ class Store:
         if version > VERSION:
             raise FileProblem(
                 worded(
-                    "{path} was made by a newer fieldmon (format {version}; "
-                    "this one reads up to {ours}). Update fieldmon.",
+                    "{path} was made by a newer fieldmon (format {version}; this one reads up to "
+                    "{ours}): it needs fieldmon {needs}. Update fieldmon.",
                     path=path,
                     version=version,
                     ours=VERSION,
+                    needs="?" if needs is None else f">= {needs}",
                 )
             )
         if version < VERSION:
-            with self.writing() as db:
-                _migrate(db)
+            self._bring_up_to_date(version)
+
+    def _bring_up_to_date(self, version: int) -> None:
+        """Migrate the file; a copy of it as it was stays beside it."""
+        copy = self.path.with_name(f"{self.path.name}.format-{version}")
+        if not copy.exists():
+            self.back_up(copy)
+        with self.writing() as db:
+            _migrate(db)
+
+    def back_up(self, to: str | Path) -> None:
+        """Copy the file as it is at this moment, whoever works on it; never over another file."""
+        target = Path(to).absolute()
+        _refuse_old(target, to)
+        with _beside(target) as folder:
+            draft = Path(folder) / "copy.gpkg"
+            copy_season(self.path, draft)
+            _put(draft, target)
 
     @classmethod
     @contextmanager
     def new(cls, path: str | Path) -> Iterator[sqlite3.Connection]:
         """Make a new file: it appears with all that is written inside this block, or not at all."""
         target = Path(path).absolute()
-        if target.exists():
-            raise FileProblem(
-                worded(
-                    "{path} must be a new file, but it exists already. A "
-                    "season is never overwritten: choose another name, or "
-                    "move the old file away.",
-                    path=path,
-                )
-            )
-        if not target.parent.is_dir():
-            raise FileProblem(
-                worded(
-                    "The folder {parent} must exist before {name} can be made "
-                    "in it. Make it, or choose another one.",
-                    parent=target.parent,
-                    name=target.name,
-                )
-            )
+        _refuse_old(target, path)
         with _beside(target) as folder:
             draft = Path(folder) / "season.gpkg"
             with _sentences(target), closing(_connect(draft)) as db:
                 db.execute("BEGIN")
                 lay_out(db)
                 set_meta(db, "kind", KIND)
-                set_meta(db, "version", str(VERSION))
+                _mark(db)
                 yield db
+                set_meta(db, OPEN, "0")
                 db.execute("COMMIT")
-            try:
-                os.link(draft, target)  # unlike a rename it never replaces
-            except FileExistsError:
-                raise FileProblem(
-                    worded("{path} was made by someone else just now.", path=path)
-                ) from None
-            except OSError:
-                draft.replace(target)  # a file system without links
+            _put(draft, target)
 
     @contextmanager
     def reading(self) -> Iterator[sqlite3.Connection]:
@@ -143,8 +132,11 @@ class Store:
     def writing(self) -> Iterator[sqlite3.Connection]:
         """Give the file for one transaction, alone: all of it is kept, or nothing."""
         with _sentences(self.path), closing(_connect(self.path)) as db:
+            _into_one_file(db)
             db.execute("BEGIN IMMEDIATE")
+            set_meta(db, OPEN, "1")  # what is changed from here on is changed by us
             yield db
+            set_meta(db, OPEN, "0")
             db.execute("UPDATE fieldmon SET value = value + 1 WHERE key = 'revision'")
             db.execute("COMMIT")
 
@@ -154,6 +146,34 @@ class Store:
             said = [row[0] for row in db.execute("PRAGMA quick_check(5)")]
         if said != ["ok"]:
             raise _damaged(self.path, said[0])
+
+
+def copy_season(path: Path, to: Path) -> None:
+    """Copy a season as it is at this moment, by SQLite's own means; raise if it is damaged."""
+    if not path.is_file():
+        raise _no_file(path)
+    with _sentences(path), closing(_connect(path)) as db, closing(_connect(to)) as copy:
+        db.backup(copy)
+        copy.execute("PRAGMA journal_mode = DELETE")
+        said = copy.execute("PRAGMA quick_check(1)").fetchone()[0]
+        if said != "ok":
+            raise _damaged(path, said)
+
+
+def _put(draft: Path, target: Path) -> None:
+    """Give a draft its name, unless another file has it."""
+    try:
+        try:
+            os.link(draft, target)  # unlike a rename it never replaces
+        except FileExistsError:
+            raise
+        except OSError:  # a file system without links
+            target.touch(exist_ok=False)
+            draft.replace(target)
+    except FileExistsError:
+        raise FileProblem(
+            worded("{path} was made by someone else just now.", path=target)
+        ) from None
 
 
 @contextmanager
@@ -185,29 +205,24 @@ def get_meta(db: sqlite3.Connection, key: str) -> str | None:
     return None if row is None else str(row[0])
 
 
-def _begins_as_database(path: Path) -> bool:
-    """Tell whether SQLite would open a file; it takes an empty one for an empty database."""
-    try:
-        if path.stat().st_size == 0:  # also what only pretends to be a file, and never ends
-            return True
-        with path.open("rb") as file:
-            head = file.read(len(_MAGIC))
-    except OSError as error:
-        raise FileProblem(
-            worded(
-                "{path} must be readable, but it is not ({strerror}). Check its permissions.",
-                path=path,
-                strerror=error.strerror,
-            )
-        ) from error
-    return not head or head == _MAGIC
-
-
-def _connect(path: Path) -> sqlite3.Connection:
+def _connect(path: Path, patience_s: float | None = None) -> sqlite3.Connection:
     # autocommit: transactions begin and end where the code says so
-    db = sqlite3.connect(path, timeout=_PATIENCE_S, isolation_level=None)
+    patience_s = _PATIENCE_S if patience_s is None else patience_s
+    db = sqlite3.connect(path, timeout=patience_s, isolation_level=None)
     db.execute("PRAGMA trusted_schema = OFF")
     return db
+
+
+def _into_one_file(db: sqlite3.Connection) -> None:
+    """Let a season be one file again where another program (QGIS) let it be three.
+
+    That program may still have it open: then it stays so until it is closed.
+    """
+    if db.execute("PRAGMA journal_mode").fetchone()[0] == "wal":
+        db.execute("PRAGMA busy_timeout = 0")
+        with suppress(sqlite3.OperationalError):
+            db.execute("PRAGMA journal_mode = DELETE")
+        db.execute(f"PRAGMA busy_timeout = {1000 * _PATIENCE_S:.0f}")
 
 
 def _version(db: sqlite3.Connection) -> int | None:
@@ -221,7 +236,36 @@ def _migrate(db: sqlite3.Connection) -> None:
     # asked again inside the transaction: another window may have been quicker
     for version in range(_version(db) or 0, VERSION):
         MIGRATIONS[version](db)
+    watch(db)
+    _mark(db)
+
+
+def _mark(db: sqlite3.Connection) -> None:
+    """Note which version the file is of, for those that come after and those from before."""
     set_meta(db, "version", str(VERSION))
+    set_meta(db, "needs", NEEDS)
+
+
+def _refuse_old(target: Path, path: str | Path) -> None:
+    """Refuse to make a file where one is, or where no folder is."""
+    if target.exists():
+        raise FileProblem(
+            worded(
+                "{path} must be a new file, but it exists already. A "
+                "season is never overwritten: choose another name, or "
+                "move the old file away.",
+                path=path,
+            )
+        )
+    if not target.parent.is_dir():
+        raise FileProblem(
+            worded(
+                "The folder {parent} must exist before {name} can be made "
+                "in it. Make it, or choose another one.",
+                parent=target.parent,
+                name=target.name,
+            )
+        )
 
 
 @contextmanager
@@ -239,6 +283,15 @@ def _sentences(path: Path) -> Iterator[None]:
         ) from error
     except sqlite3.Error as error:
         text = str(error)
+        if "not a database" in text:
+            raise FileProblem(
+                worded(
+                    "{path} must be the file of a season (a GeoPackage), but "
+                    "it does not begin as one. Check the name; if it was a "
+                    "season, go back to a copy of it.",
+                    path=path,
+                )
+            ) from error
         if "locked" in text:
             raise FileProblem(
                 worded(
@@ -271,12 +324,22 @@ def _sentences(path: Path) -> Iterator[None]:
         raise _damaged(path, text) from error
 
 
+def _no_file(path: str | Path) -> FileProblem:
+    return FileProblem(
+        worded(
+            "{path} must be the file of a season, but there is none. "
+            "Check the name, or begin one with: fieldmon init",
+            path=path,
+        )
+    )
+
+
 def _damaged(path: Path, why: str) -> FileProblem:
     return FileProblem(
         worded(
             "{path} is damaged ({why}). Save what can be saved into a new "
             'file with: fieldmon salvage "{path}" --output rescued.gpkg',
             path=path,
-            why=why,
+            why=" ".join(why.split()),
         )
     )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.settings import seconds
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import Workday
@@ -30,21 +31,25 @@ def day_was_worked(season: Season, on: date, ahead: Route) -> bool:
     )
 
 
-def worked_route(season: Season, on: date) -> Route:
+def worked_route(season: Season, on: date, who: str | None = None) -> Route:
     """Return the way from plant to plant as a day was worked, at the times noted.
 
     Where a time is missing, all are those that driving and inspecting cost. Empty if nothing was
-    recorded.
+    recorded. Of a team it is the way of the one named; None: that of all results in turn.
     """
     settings, aisles = season.settings, season.plot.aisles
-    robot = settings.robot
-    done = _in_order(season.history.on(settings.day(on)))
+    robot, starts_s = settings.robot, seconds(settings.starts)
+    if who is not None and settings.team:
+        member = settings.member(who)
+        robot, aisles = member.robot, season.aisles_from(member.gate)
+        starts_s += member.starts_s
+    done = _in_order(made_by(season.history.on(settings.day(on)), who))
     scene = Scene(
         aisles=aisles, robot=robot, chance=season.morning(on), seconds_left=robot.day_s,
         last_inspected=np.full(len(aisles.grid), NEVER, np.int32),
     )  # fmt: skip
     n, drive_s = len(done), _drive_s(scene, done.plant)
-    leave_s = np.maximum(done.second - seconds(settings.starts), 0.0)
+    leave_s = np.maximum(done.second - starts_s, 0.0)
     if not np.isfinite(leave_s).all():
         leave_s = np.cumsum(drive_s[:n] + robot.visit_s)
     # a find is noted while standing there: the time of arrival is not known, and not needed

@@ -6,16 +6,21 @@ from typing import TYPE_CHECKING
 
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.plot.assumed import Assumed
+from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M
 from fieldmon.plot.robot import Robot, scout
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from fieldmon.plot.grid import PlantGrid
+
 
 def assumed_by(
-    planting: Iterable[Assumed], prior: PriorSettings, robot: Robot
+    planting: Iterable[Assumed], prior: PriorSettings, robot: Robot, grid: PlantGrid | None = None
 ) -> tuple[Assumed, ...]:
     """Return everything assumed of a day: of the planting, and what still is as it came.
+
+    How far plants reach to each side counts only for a robot whose width is known.
 
     Examples
     --------
@@ -33,4 +38,6 @@ def assumed_by(
         made.append(Assumed("speed_m_s", robot.speed_m_s))
     if robot.detection is None and robot.viewpoints == Robot().viewpoints:
         made.append(Assumed("detects", robot.detects))
+    if robot.width_m is not None and (grid is None or grid.half_canopy_m is None):
+        made.append(Assumed("half_canopy_m", USUAL_HALF_CANOPY_M))
     return tuple(made)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.plot.passing import legs_of
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -65,6 +67,8 @@ def _presences(route: Route, start_s: float) -> list[_Presence]:
     """Return when a route is in which aisle, stops included."""
     if not len(route):
         return []
+    if route.aisles.grid.aisles_m is not None:
+        return _of_stops(route, start_s)
     grid, line = route.aisles.grid, route.line_m
     depart_s = route.line_s.copy()
     np.maximum.at(depart_s, route.line_stop, route.leave_s)
@@ -87,12 +91,37 @@ def _presences(route: Route, start_s: float) -> list[_Presence]:
     return _with_stops(route, found, start_s)
 
 
+def _of_stops(route: Route, start_s: float) -> list[_Presence]:
+    """Return presences where rows bend, seen from the stops: each with the ways before and after.
+
+    Aisles that are driven through between two count for all of that way: more than is true.
+    """
+    grid, legs = route.aisles.grid, legs_of(route.aisles)
+    aisle = grid.corridor[grid.row[route.plant]].tolist()
+    plants = route.plant.tolist()
+    begins = [float(route.line_s[0]), *route.leave_s[:-1].tolist()]
+    ends = [*route.arrive_s[1:].tolist(), route.end_s]
+    found = []
+    for k, one in enumerate(aisle):
+        found.append(_Presence(one, start_s + begins[k], start_s + ends[k]))
+        if k and aisle[k - 1] != one:
+            through = legs.leg(plants[k - 1], plants[k]).through
+            way = start_s + begins[k], start_s + float(route.arrive_s[k])
+            found += [_Presence(passed, *way) for passed in through]
+    return _joined(found)
+
+
 def _with_stops(route: Route, found: list[_Presence], start_s: float) -> list[_Presence]:
-    """Return presences with the stops, those that follow each other in one aisle taken together."""
+    """Return presences with the stops."""
     grid = route.aisles.grid
     aisle = grid.corridor[grid.row[route.plant]]
     stops = zip(aisle.tolist(), route.arrive_s, route.leave_s, strict=True)
     found += [_Presence(k, start_s + float(a), start_s + float(b)) for k, a, b in stops]
+    return _joined(found)
+
+
+def _joined(found: list[_Presence]) -> list[_Presence]:
+    """Return presences in order, those that follow each other in one aisle taken together."""
     found.sort(key=lambda one: one.since_s)
     joined: list[_Presence] = []
     for one in found:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
@@ -12,13 +12,15 @@ import numpy as np
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.planning.bound_wording import PROVED, told
+from fieldmon.planning.headlands import HeadOn, head_on
 from fieldmon.planning.meetings import Meeting, meetings
+from fieldmon.planning.members import must_differ
 from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.routes import best, bound
 from fieldmon.planning.routes.best_route import bounded
+from fieldmon.planning.sections import sections_of
 from fieldmon.planning.workday import Workday
-from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, travel_s
 from fieldmon.samplers.base import NEVER, Scene
 
@@ -27,46 +29,23 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.planning.members import TeamMember
     from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot
+    from fieldmon.plot.travel import Aisles
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
 
 # who must wait starts so much later than the other leaves
 _PAUSE_S = 1.0
+# and so much later where two would meet in a headland
+_LATER_S = 20.0
 # each route is looked for again so often in what the others leave, and so often where they meet
 _ROUNDS, _TRIES = 2, 3
 # so many prices of plants are tried for a bound, for so long; a step that gained nothing so often
 # is halved; directions are remembered so far
 _PRICES, _WITHIN_S, _PATIENCE, _MEMORY = 60, 20.0, 5, 0.7
-
-
-@dataclass(frozen=True)
-class TeamMember:
-    """One of a team.
-
-    Parameters
-    ----------
-    name
-        What it is called, for people and in file names.
-    robot
-        Its speed, hours, inspection and detection.
-    gate
-        ``(lon, lat)`` where its day starts and ends; None: the plot's gate.
-    starts_s
-        Seconds after the team's day begins at which its own does.
-    """
-
-    name: str
-    robot: Robot = field(default_factory=Robot)
-    gate: tuple[float, float] | None = None
-    starts_s: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not 0.0 <= self.starts_s < 24 * 3600.0:
-            raise SettingError(
-                f"{self.name} must start within a day, but it is {self.starts_s} s after the first."
-            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,12 +62,15 @@ class TeamPlan:
         ``(m,)`` seconds that each begins later than its start, so that nobody is met in an aisle.
     bound
         No routes of these members and hours can expect more finds together.
+    passing_m
+        Metres of headland that two need to pass each other; 0: they pass anywhere.
     """
 
     members: tuple[TeamMember, ...]
     days: tuple[DayPlan, ...]
     late_s: Float
     bound: float
+    passing_m: float = 0.0
 
     def __repr__(self) -> str:
         stops = sum(len(day.route) for day in self.days)
@@ -113,27 +95,18 @@ class TeamPlan:
         """Return where two are in one aisle at once: nowhere, if the plan is right."""
         return meetings([day.route for day in self.days], self.starts_s)
 
+    def head_on(self) -> list[HeadOn]:
+        """Return where two meet head-on in a headland too narrow to pass: nowhere, likewise."""
+        return head_on([day.route for day in self.days], self.starts_s, self.passing_m)
+
 
 class _Task(NamedTuple):
     """What one member's route is looked for in."""
 
-    plot: Plot
+    aisles: Aisles
     robot: Robot
     value: Float
     starts_s: float = 0.0
-
-
-def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
-    """Return n robots of one kind.
-
-    Examples
-    --------
-    >>> [member.name for member in team_of(3)]
-    ['robot-1', 'robot-2', 'robot-3']
-    """
-    if n < 1:
-        raise SettingError(f"A team must have 1 member or more, but it has {n}.")
-    return tuple(TeamMember(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))
 
 
 def plan_team(
@@ -142,6 +115,7 @@ def plan_team(
     members: Sequence[TeamMember],
     done: NDArray[np.bool_] | None = None,
     progress: Callable[[int, int], None] | None = None,
+    passing_m: float = 0.0,
 ) -> TeamPlan:
     """Plan a day of a team: no plant twice, and no two in one aisle at once.
 
@@ -159,6 +133,9 @@ def plan_team(
         ``(n,)`` plants that are not visited again today; None: none.
     progress
         Told how many routes were looked for, and of how many.
+    passing_m
+        Metres of headland that two need to pass each other: where it is narrower nobody meets
+        another head-on, but begins later. 0: they pass each other anywhere.
 
     Raises
     ------
@@ -168,18 +145,21 @@ def plan_team(
     Examples
     --------
     >>> import fieldmon as fm
-    >>> from fieldmon.planning.team import plan_team, team_of
+    >>> from fieldmon.planning.members import team_of
+    >>> from fieldmon.planning.team import plan_team
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
     >>> chance = fm.plan_day(plot, on="2026-11-18").chance
     >>> team = plan_team(plot, chance, team_of(2, fm.Robot(hours=0.5)))
     >>> len(team.days), team.meetings(), team.expected_found <= team.bound
     (2, [], True)
     """
-    _must_differ(members)
+    must_differ(members)
+    if not 0.0 <= passing_m < np.inf:
+        raise SettingError(f"Two must need 0 m or more to pass, but passing_m is {passing_m}.")
     left = np.ones(len(chance)) if done is None else np.where(done, 0.0, 1.0)
     tasks = [
         _Task(
-            plot if one.gate is None else plot.with_gate(one.gate),
+            plot.aisles if one.gate is None else plot.with_gate(one.gate).aisles,
             one.robot,
             chance * one.robot.detects * left,
             one.starts_s,
@@ -191,7 +171,10 @@ def plan_team(
     exclusive = search.aisle_by_aisle(in_turn)
     shared = search.apart(search.plant_by_plant(exclusive))
     found = [search.turned(stops) for stops in (in_turn, exclusive, shared)]
-    timed = max((_kept_apart(tasks, days) for days in found), key=lambda each: _expected(each.days))
+    timed = max(
+        (_kept_apart(tasks, days, passing_m) for days in found),
+        key=lambda each: _expected(each.days),
+    )
     if not _expected(timed.days):
         raise SettingError(
             "The hours of some member must be long enough to reach a plant and come back, but "
@@ -201,11 +184,31 @@ def plan_team(
     days = tuple(replace(day, route=route_of(day.scene, day.work)) for day in days)
     held = _expected(days)
     most = max(team_bound(tasks, held), held)
-    return TeamPlan(tuple(members), days, timed.late_s, most)
+    return TeamPlan(tuple(members), days, timed.late_s, most, passing_m)
 
 
 def _expected(days: Sequence[DayPlan]) -> float:
     return float(sum(day.route.expected_found for day in days))
+
+
+def bound_of_days(days: Sequence[DayPlan]) -> str:
+    """Return for people what a team's days expect, and what no other routes can exceed.
+
+    Empty where a day began already: bounds are of whole days from the gate.
+    """
+    whole = all(
+        day.scene.at == GATE and day.scene.seconds_left == day.scene.robot.day_s for day in days
+    )
+    if not whole:
+        return ""
+    tasks = [_task_of(day.scene) for day in days]
+    held = _expected(days)
+    return told(held, max(team_bound(tasks, held), held), routes="routes")
+
+
+def _task_of(scene: Scene) -> _Task:
+    open_ = np.where(scene.last_inspected == scene.day, 0.0, scene.chance)
+    return _Task(scene.aisles, scene.robot, open_ * scene.robot.detects)
 
 
 def team_bound(tasks: Sequence[_Task], held: float = 0.0) -> float:
@@ -223,7 +226,7 @@ def team_bound(tasks: Sequence[_Task], held: float = 0.0) -> float:
     most = values.max(axis=0)
     least = _by_prices(tasks, most, held)
     robots = [task.robot for task in tasks]
-    one_gate = all(task.plot is tasks[0].plot for task in tasks)
+    one_gate = all(task.aisles is tasks[0].aisles for task in tasks)
     if not one_gate or not all(robot.returns for robot in robots):
         return least
     quickest = replace(
@@ -235,7 +238,7 @@ def team_bound(tasks: Sequence[_Task], held: float = 0.0) -> float:
         look_s=min(robot.visit_s for robot in robots),
     )
     seconds = sum(robot.day_s for robot in robots) + (len(robots) - 1) * quickest.row_change_s
-    return min(least, bound(tasks[0].plot, most, quickest, seconds))
+    return min(least, bound(tasks[0].aisles, most, quickest, seconds))
 
 
 def _by_prices(tasks: Sequence[_Task], most: Float, held: float) -> float:
@@ -248,7 +251,7 @@ def _by_prices(tasks: Sequence[_Task], most: Float, held: float) -> float:
     price = direction = np.zeros(len(most))
     least, kept, step, in_vain = np.inf, price, 1.0, 0
     for _ in range(_PRICES):
-        alone = [bounded(task.plot, np.maximum(task.value - price, 0.0), task.robot)
+        alone = [bounded(task.aisles, np.maximum(task.value - price, 0.0), task.robot)
                  for task in tasks]  # fmt: skip
         value = float(price.sum()) + sum(each.value for each in alone)
         if value < least:
@@ -267,15 +270,6 @@ def _by_prices(tasks: Sequence[_Task], most: Float, held: float) -> float:
     return least
 
 
-def _must_differ(members: Sequence[TeamMember]) -> None:
-    names = [member.name.casefold() for member in members]
-    if not names or len(set(names)) < len(names):
-        raise SettingError(
-            "A team must have members of different names, but they are "
-            f"{', '.join(member.name for member in members) or 'none'}."
-        )
-
-
 class _Search:
     """Looks for the stops of each of a team's tasks, given those of the others."""
 
@@ -289,7 +283,7 @@ class _Search:
     def look(self, k: int, free: NDArray[np.bool_], known: Int | None = None) -> Int:
         """Return the best stops of a task among the free plants, no worse than those known."""
         task, others = self.tasks[k], () if known is None else (known,)
-        found = best(task.plot, np.where(free, task.value, 0.0), task.robot, others=others)
+        found = best(task.aisles, np.where(free, task.value, 0.0), task.robot, others=others)
         self.looked += 1
         self.progress(self.looked, max(self.expected, self.looked))
         return found.plant.astype(np.int64)
@@ -391,14 +385,8 @@ def _sections(plot: Plot, tasks: Sequence[_Task], known: Sequence[Int]) -> Int:
     work = np.full(len(corridor), 1e-9)
     for task, own in zip(tasks, known, strict=True):
         work[own] += task.robot.visit_s
-    up = np.zeros(int(corridor.max()) + 1)
-    up[corridor] = plot.grid.lane_y_m[plot.grid.row]
-    order = np.argsort(up, kind="stable")
-    done = np.cumsum(np.bincount(corridor, work)[order])
-    shares = np.cumsum([task.robot.day_s for task in tasks])
-    of_aisle = np.empty(len(order), np.int64)
-    of_aisle[order] = np.searchsorted(shares / shares[-1], (done - 1e-12) / done[-1], "left")
-    return np.minimum(of_aisle, len(tasks) - 1)[corridor]
+    shares = np.array([task.robot.day_s for task in tasks])
+    return sections_of(plot.grid, np.bincount(corridor, work).astype(np.float64), shares)[corridor]
 
 
 def _day(task: _Task, stops: Int) -> DayPlan:
@@ -406,7 +394,7 @@ def _day(task: _Task, stops: Int) -> DayPlan:
     robot, n = task.robot, len(task.value)
     believed = task.value / max(robot.detects, 1e-9)
     never = np.full(n, NEVER, np.int32)
-    scene = Scene(task.plot.aisles, robot, believed, never, seconds_left=robot.day_s)
+    scene = Scene(task.aisles, robot, believed, never, seconds_left=robot.day_s)
     places = [GATE, *stops.tolist()]
     travel, clock = scene.aisles.travel, scene.clock
     way_s = np.array([travel_s(travel, clock, a, b) for a, b in pairwise(places)])
@@ -441,16 +429,30 @@ class _Timed(NamedTuple):
     late_s: Float
 
 
-def _kept_apart(tasks: Sequence[_Task], days: Sequence[DayPlan]) -> _Timed:
-    """Let whoever would still meet another in an aisle begin later, with fewer stops if need be."""
+def _kept_apart(tasks: Sequence[_Task], days: Sequence[DayPlan], passing_m: float) -> _Timed:
+    """Let whoever would still meet another begin later, with fewer stops if need be."""
     kept, late_s = [*days], np.zeros(len(days))
     own_s = np.array([task.starts_s for task in tasks])
-    while met := meetings([day.route for day in kept], own_s + late_s):
-        # of two the later in the team waits: the first keeps its day
-        k = max(met[0].who)
-        late_s[k] += met[0].until_s - met[0].since_s + _PAUSE_S
+    while (wait := _first_wait(kept, own_s + late_s, passing_m)) is not None:
+        k, seconds = wait
+        late_s[k] += seconds
         kept[k] = _shortened(tasks[k], kept[k], tasks[k].robot.day_s - float(late_s[k]))
     return _Timed(kept, late_s)
+
+
+def _first_wait(
+    days: Sequence[DayPlan], starts_s: Float, passing_m: float
+) -> tuple[int, float] | None:
+    """Return who must begin later, and by how much; None: nobody meets another.
+
+    Of two the later in the team waits: the first keeps its day.
+    """
+    driven = [day.route for day in days]
+    if met := meetings(driven, starts_s):
+        return max(met[0].who), met[0].until_s - met[0].since_s + _PAUSE_S
+    if passing_m and (met_head_on := head_on(driven, starts_s, passing_m)):
+        return max(met_head_on[0].who), _LATER_S
+    return None
 
 
 def _shortened(task: _Task, day: DayPlan, seconds: float) -> DayPlan:

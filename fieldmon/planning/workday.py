@@ -34,6 +34,9 @@ class Workday:
         ``(k,)`` seconds that each stop takes, and its chance to find what is there.
     end_s
         Seconds at the end: after the last stop, or back at the gate if the robot returns.
+    wait_s
+        ``(k + 1,)`` seconds waited for others on the way to each stop, and home: on leaving an
+        aisle, or at the gate; None: nowhere.
     """
 
     plant: NDArray[np.int32]
@@ -42,6 +45,7 @@ class Workday:
     stop_s: NDArray[np.float64]
     detects: NDArray[np.float64]
     end_s: float
+    wait_s: NDArray[np.float64] | None = None
 
     def __repr__(self) -> str:
         inspected = f"{counted(len(self), 'plant')} inspected"

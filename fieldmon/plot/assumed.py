@@ -10,6 +10,7 @@ _WORDS = {
     "rate_per_day": "chance a night to infest a neighbour",
     "detects": "chance to find what is there",
     "speed_m_s": "speed",
+    "half_canopy_m": "reach of plants to each side",
 }
 
 
@@ -21,6 +22,7 @@ class Assumed:
     ----------
     setting
         Its name where it can be said: ``"row_spacing_m"`` of `PlantingChoices`,
+        ``"half_canopy_m"`` of `Planting`,
         ``"background_chance"`` of `PriorSettings`, ``"rate_per_day"`` of `Spread`, ``"speed_m_s"``
         and ``"detects"`` of `Robot`.
     value

@@ -392,6 +392,7 @@ def _assembled(
         aisle.astype(np.int32),
         aisles.start,
         aisles.xy_m,
+        planting.half_canopy_m,
     )
 
 

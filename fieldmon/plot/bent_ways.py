@@ -122,11 +122,16 @@ def row_end_places(grid: PlantGrid) -> tuple[Float, Float]:
 
 
 def bends_of(
-    grid: PlantGrid, place: Int, at_m: Float, gate: tuple[int, int, float] | None
+    grid: PlantGrid,
+    place: Int,
+    at_m: Float,
+    gate: tuple[int, int, float] | None,
+    shut: Mask | None = None,
 ) -> Bends:
     """Return the stretches between neighbouring nodes on each aisle; a gate may be one too.
 
-    `place` numbers the nodes of `row_end_places`; `gate` is its node, aisle and place.
+    `place` numbers the nodes of `row_end_places`; `gate` is its node, aisle and place. The lanes
+    of rows that are `shut` ``(r,)`` are no lanes.
     """
     aisles, own, side = _known(grid)
     right = np.where(side < 0, own - 1, own)
@@ -139,13 +144,15 @@ def bends_of(
     next_ = np.flatnonzero((aisle[1:] == aisle[:-1]) & (node[1:] != node[:-1]))
     ends = np.stack([at[next_], at[next_ + 1]], axis=1)
     pair = np.stack([node[next_], node[next_ + 1]], axis=1)
-    return Bends(pair, aisle[next_], ends, _in_lanes(grid, own, aisle[next_], ends), aisles)
+    lanes = np.ones(len(own), np.bool_) if shut is None else ~shut
+    in_lane = _in_lanes(grid.lane_x_m[lanes], own[lanes], aisle[next_], ends)
+    return Bends(pair, aisle[next_], ends, in_lane, aisles)
 
 
-def _in_lanes(grid: PlantGrid, own: Int, aisle: Int, ends: Float) -> Mask:
+def _in_lanes(lane_m: Float, own: Int, aisle: Int, ends: Float) -> Mask:
     """Tell of stretches whether a row is inspected from all of them."""
-    far = float(np.abs(grid.lane_x_m).max()) * 4 + 1.0
-    low, high = (own * far + grid.lane_x_m[:, end] for end in range(2))
+    far = float(max(np.abs(lane_m).max(), np.abs(ends).max(initial=0.0))) * 4 + 1.0
+    low, high = (own * far + lane_m[:, end] for end in range(2))
     order = np.argsort(low)
     low, reached = low[order], np.maximum.accumulate(high[order])
     middle = aisle * far + ends.mean(axis=1)

@@ -100,6 +100,8 @@ class PlantGrid:
         middle of its aisle; the aisle of each row ``(r,)``; and the corners of the aisles'
         middles: those of aisle a are ``aisle_m[aisle_start[a]:aisle_start[a + 1]]``. Then
         `lane_x_m` are places along the aisle too, and `lane_y_m` is 0.
+    half_canopy_m
+        How far plants reach to each side of their middle; None: nobody said.
     in_rows
         Whether plants stand in rows. If not, each is a row by itself here, and people count
         plants only.
@@ -126,6 +128,7 @@ class PlantGrid:
     aisle: NDArray[np.int32] | None = None
     aisle_start: NDArray[np.int64] | None = None
     aisle_m: NDArray[np.float64] | None = None
+    half_canopy_m: float | None = None
     in_rows: bool = True
 
     def __post_init__(self) -> None:

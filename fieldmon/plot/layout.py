@@ -72,6 +72,9 @@ class Planting:
     headland_m
         Free of plants at both ends of each row, where rows are changed. The default leaves 4 m:
         enough for a small robot or a person; tractors take 6 m or more.
+    half_canopy_m
+        How far plants reach to each side of their middle; None: not known. It counts for robots
+        whose width is known.
     faces
         1: a row is inspected from the aisle above it (higher y). 2: both faces of each row are
         inspected, each from its own aisle.
@@ -86,8 +89,14 @@ class Planting:
     headland_m: float = 4.0
     faces: int = 1
     outer_faces: bool = True
+    half_canopy_m: float | None = None
 
     def __post_init__(self) -> None:
+        if self.half_canopy_m is not None and not 0.0 <= self.half_canopy_m <= 10.0:
+            raise SettingError(
+                "A planting's half_canopy_m must be 0 to 10 metres, "
+                f"but it is {self.half_canopy_m}."
+            )
         for name in ("row_spacing_m", "plant_spacing_m", "headland_m"):
             if not 0.05 <= getattr(self, name) <= 1000.0:
                 raise SettingError(
@@ -311,6 +320,7 @@ def assemble(frame: Frame, pieces: Pieces, area: MultiPolygon, planting: Plantin
         *adjacency.along(pieces.xy_m[:, 0], row, planting.plant_spacing_m),
         *adjacency.across(pieces.xy_m, pieces.row_line[row], *spacings),
         np.full(len(pieces.xy_m), -1, np.int32),
+        half_canopy_m=planting.half_canopy_m,
     )
 
 
@@ -363,6 +373,7 @@ def _two_faced(frame: Frame, pieces: Pieces, area: MultiPolygon, planting: Plant
         *adjacency.along(xy_m[:, 0], row, planting.plant_spacing_m),
         *adjacency.lists(len(twin), lower, twin[lower]),
         twin.astype(np.int32),
+        half_canopy_m=planting.half_canopy_m,
     )
 
 

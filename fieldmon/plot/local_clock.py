@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from contextlib import suppress
 from dataclasses import dataclass
-from datetime import UTC, date, datetime
+from datetime import UTC, date, datetime, time
 from functools import cache
 from itertools import product
 from typing import TYPE_CHECKING
@@ -39,6 +39,11 @@ class LocalClock:
     def now(self) -> datetime:
         """Return the local time, to the second."""
         return self.at(utc_now()).replace(microsecond=0)
+
+    def moment(self, on: date, at: time) -> datetime:
+        """Return a local date and time as a moment that names its zone."""
+        local = datetime.combine(on, at)
+        return local.replace(tzinfo=ZoneInfo(self.zone)) if self.zone else local.astimezone()
 
     def today(self) -> date:
         """Return the local date."""

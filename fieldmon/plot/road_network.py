@@ -24,6 +24,7 @@ from fieldmon.plot.bent_ways import Bends, bends_of, off_steps, row_end_places, 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.plot.clearance import Clearance
     from fieldmon.plot.grid import PlantGrid
 
     Float = NDArray[np.float64]
@@ -115,10 +116,15 @@ class Obstacles:
         return f"<Obstacles: {counted(len(self.row_box_m), 'row piece')}>"
 
     @classmethod
-    def of(cls, grid: PlantGrid, no_go_m: shapely.Geometry) -> Obstacles:
-        """Return the obstacles on a plot."""
-        ends_x = grid.along_m[_end_plants(grid)]
-        clearance_m = min(_CLEARANCE_M, 0.4 * float(np.abs(grid.lane_x_m - ends_x).min()))
+    def of(
+        cls, grid: PlantGrid, no_go_m: shapely.Geometry, clearance: Clearance | None = None
+    ) -> Obstacles:
+        """Return the obstacles on a plot, to a robot that needs some clearance."""
+        if clearance is None:
+            ends_x = grid.along_m[_end_plants(grid)]
+            clearance_m = min(_CLEARANCE_M, 0.4 * float(np.abs(grid.lane_x_m - ends_x).min()))
+        else:
+            clearance_m = clearance.way_m
         whole = shapely.union_all(
             [Polygon(part.exterior) for part in shapely.get_parts(grid.drivable_m)]
         )
@@ -253,6 +259,7 @@ def find_roads(
     grid: PlantGrid,
     gate_xy_m: tuple[float, float] | None = None,
     no_go_m: MultiPolygon | None = None,
+    clearance: Clearance | None = None,
 ) -> RoadNetwork:
     """Return the network of ways between the lane ends of a plot and its gate.
 
@@ -261,27 +268,31 @@ def find_roads(
     straight line touches no row and stays in the drivable area, from node to node. Where that
     leaves parts of the plot apart, they are joined by the shortest ways outside, which lead from
     part to part and are no short cuts between places of one; never over `no_go_m`. Without a gate,
-    work starts at the low-x lane end of the first row.
+    work starts at the low-x lane end of the first row that is not shut.
+
+    With a `clearance`, ways keep so far off plants, rows whose aisles are too narrow are shut:
+    nothing leads along them, and nobody need reach them.
     Raise `PlotError` if some row cannot be reached.
     """
-    obstacles = Obstacles.of(grid, MultiPolygon() if no_go_m is None else no_go_m)
+    obstacles = Obstacles.of(grid, MultiPolygon() if no_go_m is None else no_go_m, clearance)
     if not grid.in_rows:
         return _find_from_tree_to_tree(grid, gate_xy_m, obstacles)
+    narrow = _Narrow.of(grid, clearance)
     if grid.aisles_m is not None:
-        return _find_bent(grid, gate_xy_m, obstacles)
+        return _find_bent(grid, gate_xy_m, obstacles, narrow)
     xy_m, place = _merged(_row_end_places(grid))
     beside = np.where(grid.side[:, None] < 0, place[:, :, 2], place[:, :, 0])
-    trusted = np.concatenate([beside, np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)])
-    tried = _each_once(
-        np.concatenate([_along_aisles(grid, xy_m, place), _nearest(xy_m), _jumps(grid, place)])
-    )
+    turns = np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)
+    trusted = np.concatenate([beside[~narrow.shut], turns[narrow.passed.ravel()]])
+    tried = np.concatenate([_along_aisles(grid, xy_m, place), _nearest(xy_m), _jumps(grid, place)])
+    tried = _each_once(tried[~np.isin(tried, beside[narrow.tight]).any(axis=1)])
     good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]])
     net = _Net(xy_m, np.concatenate([trusted, tried[good]]))
-    gate = int(beside[0, 0])
+    gate = int(beside[np.argmin(narrow.shut), 0])
     if gate_xy_m is not None:
         gate = len(net.xy_m)
         net = _with_gate(net, np.array([gate_xy_m]), obstacles, grid)
-    needed = np.append(beside.ravel(), gate)
+    needed = np.append(beside[~narrow.shut].ravel(), gate)
     net = _joined_outside(_chained(_joined_inside(net, needed, obstacles)), needed, obstacles)
     return _sorted(net, beside, gate)
 
@@ -305,28 +316,55 @@ def _find_from_tree_to_tree(
     return _sorted(net, np.repeat(np.arange(n), 2).reshape(-1, 2), gate)
 
 
+class _Narrow(NamedTuple):
+    """What a robot's size shuts.
+
+    Rows that cannot be inspected ``(r,)``, lane ends with no room to turn, and row ends that are
+    passed clear of their plants, ``(r, 2)``.
+    """
+
+    shut: Mask
+    tight: Mask
+    passed: Mask
+
+    @classmethod
+    def of(cls, grid: PlantGrid, clearance: Clearance | None) -> _Narrow:
+        none = np.zeros((grid.n_rows, 2), np.bool_)
+        if clearance is None:
+            return cls(none[:, 0], none, ~none)
+        beyond_m = np.abs(grid.lane_x_m - grid.along_m[_end_plants(grid)])
+        tight = clearance.tight_ends(grid)
+        return cls(clearance.shut(grid), tight, (beyond_m >= clearance.way_m) & ~tight)
+
+
 def _find_bent(
-    grid: PlantGrid, gate_xy_m: tuple[float, float] | None, obstacles: Obstacles
+    grid: PlantGrid,
+    gate_xy_m: tuple[float, float] | None,
+    obstacles: Obstacles,
+    narrow: _Narrow,
 ) -> RoadNetwork:
     """Return the network of rows that bend: along the middle of their aisles ways bend too."""
     places, at_m = row_end_places(grid)
     xy_m, place = _merged(places)
     beside = np.where(grid.side[:, None] < 0, place[:, :, 2], place[:, :, 0])
     lane = None if gate_xy_m is None else _lane_at(grid, np.array([gate_xy_m]))
-    gate = int(beside[0, 0]) if gate_xy_m is None else len(xy_m)
+    gate = int(beside[np.argmin(narrow.shut), 0]) if gate_xy_m is None else len(xy_m)
     if lane is not None:
         xy_m = np.concatenate([xy_m, lane[0]])
-    bends = bends_of(grid, place, at_m, None if lane is None else (gate, *lane[1:]))
+    at_gate = None if lane is None else (gate, *lane[1:])
+    bends = bends_of(grid, place, at_m, at_gate, narrow.shut)
     bends = bends.where(_driveable(bends, obstacles))
     across = place.reshape(-1, 3)
-    trusted = np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)
+    turns = np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)
+    trusted = turns[narrow.passed.ravel()]
     tried = [across[:, :2], across[:, 1:], _nearest(xy_m), _jumps(grid, place)]
-    pairs = _each_once(np.concatenate(tried))
+    pairs = np.concatenate(tried)
+    pairs = _each_once(pairs[~np.isin(pairs, beside[narrow.tight]).any(axis=1)])
     good = obstacles.clear(xy_m[pairs[:, 0]], xy_m[pairs[:, 1]])
     net = _Net(xy_m, np.concatenate([trusted, bends.pair, pairs[good]]))
     if gate_xy_m is not None and lane is None:
         net = _with_gate(net, np.array([gate_xy_m]), obstacles, grid)
-    needed = np.append(beside.ravel(), gate)
+    needed = np.append(beside[~narrow.shut].ravel(), gate)
     net = _joined_outside(_joined_inside(net, needed, obstacles), needed, obstacles)
     return _sorted(net, beside, gate, bends)
 
@@ -691,6 +729,8 @@ def _sorted(net: _Net, end: Index, gate: int, bends: Bends | None = None) -> Roa
     xy_m = net.xy_m[kept]
     start = np.searchsorted(from_to[:, 0], np.arange(len(kept) + 1))
     length_m = _Net(xy_m, from_to).length_m()
+    # ends of a row that is shut may be out of reach: nobody goes there
+    ends = np.where(place[end] < 0, place[gate], place[end])
     via_start, via_m = np.zeros(len(from_to) + 1, np.int64), np.empty((0, 2))
     if bends is not None:
         via_start, via_m = bends.numbered(place).along(from_to, length_m)
@@ -699,7 +739,7 @@ def _sorted(net: _Net, end: Index, gate: int, bends: Bends | None = None) -> Roa
         start,
         from_to[:, 1].astype(np.int64),
         length_m,
-        place[end].astype(np.int64),
+        ends.astype(np.int64),
         int(place[gate]),
         via_start,
         via_m,

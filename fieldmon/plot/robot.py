@@ -75,6 +75,11 @@ class Robot:
         Chance of detection given outright; None takes it from `viewpoints` and `look_s`.
     returns
         Whether the day's hours must also cover the way back to the gate.
+    width_m, length_m
+        Size over everything. With a width, ways keep half of it off the canopies of plants, and
+        aisles and row ends that are too narrow are not driven; see `Aisles.for_robot`. Without
+        one, as in the thesis, ways keep 0.3 m off the middle of plants. A length of None is as
+        long as wide.
     """
 
     speed_m_s: float = 2.5 / 3.6
@@ -86,6 +91,8 @@ class Robot:
     viewpoints: Viewpoints = Viewpoints()
     detection: float | None = None
     returns: bool = True
+    width_m: float | None = None
+    length_m: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("speed_m_s", "look_s", "hours"):
@@ -95,6 +102,11 @@ class Robot:
         _must("hours", self.hours, "24 at most", self.hours <= 24)
         if self.detection is not None:
             _must("detection", self.detection, "in 0..1", 0 <= self.detection <= 1)
+        for name in ("width_m", "length_m"):
+            if (size_m := getattr(self, name)) is not None:
+                _must(name, size_m, "0.05 to 10 metres", 0.05 <= size_m <= 10)
+        if self.length_m is not None and self.width_m is None:
+            raise SettingError("A robot whose length is known must have a width too. Give both.")
 
     @property
     def day_s(self) -> float:
@@ -110,6 +122,13 @@ class Robot:
     def detects(self) -> float:
         """Return the chance that an infested plant is found when it is inspected."""
         return self.viewpoints.detection(self.look_s) if self.detection is None else self.detection
+
+    @property
+    def turning_m(self) -> float | None:
+        """Return how wide it is while it turns on the spot: its diagonal. None: not known."""
+        if self.width_m is None:
+            return None
+        return math.hypot(self.width_m, self.length_m or self.width_m)
 
     def with_hours(self, hours: float) -> Robot:
         """Return the same robot with another working day."""
@@ -128,6 +147,21 @@ def scout() -> Robot:
     return Robot(
         speed_m_s=4.0 / 3.6, row_change_s=3.0, turn_180_s=2.0, stop_s=5.0, look_s=30.0, hours=4.0
     )
+
+
+def rover() -> Robot:
+    """Return a small robot with two driven wheels, its times those of simulated drives.
+
+    It is the robot of `fieldmon drive --robot mujoco`; docs/drive tells how its times were found.
+    Its mast looks to both sides, and it drives as well backwards: it need not turn in an aisle.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.rover().width_m
+    0.58
+    """
+    return Robot(row_change_s=9.0, turn_180_s=0.0, stop_s=1.13, width_m=0.58, length_m=0.8)
 
 
 def _must(name: str, value: float, rule: str, holds: bool) -> None:  # noqa: FBT001 - one check

@@ -12,7 +12,8 @@ import shapely
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.wording import counted
-from fieldmon.plot.driven_line import Lanes, driven_line
+from fieldmon.plot.clearance import Clearance, told_shut
+from fieldmon.plot.driven_line import Lanes, driven_line, shortest_nodes
 from fieldmon.plot.road_network import RoadNetwork, find_roads, row_lines
 
 if TYPE_CHECKING:
@@ -79,11 +80,18 @@ class Aisles:
         The network of ways between lane ends.
     travel
         How far it is along them, for compiled loops: see `drive_m`.
+    gate_xy_m, no_go_m
+        Where the gate was said to be, and where nobody may drive.
+    clearance
+        How far ways keep off plants; None: as for a robot whose width nobody said.
     """
 
     grid: PlantGrid
     roads: RoadNetwork
     travel: TravelTable
+    gate_xy_m: tuple[float, float] | None = None
+    no_go_m: MultiPolygon | None = None
+    clearance: Clearance | None = None
 
     @classmethod
     def of(
@@ -91,13 +99,15 @@ class Aisles:
         grid: PlantGrid,
         gate_xy_m: tuple[float, float] | None = None,
         no_go_m: MultiPolygon | None = None,
+        clearance: Clearance | None = None,
     ) -> Aisles:
         """Find the ways on a plot; raise `PlotError` where a row cannot be reached.
 
         Without a gate, work starts at the low-x lane end of the first row. `no_go_m` is what must
         not be crossed either where parts of a plot can only be joined outside the boundary.
+        `clearance` is what a robot needs.
         """
-        roads = find_roads(grid, gate_xy_m, no_go_m)
+        roads = find_roads(grid, gate_xy_m, no_go_m, clearance)
         between_m = np.empty((2 * grid.n_rows + 1, 2 * grid.n_rows + 1))
         _reach(roads, np.append(roads.end.ravel(), roads.gate), between_m)
         travel = TravelTable(
@@ -112,7 +122,45 @@ class Aisles:
         for values in (*roads, *travel):
             if isinstance(values, np.ndarray):
                 read_only(values)
-        return cls(grid, roads, travel)
+        return cls(grid, roads, travel, gate_xy_m, no_go_m, clearance)
+
+    def for_robot(self, robot: Robot) -> Aisles:
+        """Return the ways that a robot can drive: these, unless it is too wide for them.
+
+        Raise `PlotError` if all aisles are too narrow for it, or rows cannot be reached.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+        >>> plot.aisles.for_robot(fm.Robot()) is plot.aisles
+        True
+        >>> plot.aisles.for_robot(fm.Robot(width_m=0.58)).clearance.way_m
+        0.64
+        """
+        needs = Clearance.of(robot, self.grid)
+        if needs == self.clearance:
+            return self
+        if needs not in self._others:
+            self._others[needs] = Aisles.of(self.grid, self.gate_xy_m, self.no_go_m, needs)
+        return self._others[needs]
+
+    @cached_property
+    def _others(self) -> dict[Clearance | None, Aisles]:
+        return {}
+
+    @cached_property
+    def shut(self) -> NDArray[np.bool_]:
+        """Whether each plant ``(n,)`` stands in a row whose aisle is too narrow to enter."""
+        if self.clearance is None:
+            return read_only(np.zeros(len(self.grid), np.bool_))
+        return read_only(self.clearance.shut(self.grid)[self.grid.row])
+
+    def told_shut(self) -> str:
+        """Return for people which rows the robot cannot enter, in a sentence; "" if none."""
+        if self.clearance is None or not self.shut.any():
+            return ""
+        return told_shut(self.shut[self.grid.row_start[:-1]], self.grid, self.clearance)
 
     def __repr__(self) -> str:
         return f"<Aisles: {self.grid.counts}, {counted(len(self.roads.xy_m), 'node')}>"
@@ -170,6 +218,13 @@ class Aisles:
         for values in lanes:
             read_only(values)
         return lanes
+
+
+def trace(aisles: Aisles, a: int, b: int) -> list[int]:
+    """Return the nodes of the network on the way between two lane ends, as in `TravelTable`."""
+    stops = np.append(aisles.roads.end.ravel(), aisles.roads.gate)
+    nodes: list[int] = shortest_nodes(aisles.roads, stops[a], stops[b]).tolist()
+    return nodes
 
 
 def crosses_rows(grid: PlantGrid, line_xy_m: Float) -> bool:

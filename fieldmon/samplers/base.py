@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.tracing import Traces
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles, Clock
@@ -78,13 +79,14 @@ class Scene:
     Parameters
     ----------
     aisles
-        The plot: plants and the ways between them.
+        The plot: plants and the ways between them that the robot can drive.
     robot
         Who inspects.
     chance
         ``(n,)`` believed chance that each plant is infested.
     last_inspected
-        ``(n,)`` int32 day on which each plant was inspected last, `NEVER` if it was not.
+        ``(n,)`` int32 day on which each plant was inspected last, `NEVER` if it was not. Plants
+        in aisles too narrow for the robot seem inspected today: nobody is sent there.
     day
         Today's number. A plant inspected on this day is not visited again.
     at
@@ -99,6 +101,8 @@ class Scene:
     pair_chance
         ``(e,)`` believed chance that two plants side by side are both infested, in the order of
         ``grid.adjacent``; None where nothing is believed of pairs.
+    traces
+        What is believed of how far insects jump; None where nothing is.
     """
 
     aisles: Aisles
@@ -111,11 +115,16 @@ class Scene:
     trail: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
     key: np.uint64 = np.uint64(0)  # noqa: RUF009 - a number, not a call with effects
     pair_chance: NDArray[np.float64] | None = None
+    traces: Traces | None = None
 
     def __post_init__(self) -> None:
-        robot = self.aisles.worked_by(self.robot)
-        if robot is not self.robot:
-            object.__setattr__(self, "robot", robot)
+        # whoever makes a scene need not think of it: its ways are those that its robot can drive
+        aisles = self.aisles.for_robot(self.robot)
+        if aisles.shut.any():
+            seen = np.where(aisles.shut, np.int32(self.day), self.last_inspected)
+            object.__setattr__(self, "last_inspected", seen)
+        object.__setattr__(self, "aisles", aisles)
+        object.__setattr__(self, "robot", aisles.worked_by(self.robot))
 
     def __repr__(self) -> str:
         hours = self.seconds_left / 3600

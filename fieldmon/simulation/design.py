@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _CHUNK_S = 4.0
 _S_PER_DAY = 3e-4
 # changes when seasons come out differently, so that old chunks are not taken for new ones
-_VERSION, _DIGITS = "1", 20
+_VERSION, _DIGITS = "2", 20
 
 
 @dataclass(frozen=True, eq=False)

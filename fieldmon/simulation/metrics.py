@@ -37,6 +37,8 @@ class SeasonMetrics:
         Infestations of the night before each day (on day 0: those at the start).
     left
         Infested plants after each day's work.
+    worked_h
+        Hours worked on each day, of all who work.
     """
 
     detection_pct: NDArray[np.float64]
@@ -45,6 +47,7 @@ class SeasonMetrics:
     found: NDArray[np.int64]
     new: NDArray[np.int64]
     left: NDArray[np.int64]
+    worked_h: NDArray[np.float64]
 
     def __repr__(self) -> str:
         days, finds = counted(len(self.left), "day"), counted(int(self.found.sum()), "find")
@@ -74,9 +77,12 @@ def season_metrics(days: Iterable[SimulatedDay]) -> SeasonMetrics:
             day.found,
             day.ever_infested,
             day.left,
+            day.worked_s / 3600.0,
         )
         for day in days
     ]
-    columns = np.array(rows, dtype=np.float64).reshape(-1, 6).T
-    found, ever, left = columns[3:].astype(np.int64)
-    return SeasonMetrics(columns[0], columns[1], columns[2], found, np.diff(ever, prepend=0), left)
+    columns = np.array(rows, dtype=np.float64).reshape(-1, 7).T
+    found, ever, left = columns[3:6].astype(np.int64)
+    new = np.diff(ever, prepend=0)
+    detection, visited, ever_visited = columns[:3]
+    return SeasonMetrics(detection, visited, ever_visited, found, new, left, columns[6])

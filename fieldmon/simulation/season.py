@@ -9,8 +9,8 @@ import numpy as np
 
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread, night
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.workday import draw_detections, work_day
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 
@@ -45,17 +45,33 @@ class SeasonSettings:
         How findings change the chance map; None: with the robot's own detection.
     believe
         How plot and first chance map become a belief.
+    pests
+        Who is infested the next morning, from the plants, those infested in the evening and the
+        night's key; None: as `spread` says.
+    hidden_nights
+        Nights for which a new infestation spreads and no inspection finds it; 0 for those of the
+        first morning.
     """
 
     n_days: int = 25
     spread: Spread = field(default_factory=Spread)
     believed_spread: Spread | None = None
     learning: Learning | None = None
-    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = PairApproximation.of
+    believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = TracedPairs.of
+    pests: Callable[[PlantGrid, NDArray[np.bool_], np.uint64], NDArray[np.bool_]] | None = None
+    hidden_nights: int = 0
 
     def __post_init__(self) -> None:
         if self.n_days < 1:
             raise SettingError(f"A season must have 1 day or more, but n_days is {self.n_days}.")
+
+    def night(
+        self, grid: PlantGrid, infested: NDArray[np.bool_], key: np.uint64
+    ) -> NDArray[np.bool_]:
+        """Return who is infested the next morning, ``(n,)``."""
+        if self.pests is not None:
+            return self.pests(grid, infested, key)
+        return night(grid, infested, self.spread, key)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,15 +94,23 @@ class SimulatedDay:
         Infestations so far, this morning's included (a plant infested again counts again).
     ever_found
         Finds so far, today's included.
+    each
+        The working day of each of a team; of one alone it is `work`.
     """
 
     number: int
     work: Workday
     infested: NDArray[np.bool_]
-    mornings: _MorningBeliefs
+    mornings: MorningBeliefs
     last_inspected: NDArray[np.int32]
     ever_infested: int
     ever_found: int
+    each: tuple[Workday, ...] = ()
+
+    @property
+    def worked_s(self) -> float:
+        """Return the seconds worked today, of all together."""
+        return sum(one.end_s for one in self.each or (self.work,))
 
     @property
     def belief(self) -> Belief:
@@ -124,7 +148,7 @@ class SimulatedDay:
         return 100.0 * float(np.mean(self.last_inspected >= 0))
 
 
-class _MorningBeliefs:
+class MorningBeliefs:
     """What is believed on every morning of a season, worked out when somebody asks.
 
     Most of a season's time goes into it, and half of the samplers do not read it.
@@ -133,9 +157,14 @@ class _MorningBeliefs:
     def __init__(
         self, first: Callable[[], Belief], learning: Callable[[Workday], Learning], spread: Spread
     ) -> None:
-        self._first, self._learning, self._spread = first, learning, spread
+        self._first, self.learning, self._spread = first, learning, spread
         self._works: list[Workday] = []
         self._last: tuple[int, Belief] | None = None
+
+    @property
+    def known(self) -> int:
+        """Return the number of the first day whose work it has not heard of."""
+        return len(self._works)
 
     def add(self, work: Workday) -> None:
         """Hear of the next day's work."""
@@ -147,7 +176,7 @@ class _MorningBeliefs:
         if day > number:
             day, belief = 0, self._first()
         for work in self._works[day:number]:
-            evening = belief.learn(work.plant, work.found, self._learning(work))
+            evening = belief.learn(work.plant, work.found, self.learning(work))
             belief = evening.overnight(self._spread)
         self._last = number, belief
         return belief
@@ -167,8 +196,8 @@ def simulated_days(
     ``inspect/day``, ``spread/day`` and ``sampler/day``, so that every sampler meets the same
     insects, and would find the same ones on a plant.
     """
-    _check(aisles, start)
-    season = _Season(aisles, robot, sampler, start, settings)
+    check_start(aisles, start)
+    season = SeasonOnItsWay(aisles, robot, sampler, start, settings)
     keys = zip(*(streams.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
     for number, (own, inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
         day = season.work(number, own, inspect)
@@ -176,7 +205,7 @@ def simulated_days(
         season.pass_night(day.work, overnight)
 
 
-class _Season:
+class SeasonOnItsWay:
     """A season on its way: what a day changes, and how."""
 
     def __init__(
@@ -190,17 +219,26 @@ class _Season:
         self.aisles, self.robot, self.sampler, self.settings = aisles, robot, sampler, settings
         self.first_chance, self.infested = start.chance, start.infested.copy()
         self.detects = sampler.inspection_times(robot).detects
-        self.mornings = _mornings(
+        self.mornings = morning_beliefs(
             aisles.grid, robot, start, settings, chooses_time=len(self.detects) > 1
         )
         self.last_inspected = np.full(len(self.infested), NEVER, np.int32)
         self.ever_infested, self.ever_found = int(np.count_nonzero(self.infested)), 0
         self.trail = np.empty(0, np.int32)
+        self.shows_on = np.zeros(len(self.infested), np.int32)
 
     def work(self, number: int, own_key: np.uint64, inspect_key: np.uint64) -> SimulatedDay:
         """Work for a day; return what came of it."""
-        would_find = draw_detections(self.infested, self.detects, inspect_key)
-        work = work_day(self._scene(number, own_key), self.sampler, would_find)
+        would_find = draw_detections(self.showing(number), self.detects, inspect_key)
+        return self.worked(number, work_day(self.scene(number, own_key), self.sampler, would_find))
+
+    def showing(self, number: int) -> NDArray[np.bool_]:
+        """Return where an inspection may find something on a day, ``(n,)``."""
+        showing: NDArray[np.bool_] = self.infested & (self.shows_on <= number)
+        return showing
+
+    def worked(self, number: int, work: Workday, each: tuple[Workday, ...] = ()) -> SimulatedDay:
+        """Note what was done on a day; return it."""
         self.last_inspected = self.last_inspected.copy()
         self.last_inspected[work.plant] = number
         self.ever_found += int(np.count_nonzero(work.found))
@@ -212,25 +250,30 @@ class _Season:
             self.last_inspected,
             self.ever_infested,
             self.ever_found,
+            each,
         )
 
     def pass_night(self, work: Workday, key: np.uint64) -> None:
         """Destroy what was found, and let the others spread."""
         self.mornings.add(work)
+        day_after = self.mornings.known
         evening = self.infested.copy()
         evening[work.plant[work.found]] = False
-        self.infested = night(self.aisles.grid, evening, self.settings.spread, key)
+        self.infested = self.settings.night(self.aisles.grid, evening, key)
+        self.shows_on[self.infested & ~evening] = day_after + self.settings.hidden_nights
         # nobody recovers at night
         self.ever_infested += int(np.count_nonzero(self.infested) - np.count_nonzero(evening))
         self.trail = work.plant if len(work) else self.trail
 
-    def _scene(self, number: int, key: np.uint64) -> Scene:
+    def scene(self, number: int, key: np.uint64) -> Scene:
+        """Return the scene of a morning."""
         belief = self.mornings.on(number) if self.sampler.reads_chance else None
         return Scene(
             aisles=self.aisles,
             robot=self.robot,
             chance=self.first_chance if belief is None else belief.chance,
             pair_chance=None if belief is None else belief.pair_chance,
+            traces=None if belief is None else belief.traces,
             last_inspected=self.last_inspected,
             day=number,
             at=resting_place(self.robot, self.trail),
@@ -240,14 +283,14 @@ class _Season:
         )
 
 
-def _mornings(
+def morning_beliefs(
     grid: PlantGrid,
     robot: Robot,
     start: Start,
     settings: SeasonSettings,
     *,
     chooses_time: bool,
-) -> _MorningBeliefs:
+) -> MorningBeliefs:
     """Return what will be believed on the mornings of a season."""
     usual = settings.learning or Learning(detection=robot.detects)
 
@@ -257,10 +300,11 @@ def _mornings(
     def learning(work: Workday) -> Learning:
         return replace(usual, detection=work.detects) if chooses_time else usual
 
-    return _MorningBeliefs(first, learning, settings.believed_spread or settings.spread)
+    return MorningBeliefs(first, learning, settings.believed_spread or settings.spread)
 
 
-def _check(aisles: Aisles, start: Start) -> None:
+def check_start(aisles: Aisles, start: Start) -> None:
+    """Raise `PlotError` if a start is of another plot."""
     n = len(aisles.grid)
     for name, values in (("infested", start.infested), ("chance", start.chance)):
         if len(values) != n:

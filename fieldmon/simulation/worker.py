@@ -14,8 +14,9 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import DETECTION_LEVELS_PCT, season_metrics
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SeasonSettings
 from fieldmon.simulation.start import season_start
+from fieldmon.simulation.team_season import ONE
 
 if TYPE_CHECKING:
     import numpy as np
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from fieldmon.simulation.design import Combination, StudyPlot
     from fieldmon.simulation.metrics import SeasonMetrics
+    from fieldmon.simulation.team_season import Team
 
     Setting = tuple[StudyPlot, Combination]
 
@@ -67,6 +69,7 @@ def simulated_season(
     levels: Combination,
     seed: int,
     n_days: int,
+    team: Team = ONE,
 ) -> SeasonMetrics:
     """Return what one season comes to, on a plot with its chances of infestation ``(n,)``."""
     (plot, chance), streams = prepared, RandomStreams(seed)
@@ -74,7 +77,7 @@ def simulated_season(
     settings = SeasonSettings(n_days=n_days, spread=Spread(levels.spread))
     robot = replace(robot, hours=levels.hours, look_s=levels.look_s)
     decides = sampler(levels.sampler)
-    return season_metrics(simulated_days(plot.aisles, robot, decides, start, settings, streams))
+    return season_metrics(team.days((plot, robot), decides, start, settings, streams))
 
 
 class _Unhashed:

@@ -65,30 +65,49 @@ def range_chart(title: str, rows: Sequence[Range], axis: str) -> Markup:
     return _svg(title, height, parts)
 
 
-def line_chart(title: str, lines: Sequence[Line], axes: tuple[str, str]) -> Markup:
-    """Return a chart of lines with a legend, as an ``<svg>`` element; empty without points."""
+def line_chart(
+    title: str, lines: Sequence[Line], axes: tuple[str, str], *, powers: bool = False
+) -> Markup:
+    """Return a chart of lines with a legend, as an ``<svg>`` element; empty without points.
+
+    With `powers` every step up the chart is ten times the last; values must be above 0 then.
+    """
+    if powers:
+        lines = [_in_powers(line) for line in lines]
     known = [point for line in lines for point in _known(line.x, line.y)]
     if not known:
         return Markup()
     xs, ys = zip(*known, strict=True)
-    across, up = _scale(min(xs), max(xs)), _scale(0, max(ys))
+    across = _scale(min(xs), max(xs))
+    up = (math.floor(min(ys)), math.ceil(max(ys)), 1.0) if powers else _scale(0, max(ys))
+    up = (up[0], max(up[1], up[0] + 1), up[2])
     left, right, bottom = 50, _WIDTH - 130, _HEIGHT - _BOTTOM
 
     def at(x: float, y: float) -> tuple[float, float]:
         return (
             left + (x - across[0]) / (across[1] - across[0]) * (right - left),
-            bottom - (y - up[0]) / (up[1] - up[0]) * (bottom - _TOP),
+            bottom - (max(y, up[0]) - up[0]) / (up[1] - up[0]) * (bottom - _TOP),
         )
 
     parts = [_vertical(at(tick, 0)[0], bottom, f"{tick:g}") for tick in _ticks(*across)]
     parts += [
-        _text(left - 6, at(across[0], tick)[1] + 4, f"{tick:g}", "end") for tick in _ticks(*up)
+        _text(left - 6, at(across[0], tick)[1] + 4, f"{10**tick if powers else tick:g}", "end")
+        for tick in _ticks(*up)
     ]
     for k, line in enumerate(lines):
         parts += [_band(line, at, k), _drawn(line, at, k), *_legend(line.label, right, k)]
     parts.append(_text((left + right) / 2, _HEIGHT - 8, axes[0], "middle"))
     parts.append(_text(left, _TOP - 8, axes[1], "start"))
     return _svg(title, _HEIGHT, parts)
+
+
+def _in_powers(line: Line) -> Line:
+    """Return a line with the powers of ten that its values are; of none there is none."""
+    y, low, high = (
+        [math.log10(v) if v > 0 else math.nan for v in values]
+        for values in (line.y, line.low, line.high)
+    )
+    return Line(line.label, line.x, y, low, high)
 
 
 def _known(x: Sequence[float], y: Sequence[float]) -> list[tuple[float, float]]:

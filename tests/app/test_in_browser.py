@@ -1,15 +1,19 @@
 """The app in a real browser without internet: what is on the screen is where it should be."""
 
+import io
 import json
 import re
 from contextlib import suppress
 from dataclasses import replace
 from datetime import date
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from threading import Thread
 
 import geopandas as gpd
 import numpy as np
 import pytest
 import shapely
+from PIL import Image
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 from shapely import box
 
@@ -24,7 +28,7 @@ from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.plot import Plot
-from tests.app.driving import zipped
+from tests.app.driving import until, zipped
 from tests.app.on_screen import (
     DRAWN,
     IDLE,
@@ -53,6 +57,11 @@ PHONE = ((390, 844), "Mozilla/5.0 (Linux; Android 14) Chrome/150.0 Mobile Safari
 LAPTOP = ((1440, 900), None)
 ROUTE, HOT = texts.MAP_LAYERS["route"], texts.MAP_LAYERS["hot"]
 BY_STATE = texts.SHADES["state"]
+# what a map of the world shows everywhere
+GREY = (77, 99, 55)
+_TILE = io.BytesIO()
+Image.new("RGB", (256, 256), GREY).save(_TILE, "PNG")
+TILE = _TILE.getvalue()
 # the dark ring round a find
 RING = (20, 0, 0)
 
@@ -167,6 +176,91 @@ def test_nothing_is_asked_of_the_world(page, address):
     assert len(page.requests) > 30
     own = (address, address.replace("http", "ws"), "data:", "blob:", "about:")
     assert [url for url in page.requests if not url.startswith(own)] == []
+
+
+@pytest.fixture
+def world():
+    """Stand for a server of maps somewhere in the world; remember what it is asked."""
+    asked = []
+
+    class Answers(BaseHTTPRequestHandler):
+        def do_GET(self):
+            asked.append(self.path)
+            self.send_response(200)
+            self.send_header("Access-Control-Allow-Origin", "*")
+            self.end_headers()
+            self.wfile.write(TILE)
+
+        def log_message(self, *_):
+            pass
+
+    with ThreadingHTTPServer(("127.0.0.1", 0), Answers) as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}", asked
+        server.shutdown()
+
+
+def test_a_map_of_the_world_is_asked_only_once_it_is_agreed_to_and_no_longer_than_that(
+    page, address, served_seasons, world
+):
+    season(served_seasons / "World.gpkg", sample()[0])
+    url, asked = world
+    page.goto(f"{address}/plot?season=World")
+    rest(page)
+    page.get_by_text(texts.GROUND, exact=True).click()
+    page.get_by_role("combobox", name=texts.WEB_MAP, exact=True).click()
+    page.get_by_role("option", name=texts.WEB_MAPS["other"]).click()
+    box = page.get_by_role("textbox", name=texts.WEB_MAP_ADDRESS)
+    box.fill(f"{url}/{{z}}/{{x}}/{{y}}.png")
+    box.press("Enter")
+    agree = page.get_by_role("button", name=re.compile("^Agree: show pictures from"))
+    agree.wait_for(timeout=60_000)
+    before = still(page)
+    assert asked == [], "nothing is asked before anybody agreed"
+    agree.click()
+    becomes(page, lambda now: (np.abs(now - GREY).max(axis=2) < 6).mean() > 0.15, "the map")
+    assert asked
+    assert all(re.fullmatch(r"/\d+/\d+/\d+\.png", path) for path in asked), "nothing but tiles"
+    switch(page, texts.MAP_LAYERS["ground"], on=False)
+    becomes(page, lambda now: (now == before).mean() > 0.99, "the map without it")
+    n = len(asked)
+    zoomed(page)
+    assert len(asked) == n, "what is switched off is not asked for"
+    page.get_by_role("button", name=re.compile("^Stop asking")).click()
+    agree.or_(page.get_by_role("combobox", name=texts.WEB_MAP)).first.wait_for(timeout=60_000)
+    page.reload()
+    rest(page)
+    still(page)
+    assert len(asked) == n
+
+
+def test_rows_are_selected_by_their_numbers_and_the_map_is_driven_by_keys(page, address):
+    shown(page, address)
+    still(page)
+    page.locator(".label.row", has_text=re.compile("^10$")).click()
+    page.get_by_text("85 plants selected").wait_for(timeout=60_000)
+    page.locator(".label.row", has_text=re.compile("^20$")).click()
+    page.get_by_text("170 plants selected").wait_for(timeout=60_000)
+    page.locator(".label.row", has_text=re.compile("^20$")).click()
+    page.get_by_text("85 plants selected").wait_for(timeout=60_000)
+    page.get_by_role("application").focus()
+    middle = view(page)
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("+")
+    until(lambda: view(page)["zoom"] > middle["zoom"] + 0.99)
+    still(page)
+    assert view(page)["longitude"] > middle["longitude"]
+    said = page.locator(f"{MAP} [role=status]")
+    for _ in range(20):  # the middle may lie between plants
+        if "chance" in said.text_content():
+            break
+        page.keyboard.press("Shift+ArrowDown")
+        still(page)
+    row, plant = re.search(r"row (\d+), plant (\d+)", said.text_content()).groups()
+    page.keyboard.press("Enter")
+    page.get_by_text(texts.HISTORY).first.wait_for(timeout=60_000)
+    for name, number in ((texts.HISTORY_ROW, row), (texts.HISTORY_PLANT, plant)):
+        assert page.get_by_role("spinbutton", name=name, exact=True).input_value() == number
 
 
 def test_the_route_is_downloaded_and_read(page, address):

@@ -36,7 +36,7 @@ NASTY = [
     "<b>1</b>",
     "9" * 400,
 ]
-RASTERS = {"missing_plants_file": 1.0, "risk_file": 0.1, "backdrop_file": 9.0}
+RASTERS = {"missing_plants_file": 1.0, "risk_file": 0.1, "ground_file": 9.0}
 
 
 def raster(value):

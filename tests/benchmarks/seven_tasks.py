@@ -13,7 +13,6 @@ import os
 import sys
 import tempfile
 import time
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,9 +41,7 @@ class Hand:
         self.page.goto(f"{self.address}/{path}")
         self.page.locator("[data-testid=stApp]").wait_for(timeout=_MOST_MS)
         self.rest()
-        self.page.get_by_text("Inspect").or_(
-            self.page.get_by_text("Plants to inspect")
-        ).first.wait_for(timeout=_MOST_MS)
+        self.page.get_by_text("Plants to inspect").first.wait_for(timeout=_MOST_MS)
         self.rest()
 
     def rest(self) -> None:
@@ -82,21 +79,30 @@ class Hand:
             press()
         assert waiting.value.path().stat().st_size > 0
 
-    def plant(self) -> None:
-        """Tap a plant in the middle of the map."""
+    def plant(self, seen: Callable[[], bool]) -> None:
+        """Tap a plant in the middle of the map, until it is `seen` that one was tapped."""
         self.clicks += 1
         box = self.page.locator("canvas").last.bounding_box()
         assert box is not None
         x, y = box["x"] + 0.62 * box["width"], box["y"] + 0.5 * box["height"]
         for step in range(12):  # between two plants there is nothing to tap
             self.page.mouse.click(x + 3 * step, y + 3 * step)
-            self.page.wait_for_timeout(_REST_MS)
-            with suppress(Exception):
-                self.page.get_by_text("Chance of infestation now").or_(
-                    self.page.get_by_text("History of a plant")
-                ).first.wait_for(timeout=1_500)
-                break
-        self.rest()
+            for _ in range(6):
+                self.page.wait_for_timeout(_REST_MS)
+                if seen():
+                    self.rest()
+                    return
+        raise AssertionError("no plant was tapped")
+
+    def history(self) -> bool:
+        """Return whether a plant's history is there."""
+        said = self.page.get_by_text("Chance of infestation now")
+        return said.or_(self.page.get_by_text("History of a plant")).count() > 0
+
+    def row_said(self) -> bool:
+        """Return whether the box for the row to be recorded is filled in."""
+        box = self.page.get_by_role("spinbutton", name="Row").locator("visible=true").first
+        return box.input_value() != ""
 
 
 # -- as they are done now
@@ -106,7 +112,7 @@ def route_now(hand: Hand) -> None:
     """A shapefile to the first route."""
     hand.button("My plot")
     hand.file(PLOT)
-    hand.page.get_by_text("Inspect ").first.wait_for(timeout=_MOST_MS)
+    hand.page.get_by_text("Plants to inspect").first.wait_for(timeout=_MOST_MS)
     hand.page.wait_for_selector(".map[data-shown]", timeout=_MOST_MS)
 
 
@@ -132,8 +138,7 @@ def gpx_now(hand: Hand) -> None:
 def record_now(hand: Hand) -> None:
     """A find on one plant."""
     hand.button("Record finds")
-    hand.fill("Row", "3")
-    hand.fill("Plant", "4")
+    hand.plant(hand.row_said)
     found = hand.page.locator("[data-testid=stForm]").get_by_role("radio", name="found", exact=True)
     hand.click(found.locator("visible=true"))
     hand.click(_record(hand))
@@ -142,7 +147,7 @@ def record_now(hand: Hand) -> None:
 
 def why_now(hand: Hand) -> None:
     """Why a plant is on the route."""
-    hand.plant()
+    hand.plant(hand.history)
 
 
 def compare_now(hand: Hand) -> None:
@@ -194,7 +199,7 @@ def record_before(hand: Hand) -> None:
 def why_before(hand: Hand) -> None:
     """Why a plant is on the route."""
     hand.link("Map")
-    hand.plant()
+    hand.plant(hand.history)
 
 
 def compare_before(hand: Hand) -> None:

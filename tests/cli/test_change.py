@@ -1,5 +1,6 @@
 """`fieldmon change`: a season goes on otherwise."""
 
+from fieldmon.cli.status import lines
 from fieldmon.monitoring import Season
 
 
@@ -19,3 +20,15 @@ def test_choices_can_be_changed(run, season):
     assert Season(season).settings.robot.hours == 1.0
     code, _, err, _ = run("undo", season, "--change")
     assert (code, "there is none" in err) == (2, True)
+
+
+def test_finds_are_traced_or_not_as_is_chosen(run, season):
+    assert Season(season).settings.belief.traces
+    code, _, err, _ = run("change", season, "--no-trace", "--spread", "0.03")
+    assert code == 0, err
+    kept = Season(season)
+    assert not kept.settings.belief.traces
+    assert kept.settings.belief.spread.rate_per_day == 0.03
+    said = "\n".join(lines(kept, kept.status(kept.last_date())))
+    assert "to neighbours only" in said
+    assert "detection" not in said

@@ -81,7 +81,13 @@ def test_what_does_not_go_with_a_team_is_a_sentence(run, words, says):
     assert says in err
 
 
-def test_a_season_has_one_robot(run, season):
+def test_a_season_keeps_who_works(run, season):
     code, _, err, _ = run("plan", season, "--robots", 2)
     assert code == 2
-    assert "it has one robot" in err
+    assert "Change that with: fieldmon change --robots" in err
+
+
+def test_one_alone_needs_no_room_to_pass_another(run):
+    code, _, err, _ = run(*NURSERY, "--passing", 5)
+    assert code == 2
+    assert "--passing goes with --robots" in err

@@ -42,6 +42,14 @@ def test_a_night_adds_infested_plants_and_takes_none():
     assert after.chance.sum() > 1.5 * belief.chance.sum()
 
 
+def test_the_chance_of_two_is_the_share_of_fields_in_which_both_are_infested():
+    belief = Ensemble.of(GRID, np.full(64, 0.3), clustering=0.5)
+    start, neighbour = GRID.adjacent
+    own = np.repeat(np.arange(64), np.diff(start))
+    both = (belief.fields[:, own] & belief.fields[:, neighbour]).mean(axis=0)
+    assert belief.pair_chance == pytest.approx(both)
+
+
 def test_the_estimate_counts_the_fields():
     belief = Ensemble.of(GRID, np.full(64, 0.1))
     ahead = belief.estimate()

@@ -9,8 +9,9 @@ from scipy.stats import binom
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import PairApproximation, pair_chances
-from fieldmon.infestation.plot_estimate import estimate_plot
+from fieldmon.infestation.plot_estimate import draw_fields, estimate_plot
 from fieldmon.plot.layout import rectangle
+from tests.infestation.enumerated import Enumerated
 
 GRID = rectangle(20, 20)
 
@@ -45,6 +46,20 @@ def test_for_a_row_of_plants_the_chance_of_clean_is_that_of_the_chain():
     )
 
 
+@pytest.mark.parametrize("clustering", [0.0, 0.3, 0.7])
+def test_fields_of_a_row_are_drawn_as_often_as_all_its_states_say(clustering):
+    row = rectangle(1, 6)
+    belief = PairApproximation.of(row, np.linspace(0.1, 0.5, 6), clustering)
+    on = [row.adjacent.start[i] + (i > 0) for i in range(5)]
+    truth = Enumerated.chain(belief.chance, belief.pair_chance[on])
+    fields = np.zeros((6000, 6), np.bool_)
+    believed = belief.chance, belief.pair_chance
+    draw_fields(believed, row.adjacent, RandomStreams(4).key("fields"), fields)
+    share = np.bincount(fields @ (1 << np.arange(6)), minlength=64) / len(fields)
+    allowed = 5.0 * np.sqrt(truth.weight / len(fields)) + 3.0 / len(fields)
+    assert (np.abs(share - truth.weight) <= allowed).all()
+
+
 def test_plants_that_stand_together_make_the_number_less_sure_and_clean_more_likely():
     chance = np.full(400, 0.01)
     alone = estimate_plot(GRID, chance, pair_chances(chance, GRID, clustering=0.0))
@@ -72,3 +87,11 @@ def test_it_says_so_in_a_sentence():
 def test_an_impossible_sureness_is_refused(sure):
     with pytest.raises(SettingError, match="between 0 and 1"):
         estimate_plot(GRID, np.full(400, 0.05), sure=sure)
+
+
+def test_doubt_widens_the_interval_and_moves_nothing_else():
+    grid = rectangle(20, 20)
+    chance = np.full(400, 0.05)
+    sure, doubted = estimate_plot(grid, chance), estimate_plot(grid, chance, doubt=0.5)
+    assert doubted.low < sure.low < sure.high < doubted.high
+    assert (doubted.expected, doubted.chance_clean) == (sure.expected, sure.chance_clean)

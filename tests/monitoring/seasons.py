@@ -71,6 +71,11 @@ def some_results(season, n=5, day=0, found=()):
     return Inspections.of(plants, result, np.datetime64(on, "D"))
 
 
+def three_results(on=0):
+    plants = np.arange(100, 103)
+    return Inspections.of(plants, np.zeros(3, np.int8), np.datetime64(BEGINS, "D") + on)
+
+
 def state(path):
     """Return what counts of a season: it must hold together."""
     season = Season(path)

@@ -109,3 +109,9 @@ def test_a_rebuilt_file_says_the_same(season):
     after = rows(season, sql), rows(season, "SELECT * FROM days")
     assert after[0] == before[0]
     assert [row[1:] for row in after[1]] == [row[1:] for row in before[1]]
+
+
+def test_what_the_inspections_tell_is_kept_with_its_intervals(season):
+    kept = rows(season, "SELECT name, value, low, high FROM learnt ORDER BY fid")
+    assert kept == [(one.name, one.value, one.low, one.high) for one in season.learnt(BEGINS)]
+    assert len(kept) == 5

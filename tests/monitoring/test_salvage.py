@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import FieldmonError, FileProblem
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.salvage import salvage
 from tests.monitoring.seasons import BEGINS, state
@@ -49,6 +50,24 @@ def test_half_a_file_is_refused_and_what_is_left_is_saved(path, tmp_path):
         Season(path).store.check()
     saved = salvage(path, tmp_path / "rescued.gpkg")
     assert saved.rows["plants"] > 0
+
+
+def test_rows_behind_the_damage_are_saved_as_well_as_those_before_it(path, tmp_path):
+    """Read forwards up to the damage, and backwards down to it."""
+    season, n = Season(path), 2000
+    plants, notes = np.arange(n) % 400, [f"note {k:04d} {'x' * 60}" for k in range(n)]
+    on = np.datetime64(BEGINS) + np.arange(n) // 400
+    found = Inspections.of(plants, np.zeros(n, int), on, notes=np.array(notes, object))
+    season.record(found, "many", confirmed=True)
+    data = bytearray(path.read_bytes())
+    page = data.index(b"note 1000") // 4096
+    data[page * 4096 : (page + 1) * 4096] = bytes(4096)
+    path.write_bytes(data)
+    saved = salvage(path, tmp_path / "rescued.gpkg")
+    assert "inspections" in saved.lost
+    kept = Season(tmp_path / "rescued.gpkg").history.inspections.notes.tolist()
+    assert {notes[50], notes[900], notes[1100], notes[-1]} <= set(kept)
+    assert n - 100 < saved.rows["inspections"] < n + 12
 
 
 def test_a_whole_file_is_salvaged_whole(path, tmp_path):

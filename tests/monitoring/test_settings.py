@@ -82,3 +82,11 @@ def test_a_sampler_must_exist_and_look_equally_long_at_every_plant():
 
 def test_seconds_are_counted_from_midnight():
     assert seconds(time(6, 30, 5)) == 6 * 3600 + 30 * 60 + 5
+
+
+def test_a_season_begun_before_finds_were_traced_goes_on_as_it_did():
+    parts = as_json(MonitoringSettings(BEGINS))
+    before = parts | {"beliefs": parts["beliefs"].replace(', "traces": true', "")}
+    assert parts != before
+    assert MonitoringSettings(BEGINS).belief.traces
+    assert not from_json(before).belief.traces

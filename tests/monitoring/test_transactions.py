@@ -2,21 +2,25 @@
 
 import os
 import random
+import shutil
 import sqlite3
 import time
 from contextlib import closing, contextmanager
 from multiprocessing import get_context
+from pathlib import Path
 
 import numpy as np
 import pyogrio
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season, is_season
-from tests.monitoring.seasons import BEGINS, state
+from fieldmon.monitoring.transactions import Store
+from tests.monitoring.open_elsewhere import as_qgis, beside
+from tests.monitoring.seasons import BEGINS, state, three_results
 from tests.monitoring.working import day_by_day, one_by_one
 
+SEASONS_OF_OLD = Path(__file__).with_name("seasons_of_old")
 KILLS = int(os.environ.get("FIELDMON_KILLS", "20"))
 
 
@@ -79,7 +83,12 @@ def test_a_file_of_a_newer_version_is_refused(path):
     with closing(sqlite3.connect(path)) as db:
         db.execute("UPDATE fieldmon SET value = '99' WHERE key = 'version'")
         db.commit()
-    with pytest.raises(FileProblem, match="newer fieldmon"):
+    with pytest.raises(FileProblem, match=r"format 99.*it needs fieldmon >= 0\.2"):
+        Season(path)
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("UPDATE fieldmon SET value = '7.1' WHERE key = 'needs'")
+        db.commit()
+    with pytest.raises(FileProblem, match=r"it needs fieldmon >= 7\.1"):
         Season(path)
 
 
@@ -104,6 +113,102 @@ def test_a_file_held_by_another_program_is_a_sentence(path, monkeypatch):
             season.record(three_results(), "x")
 
 
+def test_who_writes_is_alone_from_the_first_moment(path):
+    """Or two who read first and then write would both write what only one of them has seen."""
+    with (
+        Season(path).store.writing(),
+        closing(sqlite3.connect(path, timeout=0, isolation_level=None)) as other,
+        pytest.raises(sqlite3.OperationalError, match="locked"),
+    ):
+        other.execute("BEGIN IMMEDIATE")
+
+
+def no_links(*_):
+    raise OSError(95, "Operation not supported")
+
+
+@pytest.mark.parametrize("link", [os.link, no_links], ids=["links", "a stick without links"])
+def test_a_season_begun_at_the_same_moment_by_another_is_not_overwritten(
+    tmp_path, monkeypatch, link
+):
+    monkeypatch.setattr(os, "link", link)
+    ours, theirs = tmp_path / "ours.gpkg", tmp_path / "theirs.gpkg"
+    with Store.new(ours):
+        pass
+    assert ours.read_bytes()[:6] == b"SQLite"
+    with pytest.raises(FileProblem, match="by someone else just now"), Store.new(theirs):
+        theirs.write_text("theirs")
+    assert theirs.read_text() == "theirs"
+    assert {file.name for file in tmp_path.iterdir()} == {"ours.gpkg", "theirs.gpkg"}
+
+
+# --- other programs that have the file open, and what they leave behind ---------------------------
+
+
+@contextmanager
+def reader_of(path):
+    """Hold a season as a program does that reads it for long."""
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("BEGIN")
+        other.execute("SELECT count(*) FROM inspections").fetchone()
+        yield
+
+
+def test_reading_and_planning_what_is_planned_already_wait_for_no_reader(path, monkeypatch):
+    monkeypatch.setattr("fieldmon.monitoring.transactions._PATIENCE_S", 0.2)
+    season = Season(path)
+    season.plan(BEGINS)
+    with reader_of(path):
+        assert season.status(BEGINS).found == 3
+        assert len(season.plan(BEGINS, keep=False).route)
+        assert len(season.plan(BEGINS).route)
+        assert is_season(path)
+        with pytest.raises(FileProblem, match=r"has held it.*nothing was changed"):
+            season.record(three_results(), "x")
+    assert state(path) == 12
+
+
+# --- copies ---------------------------------------------------------------------------------------
+
+
+def test_a_copy_is_whole_and_one_file_whoever_works_on_the_season(path, tmp_path):
+    season, copy = Season(path), tmp_path / "copy.gpkg"
+    with closing(as_qgis(path)) as qgis:
+        qgis.execute("UPDATE inspections SET notes = 'not yet in the file' WHERE fid = 5")
+        season.store.back_up(copy)
+    assert beside(copy) == ["copy.gpkg"]
+    assert "not yet in the file" in Season(copy).history.inspections.notes.tolist()
+    assert state(copy) == 12
+    with pytest.raises(FileProblem, match="exists already"):
+        season.store.back_up(copy)
+    with pytest.raises(FileProblem, match="must exist before"):
+        season.store.back_up(tmp_path / "nowhere" / "copy.gpkg")
+
+
+def test_a_damaged_season_is_not_copied_as_if_it_were_whole(path, tmp_path):
+    store = Season(path).store
+    data = bytearray(path.read_bytes())
+    last = len(data) // 4096 - 3
+    data[last * 4096 : (last + 2) * 4096] = b"\xff" * 8192
+    path.write_bytes(data)
+    with pytest.raises(FileProblem, match=r"is damaged.*salvage"):
+        store.back_up(tmp_path / "copy.gpkg")
+    assert not (tmp_path / "copy.gpkg").exists()
+
+
+def test_a_file_of_an_earlier_version_is_copied_before_it_is_changed(tmp_path):
+    old = shutil.copy(SEASONS_OF_OLD / "adaptive.gpkg", tmp_path / "old.gpkg")
+    before = old.read_bytes()
+    Season(old)
+    copy = tmp_path / "old.gpkg.format-2"
+    assert beside(old) == ["old.gpkg", "old.gpkg.format-2"]
+    with closing(sqlite3.connect(copy)) as db, closing(sqlite3.connect(":memory:")) as then:
+        then.deserialize(before)
+        assert list(db.iterdump()) == list(then.iterdump())
+    Season(old)
+    assert beside(old) == ["old.gpkg", "old.gpkg.format-2"]
+
+
 def test_a_file_that_cannot_be_written_is_a_sentence(path):
     season = Season(path)
     results = three_results()
@@ -125,12 +230,7 @@ def test_a_file_that_cannot_be_written_is_a_sentence(path):
         }
         | {"second": np.arange(5000.0)}
     )
-    with pytest.raises(FileProblem, match="full"):
+    with pytest.raises(FileProblem, match="make room and try again"):
         season.record(big, "x", confirmed=True)
     season.store.writing = original
     assert state(path) == 12
-
-
-def three_results():
-    plants = np.arange(100, 103)
-    return Inspections.of(plants, np.zeros(3, np.int8), np.datetime64(BEGINS, "D"))

@@ -31,3 +31,18 @@ def day_by_day(path):
         found = (plants % 7 == 0).astype(np.int8)
         season.record(Inspections.of(plants, found, np.datetime64(on, "D")), f"day {day}")
         day += 1
+
+
+def team_day_by_day(path):
+    """Plan for a team and record what each did, day after day, without end."""
+    season = Season(path)
+    day = 0
+    while True:
+        on = BEGINS + timedelta(days=day % 300)
+        for member, plan in zip(season.settings.team, season.plan_each(on), strict=True):
+            plants = plan.route.plant[:10]
+            who = np.full(len(plants), member.name, object)
+            found = (plants % 7 == 0).astype(np.int8)
+            done = Inspections.of(plants, found, np.datetime64(on, "D"), who=who)
+            season.record(done, f"{member.name}, day {day}")
+        day += 1

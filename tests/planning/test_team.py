@@ -1,6 +1,6 @@
 """A day of several: no plant twice, no two in one aisle at once, and a bound for all together."""
 
-from itertools import combinations
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,13 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.planning.team import TeamMember, plan_team, team_of
+from fieldmon.planning.members import TeamMember, team_of
+from fieldmon.planning.team import bound_of_days, plan_team
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock
 from tests.crooked import crooked_fields
+from tests.second_by_second import nobody_together
 
 
 def plot_of(n_rows=12, n_plants=15, **how):
@@ -27,42 +29,12 @@ def chances(plot, seed=1):
     return np.random.default_rng(seed).beta(0.3, 3.0, len(plot.grid))
 
 
-def in_aisles_second_by_second(plan, step_s=2.0):
-    """Return in which aisle each is at every step of the day, -1 for none, ``(m, t)``.
-
-    By where it stands: between two lane ends, at the height of their lane. It knows nothing of
-    the checker.
-    """
-    until = max(day.route.end_s + at for day, at in zip(plan.days, plan.starts_s, strict=True))
-    clock = np.arange(0.0, until, step_s)
-    found = np.full((len(plan.days), len(clock)), -1)
-    for m, (day, begins) in enumerate(zip(plan.days, plan.starts_s, strict=True)):
-        route, grid = day.route, day.scene.grid
-        if not len(route):
-            continue
-        times, places = [], []
-        for v, (at_s, place) in enumerate(zip(route.line_s, route.line_m, strict=True)):
-            leaves = route.leave_s[route.line_stop == v]
-            for moment in (at_s, *leaves):
-                times.append(moment + begins)
-                places.append(place)
-        x, y = (np.interp(clock, times, np.array(places)[:, k]) for k in range(2))
-        there = (clock >= begins) & (clock <= begins + route.end_s)
-        for row in range(grid.n_rows):
-            low, high = grid.lane_x_m[row]
-            inside = (np.abs(y - grid.lane_y_m[row]) < 0.01) & (x > low + 0.1) & (x < high - 0.1)
-            found[m, there & inside] = grid.corridor[row]
-    return found
-
-
 def check(plan):
     """No plant twice, nobody together in an aisle, hours kept, a bound that holds."""
     stops = np.concatenate([day.route.plant for day in plan.days])
     assert len(np.unique(stops)) == len(stops)
     assert plan.meetings() == []
-    aisles = in_aisles_second_by_second(plan)
-    for one, other in combinations(aisles, 2):
-        assert not ((one == other) & (one >= 0)).any()
+    assert nobody_together([day.route for day in plan.days], plan.starts_s)
     for day, late_s in zip(plan.days, plan.late_s, strict=True):
         robot = day.scene.robot
         assert day.route.end_s + late_s <= robot.day_s * (1 + 1e-9)
@@ -165,8 +137,10 @@ def test_a_team_that_cannot_work_is_refused(members, says):
         plan_team(plot, chances(plot), members)
 
 
-def test_a_team_of_none_or_a_start_on_another_day_is_refused():
-    with pytest.raises(SettingError, match="1 member or more"):
-        team_of(0)
-    with pytest.raises(SettingError, match="must start within a day"):
-        TeamMember("late", starts_s=1e6)
+def test_the_days_of_a_team_have_a_bound_as_long_as_they_are_whole():
+    plot = plot_of()
+    plan = plan_team(plot, chances(plot), team_of(2, Robot(hours=0.6)))
+    said = bound_of_days(plan.days)
+    assert said.startswith(f"{plan.expected_found:.1f} finds expected; no routes of these hours ")
+    begun = replace(plan.days[0], scene=replace(plan.days[0].scene, seconds_left=60.0))
+    assert bound_of_days([begun, plan.days[1]]) == ""

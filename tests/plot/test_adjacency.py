@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.plot.adjacency import across, along, link, lists
+from fieldmon.plot.adjacency import across, across_aisles, along, link, lists
 from fieldmon.plot.layout import rectangle
 
 ROW_M, PLANT_M = 4.0, 3.0
@@ -21,8 +21,9 @@ def plants_on_lines(draw):
     """Draw plants on a few lines, x ascending within each and no two at one place."""
     x, line, y = [], [], []
     for number in range(draw(st.integers(1, 4))):
+        # quarters of a metre add up exactly, and some lie just beyond half a spacing
         places = sorted(draw(st.sets(st.integers(0, 60), min_size=1, max_size=8)))
-        x += [0.5 * place for place in places]
+        x += [0.25 * place for place in places]
         line += [number] * len(places)
         y += [draw(st.sampled_from((4.0, 5.0, 6.5))) + (y[-1] if y else 0.0)] * len(places)
     return np.stack([x, y], axis=1), np.array(line)
@@ -75,6 +76,17 @@ def test_across_stand_the_nearest_and_those_whose_nearest_one_is(plants):
             assert j in nearest[i, step] or i in nearest[j, -step]
         for step in (-1, 1):
             assert bool(nearest[i, step]) <= bool(near & nearest[i, step])
+
+
+@given(plants=plants_on_lines())
+def test_over_straight_aisles_stand_the_same_plants_as_across_the_rows(plants):
+    xy_m, line = plants
+    y = np.array([xy_m[line == number][0, 1] for number in range(line[-1] + 1)])
+    gap = np.concatenate([[ROW_M], np.diff(y), [ROW_M]])
+    aisle = np.stack([line, line + 1], axis=1)
+    found = across_aisles(aisle, np.stack([xy_m[:, 0]] * 2, axis=1), gap[aisle] / 2, ROW_M, PLANT_M)
+    for told, wanted in zip(found, across(xy_m, line, ROW_M, PLANT_M), strict=True):
+        np.testing.assert_array_equal(told, wanted)
 
 
 def test_on_an_even_plot_everyone_has_one_before_one_behind_and_one_on_either_side():

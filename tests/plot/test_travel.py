@@ -270,6 +270,56 @@ def test_lane_ends_are_hardly_farther_than_the_shortest_way_there(name, factor):
     assert (between_m <= 1.5 * truth_m + 1e-6).all()
 
 
+CELL_M = 0.5
+# to all cells that are a knight's move away or nearer: ways are up to 2.8 % too long
+MOVES = [(1, 0), (0, 1), (1, 1), (1, -1), (1, 2), (2, 1), (1, -2), (2, -1)]
+
+
+def drawn(grid):
+    """Draw a plot on squared paper: which cells ``(h, w)`` can be driven on, and its corner."""
+    low = np.array(grid.drivable_m.bounds[:2]) - 1.0
+    size = np.ceil((np.array(grid.drivable_m.bounds[2:]) + 1.0 - low) / CELL_M).astype(int)
+    y, x = np.mgrid[: size[1], : size[0]]
+    free = shapely.contains_xy(grid.drivable_m, low[0] + CELL_M * x, low[1] + CELL_M * y)
+    for row in range(grid.n_rows):
+        plants = grid.xy_m[grid.row_start[row] : grid.row_start[row + 1]]
+        cells = np.round((plants[[0, -1]] - low) / CELL_M).astype(int)
+        # two cells high, or a knight would jump over it
+        free[cells[0, 1] : cells[0, 1] + 2, cells[0, 0] : cells[1, 0] + 1] = False
+    return free, low
+
+
+def on_paper_m(grid, points):
+    """Return the shortest ways between points, cell by cell by Dijkstra's rule."""
+    free, low = drawn(grid)
+    number = np.full(free.shape, -1)
+    number[free] = np.arange(free.sum())
+    ways = []
+    for dx, dy in MOVES:
+        h, w = free.shape
+        here = number[max(0, -dy) : h - max(0, dy), : w - dx]
+        there = number[max(0, dy) : h - max(0, -dy), dx:]
+        both = (here >= 0) & (there >= 0)
+        ways.append((here[both], there[both], np.full(both.sum(), CELL_M * np.hypot(dx, dy))))
+    a, b, far = (np.concatenate(column) for column in zip(*ways, strict=True))
+    graph = csr_array((far, (a, b)), shape=(free.sum(),) * 2)
+    y, x = np.nonzero(free)
+    cells = low + CELL_M * np.stack([x, y], axis=1)
+    at = np.array([np.argmin(np.hypot(*(cells - point).T)) for point in points])
+    return dijkstra(graph, directed=False, indices=at)[:, at]
+
+
+@pytest.mark.parametrize("name", ["rectangle", "skew", "hole", "C"])
+def test_between_plants_one_drives_as_far_as_on_squared_paper_and_hardly_farther(name):
+    grid = SHAPES[name]
+    aisles, plants = Aisles.of(grid), some_plants(grid, 14)[1:]
+    paper_m = on_paper_m(grid, aisles.stop_m[plants])
+    told_m = aisles.distance_m(plants[:, None], plants)
+    off_m = 4 * CELL_M + grid.row_spacing_m  # to the next cells, and to the lane's other side
+    assert (told_m >= paper_m / 1.03 - off_m).all()
+    assert (told_m <= 1.15 * paper_m + 2 * off_m).all()
+
+
 def test_from_one_arm_of_a_c_to_the_other_one_drives_round_the_bay():
     grid = SHAPES["C"]
     aisles = Aisles.of(grid)

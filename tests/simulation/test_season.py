@@ -135,3 +135,24 @@ def test_what_was_believed_on_a_morning_does_not_depend_on_when_one_asks():
     for number in (3, 1, 5, 0):
         assert (later[number].chance == asked_daily[number]).all()
     assert any((one != other).any() for one, other in pairwise(asked_daily))
+
+
+def test_a_new_infestation_that_hides_is_not_found_before_it_shows():
+    everything = Robot(hours=24.0, detection=1.0)
+    settings = SeasonSettings(n_days=7, spread=Spread(0.3), hidden_nights=3)
+    days = season(robot=everything, settings=settings)
+    assert days[0].found == days[0].infested.sum() > 0
+    assert [day.found for day in days[1:]] == [0] * 6
+    fresh = np.zeros(N, np.bool_)
+    fresh[210] = True
+    poor = season(robot=Robot(hours=24.0, detection=0.0), settings=settings,
+                  first=Start(fresh, np.full(N, 0.02)))  # fmt: skip
+    assert poor[-1].infested.sum() > 5
+
+
+def test_pests_may_do_what_is_not_believed():
+    def all_over(grid, infested, key):
+        return infested | (np.arange(len(grid)) % 20 == key % np.uint64(20))
+
+    days = season(settings=SeasonSettings(n_days=3, spread=Spread(0.0), pests=all_over))
+    assert days[2].infested.sum() >= 20

@@ -112,3 +112,16 @@ def test_every_label_is_text_and_the_chart_is_safe_to_put_into_a_page(text):
         assert page.text.count(text) >= 3
         (drawing,) = page.all("svg")
         assert drawing["aria-label"] == text
+
+
+def test_in_powers_every_step_up_is_ten_times_the_last():
+    chart = line_chart("t", [Line("l", [0, 1, 2], [1, 10, 1000])], ("x", "y"), powers=True)
+    (drawn,) = points_of(Page(chart))
+    ups = np.diff(drawn[:, 1])
+    assert ups[1] == pytest.approx(2 * ups[0])
+    said = [value for value, _, _ in ticks_of(chart, "end")]
+    assert said == [1, 10, 100, 1000]
+    # of nothing there is no power: the point is left out
+    (short,) = points_of(Page(line_chart("t", [Line("l", [0, 1, 2], [0, 10, 100])], ("x", "y"),
+                                         powers=True)))  # fmt: skip
+    assert len(short) == 2

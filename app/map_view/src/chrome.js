@@ -9,6 +9,7 @@ const ICONS = {
   fit: "M4 4h6v2H6v4H4zm10 0h6v6h-2V6h-4zM4 14h2v4h4v2H4zm14 0h2v6h-6v-2h4z",
   layers: "M12 3l9 5-9 5-9-5zm-7 9l7 4 7-4 2 1-9 5-9-5zm0 4l7 4 7-4 2 1-9 5-9-5z",
   lasso: "M12 4c5 0 9 2.7 9 6s-4 6-9 6c-1 0-2-.1-2.9-.3.2 1.6-.4 3.200-2.1 4.3l-1-1.7c1-.7 1.300-1.600 1-2.5C4.600 14.700 3 12.5 3 10c0-3.300 4-6 9-6zm0 2c-4 0-7 2-7 4s3 4 7 4 7-2 7-4-3-4-7-4z",
+  rows: "M4 5h16v3H4zm0 5.500h16v3H4zM4 16h16v3H4z",
   shot: "M9 4h6l1.5 2H20v14H4V6h3.5zm3 5a4 4 0 100 8 4 4 0 000-8z",
 };
 
@@ -53,6 +54,7 @@ export class Scale {
     const metre = 1 / metresPerPixel(viewport);
     const fits = lengths.filter(([metres]) => metres * metre <= LONGEST_PX);
     const [metres, text] = fits.length ? fits[fits.length - 1] : lengths[0];
+    this.length = { px: metres * metre, text };
     this.bar.style.width = `${metres * metre}px`;
     this.text.textContent = text;
     this.north.style.transform = `rotate(${-(viewport.bearing ?? 0)}deg)`;
@@ -65,9 +67,19 @@ const SIGNS = {
   dot: (c) => `<circle cx="8" cy="8" r="5" fill="${c}"/>`,
   ring: (c) => `<circle cx="8" cy="8" r="5" fill="none" stroke="${c}" stroke-width="2"/>`,
   find: (c) => `<circle cx="8" cy="8" r="6.5" fill="#fff" stroke="#140000" stroke-width="2"/><circle cx="8" cy="8" r="4" fill="${c}"/>`,
+  area: (c) => `<rect x="1" y="1" width="14" height="14" rx="2" fill="${c}" stroke="#8a8f84"/>`,
+  hatch: (c) => `<path d="M1 15L15 1M1 8L8 1M8 15l7-7" stroke="${c}" stroke-width="2"/>`,
   line: (c) => `<path d="M1 8h14" stroke="${c}" stroke-width="4"/>`,
   outline: (c) => `<rect x="2" y="2" width="12" height="12" rx="4" fill="none" stroke="${c}" stroke-width="2.5"/>`,
 };
+
+// Return a sign as a picture that a canvas can draw, once it is loaded.
+export function signPicture(kind, colour) {
+  const made = new Image();
+  const shape = SIGNS[kind](`rgb(${colour.map(Number).join(",")})`);
+  made.src = `data:image/svg+xml,${encodeURIComponent(`<svg xmlns="http://www.w3.org/2000/svg" width="32" height="32" viewBox="0 0 16 16">${shape}</svg>`)}`;
+  return made;
+}
 
 function sign(kind, colour) {
   const made = document.createElementNS("http://www.w3.org/2000/svg", "svg");

@@ -1,15 +1,14 @@
 // The season's days on the map: a slider, a film that plays them, and the film as a file.
 
 import { element } from "./chrome.js";
+import * as film from "./film.js";
 import * as store from "./store.js";
 
-const EACH_MS = 700;
-
 export class Frames {
-  // `changed` is called when another day is to be drawn; `canvas` returns the map's canvas
-  constructor(place, changed, canvas) {
-    this.changed = changed;
-    this.canvas = canvas;
+  // `changed` is called when another day is to be drawn; `shot` returns the map as a canvas, with a title;
+  // `save` takes a file's bytes and name
+  constructor(place, { changed, shot, save }) {
+    Object.assign(this, { changed, shot, save });
     this.root = place.appendChild(element("div", { class: "play", hidden: true }));
     this.data = null;
     this.made = null;
@@ -29,14 +28,15 @@ export class Frames {
     this.slider = element("input", { type: "range", min: 0, max: last, step: 1, value: data.now, "aria-label": words.day,
       oninput: () => { this.stop(); this.to(Number(this.slider.value)); } });
     this.name = element("span", { class: "clock" });
-    const film = element("button", { type: "button", class: "tool film", text: "⏺", title: words.film, "aria-label": words.film,
-      onclick: () => this.record(words.film_name) });
-    this.root.replaceChildren(this.press, this.slider, this.name, ...(window.MediaRecorder ? [film] : []));
+    this.films = film.kinds().map((kind) => element("button", { type: "button", class: "tool film", text: kind.toUpperCase(),
+      title: words.film, "aria-label": `${kind.toUpperCase()} ${words.film}`, onclick: () => this.record(kind, words) }));
+    this.root.replaceChildren(this.press, this.slider, this.name, ...this.films);
     this.tell(data.now);
   }
 
   tell(k) {
     this.slider.value = k;
+    this.slider.setAttribute("aria-valuetext", this.data.names[k]);
     this.name.textContent = this.data.names[k];
   }
 
@@ -60,7 +60,12 @@ export class Frames {
 
   // Return which switches are off meanwhile: the route is today's.
   get hides() {
-    return this.made ? ["route", "numbers"] : [];
+    return this.made || this.filming ? ["route", "numbers"] : [];
+  }
+
+  // Return the name of the day that is shown, where there are days.
+  get day() {
+    return this.data ? this.name.textContent : null;
   }
 
   toggle() {
@@ -68,60 +73,60 @@ export class Frames {
     else this.play();
   }
 
-  async play(ended) {
+  async play() {
     const last = this.data.names.length - 1;
     this.press.textContent = "❚❚";
     let k = Number(this.slider.value) >= last ? 0 : Number(this.slider.value);
+    this.timer = true; // a press while the first day is fetched stops it
     await this.to(k);
     const step = async () => {
       if (k >= last) {
         this.stop();
-        ended?.();
         return;
       }
       await this.to(++k);
-      if (this.timer) this.timer = setTimeout(step, EACH_MS);
+      if (this.timer) this.timer = setTimeout(step, film.EACH_MS);
     };
-    this.timer = setTimeout(step, EACH_MS);
+    if (this.timer) this.timer = setTimeout(step, film.EACH_MS);
   }
 
   stop() {
-    if (this.timer) clearTimeout(this.timer);
+    clearTimeout(this.timer);
     this.timer = null;
     if (this.press) this.press.textContent = "▶";
   }
 
-  // Save the season as a film: the map's picture, and the day in its corner.
-  async record(name) {
+  // Save the season as a film, from its first day to its last: the map with its legend, a day a picture.
+  async record(kind, words) {
+    if (this.filming) return;
     this.stop();
-    const map = this.canvas(), picture = element("canvas");
-    picture.width = map.width;
-    picture.height = map.height;
-    const pen = picture.getContext("2d");
-    this.added = () => {
-      pen.fillStyle = getComputedStyle(map.closest(".map")).backgroundColor;
-      pen.fillRect(0, 0, picture.width, picture.height);
-      pen.drawImage(map, 0, 0);
-      pen.font = "600 28px system-ui, sans-serif";
-      pen.fillStyle = getComputedStyle(map.closest(".map")).color;
-      pen.fillText(this.name.textContent, 24, picture.height - 28);
-    };
-    const recorder = new MediaRecorder(picture.captureStream(10), { mimeType: "video/webm" });
-    const parts = [];
-    recorder.ondataavailable = ({ data }) => parts.push(data);
-    recorder.onstop = () => {
-      const link = element("a", { href: URL.createObjectURL(new Blob(parts, { type: "video/webm" })), download: name });
-      link.click();
-      setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-      this.added = null;
-    };
-    this.slider.value = this.data.names.length - 1; // from the first day
-    recorder.start();
-    await this.play(() => setTimeout(() => recorder.stop(), EACH_MS));
+    const day = Number(this.slider.value), data = this.data;
+    this.filming = true;
+    for (const one of this.films) one.disabled = true;
+    try {
+      const made = kind === "gif" ? await film.gif(this.pictures()) : await film.webm(this.canvases());
+      if (made) this.save(kind === "gif" ? new Blob([made], { type: "image/gif" }) : made, `${words.film_name}.${kind}`);
+    } finally {
+      this.filming = false;
+      for (const one of this.films) one.disabled = false;
+      if (this.data === data) await this.to(day);
+    }
   }
 
-  // Take what was just drawn into the film that is being made, if one is.
-  drawn() {
-    this.added?.();
+  async *canvases() {
+    const data = this.data;
+    for (let k = 0; k < data.names.length && this.data === data; k++) {
+      await this.to(k);
+      // a breath, so that the page is not frozen while it films
+      await new Promise((done) => setTimeout(done));
+      yield await this.shot(data.names[k]);
+    }
+  }
+
+  async *pictures() {
+    for await (const canvas of this.canvases()) {
+      const { width, height } = canvas;
+      yield { width, height, data: canvas.getContext("2d").getImageData(0, 0, width, height).data };
+    }
   }
 }

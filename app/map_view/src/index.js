@@ -6,19 +6,24 @@
 
 import { Deck, FlyToInterpolator, MapView } from "@deck.gl/core";
 
-import { button, element, legendOf, Scale } from "./chrome.js";
+import { button, element, legendOf, Scale, signPicture } from "./chrome.js";
 import { Drawing } from "./draw.js";
 import { Frames } from "./frames.js";
+import { asked, moved } from "./keys.js";
 import { Labels } from "./labels.js";
 import { layersOf } from "./layers.js";
-import { nearestPlant, plantsWithin, rowUnder } from "./pick.js";
+import { nearestPlant, plantsWithin, rowUnder, tipOf } from "./pick.js";
+import { composed, freePart } from "./picture.js";
 import { Playback } from "./playback.js";
+import { ofRuns, runsOf, withRow } from "./select.js";
 import { covered, keepShape } from "./shape.js";
 import * as store from "./store.js";
 import style from "./style.css";
 import { fitted, metresPerPixel } from "./view.js";
 
 const STILL_PX = 6, TWICE_MS = 350, TIP_PX = 12, FLY_MS = 600;
+// a GIF of more pixels is too large to be sent; more plants at once are no selection
+const FILM_PX = 1100, MOST_PICKED = 20000;
 
 class MapPage {
   constructor(parent) {
@@ -29,21 +34,29 @@ class MapPage {
     this.canvasPlace = element("div", { class: "canvas" });
     this.labelPlace = element("div", { class: "labels", "aria-hidden": "true" });
     this.tip = element("div", { class: "tip", hidden: true });
+    this.cross = element("div", { class: "cross", hidden: true, "aria-hidden": "true" });
+    this.heard = element("div", { class: "heard", role: "status" });
+    this.credit = element("div", { class: "credit", hidden: true });
     this.tools = element("div", { class: "tools", role: "toolbar" });
     this.card = element("div", { class: "card", hidden: true });
     this.legend = element("div", { class: "legend" });
     this.bar = element("div", { class: "drawbar", hidden: true });
     this.foot = element("div", { class: "foot" });
     this.root = parent.appendChild(element("div", { class: "map" }, [
-      this.canvasPlace, this.labelPlace, this.tools, this.card, this.legend, this.foot, this.bar, this.tip]));
+      this.canvasPlace, this.labelPlace, this.tools, this.card, this.legend, this.foot, this.bar, this.cross, this.tip, this.heard]));
     this.scale = new Scale(this.foot);
     this.labels = new Labels(this.labelPlace);
     this.playback = new Playback(this.foot, () => this.drawLayers());
-    this.frames = new Frames(this.foot, () => this.drawLayers(), () => this.canvasPlace.querySelector("canvas"));
+    this.frames = new Frames(this.foot, { changed: () => this.drawLayers(), save: (blob, name) => saved(blob, name),
+      shot: async (day) => { await this.rendered(); return this.shot(day, FILM_PX); } });
+    this.foot.append(this.credit);
     this.drawing = new Drawing(() => this.drawLayers(), (mode, points) => this.drawn(mode, points));
     this.jsons = [];
     this.hidden = new Set();
     this.opacity = 1;
+    this.groundOpacity = 1;
+    this.signs = new Map();
+    this.waiting = [];
     this.shape = keepShape(() => this.data?.words);
     this.listen();
   }
@@ -58,9 +71,14 @@ class MapPage {
     this.restore();
     this.shape.again(); // another room's panel may be wider, and now there are words
     this.root.classList.toggle("dark", data.dark);
-    this.canvasPlace.setAttribute("aria-label", data.alt);
+    this.root.classList.toggle("selects", Boolean(data.select));
+    this.canvasPlace.setAttribute("aria-label", data.words.keys);
+    this.canvasPlace.querySelector("canvas")?.setAttribute("aria-label", data.alt);
+    this.picked = ofRuns(data.picked ?? []);
+    this.showGround(data);
     this.furnish();
-    this.drawing.begin(data.draw ?? null);
+    // who selects rows goes on, though the server has drawn what is selected so far
+    if (!data.select || this.drawing.mode?.kind !== "rows") this.drawing.begin(data.draw ?? null);
     this.drawBar();
     let jsons;
     try {
@@ -117,14 +135,23 @@ class MapPage {
     this.deck = new Deck({
       parent: this.canvasPlace,
       views: new MapView({ id: "map", repeat: false }),
-      controller: { keyboard: true, doubleClickZoom: true },
+      controller: { keyboard: false, doubleClickZoom: true },
       initialViewState: { ...this.fit(), maxZoom: 24 },
       layers: [],
       pickingRadius: 0,
       _pickable: false,
       getCursor: ({ isDragging }) => (isDragging ? "grabbing" : this.drawing.mode ? "crosshair" : "grab"),
       onViewStateChange: ({ viewState }) => this.limited(viewState),
-      onAfterRender: () => { this.follow(); this.frames.drawn(); },
+      onAfterRender: () => {
+        this.follow();
+        for (const done of this.waiting.splice(0)) done();
+      },
+      onLoad: () => {
+        const canvas = this.canvasPlace.querySelector("canvas");
+        canvas.setAttribute("role", "img");
+        canvas.setAttribute("aria-label", this.data.alt);
+        canvas.tabIndex = -1; // keys are the map's own: see keys.js
+      },
     });
     this.watch = new ResizeObserver(() => this.resized());
     this.watch.observe(this.canvasPlace);
@@ -144,11 +171,12 @@ class MapPage {
 
   drawLayers() {
     if (!this.deck) return;
-    const accent = this.data.dark ? [255, 220, 90] : [0, 110, 70];
+    const accent = this.data.dark || this.data.ground?.picture ? [255, 220, 90] : [0, 110, 70];
     const jsons = [...this.frames.of(this.jsons), ...this.playback.layers(this.data.dark), ...this.drawing.layers(accent)];
     const hidden = new Set(this.off().flatMap((name) => this.switchOf(name)?.layers ?? []));
     for (const name of this.data.shades?.flatMap((one) => (one.key === this.shade() ? [] : one.layers)) ?? []) hidden.add(name);
-    this.deck.setProps({ layers: layersOf(jsons, hidden, this.opacity) });
+    const ground = { ...this.data.ground, opacity: this.groundOpacity, failed: () => this.groundFailed() };
+    this.deck.setProps({ layers: layersOf(jsons, hidden, this.opacity, ground) });
     this.drawBar();
     this.follow();
   }
@@ -158,6 +186,7 @@ class MapPage {
     if (!viewport) return;
     this.scale.draw(viewport, { lengths: this.data.lengths, alt: this.data.words.scale });
     this.labels.draw(this.data.labels ?? [], viewport, new Set(this.off()));
+    if (!this.cross.hidden) this.pointAtMiddle();
     const { longitude, latitude, zoom, width, height } = viewport;
     this.root.dataset.view = JSON.stringify({ longitude, latitude, zoom, width, height });
   }
@@ -189,6 +218,7 @@ class MapPage {
       this.touched = new Set(kept.touched ?? []);
       this.hidden = new Set(kept.hidden ?? []);
       this.opacity = kept.opacity ?? 1;
+      this.groundOpacity = kept.ground ?? 1;
       this.shaded = kept.shade;
     } catch {
       this.touched = new Set();
@@ -196,7 +226,7 @@ class MapPage {
   }
 
   keep() {
-    const kept = { touched: [...this.touched], hidden: [...this.hidden], opacity: this.opacity, shade: this.shaded };
+    const kept = { touched: [...this.touched], hidden: [...this.hidden], opacity: this.opacity, ground: this.groundOpacity, shade: this.shaded };
     try {
       sessionStorage.setItem("fieldmon map", JSON.stringify(kept));
     } catch { /* a browser that keeps nothing still shows everything */ }
@@ -212,7 +242,7 @@ class MapPage {
       if (off) this.hidden.add(key);
       else this.hidden.delete(key);
     }
-    const now = JSON.stringify([words, switches, shades, legend, this.data.select]);
+    const now = JSON.stringify([words, switches, shades, legend, this.data.select, this.data.ground?.ids]);
     if (now === this.furnished) return;
     this.furnished = now;
     this.tools.replaceChildren(
@@ -220,7 +250,9 @@ class MapPage {
       button("minus", words.zoom_out, () => this.zoom(-1)),
       button("fit", words.whole_plot, () => this.whole()),
       button("layers", words.layers, () => this.openCard(), { "aria-expanded": String(!this.card.hidden), class: "tool layers" }),
-      ...(this.data.select ? [button("lasso", words.select, () => this.lasso())] : []),
+      ...(this.data.select ? [
+        button("lasso", words.select, () => this.selecting("lasso")),
+        button("rows", words.select_rows, () => this.selecting("rows"))] : []),
       button("shot", words.picture, () => this.shoot()),
     );
     this.card.replaceChildren(...this.switchboard());
@@ -252,6 +284,11 @@ class MapPage {
     const slider = element("input", { type: "range", min: 0.1, max: 1, step: 0.05, value: this.opacity,
       "aria-label": words.opacity, oninput: () => { this.opacity = Number(slider.value); this.keep(); this.drawLayers(); } });
     parts.push(element("label", { class: "wide" }, [element("span", { text: words.opacity }), slider]));
+    if (this.data.ground?.ids.length) {
+      const ground = element("input", { type: "range", min: 0.1, max: 1, step: 0.05, value: this.groundOpacity,
+        "aria-label": words.ground, oninput: () => { this.groundOpacity = Number(ground.value); this.keep(); this.drawLayers(); } });
+      parts.push(element("label", { class: "wide" }, [element("span", { text: words.ground }), ground]));
+    }
     return parts;
   }
 
@@ -261,9 +298,19 @@ class MapPage {
     if (!this.card.hidden) this.card.querySelector("input")?.focus();
   }
 
+  legendShown() {
+    // the ground is not covered by a plan, so a plan needs no signs there
+    const off = new Set([...this.off(), ...(this.data.ground?.ids.length && !this.hidden.has("ground") ? ["plan"] : [])]);
+    return (this.data.legend ?? []).filter(({ of }) =>
+      !of || of === `shade:${this.shade()}` || (this.switchOf(of) && !off.has(of)));
+  }
+
   showLegend() {
-    const shown = (this.data.legend ?? []).filter(({ of }) =>
-      !of || of === `shade:${this.shade()}` || (this.switchOf(of) && !this.hidden.has(of)));
+    const shown = this.legendShown();
+    for (const [kind, colour] of (this.data.legend ?? []).flatMap((one) => one.items)) {
+      const name = `${kind} ${colour}`; // loaded ahead, for pictures
+      if (!this.signs.has(name)) this.signs.set(name, signPicture(kind, colour));
+    }
     this.legend.replaceChildren(...legendOf(shown));
     this.legend.hidden = !shown.length;
   }
@@ -282,21 +329,55 @@ class MapPage {
     this.deck?.setProps({ initialViewState: { ...this.fit(), maxZoom: 24, transitionDuration: 300 } });
   }
 
+  showGround({ ground, words }) {
+    const shown = ground?.ids.length > 0;
+    this.root.classList.toggle("over-picture", Boolean(shown && ground.picture));
+    const key = JSON.stringify(ground?.ids);
+    if (this.groundKey !== key) this.groundAway = false;
+    this.groundKey = key;
+    this.credit.hidden = !shown || !(ground.credit || this.groundAway);
+    this.credit.textContent = this.groundAway ? words.ground_away : ground?.credit ?? "";
+  }
+
+  groundFailed() {
+    if (this.groundAway) return;
+    this.groundAway = true;
+    this.showGround(this.data);
+  }
+
+  // -- the map as a picture
+
   shoot() {
     if (!this.deck) return;
+    this.shot(this.frames.day ?? this.data.when, 4000).toBlob((blob) => saved(blob, this.data.words.picture_name));
+  }
+
+  // Wait until what was set last is drawn; a page that nobody sees is not drawn, and not waited for.
+  rendered() {
+    return new Promise((done) => { this.waiting.push(done); setTimeout(done, 1500); });
+  }
+
+  // Return what is on the map now as a canvas; `said` follows the plot's name in its title.
+  shot(said, most) {
     this.deck.redraw("picture");
-    this.canvasPlace.querySelector("canvas").toBlob((blob) => {
-      const link = element("a", { href: URL.createObjectURL(blob), download: this.data.words.picture_name });
-      link.click();
-      setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    this.follow();
+    const size = this.size(), part = freePart(size, covered()), style = getComputedStyle(this.root);
+    const colour = (name, other) => style.getPropertyValue(name).trim() || other;
+    return composed({
+      canvas: this.canvasPlace.querySelector("canvas"), size, part, most,
+      colours: { ground: colour("--ground", "#e9ece4"), surface: colour("--surface", "#fff"), ink: colour("--ink", "#1b2a22"),
+        route: colour("--route", "#0c3eaa"), onRoute: this.data.dark ? "#06202c" : "#fff" },
+      title: [this.data.title, said].filter(Boolean).join(" · "), credit: this.credit.hidden ? "" : this.credit.textContent,
+      legend: this.legendShown(), signs: (kind, c) => this.signs.get(`${kind} ${c}`), bar: this.scale.length,
+      labels: this.labels.placed, onPicture: this.root.classList.contains("over-picture"), rtl: this.data.direction === "rtl",
     });
   }
 
   // -- drawing and selecting
 
-  lasso() {
-    const on = this.drawing.mode?.kind === "lasso";
-    this.drawing.begin(on ? (this.data.draw ?? null) : { kind: "lasso", id: "lasso" });
+  selecting(kind) {
+    const on = this.drawing.mode?.kind === kind;
+    this.drawing.begin(on ? (this.data.draw ?? null) : { kind, id: kind });
     this.drawBar();
   }
 
@@ -305,9 +386,39 @@ class MapPage {
       this.tell("drawn", { kind: mode.id, points });
       return;
     }
-    const places = this.jsons.find((one) => one.places)?.places;
+    const places = this.places();
     this.drawing.begin(this.data.draw ?? null);
-    if (places) this.tell("selected", { plants: plantsWithin(places, points).slice(0, 5000) });
+    if (!places) return;
+    const own = plantsWithin(places, points);
+    this.pick(this.adding ? new Set([...this.picked, ...own]) : new Set(own));
+  }
+
+  places() {
+    return this.jsons.find((one) => one.places)?.places;
+  }
+
+  // Let these plants be the ones that are selected.
+  pick(plants) {
+    if (plants.size > MOST_PICKED) {
+      this.say(this.data.words.too_many.replace("{most}", MOST_PICKED.toLocaleString(this.data.language)));
+      return;
+    }
+    this.picked = plants;
+    this.tell("selected", { runs: runsOf(plants) });
+  }
+
+  pickRow(row) {
+    const places = this.places();
+    if (places && this.data.select) this.pick(withRow(places, this.picked, row));
+  }
+
+  // Say something for a moment, on the map and to who hears it.
+  say(text) {
+    this.heard.textContent = text;
+    this.tip.textContent = text;
+    this.tip.hidden = false;
+    const [x, y] = this.middle();
+    this.tip.style.transform = `translate(${x - this.tip.offsetWidth / 2}px, ${y}px)`;
   }
 
   drawBar() {
@@ -320,12 +431,13 @@ class MapPage {
     if (!mode) return;
     const { words } = this.data;
     const press = (label, act, more = {}) => element("button", { type: "button", text: label, onclick: act, ...more });
-    const hint = mode.kind === "lasso" ? words.lasso_hint : mode.hint ?? words.draw_hint;
+    const hint = { lasso: words.lasso_hint, rows: words.rows_hint }[mode.kind] ?? mode.hint ?? words.draw_hint;
     this.bar.replaceChildren(
       element("span", { text: points.length && mode.kind !== "bent" ? words.corners.replace("{n}", points.length) : hint }),
-      press(words.draw_back, () => this.drawing.undo(), { disabled: !points.length }),
-      press(words.draw_drop, () => { this.drawing.drop(); if (mode.kind === "lasso") this.lasso(); }),
-      ...(["point", "lasso", "bent"].includes(mode.kind) ? [] : [press(words.draw_done, () => this.drawing.finish(), { disabled: !ready, class: "main" })]),
+      ...(mode.kind === "rows" ? [press(words.draw_done, () => this.selecting("rows"), { class: "main" })] : [
+        press(words.draw_back, () => this.drawing.undo(), { disabled: !points.length }),
+        press(words.draw_drop, () => { this.drawing.drop(); if (mode.kind === "lasso") this.selecting("lasso"); })]),
+      ...(["point", "lasso", "rows", "bent"].includes(mode.kind) ? [] : [press(words.draw_done, () => this.drawing.finish(), { disabled: !ready, class: "main" })]),
     );
   }
 
@@ -333,21 +445,71 @@ class MapPage {
 
   listen() {
     const place = this.canvasPlace;
-    place.setAttribute("role", "img");
+    place.setAttribute("role", "application");
+    place.tabIndex = 0;
     place.addEventListener("pointerdown", (event) => this.pressed(event), true);
     place.addEventListener("pointermove", (event) => this.hovered(event), true);
     place.addEventListener("pointerup", (event) => this.released(event), true);
     place.addEventListener("pointerleave", () => { this.tip.hidden = true; });
     place.addEventListener("wheel", () => { this.moved = true; this.tip.hidden = true; }, { passive: true, capture: true });
-    place.addEventListener("keydown", () => { this.moved = true; });
-    this.root.addEventListener("keydown", (event) => this.typed(event));
+    place.addEventListener("keydown", (event) => this.typed(event));
+    place.addEventListener("focus", () => { if (place.matches(":focus-visible")) this.showCross(); });
+    place.addEventListener("blur", () => { this.cross.hidden = true; this.tip.hidden = true; });
+    // what lies on the map is left by Escape, back to the map
+    this.root.addEventListener("keydown", (event) => {
+      if (event.key === "Escape" && !place.contains(event.target)) this.leave();
+    });
+    this.labelPlace.addEventListener("click", ({ target }) => { if (target.dataset.row) this.pickRow(Number(target.dataset.row)); });
   }
 
+  // -- the keyboard
+
   typed(event) {
-    if (!this.drawing.mode) return;
-    if (event.key === "Escape") this.drawing.drop();
-    else if (event.key === "Backspace") this.drawing.undo();
-    else if (event.key === "Enter" && event.target.closest(".canvas")) this.drawing.finish();
+    const wanted = asked(event, this.drawing.mode?.kind ?? null), viewport = this.viewport();
+    if (!wanted || !viewport) return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (wanted.leave) this.leave();
+    else this.showCross();
+    if (wanted.move) {
+      this.moved = true;
+      this.deck.setProps({ initialViewState: { ...moved(viewport, wanted.move), maxZoom: 24 } });
+    }
+    if (wanted.zoom) this.zoom(wanted.zoom);
+    if (wanted.whole) this.whole();
+    if (wanted.back) this.drawing.undo();
+    if (wanted.finish) this.drawing.finish();
+    if (wanted.press) this.tapped(viewport.unproject(this.middle()));
+  }
+
+  leave() {
+    this.tip.hidden = true;
+    if (this.drawing.mode && this.drawing.points.length) this.drawing.drop();
+    else if (["lasso", "rows"].includes(this.drawing.mode?.kind)) this.selecting(this.drawing.mode.kind);
+    else if (!this.card.hidden) this.openCard();
+    else this.cross.hidden = true;
+    this.canvasPlace.focus({ preventScroll: true });
+  }
+
+  // Return the middle of what panels leave free, where the cross is.
+  middle() {
+    const { x, y, width, height } = freePart(this.size(), covered());
+    return [x + width / 2, y + height / 2];
+  }
+
+  showCross() {
+    const [x, y] = this.middle();
+    this.cross.style.transform = `translate(${x}px, ${y}px)`;
+    this.cross.hidden = false;
+    this.pointAtMiddle();
+  }
+
+  pointAtMiddle() {
+    const [x, y] = this.middle(), here = this.viewport()?.unproject([x, y]);
+    if (!here) return;
+    const box = this.root.getBoundingClientRect();
+    this.point({ clientX: box.left + x, clientY: box.top + y }, here);
+    this.heard.textContent = this.tip.hidden ? "" : this.tip.textContent;
   }
 
   at(event) {
@@ -360,10 +522,11 @@ class MapPage {
     this.down = event;
     const here = this.at(event);
     if (!here || !this.drawing.mode || event.button) return;
+    this.adding = event.shiftKey;
     if (this.drawing.mode.kind === "lasso") {
       this.drawing.drop();
       this.trailing = true;
-    } else {
+    } else if (this.drawing.mode.kind !== "rows") {
       this.held = this.drawing.grabbed(here, this.viewport());
     }
     if (this.trailing || this.held >= 0) event.stopPropagation();
@@ -402,26 +565,37 @@ class MapPage {
     const here = this.at(event);
     if (!here || !from || event.button || near(from) > STILL_PX) return;
     this.last = event;
+    this.cross.hidden = true;
     // the second half of a double click, which zooms
     if (before && event.timeStamp - before.timeStamp < TWICE_MS && near(before) < STILL_PX) return;
+    if (!this.drawing.mode) this.point(event, here);
+    this.tapped(here);
+  }
+
+  // Do what a tap on a place does: draw a corner, take a row, or tell the server what lies there.
+  tapped(here) {
+    if (this.drawing.mode?.kind === "rows") {
+      const hit = this.under(here, (json) => json.places);
+      if (hit) this.pickRow(hit.row);
+      return;
+    }
     if (this.drawing.mode) {
       this.drawing.click(here, this.viewport());
       return;
     }
     const hit = this.under(here);
-    this.point(event, here);
     if (hit && this.data.taps) this.tell("tapped", { layer: hit.id, index: hit.index });
   }
 
   // Return what lies under a place: {id, index, text}, the topmost first; null for the ground.
-  under(here) {
+  under(here, of = () => true) {
     const reachM = TIP_PX * metresPerPixel(this.viewport());
     const shown = new Set(this.deck.props.layers.filter((layer) => layer.props.visible).map((layer) => layer.id));
     for (const json of this.frames.of(this.jsons).toReversed()) {
-      if (!shown.has(json.id)) continue;
+      if (!shown.has(json.id) || !of(json)) continue;
       if (json.places) {
         const k = nearestPlant(json.places, here, Math.max(json.radius, Math.min(reachM, 0.6 * json.apart)));
-        if (k >= 0) return { id: json.id, index: k, text: tipOf(json, k) };
+        if (k >= 0) return { id: json.id, index: k, text: tipOf(json, k), row: json.places.row[k] };
       } else if (Array.isArray(json.data)) {
         const k = rowUnder(json.data, here, reachM);
         if (k >= 0) return { id: json.id, index: k, text: json.data[k].t };
@@ -431,7 +605,8 @@ class MapPage {
   }
 
   point(event, here) {
-    const hit = this.deck && !this.drawing.mode ? this.under(here) : null;
+    const rows = this.drawing.mode?.kind === "rows";
+    const hit = this.deck && (rows || !this.drawing.mode) ? this.under(here, rows ? (json) => json.places : undefined) : null;
     this.tip.hidden = !hit?.text;
     if (this.tip.hidden) return;
     const box = this.root.getBoundingClientRect();
@@ -451,10 +626,10 @@ class MapPage {
   }
 }
 
-function tipOf({ places, ranks, values, tips }, k) {
-  const note = tips.values ? tips.values.replace("{chance}", `${(100 * values[k]).toFixed(1)} %`) : tips.ranks?.[ranks[k]] ?? "";
-  const known = { row: places.row[k], plant: places.number[k], note };
-  return tips.text.replace(/\{(\w+)\}/g, (_, name) => known[name]);
+function saved(blob, name) {
+  const link = element("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
 export function mount(component) {

@@ -7,7 +7,7 @@ import { metresPerPixel } from "./view.js";
 
 // up to so many plants are always points; of more, those in view, if they stand far enough apart
 const ALL = 20000, IN_VIEW = 60000, APART_PX = 3;
-const PICTURE_PX = 2048;
+const PICTURE_PX = 2048, LEVELS = 11, M_PER_DEGREE = 111320;
 
 export class PlantsLayer extends CompositeLayer {
   static layerName = "PlantsLayer";
@@ -18,6 +18,7 @@ export class PlantsLayer extends CompositeLayer {
     rim: { type: "array", value: [120, 110, 90, 140] },
     radius: 1,
     apart: 1,
+    cased: false,
   };
 
   shouldUpdateState({ changeFlags }) {
@@ -37,10 +38,19 @@ export class PlantsLayer extends CompositeLayer {
     const seen = apart < APART_PX ? null : inView(props.places, viewport.getBounds());
     if (seen !== null) {
       this.setState({ made: true, points: pointsOf(props, seen), picture: null });
-    } else if (fresh || !this.state.picture || changeFlags.dataChanged) {
-      const picture = fresh || !this.kept ? (this.kept = pictureOf(props)) : this.kept;
-      this.setState({ made: true, points: null, picture });
+    } else {
+      if (fresh || !this.levels) this.levels = [ranksOf(props)];
+      const picture = this.level(metresPerPixel(viewport), props.table);
+      if (picture !== this.state.picture) this.setState({ made: true, points: null, picture });
     }
+  }
+
+  // Return the picture whose pixels are one to two of the screen's: a finer one would lose plants.
+  level(metres, table) {
+    const own = this.levels[0].step * M_PER_DEGREE;
+    const k = Math.min(LEVELS, Math.max(0, Math.ceil(Math.log2(metres / own))));
+    while (this.levels.length <= k) this.levels.push(halved(this.levels.at(-1)));
+    return (this.levels[k].picture ??= painted(this.levels[k], table));
   }
 
   renderLayers() {
@@ -51,10 +61,16 @@ export class PlantsLayer extends CompositeLayer {
         textureParameters: { magFilter: "nearest", minFilter: "nearest" },
       });
     }
-    return points && new ScatterplotLayer(this.getSubLayerProps({ id: "points" }), {
-      data: points, getRadius: this.props.radius, radiusMinPixels: 1.5, stroked: true,
-      getLineColor: this.props.rim, getLineWidth: 0.05, lineWidthMinPixels: 0.5,
-    });
+    if (!points) return null;
+    const { radius, rim, cased } = this.props, size = { data: points, getRadius: radius, radiusMinPixels: 1.5, stroked: true };
+    // over a picture of the ground, a dark rim in a white one: one of them stands out from any ground
+    return [
+      cased && new ScatterplotLayer(this.getSubLayerProps({ id: "halo" }), {
+        ...size, filled: false, getLineColor: [255, 255, 255], getLineWidth: 0.7 * radius, lineWidthMinPixels: 1, lineWidthMaxPixels: 2.6 }),
+      new ScatterplotLayer(this.getSubLayerProps({ id: "points" }), {
+        ...size, ...(cased ? { getLineColor: [0, 0, 0], getLineWidth: 0.25 * radius, lineWidthMinPixels: 0.4, lineWidthMaxPixels: 1.1 }
+          : { getLineColor: rim, getLineWidth: 0.05, lineWidthMinPixels: 0.5 }) }),
+    ];
   }
 }
 
@@ -93,7 +109,12 @@ export function inView(places, [west, south, east, north]) {
 }
 
 // Return all plants as one picture: the most important plant of a pixel gives it its colour.
-export function pictureOf({ places, ranks, table }) {
+export function pictureOf(props) {
+  return painted(ranksOf(props), props.table);
+}
+
+// Return the highest rank on each pixel, from 1; 0 where no plant is.
+export function ranksOf({ places, ranks }) {
   const [west, south, east, north] = places.bounds;
   const flat = Math.cos((((south + north) / 2) * Math.PI) / 180);
   const step = Math.max(places.step, (east - west) * flat / PICTURE_PX, (north - south) / PICTURE_PX);
@@ -106,6 +127,23 @@ export function pictureOf({ places, ranks, table }) {
     const at = y * width + x;
     if (ranks[k] + 1 > top[at]) top[at] = ranks[k] + 1;
   }
+  return { top, width, height, step, flat, west, north };
+}
+
+// Return the same on pixels twice as large each way: the highest rank of four stays.
+export function halved({ top, width, height, step, ...rest }) {
+  const wide = Math.ceil(width / 2), high = Math.ceil(height / 2), less = new Uint8Array(wide * high);
+  for (let y = 0; y < height; y++) {
+    for (let x = 0; x < width; x++) {
+      const at = (y >> 1) * wide + (x >> 1);
+      if (top[y * width + x] > less[at]) less[at] = top[y * width + x];
+    }
+  }
+  return { top: less, width: wide, height: high, step: 2 * step, ...rest };
+}
+
+// Return the picture of the ranks, and where it lies.
+export function painted({ top, width, height, step, flat, west, north }, table) {
   const data = new Uint8ClampedArray(4 * width * height);
   for (let at = 0; at < top.length; at++) if (top[at]) data.set(table[top[at] - 1], 4 * at);
   // whole pixels: stretched over the plot alone, plants would stand up to a pixel beside their places

@@ -71,7 +71,7 @@ export class Playback {
     let gone = at_s.findIndex((s) => s > second);
     if (gone < 0) gone = at_s.length;
     const here = between(line, at_s, gone, second);
-    const colour = dark ? [110, 220, 255] : [20, 80, 200];
+    const colour = dark ? [110, 220, 255] : [12, 62, 170];
     const made = stops.filter((_, k) => leave_s[k] <= second);
     return [
       { "@@type": "PathLayer", id: "trail", data: [{ q: [...line.slice(0, gone), here] }], getPath: "@@=q",

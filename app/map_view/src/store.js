@@ -22,16 +22,30 @@ function once(url, read) {
 
 const json = (url) => once(url, (answer) => answer.json());
 const places = (url) => once(url, async (answer) => placesOf(await answer.arrayBuffer()));
+const picture = (url) => once(url, async (answer) => createImageBitmap(await answer.blob()));
 const bytes = (url) => once(url, async (answer) => new Uint8Array(await answer.arrayBuffer()));
 
 // Return a layer's JSON, with the arrays it names in place of their addresses.
-export async function layer({ url, places: where, ranks, values }) {
-  const [made, placed, ranked, valued] = await Promise.all([
-    json(url), where && places(where), ranks && bytes(ranks), values && bytes(values),
+export async function layer({ url, places: where, ranks, values, notes, image }) {
+  const [made, placed, ranked, valued, noted, seen] = await Promise.all([
+    json(url), where && places(where), ranks && bytes(ranks), values && bytes(values), notes && bytes(notes),
+    image && picture(image),
   ]);
+  if (seen) return together(made, { image: seen });
   if (!placed) return made;
-  const share = valued && new Float32Array(valued.buffer);
-  return { ...made, places: placed, ranks: ranked, values: share };
+  const share = valued && new Float32Array(valued.buffer), said = noted && new Uint16Array(noted.buffer);
+  return together(made, { places: placed, ranks: ranked, values: share, notes: said });
+}
+
+const whole = new WeakMap();
+
+// one and the same object for the same parts: what is made of it is then made once
+function together(made, parts) {
+  const known = whole.get(made);
+  if (known && Object.entries(parts).every(([name, part]) => known[name] === part)) return known;
+  const new_ = { ...made, ...parts };
+  whole.set(made, new_);
+  return new_;
 }
 
 // Plants' places: a head of six doubles (n, lon, lat, step in degrees of latitude, 0, 0); then

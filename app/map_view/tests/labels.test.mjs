@@ -7,7 +7,7 @@ import { Labels } from "../src/labels.js";
 import { flatView, random } from "./plots.mjs";
 
 // stands for the page: what is shown, and where
-globalThis.document = { createElement: () => ({ style: {}, textContent: "", hidden: true }) };
+globalThis.document = { createElement: () => ({ style: {}, dataset: {}, textContent: "", hidden: true }) };
 
 function shown(labels, view, hidden = new Set()) {
   const place = { made: [], appendChild(one) { this.made.push(one); return one; } };

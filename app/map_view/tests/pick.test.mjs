@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { nearestPlant, plantsWithin, rowUnder, within } from "../src/pick.js";
+import { nearestPlant, plantsWithin, rowUnder, within, tipOf } from "../src/pick.js";
 import { random, scattered } from "./plots.mjs";
 
 const METRES = 111320;
@@ -73,4 +73,13 @@ test("of what lies on each other, the last drawn is under the pointer; areas hol
   assert.equal(rowUnder(rows, [5e-4 + 2.9 / METRES, 5e-4], 3), 1);
   assert.equal(rowUnder(rows, [5e-4 + 3.1 / METRES, 5e-4], 3), 0);
   assert.equal(rowUnder(rows, [2e-3, 2e-3], 3), -1, "what says nothing is not pointed at");
+});
+
+test("what is said of a plant is where it stands, what is believed, and what is known of it", () => {
+  const places = { row: [3, 3], number: [7, 8] }, tips = { text: "row {row}, plant {plant}{note}" };
+  const chances = { places, ranks: [0, 1], values: [0.5, 0.021], notes: [1, 0], tips: { ...tips, values: ": {chance} chance", notes: ["never inspected", "clean today"] } };
+  assert.equal(tipOf(chances, 1), "row 3, plant 8: 2.1 % chance\nnever inspected");
+  assert.equal(tipOf(chances, 0), "row 3, plant 7: 50.0 % chance\nclean today");
+  assert.equal(tipOf({ places, ranks: [0, 1], tips: { ...tips, ranks: ["", ": found"] } }, 1), "row 3, plant 8: found");
+  assert.equal(tipOf({ places, ranks: [0, 1], tips }, 0), "row 3, plant 7");
 });

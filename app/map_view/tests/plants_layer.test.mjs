@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { inView, pictureOf, pointsOf } from "../src/plants_layer.js";
+import { halved, inView, painted, pictureOf, pointsOf, ranksOf } from "../src/plants_layer.js";
 import { gridOf, random, scattered } from "./plots.mjs";
 
 const TABLE = [[10, 20, 30, 40], [50, 60, 70, 255], [200, 100, 50, 255]];
@@ -80,4 +80,24 @@ test("a picture of any plot has at most so many pixels", () => {
   const { places, ranks } = gridOf(30, 3000, new Array(90000).fill(0));
   const { image } = pictureOf({ places: { ...places, step: places.step / 5 }, ranks, table: TABLE });
   assert.ok(image.width <= 2049 && image.height <= 2049);
+});
+
+test("a picture seen from further away loses no important plant: four pixels become their highest", () => {
+  const plants = some(41, 53);
+  let level = ranksOf(plants);
+  const most = (ranks) => ranks.reduce((a, b) => Math.max(a, b), 0), share = level.top.filter((r) => r === 3).length / level.top.length;
+  for (let k = 0; k < 7; k++) {
+    const next = halved(level);
+    assert.equal(next.step, 2 * level.step);
+    assert.ok(next.width * 2 - level.width <= 1 && next.height * 2 - level.height <= 1);
+    for (let y = 0; y < level.height; y++) {
+      for (let x = 0; x < level.width; x++) assert.ok(next.top[(y >> 1) * next.width + (x >> 1)] >= level.top[y * level.width + x]);
+    }
+    assert.equal(most(next.top), most(level.top));
+    const { bounds } = painted(next, TABLE), before = painted(level, TABLE).bounds;
+    assert.deepEqual([bounds[0], bounds[3]], [before[0], before[3]], "its corner stays");
+    assert.ok(bounds[2] >= before[2] - 1e-12 && bounds[1] <= before[1] + 1e-12);
+    level = next;
+  }
+  assert.ok(share < 1 && level.width === 1);
 });

@@ -25,7 +25,7 @@ CLEAN: Colour = (90, 160, 230)
 NEVER: Colour = (150, 150, 145)
 TRUTH: Colour = (0, 0, 0)
 TRUTH_IN_DARK: Colour = (255, 255, 255)
-ROUTE: Colour = (20, 80, 200)
+ROUTE: Colour = (12, 62, 170)
 ROUTE_IN_DARK: Colour = (110, 220, 255)
 CASING: Colour = (255, 255, 255)
 CASING_IN_DARK: Colour = (10, 20, 26)
@@ -33,7 +33,7 @@ GATE: Colour = (0, 140, 90)
 ROWS, ROWS_IN_DARK = (60, 60, 60, 110), (230, 230, 230, 120)
 HOT: Colour = (20, 26, 30)
 HOT_IN_DARK: Colour = (255, 255, 255)
-OUTLINE: Colour = (70, 80, 70)
+OUTLINE: Colour = (60, 70, 60)
 OUTLINE_IN_DARK: Colour = (190, 200, 190)
 ROWS: Colour = (60, 130, 90)
 BEFORE: Colour = (230, 120, 0)
@@ -46,6 +46,21 @@ AGE_IN_DARK: tuple[Colour, ...] = (
     (34, 74, 48), (40, 108, 64), (56, 154, 88), (128, 204, 128), (224, 244, 172),
 )  # fmt: skip
 _EMPTY = 30  # opacity of a plant never inspected: an outline with next to nothing in it
+
+
+@dataclass(frozen=True)
+class PlanTones:
+    """What a plan is drawn in: quiet, so that plants and route stand out from it."""
+
+    headland: Colour
+    rows: Colour
+    aisle: Colour
+    no_go: Colour
+    hatch: Colour
+
+
+PLAN = PlanTones((240, 233, 216), (214, 223, 201), (233, 228, 211), (226, 214, 208), (120, 74, 60))
+PLAN_IN_DARK = PlanTones((40, 42, 36), (22, 36, 30), (34, 40, 36), (48, 34, 32), (196, 148, 130))
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import shapely
 
 from fieldmon.plot.grid import before_rows
+
+from ...words import texts
 
 if TYPE_CHECKING:
     from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantGrid
+    from fieldmon.plot.plot import Plot
 
     #: ``{"p": [lon, lat], "t": words, "k": kind}``; with ``from``, ``to``: at these zooms only
     Label = dict[str, Any]
@@ -52,11 +56,36 @@ def rows(grid: PlantGrid) -> list[Label]:
     before_m = before_rows(grid, first, 1.5 * grid.plant_spacing_m)
     lonlat = np.round(grid.frame.lonlat(before_m), 7).tolist()
     made = [
-        {"p": place, "t": f"{number + 1}", "k": "row"}
+        {"p": place, "t": f"{number + 1}", "k": "row", "row": number + 1}
         for number, place in zip(line.tolist(), lonlat, strict=True)
     ]
     tens = {"0", "1"}
     return sorted(made, key=lambda one: (one["t"][-1] not in tens, one["t"][-1] != "5"))
+
+
+def places(plot: Plot) -> list[Label]:
+    """Return the names of the gate and of areas that are not driven through."""
+    grid, gap = plot.grid, 1.5 * plot.grid.row_spacing_m
+    # beside the ring of the gate, away from the rows
+    x, y = plot.aisles.gate_m
+    gate = grid.frame.lonlat(np.array([[x, y - gap if y < grid.xy_m[:, 1].mean() else y + gap]]))
+    named = [(gate[0], texts.LABEL_GATE)]
+    inner = shapely.point_on_surface(shapely.get_parts(plot.field.no_go))
+    named += [(place, texts.LABEL_NO_GO) for place in shapely.get_coordinates(inner)]
+    return [{"p": np.round(p, 7).tolist(), "t": said, "k": "place"} for p, said in named]
+
+
+def blocks(grid: PlantGrid) -> list[Label]:
+    """Return each block's name in its middle, where there are several."""
+    if grid.block is None or grid.n_blocks < 2:
+        return []
+    of_plant = grid.block[grid.row]
+    middles = [grid.xy_m[of_plant == k].mean(axis=0) for k in range(grid.n_blocks)]
+    lonlat = np.round(grid.frame.lonlat(np.array(middles)), 7).tolist()
+    return [
+        {"p": p, "t": texts.LABEL_BLOCK.format(n=k), "k": "block"}
+        for k, p in enumerate(lonlat, start=1)
+    ]
 
 
 def _zoom(grid: PlantGrid, lat: float) -> float:

@@ -9,6 +9,8 @@ from ...words.language import number
 from . import colours
 
 if TYPE_CHECKING:
+    from fieldmon.plot.field import Field
+
     from .colours import Colour
 
     #: ``{"title", "of", "scale", "items": [(sign, colour, words), ...]}``
@@ -54,6 +56,18 @@ def by_age(*, dark: bool = False) -> LegendPart:
     items = [*(("square", colour, name) for colour, name in ages),
              ("ring", colours.NEVER, texts.LEGEND_NEVER)]  # fmt: skip
     return part(texts.SHADES["age"], items, "shade:age")
+
+
+def plan(field: Field, *, dark: bool = False) -> list[LegendPart]:
+    """Return the signs of a plan: what is driven on, and what is not."""
+    tone = colours.PLAN_IN_DARK if dark else colours.PLAN
+    items = [
+        ("area", tone.headland, texts.LEGEND_HEADLAND),
+        ("area", tone.aisle, texts.LEGEND_AISLE),
+    ]
+    if not field.no_go.is_empty:
+        items.append(("hatch", tone.hatch, texts.LEGEND_NO_GO))
+    return [part("", items, "plan")]
 
 
 def signs(*, dark: bool = False) -> list[LegendPart]:

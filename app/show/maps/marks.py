@@ -1,11 +1,10 @@
-"""What else lies on a map: hot spots, records, paths, places, what is drawn, a picture below."""
+"""What else lies on a map: hot spots, records, paths, places, what is drawn."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pydeck as pdk
 import shapely
 from pydeck import Layer
 
@@ -144,11 +143,3 @@ def drawing(points: tuple[tuple[float, float], ...]) -> list[Layer]:
         ),
         places(here, "corners", GATE, texts.TIP_CORNER),
     ]  # fmt: skip
-
-
-def backdrop(uri: str, corners: list[list[float]]) -> Layer:
-    """Return a picture of the ground; corners from lower left over upper left, lon/lat."""
-    return Layer(
-        "BitmapLayer", None, id="backdrop", image=pdk.types.String(uri), bounds=corners,
-        opacity=0.8,
-    )  # fmt: skip

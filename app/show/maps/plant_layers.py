@@ -37,10 +37,13 @@ class PlantNotes:
         ``(n,)`` chances to say, or None.
     by_rank
         A sentence for each rank of the shade; none: nothing is said.
+    known
+        What is known of plants, in sentences, and which of them holds for each plant ``(n,)``.
     """
 
     chance: NDArray[np.float64] | None = None
     by_rank: tuple[str, ...] = ()
+    known: tuple[tuple[str, ...], NDArray[np.integer]] | None = None
 
 
 def plants(
@@ -55,6 +58,10 @@ def plants(
         tips["values"] = texts.TIP_CHANCE
     elif notes.by_rank:
         tips["ranks"] = list(notes.by_rank)
+    if notes.known is not None:
+        sentences, which = notes.known
+        arrays["notes"] = which.astype("<u2").tobytes()
+        tips["notes"] = list(sentences)
     least_m = min(grid.plant_spacing_m, grid.row_spacing_m)
     return ArraysLayer(
         "PlantsLayer", arrays, id=name, table=shade.table.tolist(), tips=tips,
@@ -108,7 +115,7 @@ def picked(grid: PlantGrid, which: NDArray[np.integer]) -> Layer:
     """Return a thin bright ring round plants that are selected."""
     here = np.round(grid.lonlat(which), 7).tolist()
     size = 0.7 * min(grid.plant_spacing_m, grid.row_spacing_m)
-    return _ring("picked", here, size, ((0, 160, 255), 2.5), 5.0)
+    return _ring("picked", here, size, ((0, 190, 255), 2.5), 5.0)
 
 
 def _ring(

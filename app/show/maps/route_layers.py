@@ -28,7 +28,7 @@ def route(the_route: Route, *, dark: bool = False) -> list[Layer]:
     return [
         Layer(
             "PathLayer", [{"path": line}], id="casing", get_path="path",
-            get_color=[*(CASING_IN_DARK if dark else CASING), 200], get_width=1.6,
+            get_color=[*(CASING_IN_DARK if dark else CASING), 255], get_width=1.6,
             width_min_pixels=2.4, width_max_pixels=6, joint_rounded=True, cap_rounded=True,
         ),
         Layer(

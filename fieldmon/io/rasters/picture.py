@@ -46,7 +46,7 @@ def backdrop(
     with open_raster(folder, source, options) as opened:
         bands = _shown(opened, options.band)
         part = part_of(opened, bounds, _SIDE * _SIDE, len(bands))
-        part = RasterPart(part.window, _within_side(part.shape))
+        part = RasterPart(part.window, within_side(part.shape))
         colours = _colours(opened, bands)
         kinds = {opened.tif.dtypes[band - 1] for band in bands}
         smooth = kinds <= {"uint8", "uint16"} and colours is None
@@ -68,8 +68,8 @@ def backdrop(
         else:
             image, stretched = _stretched(raw, ~missing)
             said += stretched
-        corners, bent = _corners(opened, part)
-        return Imported(Backdrop(*_encoded(image, missing), corners), (*said, *bent))
+        corners, bent = corners_on_map(opened, part)
+        return Imported(Backdrop(*encoded(image, missing), corners), (*said, *bent))
 
 
 def _shown(opened: OpenRaster, wanted: str | None) -> tuple[int, ...]:
@@ -90,7 +90,8 @@ def _shown(opened: OpenRaster, wanted: str | None) -> tuple[int, ...]:
     return tuple(plain[:3]) if len(plain) >= 3 else tuple(plain[:1])
 
 
-def _within_side(shape: tuple[int, int]) -> tuple[int, int]:
+def within_side(shape: tuple[int, int]) -> tuple[int, int]:
+    """Return the pixels of a picture of at most 2000 a side."""
     shrink = min(1.0, _SIDE / max(shape))
     return max(1, round(shape[0] * shrink)), max(1, round(shape[1] * shrink))
 
@@ -132,7 +133,7 @@ def _stretched(
     ]
 
 
-def _corners(opened: OpenRaster, part: RasterPart) -> tuple[Float, list[ImportMessage]]:
+def corners_on_map(opened: OpenRaster, part: RasterPart) -> tuple[Float, list[ImportMessage]]:
     """Return the corners ``(4, 2)`` in degrees, and how far off the map the picture is between.
 
     A map draws the picture as two flat triangles between its corners; the projection bends it.
@@ -174,7 +175,7 @@ def _mercator(lonlat: Float) -> Float:
     return np.stack([lonlat[:, 0], y], axis=1)
 
 
-def _encoded(image: NDArray[np.uint8], missing: NDArray[np.bool_]) -> tuple[bytes, str]:
+def encoded(image: NDArray[np.uint8], missing: NDArray[np.bool_]) -> tuple[bytes, str]:
     """Return a picture as JPEG, or as WebP where some of it is clear."""
     bands = np.broadcast_to(image, (3, *image.shape[1:]))
     driver, mime, quality = "JPEG", "image/jpeg", 85

@@ -67,6 +67,23 @@ def read_backdrop(
     return picture
 
 
+def read_relief(
+    source: Source, options: RasterOptions | None = None, near: Field | None = None
+) -> Imported[Backdrop]:
+    """Return the relief that a raster of heights (metres) shows, lit from the north-west.
+
+    All of it, or what lies about a plot. How much steeper it is drawn than it is, is told.
+    """
+    picture: Imported[Backdrop] = _read("relief:relief", source, options, near)
+    return picture
+
+
+def looks_like_heights(source: Source, options: RasterOptions | None = None) -> bool:
+    """Return whether a raster is more likely heights than a picture: one band, of no colours."""
+    looks: bool = _read("relief:looks_like_heights", source, options, None)
+    return looks
+
+
 def _read(task: str, source: Source, options: RasterOptions | None, near: Field | None) -> Any:  # noqa: ANN401 - each door says
     options = options or RasterOptions()
     bounds = None
@@ -122,4 +139,12 @@ def _within(field: Field) -> NDArray[np.float64]:
     return np.stack([lon[inside], lat[inside]], axis=1)
 
 
-__all__ = ["Backdrop", "Raster", "RasterOptions", "read_backdrop", "read_raster"]
+__all__ = [
+    "Backdrop",
+    "Raster",
+    "RasterOptions",
+    "looks_like_heights",
+    "read_backdrop",
+    "read_raster",
+    "read_relief",
+]

@@ -11,7 +11,7 @@ from fieldmon.io.writers.day_file import DECIMALS, plain_text
 if TYPE_CHECKING:
     from fieldmon.io.writers.day_file import HandoffPlan, Stop
 
-#: columns that are left empty for whoever inspects
+#: columns that are left empty for whoever inspects; of one of a team ``who`` is its name
 TO_FILL_IN = ("found", "count", "who", "notes")
 _BEFORE = ("row", "number")
 _AFTER = ("plant", "lon", "lat", "arrive", "arrive_s", "inspect_s", "chance", "plot")
@@ -37,17 +37,22 @@ def route_csv(plan: HandoffPlan) -> bytes:
 
 
 def _cells(stop: Stop, plan: HandoffPlan) -> tuple[object, ...]:
-    plot = plain_text(plan.notes.plot)
     return (
         stop.order,
         *((stop.block,) if plan.has_blocks else ()),
         *((stop.row,) if plan.in_rows else ()),
         stop.number,
         *((stop.face,) if plan.has_faces else ()),
-        *("" for _ in TO_FILL_IN),
+        *(_safe(plan.notes.who or "") if name == "who" else "" for name in TO_FILL_IN),
         stop.plant,
         f"{stop.lon:.{DECIMALS}f}",
         f"{stop.lat:.{DECIMALS}f}",
         *(stop.arrive, stop.arrive_s, stop.inspect_s, f"{stop.chance:.6f}"),
-        f"'{plot}" if plot.startswith(_FORMULA) else plot,
+        _safe(plan.notes.plot),
     )
+
+
+def _safe(text: str) -> str:
+    """Return a text that no spreadsheet runs as a formula."""
+    plain = plain_text(text)
+    return f"'{plain}" if plain.startswith(_FORMULA) else plain

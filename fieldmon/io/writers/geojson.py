@@ -75,7 +75,8 @@ def route_geojson(route: DrivenRoute, notes: RouteNotes) -> str:
     """Return a route as GeoJSON text: first the driven line, then a point for every stop.
 
     A stop lies at its plant; its ``line_vertex`` tells where on the line the robot stands for it.
-    ``found``, ``count``, ``who`` and ``notes`` are empty, to be filled in by whoever inspects.
+    ``found``, ``count``, ``who`` and ``notes`` are empty, to be filled in by whoever inspects;
+    of one of a team ``who`` is its name.
     """
     line_lonlat = np.round(route.line_lonlat(), _DECIMALS)
     features = [_line_feature(route, notes, line_lonlat), *_stop_features(route, notes)]
@@ -142,7 +143,7 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
                 "line_vertex": vertex,
                 "found": None,
                 "count": None,
-                "who": None,
+                "who": notes.who,
                 "notes": None,
             },
         }

@@ -64,6 +64,7 @@ def route_shapefile(plan: HandoffPlan) -> bytes:
         with zipfile.ZipFile(packed, "w") as archive:
             for part in sorted(folder.iterdir()):
                 info = zipfile.ZipInfo(part.name, _EPOCH)
+                info.external_attr = 0o644 << 16  # else nobody may read what is unpacked
                 archive.writestr(info, part.read_bytes(), zipfile.ZIP_DEFLATED)
         return packed.getvalue()
 
@@ -107,7 +108,8 @@ def _stops(plan: HandoffPlan) -> gpd.GeoDataFrame:
         )
     }
     for name, kind in (("found", object), ("count", "Int32"), ("who", object), ("notes", object)):
-        columns[name] = pd.Series([None] * len(stops), dtype=kind)
+        said = plan.notes.who if name == "who" else None
+        columns[name] = pd.Series([said] * len(stops), dtype=kind)
     points = [Point(stop.lon, stop.lat) for stop in stops]
     return gpd.GeoDataFrame(columns, geometry=points, crs=_WGS84)
 

@@ -50,6 +50,12 @@ class HandoffFormat(NamedTuple):
 
 #: by name; one whose ending ends another's comes later
 FORMATS = {
+    "nav2-pauses": HandoffFormat(
+        "nav2:nav2_files_with_pauses",
+        (".pauses.nav2.geojson",),
+        "robots with Nav2 and a plugin for pauses",
+        several=True,
+    ),
     "nav2": HandoffFormat(
         "nav2:nav2_files", (".nav2.geojson",), "robots with Nav2 (ROS 2)", several=True
     ),

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _NAMESPACE = "http://www.opengis.net/kml/2.2"
 _LINE_COLOUR = "ff0080ff"  # opacity, blue, green, red: orange
-_ICON = "http://maps.google.com/mapfiles/kml/shapes/placemark_circle.png"
+_STOP_COLOUR = "ff00d7ff"  # yellow
 
 
 def route_kml(plan: HandoffPlan) -> bytes:
@@ -52,9 +52,10 @@ def _styles(document: ET.Element) -> None:
     driven = ET.SubElement(ET.SubElement(document, "Style", {"id": "driven"}), "LineStyle")
     _text(driven, "color", _LINE_COLOUR)
     _text(driven, "width", "3")
+    # no address of a picture: without the internet it would be a red cross, or nothing
     icon = ET.SubElement(ET.SubElement(document, "Style", {"id": "stop"}), "IconStyle")
+    _text(icon, "color", _STOP_COLOUR)
     _text(icon, "scale", "0.6")
-    _text(ET.SubElement(icon, "Icon"), "href", _ICON)
 
 
 def _stop(placemark: ET.Element, stop: Stop, plan: HandoffPlan) -> None:
@@ -76,7 +77,7 @@ def _stop(placemark: ET.Element, stop: Stop, plan: HandoffPlan) -> None:
         "chance": stop.chance,
         "found": "",
         "count": "",
-        "who": "",
+        "who": plan.notes.who or "",
         "notes": "",
     }
     for name, value in values.items():

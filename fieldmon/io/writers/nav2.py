@@ -7,10 +7,15 @@ is used twice, by nodes and edges together. Both must be there. What an edge's l
 between its two nodes is never read, so that every corner is a node. Values in ``metadata`` are
 numbers, truth values, texts, or lists and objects of these: anything else, null above all, throws.
 Numbers are kept in 32 bits, which is a millimetre at 8 km, and so coordinates are metres of a local
-frame. Requests name nodes by 16 bits (``ComputeRoute``: ``uint16 start_id``, ``goal_id``).
+frame. Requests name nodes, and feedback of ``ComputeAndTrackRoute`` names edges, by 16 bits. Edges
+are numbered on from the nodes, so that both together must fit.
 
 That frame is level and east-north-up (REP 103) about the datum, as ``robot_localization`` makes it
-with ``use_local_cartesian``; on a plot, our azimuthal plane is the same within a millimetre.
+with ``use_local_cartesian``; on a plot, our azimuthal plane is the same within a millimetre. It
+lies on the ellipsoid: heights are ignored, and at 300 m above it a kilometre is 4.7 cm longer.
+
+What a node's ``operations`` name are plugins of the robot's own: an unknown one stops the loader.
+So pauses are operations only where they are asked for.
 """
 
 from __future__ import annotations
@@ -36,7 +41,9 @@ if TYPE_CHECKING:
 
 _FRAME = "map"
 _GRID_M = 1e-3  # coordinates are written to the millimetre
-_MOST_NODES = 2**16 - 1
+_MOST_IDS = 2**16 - 1
+#: what the robot's route server must call its plugin for pauses
+PAUSE = "InspectPlant"
 
 
 class RouteGraph(NamedTuple):
@@ -66,11 +73,22 @@ def nav2_files(plan: HandoffPlan) -> dict[str, bytes]:
     }
 
 
-def route_graph(plan: HandoffPlan) -> bytes:
+def nav2_files_with_pauses(plan: HandoffPlan) -> dict[str, bytes]:
+    """Return the same with an operation at each stop, for a robot that has a plugin for it.
+
+    In the route server's parameters: ``operations: ["InspectPlant"]``, and as its plugin for
+    instance ``nav2_route::TriggerEvent``, which calls the service that the operation names.
+    """
+    return {".pauses.nav2.geojson": route_graph(plan, pauses=True)} | dict(
+        list(nav2_files(plan).items())[1:]
+    )
+
+
+def route_graph(plan: HandoffPlan, *, pauses: bool = False) -> bytes:
     """Return the driven line as a Nav2 route graph, every stretch in both directions.
 
     Where the line crosses or joins itself, there is a node. A node's metadata names the stops made
-    there with their plants, and the longest pause.
+    there with their plants, and the longest pause; with `pauses` it has an operation as well.
     """
     graph = graph_of(plan)
     stops = _stops_by_node(plan, graph)
@@ -82,6 +100,7 @@ def route_graph(plan: HandoffPlan) -> bytes:
                 "id": node + 1,
                 "frame": _FRAME,
                 **({"metadata": stops[node]} if node in stops else {}),
+                **({"operations": _pause(stops[node])} if pauses and node in stops else {}),
             },
             "geometry": {"type": "Point", "coordinates": place},
         }
@@ -108,11 +127,18 @@ def datum_yaml(plan: HandoffPlan) -> bytes:
     return (
         "# Origin of the local frame in which the route graph and the waypoints are metres:\n"
         "# x east, y north (ROS REP 103), WGS 84. For robot_localization's navsat_transform_node.\n"
+        "# It adds the yaw offset and the declination to the datum's yaw: all three must be 0.\n"
+        "# In ROS 2 Humble fixes go through UTM in spite of use_local_cartesian, which turns the\n"
+        "# frame by up to 3 degrees: use a later ROS, or a bridge that does not.\n"
+        "# Heights are ignored: at 300 m above the ellipsoid a kilometre is 4.7 cm longer.\n"
+        f"# {_told_width(plan)}\n"
         "/**:\n"
         "  ros__parameters:\n"
         f"    datum: [{lat}, {lon}, 0.0]  # latitude, longitude, yaw\n"
         "    wait_for_datum: true\n"
         "    use_local_cartesian: true\n"
+        "    yaw_offset: 0.0\n"
+        "    magnetic_declination_radians: 0.0\n"
         "    zero_altitude: true\n"
     ).encode()
 
@@ -120,9 +146,11 @@ def datum_yaml(plan: HandoffPlan) -> bytes:
 def waypoints_yaml(plan: HandoffPlan) -> bytes:
     """Return where the robot stands for each plant, facing the way it comes, and for how long.
 
-    Nav2's waypoint follower pauses equally long everywhere (``waypoint_pause_duration``); here each
-    stop has its own ``pause_s``, which is equal unless viewpoints differ. ``node`` is the node of
-    the route graph.
+    In the form that RViz's waypoint panel (``nav2_rviz_plugins``) loads: a position, and a
+    quaternion with w first. What else stands at a waypoint, it does not read. Nav2's waypoint
+    follower, to which the panel hands them, pauses equally long everywhere
+    (``waypoint_pause_duration``); here each stop has its own ``pause_s``, which is equal unless
+    viewpoints differ. ``node`` is the node of the route graph.
     """
     graph = graph_of(plan)
     lat, lon = _origin(plan.grid.frame)
@@ -135,20 +163,20 @@ def waypoints_yaml(plan: HandoffPlan) -> bytes:
         f"datum: {{latitude: {lat}, longitude: {lon}}}",
         "waypoints:",
     ]
-    for stop, turn in zip(plan.stops, yaw.tolist(), strict=True):
+    for k, (stop, turn) in enumerate(zip(plan.stops, yaw.tolist(), strict=True)):
         node = int(graph.of_vertex[stop.vertex])
         x, y = graph.xy_m[node].tolist()
         lines += [
-            f"  - stop: {stop.order}",
+            f"  waypoint{k}:",
+            f"    pose: [{x}, {y}, 0.0]",
+            f"    orientation: {_quaternion(turn)}",
+            f"    stop: {stop.order}",
             f"    node: {node + 1}",
             f"    plant: {stop.plant}",
             *([f"    row: {stop.row}"] if plan.in_rows else []),
             f"    number: {stop.number}",
             f"    arrive_s: {stop.arrive_s}",
             f"    pause_s: {stop.inspect_s}",
-            "    pose:",
-            f"      position: {{x: {x}, y: {y}, z: 0.0}}",
-            f"      orientation: {_quaternion(turn)}",
         ]
     return "\n".join([*lines, ""]).encode()
 
@@ -174,18 +202,19 @@ def graph_of(plan: HandoffPlan) -> RouteGraph:
     passed = dict.fromkeys([*of_vertex.tolist(), *range(len(places))])
     order = np.fromiter(passed, np.int64)
     rank = np.argsort(order)
-    if len(order) > _MOST_NODES:
-        raise SettingError(
-            worded(
-                "A route graph can have {most_nodes} nodes at most, but this "
-                "day has {n}. Hand off a shorter day.",
-                most_nodes=_MOST_NODES,
-                n=len(order),
-            )
-        )
     there = rank[pair.reshape(-1, 2)]
     there = np.unique(np.sort(there, axis=1), axis=0)
     both = np.stack([there, there[:, ::-1]], axis=1).reshape(-1, 2)
+    if len(order) + len(both) > _MOST_IDS:
+        raise SettingError(
+            worded(
+                "A route graph can have {most} nodes and edges at most, but this day has {nodes} "
+                "nodes and {edges} edges. Hand off a shorter day.",
+                most=_MOST_IDS,
+                nodes=len(order),
+                edges=len(both),
+            )
+        )
     xy_m = _east_north(plan.grid.frame, places[order])
     return RouteGraph(xy_m, both, rank[of_vertex])
 
@@ -212,6 +241,20 @@ def _stops_by_node(plan: HandoffPlan, graph: RouteGraph) -> dict[int, dict[str, 
     return found
 
 
+def _pause(metadata: dict[str, Any]) -> dict[str, Any]:
+    """Return what a robot's plugin is told to do at a node."""
+    told = {"service_name": "inspect_plant", **metadata}
+    return {"inspect": {"type": PAUSE, "trigger": "NODE", "metadata": told}}
+
+
+def _told_width(plan: HandoffPlan) -> str:
+    """Return how far the way keeps off plants, in a sentence."""
+    needs = plan.route.aisles.clearance
+    if needs is None:
+        return "The robot's width was not said: ways keep 0.3 m off the middle of plants."
+    return f"Ways keep {needs.way_m:.2f} m off the middle of plants."
+
+
 def _yaws(plan: HandoffPlan, graph: RouteGraph) -> Float:
     """Return the heading at each stop, radians from east to the left: the way the robot came.
 
@@ -227,7 +270,8 @@ def _yaws(plan: HandoffPlan, graph: RouteGraph) -> Float:
 
 
 def _quaternion(yaw: float) -> str:
-    return f"{{x: 0.0, y: 0.0, z: {np.sin(yaw / 2):.9f}, w: {np.cos(yaw / 2):.9f}}}"
+    """Return a turn about the vertical as w, x, y, z: as RViz's panel wants it."""
+    return f"[{np.cos(yaw / 2):.9f}, 0.0, 0.0, {np.sin(yaw / 2):.9f}]"
 
 
 def _origin(frame: Frame) -> tuple[str, str]:

@@ -38,6 +38,8 @@ _ROUNDED = 1e-9
 _LEG_M = 1e-6
 _BISECTIONS = 40
 _LEAST_PRICE = 1e-7
+# each set of blocks has a price so far from that of all at most
+_REACH = 30.0
 # routes begin with the drives of so many of the least bounds
 _STARTED_FROM = 3
 _TOO_LONG = 1.5
@@ -217,7 +219,7 @@ class Bounded(NamedTuple):
     visits: Float
 
 
-def bounded(plot: Plot, reward: Float, robot: Robot) -> Bounded:
+def bounded(plot: Plot | Aisles, reward: Float, robot: Robot) -> Bounded:
     """Return what no route of a robot's day can hold, and what the drives behind it visit.
 
     Two drives at about one price fill the hours, the one more, the other less: as much of each as
@@ -250,8 +252,8 @@ def _posed(
     plot: Plot | Aisles, reward: ArrayLike, robot: Robot | None, seconds: float | None
 ) -> _Posed:
     """Check a problem, and leave out what no day reaches."""
-    aisles = plot if isinstance(plot, Aisles) else plot.aisles
     robot = robot or Robot()
+    aisles = (plot if isinstance(plot, Aisles) else plot.aisles).for_robot(robot)
     time_s = robot.day_s if seconds is None else float(seconds)
     values = _checked(reward, len(aisles.grid), time_s)
     clock = robot_clock(robot, time_s)
@@ -307,6 +309,8 @@ def upper_bound(below: Priced | Blocks, seconds: float, within_s: float = np.inf
             break
         else:
             high = middle
+    if isinstance(below, Blocks) and monotonic() - began <= within_s:
+        value = min(value, below.bound_by_set(seconds, price, _REACH, began + within_s))
     return PriceBound(value * (1.0 + _ROUNDED), price, below, tuple(met.values()))
 
 
@@ -358,7 +362,7 @@ def _reachable(aisles: Aisles, clock: Clock) -> NDArray[np.bool_]:
     """Tell of each plant ``(n,)`` whether a day for it alone is long enough."""
     way_s = aisles.distance_m(GATE, np.arange(len(aisles.grid))) / clock.speed_m_s
     total: Float = way_s * (2.0 if clock.returns else 1.0) + clock.visit_s
-    return total <= clock.seconds_left
+    return (total <= clock.seconds_left) & ~aisles.shut
 
 
 def _seconds(aisles: Aisles, clock: Clock, stops: Int) -> float:

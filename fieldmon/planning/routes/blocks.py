@@ -9,6 +9,7 @@ How that bounds every route is in ``docs/best_routes.md``.
 from __future__ import annotations
 
 from dataclasses import replace
+from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -37,6 +38,8 @@ _NEAR_M = 15.0
 _MOST_BLOCKS = 9
 # drives that fill the hours: through so many of the best sets, with so many prices tried
 _SETS, _HALVINGS, _WIDE = 3, 12, 30.0
+# so many prices are tried for a bound of each set; those of one set so near each other end it
+_PRICES, _CLOSE = 40, 1.01
 _HALF = 0.5 * (1.0 - 1e-9)
 
 
@@ -74,6 +77,7 @@ class Blocks:
         self.open = [Priced(ladder, reward, replace(robot, returns=False)) for ladder in own]
         bits = np.arange(1 << n)[:, None] >> np.arange(n)
         self._in = (bits & 1).astype(np.float64)
+        self._least: Float | None = None
 
     @property
     def how(self) -> str:
@@ -94,7 +98,9 @@ class Blocks:
         another set, or the same one, take far too long. So each set has a price of its own here,
         and the block in which most time is won or lost is driven for the time that is left.
         """
-        worths = self._worths(price, *self._each(price))
+        worths = self._least
+        if worths is None:
+            worths = self._worths(price, *self._each(price))
         for at in np.argsort(worths.max(axis=1))[: -_SETS - 1 : -1].tolist():
             last = int(np.argmax(worths[at]))
             low, high = price / _WIDE, price * _WIDE
@@ -107,6 +113,43 @@ class Blocks:
             short, long = self._through(at, last, high), self._through(at, last, low)
             if short.drives:
                 yield from self._between(short, long, (low, high), seconds)
+
+    def bound_by_set(self, seconds: float, price: float, reach: float, until_s: float) -> float:
+        """Return what no drive in so many seconds can reach: the most of all sets of blocks.
+
+        At one price for all, a set that is far too long and one that is too short may seem worth
+        a drive between them, which does not exist. Here each set has the price that is least for
+        it: that with the most is given a better one, until no other helps. Looked for between
+        `price` over `reach` and `price` times `reach`, up to a moment of the clock.
+        """
+        shape = (len(self._in), 1 if self.robot.returns else len(self.closed))
+        low, high = np.full(shape, price / reach), np.full(shape, price * reach)
+        least = np.full(shape, np.inf)
+        for _ in range(_PRICES):
+            closed, opened = self._each(price)
+            worths = self._worths(price, closed, opened)
+            rewards = self._rewards(closed, opened)
+            least = np.minimum(least, worths + price * (seconds + self.costs.change_s))
+            too_long = (rewards - worths) / price - self.costs.change_s > seconds
+            low = np.where(too_long, np.maximum(low, price), low)
+            high = np.where(too_long, high, np.minimum(high, price))
+            at = np.unravel_index(np.argmax(least), shape)
+            if high[at] < _CLOSE * low[at] or monotonic() > until_s:
+                break
+            price = float(np.sqrt(low[at] * high[at]))
+        self._least = least
+        return max(float(least.max()), 0.0)
+
+    def _rewards(self, closed: list[Drawn], opened: list[Drawn]) -> Float:
+        """Return what each set of blocks holds, ``(2^m, l)``, by the block it ends in."""
+        held = self._in @ np.array([drawn.reward for drawn in closed])
+        if self.robot.returns:
+            whole: Float = held[:, None]
+            return whole
+        more = np.array([one.reward - two.reward for one, two in zip(opened, closed, strict=True)])
+        rewards: Float = held[:, None] + more
+        rewards[0] = 0.0
+        return rewards
 
     def _between(
         self, short: Visited, long: Visited, prices: tuple[float, float], seconds: float

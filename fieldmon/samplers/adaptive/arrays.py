@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.clustering import ClusterEstimate
     from fieldmon.infestation.pairs import Neighbourhood
+    from fieldmon.infestation.tracing import Raised, Traces
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
@@ -48,7 +49,10 @@ class BeliefArrays(NamedTuple):
     clusters
         What the inspections since say of how much infested plants stand together.
     scale
-        ``(1,)`` what was made of that: how much closer they stand than was believed.
+        ``(2,)`` what was made of that: how much closer they stand than was believed, and the
+        chance that insects jump beyond the plants next to them.
+    traces, raised
+        What a find says of plants farther away, and room for those.
     """
 
     chance: Float
@@ -60,6 +64,8 @@ class BeliefArrays(NamedTuple):
     morning_pair_chance: Float
     clusters: ClusterEstimate
     scale: Float
+    traces: Traces
+    raised: Raised
 
 
 class RowTours(NamedTuple):

@@ -7,8 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.jit import loop, part
-from fieldmon.infestation.clustering import clustering_scale, scale_clustering, update_clusters
+from fieldmon.infestation.clustering import (
+    chance_apart,
+    clustering_scale,
+    scale_clustering,
+    update_clusters,
+)
 from fieldmon.infestation.pairs import update_neighbourhood
+from fieldmon.infestation.tracing import rescale_traced, trace
 from fieldmon.plot.travel import travel_s
 from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, NEARLY, NOWHERE
 from fieldmon.samplers.adaptive.replan import first_price, plan_on, row_of
@@ -152,7 +158,12 @@ def _learn(
     """Close a plant and learn from its inspection about those near it."""
     i, found, detects = result
     believed = belief.chance, belief.pair_chance
+    p = belief.chance[i]
     n = update_neighbourhood(believed, linked, (i, found), (detects, True), belief.near)
+    if found:
+        _trace(travel, linked, belief, rows, (i, p))
+    else:
+        belief.traces.unseen[i] *= 1.0 - detects
     update_clusters(
         (belief.morning_chance, belief.morning_pair_chance),
         linked,
@@ -166,8 +177,26 @@ def _learn(
 
 
 @part
+def _trace(
+    travel: TravelTable,
+    linked: Linked,
+    belief: BeliefArrays,
+    rows: RowTours,
+    find: tuple[int, float],
+) -> None:
+    """Look for what a find has infested and came from; `find` is the plant, and its chance."""
+    believed, traces = (belief.chance, belief.pair_chance), belief.traces
+    n = trace(believed, linked, traces, (*find, belief.scale[1]), belief.raised)
+    for t in range(n):
+        j = belief.raised.plant[t]
+        rows.stale[travel.row[j]], rows.most[j // BLOCK] = True, -1.0
+    traces.unseen[find[0]] = 0.0
+
+
+@part
 def _learn_clustering(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     """Believe how much infested plants stand together, once it differs enough from what was."""
+    _learn_jumps(linked, belief, rows)
     scale = clustering_scale(belief.clusters)
     if abs(scale - belief.scale[0]) < _NOTABLE * belief.scale[0]:
         return
@@ -176,6 +205,18 @@ def _learn_clustering(linked: Linked, belief: BeliefArrays, rows: RowTours) -> N
     )
     belief.scale[0] = scale
     rows.stale[:] = True
+
+
+@part
+def _learn_jumps(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
+    """Believe in jumps beyond neighbours, once that differs enough from what was."""
+    jumps = chance_apart(belief.clusters.evidence)
+    if belief.traces.kernel.size == 1 or abs(jumps - belief.scale[1]) < _NOTABLE * belief.scale[1]:
+        return
+    believed, ratio = (belief.chance, belief.pair_chance), jumps / belief.scale[1]
+    rescale_traced(believed, linked, belief.traces.from_afar, ratio)
+    belief.scale[1] = jumps
+    rows.stale[:], rows.most[:] = True, -1.0
 
 
 @part

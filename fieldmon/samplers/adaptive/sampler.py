@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.clustering import ClusterEstimate
+from fieldmon.infestation.clustering import ClusterEstimate, chance_apart
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances
+from fieldmon.infestation.tracing import Raised, Traces
 from fieldmon.samplers.adaptive.arrays import (
     LEAST,
     NOWHERE,
@@ -85,6 +86,7 @@ class Adaptive(Sampler):
         if pair_chance is None:
             pair_chance = pair_chances(scene.chance, scene.grid, self.beside_find)
         n, n_rows = len(scene.chance), scene.grid.n_rows
+        traces = Traces.none(n) if scene.traces is None else scene.traces.own()
         belief = BeliefArrays(
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),
@@ -93,8 +95,10 @@ class Adaptive(Sampler):
             np.full(n, NOWHERE),
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),
-            ClusterEstimate.none(n),
-            np.ones(1),
+            ClusterEstimate.none(n, traces.evidence),
+            np.array([1.0, chance_apart(traces.evidence)]),
+            traces,
+            Raised.of(n),
         )
         tours = BestTours.of(n_rows)
         measure_ways(scene.aisles.travel, scene.clock, tours.next_s, tours.home_s)

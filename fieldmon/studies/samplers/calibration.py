@@ -15,6 +15,7 @@ from fieldmon.infestation.ensemble import Ensemble
 from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import PlotEstimate, estimate_plot
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io.html import page
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Experiment, Memory, run
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 
 BELIEFS: dict[str, Believe] = {
     "independent plants": IndependentPlants,
+    "traced pairs": TracedPairs.of,
     "pairs": PairApproximation.of,
     "pairs, clustering known": partial(PairApproximation.of, clustering=0.65),
     "ensemble": Ensemble.of,
@@ -60,8 +62,12 @@ class Calibration:
         Mean squared error, and mean of minus the logarithm of the chance given to what was so.
     suspicious_log_score
         The same for the map reduced to suspicious or not: each class at its share infested.
-    covered
-        Share of mornings on which the 90 % interval held the number of infested plants.
+    skill
+        How much less the logarithmic score is than that of one rate for all plants, told the share
+        infested of each morning, of what that leaves (1: nothing is left to know).
+    covered, half_covered
+        Share of mornings with infested plants on which the interval of 90 % held their number, and
+        that of 50 %; NaN where there was none.
     clean_said, clean_was, clean_count
         Reliability of the chance that the plot is clean, between `CLEAN_EDGES`.
     seconds_a_day
@@ -74,7 +80,9 @@ class Calibration:
     brier: float
     log_score: float
     suspicious_log_score: float
+    skill: float
     covered: float
+    half_covered: float
     clean_said: NDArray[np.float64]
     clean_was: NDArray[np.float64]
     clean_count: NDArray[np.int64]
@@ -87,6 +95,7 @@ class _Watched:
     def __init__(self, belief: Belief, mornings: list[Belief], seconds: list[float]) -> None:
         self._belief, self._mornings, self._seconds = belief, mornings, seconds
         self.chance, self.pair_chance = belief.chance, belief.pair_chance
+        self.traces, self.doubt = belief.traces, belief.doubt
 
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
@@ -117,8 +126,8 @@ class _Mornings(NamedTuple):
     ----------
     chances, truths
         A map a morning, ``(n,)`` each: chance of infestation, and who was infested.
-    ahead
-        What was believed of the whole plot.
+    ahead, half_ahead
+        What was believed of the whole plot, with intervals of 90 % and of 50 %.
     seconds
         Spent by the belief.
     """
@@ -126,6 +135,7 @@ class _Mornings(NamedTuple):
     chances: list[NDArray[np.float64]]
     truths: list[NDArray[np.bool_]]
     ahead: list[PlotEstimate]
+    half_ahead: list[PlotEstimate]
     seconds: list[float]
 
 
@@ -169,40 +179,49 @@ def _mornings(
     return _Mornings(
         [belief.chance for belief in believed],
         [day.infested for day in season],
-        [_estimate(belief, aisles.grid) for belief in believed],
+        [_estimate(belief, aisles.grid, 0.9) for belief in believed],
+        [_estimate(belief, aisles.grid, 0.5) for belief in believed],
         seconds,
     )
 
 
-def _estimate(belief: Belief, grid: PlantGrid) -> PlotEstimate:
+def _estimate(belief: Belief, grid: PlantGrid, sure: float) -> PlotEstimate:
     if isinstance(belief, Ensemble):
-        return belief.estimate()
-    if belief.pair_chance is not None:
-        return estimate_plot(grid, belief.chance, belief.pair_chance)
-    start, other = grid.adjacent
-    return estimate_plot(
-        grid, belief.chance, np.repeat(belief.chance, np.diff(start)) * belief.chance[other]
-    )
+        return belief.estimate(sure)
+    pair_chance = belief.pair_chance
+    if pair_chance is None:
+        start, other = grid.adjacent
+        pair_chance = np.repeat(belief.chance, np.diff(start)) * belief.chance[other]
+    return estimate_plot(grid, belief.chance, pair_chance, sure, doubt=belief.doubt)
 
 
 def _compared(mornings: _Mornings) -> Calibration:
-    chances, truths, ahead, seconds = mornings
+    chances, truths, ahead, half_ahead, seconds = mornings
     counts = np.array([np.count_nonzero(truth) for truth in truths])
     p = np.clip(np.concatenate(chances), _LEAST, 1.0 - _LEAST)
     y = np.concatenate(truths)
     suspicious = np.concatenate([c >= _SUSPICIOUS * c.max() for c in chances])
     classes = np.where(suspicious, _share(y[suspicious]), _share(y[~suspicious]))
     clean = np.array([each.chance_clean for each in ahead])
-    inside = [o.low <= n <= o.high for o, n in zip(ahead, counts, strict=True)]
+    rate = np.concatenate([np.full(len(truth), truth.mean()) for truth in truths])
+    flat = _log_score(np.clip(rate, _LEAST, 1.0 - _LEAST), y)
     return Calibration(
         *_reliability(p, y, EDGES),
         float(np.mean((p - y) ** 2)),
         _log_score(p, y),
         _log_score(np.clip(classes, _LEAST, 1.0 - _LEAST), y),
-        float(np.mean(inside)),
+        1.0 - _log_score(p, y) / flat,
+        _held(ahead, counts),
+        _held(half_ahead, counts),
         *_reliability(clean, counts == 0, CLEAN_EDGES),
         sum(seconds) / len(counts),
     )
+
+
+def _held(ahead: list[PlotEstimate], counts: NDArray[np.intp]) -> float:
+    """Return how often an interval held the number of infested plants where there were any."""
+    inside = [o.low <= n <= o.high for o, n in zip(ahead, counts, strict=True) if n]
+    return float(np.mean(inside)) if inside else float("nan")
 
 
 def _share(y: NDArray[np.bool_]) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 
 from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.base import Sampler
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from fieldmon.samplers.base import Scene, Stops, WouldFind
 
 ADAPTIVE, WORDED, TUNED = "adaptive", "dynamic, as worded", "dynamic, tuned"
+PAIRS, NAIVE = "adaptive, pairs only", "naive"
 NO_TRAVEL, CLAIRVOYANT = "no travel", "clairvoyant"
 SOME = 10
 
@@ -56,14 +58,15 @@ class Contender:
 
 # what `tuning.losses` came to; the map of pairs is the better one for Dynamic too
 CONTENDERS = (
-    Contender(ADAPTIVE, Adaptive()),
+    Contender(ADAPTIVE, Adaptive(), TracedPairs.of),
+    Contender(PAIRS, Adaptive()),
     Contender(WORDED, Dynamic()),
     Contender(TUNED, Dynamic(suspicious=0.06)),
     Contender("dynamic, independent plants", Dynamic(), IndependentPlants, every=SOME),
     Contender("adaptive, independent plants", Adaptive(), IndependentPlants, every=SOME),
-    Contender("naive", Naive(), IndependentPlants),
+    Contender(NAIVE, Naive(), IndependentPlants),
     Contender("bouncy", Bouncy(), IndependentPlants),
-    Contender(NO_TRAVEL, Adaptive(), drives=False, every=SOME),
+    Contender(NO_TRAVEL, Adaptive(), TracedPairs.of, drives=False, every=SOME),
 )
 NAMES = (*(contender.name for contender in CONTENDERS), CLAIRVOYANT)
 

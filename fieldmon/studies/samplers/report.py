@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from fieldmon.io.html import page
 from fieldmon.studies.charts import Range, range_chart
-from fieldmon.studies.samplers.contenders import ADAPTIVE, NAMES, TUNED, WORDED
-from fieldmon.studies.samplers.summary import by_scenario, means, ratio, sentences
+from fieldmon.studies.samplers.contenders import ADAPTIVE, NAMES
+from fieldmon.studies.samplers.summary import OTHERS, means, ratios, sentences
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,16 +32,17 @@ def report_html(outcomes: Sequence[SeasonOutcome]) -> str:
         "fieldmon/studies/samplers/report.html.j2",
         seeds=len({outcome.seed for outcome in outcomes}),
         sentences=sentences(outcomes),
-        charts=[_chart(outcomes, other) for other in (WORDED, TUNED)],
+        charts=[_chart(outcomes, other) for other in OTHERS],
         names=NAMES,
         tables=[(_WORDS[measure], by_name) for measure, by_name in means(outcomes).items()],
     )
 
 
 def _chart(outcomes: Sequence[SeasonOutcome], other: str) -> Markup:
-    rows = []
-    for scenario, who in by_scenario(outcomes, "infested_plant_days").items():
-        r = ratio(who[ADAPTIVE], who[other])
-        rows.append(Range(scenario, r.low, r.value, r.high))
+    rows = [
+        Range(scenario, made[other].low, made[other].value, made[other].high)
+        for scenario, made in ratios(outcomes).items()
+        if other in made
+    ]
     title = f"Infested plant-days: {ADAPTIVE} over {other} (mean and 95 % interval)"
     return range_chart(title, rows, "ratio; left of 1 the adaptive sampler is ahead")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -18,8 +18,11 @@ from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.simulation.season import SeasonSettings
 from fieldmon.simulation.start import Start
+from fieldmon.studies.samplers.worlds import WORLDS, World, near_edge
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from fieldmon.compute.random_streams import RandomStreams
@@ -33,6 +36,7 @@ FLAWS = ("", "spread", "records", "detection")
 # infested plants on the first morning, and how many stand together (our choice)
 _SHARE, _TOGETHER = 0.015, 8
 _GPS_M = 5.0
+_TRIES = 200
 _POOR_DETECTION = 0.5
 _BELIEVED_RATE = {0.3: 0.8, 0.5: 0.1, 0.8: 0.3}
 
@@ -57,6 +61,12 @@ class Scenario:
     flaw
         What the belief has wrong: nothing, the "spread" (another rate), the place of the
         "records" (GPS error of 5 m, 1 sigma), the "detection" (0.84 believed, 0.5 true).
+    world
+        What the insects really do, a name of `fieldmon.studies.samplers.worlds.WORLDS`; then
+        `spread` is what is believed, and clusters of the first morning came about as the world has
+        it. Empty: they do as is believed.
+    hours
+        The working day.
     """
 
     plot: str = "B"
@@ -64,10 +74,14 @@ class Scenario:
     start: str = "clusters"
     prior: str = "none"
     flaw: str = ""
+    world: str = ""
+    hours: float = 12.0
 
     def __post_init__(self) -> None:
-        known = (("plot", SIDES), ("start", STARTS), ("prior", PRIORS), ("flaw", FLAWS))
-        for name, values in known:
+        known: dict[str, Iterable[str]] = {
+            "plot": SIDES, "start": STARTS, "prior": PRIORS, "flaw": FLAWS, "world": ("", *WORLDS)
+        }  # fmt: skip
+        for name, values in known.items():
             if getattr(self, name) not in values:
                 raise SettingError(
                     f"The {name} must be one of {', '.join(map(repr, values))}, "
@@ -77,6 +91,8 @@ class Scenario:
     @property
     def name(self) -> str:
         """Return the scenario in words, unique."""
+        if self.world:
+            return f"world, {self.plot}, {self.hours:g} h, {self.world}"
         rate = f"spread {self.spread.rate_per_day:.0%} to {self.spread.to}"
         words = f"{self.plot}, {rate}, {self.start}, prior {self.prior}"
         return f"{words}, {self.flaw} wrong" if self.flaw else words
@@ -89,7 +105,9 @@ class Scenario:
     @property
     def robot(self) -> Robot:
         """Return who inspects, as it is."""
-        return Robot(detection=_POOR_DETECTION) if self.flaw == "detection" else Robot()
+        if self.flaw == "detection":
+            return Robot(detection=_POOR_DETECTION, hours=self.hours)
+        return Robot(hours=self.hours)
 
     @property
     def settings(self) -> SeasonSettings:
@@ -99,12 +117,19 @@ class Scenario:
             rate = _BELIEVED_RATE.get(self.spread.rate_per_day, 0.3)
             believed = Spread(rate, self.spread.to)
         learning = Learning(detection=Robot().detects)
-        return SeasonSettings(spread=self.spread, believed_spread=believed, learning=learning)
+        settings = SeasonSettings(spread=self.spread, believed_spread=believed, learning=learning)
+        if not self.world:
+            return settings
+        world = WORLDS[self.world]
+        return replace(settings, pests=world.night, hidden_nights=world.hidden_nights)
 
     def draw_start(self, streams: RandomStreams) -> Start:
         """Draw the first morning and what is known of it."""
         grid = self.aisles.grid
-        infested = _infested(grid, self.start, streams.of("start"))
+        if self.world:
+            infested = _grown(grid, WORLDS[self.world], streams.of("start"))
+        else:
+            infested = _infested(grid, self.start, streams.of("start"))
         return Start(infested, _known(grid, self, infested, streams.of("records")))
 
 
@@ -124,6 +149,16 @@ def usual_scenarios() -> list[Scenario]:
         made += [Scenario(plot, prior=prior) for prior in PRIORS[2:]]
     made += [Scenario(flaw="spread"), Scenario(flaw="detection")]
     return [*made, Scenario(prior="records 5 %", flaw="records")]
+
+
+def in_worlds() -> list[Scenario]:
+    """Return the scenarios of each world, on 5 and 10 ha, with 12 and with 4 hours a day."""
+    return [
+        Scenario(plot, world=world, hours=hours)
+        for plot in ("B", "C")
+        for hours in (12.0, 4.0)
+        for world in WORLDS
+    ]
 
 
 def all_scenarios() -> list[Scenario]:
@@ -149,6 +184,28 @@ def _infested(grid: PlantGrid, start: str, rng: np.random.Generator) -> NDArray[
     infested = np.zeros(len(grid), np.bool_)
     while np.count_nonzero(infested) < wanted:
         _grow(grid, infested, min(_TOGETHER, wanted - int(np.count_nonzero(infested))), rng)
+    return infested
+
+
+def _grown(grid: PlantGrid, world: World, rng: np.random.Generator) -> NDArray[np.bool_]:
+    """Infest the share of the first morning: groups of eight that came from one plant each."""
+    n, wanted = len(grid), max(1, round(_SHARE * len(grid)))
+    infested = np.zeros(n, np.bool_)
+    if world.arrivals and world.at_edge:
+        near = near_edge(grid)
+        infested[rng.choice(n, wanted, replace=False, p=near / near.sum())] = True
+        return infested
+    while np.count_nonzero(infested) < wanted:
+        members = [int(rng.choice(np.flatnonzero(~infested)))]
+        size = min(_TOGETHER, wanted - int(np.count_nonzero(infested)))
+        for _ in range(_TRIES):
+            if len(members) >= size:
+                break
+            sender = members[int(rng.integers(len(members)))]
+            reached = int(world.reached(grid, rng)[sender])
+            if reached >= 0 and reached not in members and not infested[reached]:
+                members.append(reached)
+        infested[members] = True
     return infested
 
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.spread import night
 from fieldmon.simulation.experiment import Experiment
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import simulated_days
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
     from fieldmon.studies.samplers.scenarios import Scenario
 
 _FAST = 1e6
+MEASURES = ("infested_plant_days", "d50", "d80", "inspected", "found", "visited_pct")
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,14 @@ class SeasonOutcome:
     found: float
     visited_pct: float
 
+    # the first and third column are a scenario and a contender, named as in the tables made first
+    columns: ClassVar[tuple[str, ...]] = ("cell", "seed", "who", *MEASURES)
+    kinds: ClassVar[tuple[type[Any], ...]] = (str, int, str, *(float,) * len(MEASURES))
 
-MEASURES = ("infested_plant_days", "d50", "d80", "inspected", "found", "visited_pct")
+    @property
+    def key(self) -> tuple[str, int]:
+        """Return the chunk that it is of: scenario and seed."""
+        return self.scenario, self.seed
 
 
 def study_of(
@@ -105,7 +111,7 @@ def _clairvoyant(
         evening = day.infested.copy()
         evening[day.work.plant[day.work.found]] = False
         key = streams.key("spread", day.number)
-        oracle.truth = night(scenario.aisles.grid, evening, scenario.spread, key)
+        oracle.truth = scenario.settings.night(scenario.aisles.grid, evening, key)
 
 
 def _outcome(scenario: Scenario, seed: int, contender: str, made: SeasonMetrics) -> SeasonOutcome:

@@ -7,11 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.studies.samplers.contenders import ADAPTIVE, NAMES, TUNED, WORDED
+from fieldmon.studies.samplers.contenders import (
+    ADAPTIVE,
+    NAIVE,
+    NAMES,
+    PAIRS,
+    TUNED,
+    WORDED,
+)
 from fieldmon.studies.samplers.seasons import MEASURES
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -19,6 +26,8 @@ if TYPE_CHECKING:
 
     MeasureTable = dict[str, dict[str, NDArray[np.float64]]]
 
+#: whom Adaptive is held against
+OTHERS = (PAIRS, WORDED, TUNED, NAIVE)
 _RESAMPLES = 2000
 _NEVER_WORSE = 1.05
 
@@ -54,6 +63,31 @@ def ratio(one: NDArray[np.float64], other: NDArray[np.float64]) -> Ratio:
     ratios = one[draws].mean(axis=1) / np.maximum(other[draws].mean(axis=1), 1e-9)
     low, high = np.quantile(ratios, [0.025, 0.975])
     return Ratio(float(one.mean() / max(other.mean(), 1e-9)), float(low), float(high))
+
+
+def ratios(outcomes: Sequence[SeasonOutcome]) -> dict[str, dict[str, Ratio]]:
+    """Return Adaptive's infested plant-days over each other's, by scenario and `OTHERS`."""
+    loss = by_scenario(outcomes, "infested_plant_days")
+    return {
+        name: {
+            other: ratio(who[ADAPTIVE], who[other])
+            for other in OTHERS
+            if len(who[other]) == len(who[ADAPTIVE])
+        }
+        for name, who in loss.items()
+    }
+
+
+def ratio_lines(outcomes: Sequence[SeasonOutcome]) -> list[str]:
+    """Return the ratios as lines of text, a scenario each, after a heading."""
+    lines = [f"{'Infested plant-days of adaptive over those of':46}" + _columns(OTHERS)]
+    for name, others in ratios(outcomes).items():
+        lines.append(f"{name:46}" + _columns(str(others.get(other, "")) for other in OTHERS))
+    return lines
+
+
+def _columns(values: Iterable[str]) -> str:
+    return "  ".join(f"{value:>20}" for value in values)
 
 
 def sentences(outcomes: Sequence[SeasonOutcome]) -> list[str]:

@@ -14,7 +14,7 @@ def test_a_missing_crs_is_asked_for_and_answered_by_button(app, tmp_path):
     upload(app, plot=("plot.zip", data))
     assert not app.exception
     assert "coordinate system" in app.warning[0].value
-    ask = next(box for box in app.selectbox if box.label.endswith("crs"))
+    ask = next(box for box in app.selectbox if box.key.startswith("ask "))
     assert "EPSG:2039" in ask.options
     ask.set_value("EPSG:2039").run()
     press(app, "Use this")
@@ -54,7 +54,7 @@ def two_layers(folder):
 def test_one_file_is_plot_and_records_each_with_its_own_answer(app, tmp_path):
     data = two_layers(tmp_path)
     upload(app, plot=("both.gpkg", data), record=("both.gpkg", data))
-    press(app, "plots")
+    next(one for one in app.button if one.label.startswith("1 · plots · ")).click().run()
     assert plot_name(app).startswith("square")
     assert "are not used on this plot" in texts_of(app)
     press(app, "finds")

@@ -51,10 +51,10 @@ def test_plants_left_out_are_not_on_the_route(app):
 @pytest.mark.usefixtures("session")
 def test_a_plant_that_is_not_there_is_not_selected():
     choices = chosen(a_plot(0.001))
-    picking.take(choices, [0, len(choices.plot.grid)])
+    picking.take(choices, (0, len(choices.plot.grid)))
     assert wishes.picked(choices.place) == (0,)
     (ring,) = picking.layers(choices)
     assert ring.data == [{"p": np.round(choices.plot.grid.lonlat(np.array([0])), 7)[0].tolist()}]
-    picking.take(choices, [])
+    picking.take(choices, ())
     assert picking.layers(choices) == []
     assert st.session_state["plants picked"] == (choices.place, ())

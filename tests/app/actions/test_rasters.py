@@ -1,27 +1,9 @@
-"""Rasters of a session: a picture below, plants that are missing, risk."""
+"""Rasters of a session: plants that are missing, risk."""
 
 import numpy as np
 
 from fieldmon.monitoring import Season
-from tests.app.driving import begun, geotiff, go, layer, map_of, metric, plants, press, texts_of
-
-
-def test_a_picture_of_the_ground_lies_under_the_plants_where_it_is(app):
-    data = geotiff(np.full((400, 400), 90, np.uint8))
-    go(app, "field")
-    app.file_uploader(key="backdrop_file").upload("ground.tif", data).run()
-    assert not app.exception
-    ids = [one["id"] for one in map_of(app)["layers"]]
-    assert ids[0] == "backdrop", "below all else"
-    assert "backdrop" in {one["key"] for one in map_of(app)["switches"]}
-    corners = np.array(layer(app, "backdrop")["bounds"])
-    lonlat = plants(app).lonlat
-    assert (corners.min(axis=0) <= lonlat.min(axis=0)).all()
-    assert (corners.max(axis=0) >= lonlat.max(axis=0)).all()
-    app.file_uploader(key="backdrop_file").upload("ground.tif", b"no picture").run()
-    assert not app.exception
-    assert app.error
-    assert layer(app, "backdrop") is None
+from tests.app.driving import begun, geotiff, go, metric, plants, press, texts_of
 
 
 def places(app):

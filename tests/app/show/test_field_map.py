@@ -54,8 +54,9 @@ def test_the_view_belongs_to_the_plot_and_holds_all_of_it(tmp_path):
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if page != "plots"])
-def test_the_map_shows_the_same_plot_on_every_page_with_an_outline_below_all_else(app, page):
+def test_the_map_shows_the_same_plot_on_every_page_with_its_plan_below_all_else(app, page):
     place = map_of(app)["place"]
     go(app, page)
     assert map_of(app)["place"] == place
-    assert next(one["id"] for one in map_of(app)["layers"]) == "boundary"
+    ids = [one["id"] for one in map_of(app)["layers"]]
+    assert ids[:4] == ["headland", "rows-ground", "aisles", "boundary"]

@@ -7,6 +7,7 @@ from app.show import map_layers
 from app.show.maps import colours
 from app.state import chosen_day
 from fieldmon.infestation.hotspots import hot_spots
+from fieldmon.infestation.inspections import Inspections
 from tests.app.chosen import a_plot, chosen, in_season, records_at
 from tests.app.shown_plants import plants_in
 from tests.monitoring.seasons import BEGINS, Insects, a_season
@@ -41,9 +42,9 @@ def test_plants_by_state_say_it_and_finds_have_rings(choices):
     layers = map_layers.plants(choices)
     by_state = of_name(layers, "plants-state")
     shown = plants_in(by_state)
-    said = [by_state.tips["ranks"][rank] for rank in shown.rank[[7, 9, 8]]]
-    said = [words.removeprefix(": ") for words in said]
-    assert said == ["found", "looked clean", "never inspected"]
+    notes = np.frombuffer(by_state.arrays["notes"], "<u2")
+    said = [by_state.tips["notes"][note] for note in notes[[7, 9, 8]]]
+    assert said == ["found 6 days ago", "clean 6 days ago", "never inspected"]
     assert shown.of_colour(colours.FOUND).tolist() == [7]
     assert shown.of_colour(colours.CLEAN).tolist() == [9]
     assert [len(layer.data) for layer in layers if layer.id.startswith("finds")] == [1, 1]
@@ -117,10 +118,26 @@ def test_hot_spots_lie_under_the_plants_that_are_tapped_with_their_edges_above()
     assert ids.index("hot") < ids.index("plants-chance") < ids.index("hot-edge")
 
 
-def test_below_is_below_and_above_is_above_all_else(choices):
-    below, above = map_layers.plants(choices)[:1], map_layers.plants(choices)[1:2]
-    layers = map_layers.day_map(choices, below=below, above=above).layers
-    assert (layers[0], layers[-1]) == (below[0], above[0])
+def test_the_plan_is_below_and_above_is_above_all_else(choices):
+    above = map_layers.plants(choices)[1:2]
+    layers = map_layers.day_map(choices, above=above).layers
+    assert layers[: len(map_layers.plan(choices))] == map_layers.plan(choices)
+    assert layers[-1] == above[0]
+
+
+def test_pointing_says_how_often_a_plant_was_inspected_and_found(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    for day, result in ((0, [1, 0, 2]), (2, [1, 0, 1])):
+        on = np.datetime64(BEGINS) + day
+        season.record(Inspections.of(np.array([4, 5, 6]), np.array(result), on), "test")
+    layer = of_name(
+        map_layers.plants(in_season(season, BEGINS.replace(day=BEGINS.day + 3))), "plants-chance"
+    )
+    notes = np.frombuffer(layer.arrays["notes"], "<u2")
+    assert [layer.tips["notes"][notes[k]] for k in (4, 5, 6, 7)] == [
+        "found 1 day ago, inspected 2 times, found 2 times", "clean 1 day ago, inspected 2 times",
+        "found 1 day ago", "never inspected",
+    ]  # fmt: skip
 
 
 def test_a_day_is_played_anew_where_its_route_is_another_one(choices):

@@ -6,6 +6,7 @@ import re
 import pytest
 
 from app.show import map_view
+from app.show.ground import GroundShown
 from app.show.map_view import Drawable, MapAnswers, MapContent, Switch
 from app.show.maps import deck
 from app.state.map_store import STORE
@@ -91,11 +92,32 @@ def told(session):
 def test_taps_drawings_and_selections_are_heard_as_what_they_are(told):
     told(tapped={"layer": "plants-chance", "index": 7.0})
     told(drawn={"kind": "no_go", "points": [[1, 2], [3, 4.5]]})
-    assert told(selected={"plants": [3, 9]}) == [
+    assert told(selected={"runs": [[3, 5], [9, 9]]}) == [
         ("tapped", "plants-chance", 7),
         ("drawn", "no_go", ((1.0, 2.0), (3.0, 4.5))),
-        ("selected", [3, 9]),
+        ("selected", (3, 4, 5, 9)),
     ]
+
+
+def test_what_is_selected_by_now_is_told_in_runs_of_numbers(sent):
+    some = MapAnswers(selected=lambda _: None, picked=(9, 3, 4, 5, 11))
+    assert sent(content(), some)["picked"] == [[3, 5], [9, 9], [11, 11]]
+    assert sent(content())["picked"] == []
+
+
+def test_no_more_plants_are_taken_than_the_map_offers(told):
+    ((_, plants),) = told(selected={"runs": [[0, 2_000_000_000]]})
+    assert len(plants) == 20_000
+
+
+def test_the_ground_lies_below_all_else_can_be_switched_and_names_its_source(sent):
+    shown = GroundShown((deck.ArraysLayer("BitmapLayer", {"image": b"x"}, id="ground-picture"),),
+                        "somebody", is_picture=True)  # fmt: skip
+    data = sent(content(ground=shown))
+    assert [one["id"] for one in data["layers"]] == ["ground-picture", "boundary"]
+    assert data["ground"] == {"ids": ["ground-picture"], "credit": "somebody", "picture": True}
+    assert data["switches"][-1]["layers"] == ["ground-picture"]
+    assert sent(content())["switches"] == []
 
 
 def test_what_nobody_wants_to_hear_of_changes_nothing(session):

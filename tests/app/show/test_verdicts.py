@@ -6,6 +6,7 @@ import pytest
 from app.show import verdicts
 from app.state.comparison import Outcome, Strategy
 from fieldmon.simulation.statistics import summary_statistics
+from fieldmon.simulation.team_worth import marginal_gains
 
 BEST, SECOND = Strategy("dynamic", 12.0, 40.0), Strategy("naive", 12.0, 40.0)
 
@@ -62,3 +63,20 @@ def test_an_interval_of_percent_stays_within_percent(found):
     (cell,) = verdicts.table([outcome(BEST, [1.0, 2.0, 3.0], found=found)])["found at the end"]
     low, high = cell.partition("(")[2].rstrip(")").split(" .. ")
     assert 0 <= float(low) < float(high) <= 100
+
+
+def test_each_further_robot_is_said_with_its_interval():
+    losses = {1: [100.0, 110.0, 120.0], 2: [40.0, 52.0, 58.0], 3: [36.0, 48.0, 54.0]}
+    gains = marginal_gains({k: np.array(values) for k, values in losses.items()})
+    said = verdicts.robots_sentence(gains)
+    assert said == (
+        "A second robot would save 60 (55 to 65) infested plant-days; a third 4 (4 to 4)."
+    )
+    alone = verdicts.robots_sentence(gains[1:])
+    assert alone == "3 robots instead of 2 would save 4 (4 to 4) infested plant-days."
+    once = marginal_gains({1: np.array([5.0]), 2: np.array([3.0])})
+    assert "no interval is known" in verdicts.robots_sentence(once)
+
+
+def test_a_team_is_named_by_its_number():
+    assert verdicts.name(Strategy("naive", 12.0, 40.0, 3)) == "3 × Naive · 12 h · 40 s"

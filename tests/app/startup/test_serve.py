@@ -8,10 +8,14 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from app.startup.serve import Server, page_files
-from app.state import map_file, map_store
+from app.state import map_file, map_store, map_tiles
+from fieldmon.io.rasters.tiles import read_tiles
+from tests.io.rasters.tile_maps import about, mbtiles
+
+HOST = [(b"host", b"127.0.0.1:8501")]
 
 
-def asked(server, path, method="GET", within_s=5.0):
+def asked(server, path, method="GET", within_s=5.0, headers=HOST):
     """Return the status, headers and body of what the server answers."""
     sent = []
 
@@ -22,7 +26,7 @@ def asked(server, path, method="GET", within_s=5.0):
         return {"type": "http.disconnect"}
 
     async def ask():
-        scope = {"type": "http", "method": method, "path": path}
+        scope = {"type": "http", "method": method, "path": path, "headers": headers}
         await asyncio.wait_for(server(scope, receive, send), within_s)
 
     # in a thread of its own: a browser's tests leave a loop running in this one
@@ -111,3 +115,47 @@ def test_the_outline_needs_no_tables_no_statistics_and_nothing_compiled():
         [sys.executable, "-c", code], check=True, capture_output=True, text=True
     )  # fmt: skip
     assert said.stdout.strip() == "[]"
+
+
+def test_a_tile_of_somebody_s_own_map_is_handed_out_and_where_there_is_none_nothing(tmp_path):
+    tiles = about(35.15, 30.36, [15])
+    address = map_tiles.SHELF.publish(read_tiles(mbtiles(tmp_path / "own.mbtiles", tiles)))
+    (z, x, y), data = next(iter(tiles.items()))
+    status, headers, body = asked(Server(), address.format(z=z, x=x, y=y), within_s=60.0)
+    assert (status, body) == (200, data)
+    assert headers[b"content-type"] == b"image/png"
+    assert headers[b"cache-control"].startswith(b"private, immutable")
+    status, _, body = asked(Server(), address.format(z=z, x=x + 7, y=y), within_s=60.0)
+    assert (status, body) == (204, b"")
+
+
+def test_who_asks_by_a_foreign_name_or_from_a_foreign_page_is_told_so_whatever_is_asked_for():
+    foreign = [(b"host", b"evil.example")]
+    for path in ("/", "/_stcore/health", "/map_data/x", "/season"):
+        status, headers, body = asked(Server(), path, headers=foreign)
+        assert (status, headers[b"content-type"]) == (403, b"text/plain; charset=utf-8")
+        assert b"fieldmon app --name" in body
+    page = [*HOST, (b"origin", b"http://evil.example")]
+    assert asked(Server(), "/_stcore/upload_file/a/b", "PUT", headers=page)[0] == 403
+
+
+def test_a_socket_of_a_foreign_page_is_closed_before_it_is_open():
+    sent = []
+
+    async def send(message):
+        sent.append(message)
+
+    async def receive():
+        return {"type": "websocket.connect"}
+
+    headers = [*HOST, (b"origin", b"http://evil.example")]
+    scope = {"type": "websocket", "path": "/_stcore/stream", "headers": headers}
+    with ThreadPoolExecutor(1) as thread:
+        thread.submit(lambda: asyncio.run(Server()(scope, receive, send))).result()
+    assert [message["type"] for message in sent] == ["websocket.close"]
+
+
+def test_an_upload_without_a_length_is_refused_with_a_sentence():
+    status, _, body = asked(Server(), "/_stcore/upload_file/a/b", "PUT")
+    assert status == 413
+    assert b"how long it is" in body

@@ -8,6 +8,7 @@ from app.state.comparison import (
     ComparisonSettings,
     Strategy,
     curve,
+    gains,
     outcomes,
 )
 from fieldmon.plot.field import Field
@@ -79,3 +80,16 @@ def test_curves_stay_within_their_interval_and_percent(plot):
     assert (mean <= high).all()
     assert low.min() >= 0
     assert high.max() <= 100
+
+
+def test_what_more_robots_save_is_taken_for_each_way_to_work(plot):
+    strategies = [Strategy(name, 0.5, 40.0, k) for name in ("naive", "dynamic") for k in (1, 2)]
+    seasons = compared(plot, [*strategies, Strategy("naive", 0.7, 40.0)]).seasons()
+    of_naive, of_dynamic = gains(seasons)
+    assert [(gain.fewer, gain.robots) for gain in (*of_naive, *of_dynamic)] == [(1, 2)] * 2
+    losses = [
+        np.array([s.infested_plant_days for s in seasons[one]]) for one in strategies[:2]
+    ]  # fmt: skip
+    assert of_naive[0].saved.mean == pytest.approx((losses[0] - losses[1]).mean())
+    worked = {o.strategy: o.worked_h for o in outcomes(seasons)}
+    assert worked[strategies[1]] > 1.8 * worked[strategies[0]]

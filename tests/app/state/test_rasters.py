@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.state import brought_files, rasters
-from tests.app.chosen import CORNER, a_plot, chosen
+from tests.app.chosen import CORNER, a_plot
 from tests.app.driving import geotiff
 
 LON, LAT = CORNER
@@ -26,7 +26,6 @@ def bring(kind, data):
 def test_without_a_raster_nothing_changes(plot):
     assert rasters.without_missing(plot, "key") == (plot, (), "key")
     assert rasters.risk(plot, "key") == (None, (), "key")
-    assert rasters.backdrop(chosen(plot)) is None
 
 
 def test_a_raster_s_key_stands_for_the_file_and_how_it_is_read(plot, session):
@@ -61,12 +60,3 @@ def test_a_raster_that_cannot_be_used_is_left_out_and_its_problem_kept_until_it_
     bring(rasters.RISK, geotiff(np.full((30, 30), 0.7, np.float32), EDGES))
     assert rasters.risk(plot, "key")[0] is not None
     assert rasters.problem(rasters.RISK) is None
-
-
-@pytest.mark.usefixtures("session")
-def test_the_picture_of_the_ground_lies_about_the_plot(plot):
-    bring(rasters.BACKDROP, geotiff(np.full((60, 60), 90, np.uint8), EDGES))
-    corners = rasters.backdrop(chosen(plot)).corners_lonlat
-    lonlat = plot.grid.lonlat()
-    assert (corners.min(axis=0) <= lonlat.min(axis=0)).all()
-    assert (corners.max(axis=0) >= lonlat.max(axis=0)).all()

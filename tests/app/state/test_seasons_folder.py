@@ -27,3 +27,14 @@ def test_only_seasons_are_named_in_order_and_no_folder_is_none(seasons_folder, m
     monkeypatch.setenv(folder.FOLDER, str(seasons_folder / "nowhere"))
     assert folder.names() == []
     assert folder.new_path("first").parent.is_dir()
+
+
+def test_a_link_out_of_the_folder_is_neither_named_nor_followed(seasons_folder, tmp_path):
+    outside = tmp_path / "elsewhere"
+    outside.mkdir()
+    a_season(outside / "private.gpkg")
+    seasons_folder.mkdir(exist_ok=True)
+    (seasons_folder / "leak.gpkg").symlink_to(outside / "private.gpkg")
+    assert folder.names() == []
+    with pytest.raises(SettingError, match="leak"):
+        folder.path_of("leak")

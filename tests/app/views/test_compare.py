@@ -21,3 +21,22 @@ def test_strategies_are_compared_and_the_best_is_put_to_use(app):
     naive.set_value(next(o for o in naive.options if o.startswith("Naive"))).run()
     press(app, "Use this strategy")
     assert app.selectbox(key="sampler").value == "naive"
+
+
+def test_what_a_second_robot_would_save_on_this_plot_is_said(app):
+    go(app, "compare")
+    app.multiselect(key="strategy_samplers").set_value(["naive"])
+    app.multiselect(key="strategy_robots").set_value([1, 2])
+    app.number_input(key="seeds").set_value(3)
+    app.number_input(key="n_days").set_value(3).run()
+    app.button(key="run").click().run()
+    for _ in range(300):
+        if len(app.dataframe) and app.button(key="stop").disabled:
+            break
+        app.run()
+    assert not app.exception
+    assert "A second robot would save " in texts_of(app)
+    assert any(name.startswith("2 × Naive") for name in app.dataframe[0].value["strategy"])
+    # a team cannot be put to use here: one robot's way can
+    box = next(b for b in app.selectbox if b.label == "Strategy")
+    assert [option for option in box.options if "×" in option] == []

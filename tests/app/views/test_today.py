@@ -1,7 +1,9 @@
 """Today: the sentence, the chance map, the route and the figures of the sample estate."""
 
 import re
+from dataclasses import replace
 
+from fieldmon.planning.members import team_of
 from tests.app.driving import headline, layer, map_of, metric, plants, texts_of
 
 
@@ -33,7 +35,7 @@ def test_the_first_sentence_says_what_to_do_in_the_route_s_own_figures(app):
 
 def test_layers_can_be_switched_and_records_are_there_but_off_at_first(app):
     off = {one["key"]: one["off"] for one in map_of(app)["switches"]}
-    assert set(off) == {"route", "hot", "records", "numbers", "rows"}
+    assert set(off) == {"route", "hot", "records", "numbers", "rows", "plan"}
     assert [name for name in off if off[name]] == ["records"]
     assert len(layer(app, "records")["data"]) > 100
 
@@ -41,3 +43,17 @@ def test_layers_can_be_switched_and_records_are_there_but_off_at_first(app):
 def test_a_first_day_of_a_season_says_so(season_app):
     assert "first day of the season" in texts_of(season_app)
     assert [one["key"] for one in map_of(season_app)["shades"]] == ["chance", "state", "age"]
+
+
+def test_of_a_team_each_has_a_day_of_its_own(season_app, season):
+    before = season().settings
+    season().change(replace(before, team=team_of(2, before.robot.with_hours(1))), before)
+    both = []
+    for who in ("robot-1", "robot-2"):
+        season_app.run()
+        season_app.segmented_control(key="whose_day").set_value(who).run()
+        assert not season_app.exception
+        (table,) = (frame.value for frame in season_app.dataframe if "row" in frame.value)
+        both.append(set(zip(table["row"], table["plant"], strict=True)))
+    assert both[0]
+    assert not both[0] & both[1]

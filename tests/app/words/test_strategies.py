@@ -21,3 +21,7 @@ def test_no_two_samplers_are_called_the_same():
 def test_a_strategy_says_sampler_hours_and_seconds_without_idle_zeros():
     assert strategy_name("naive", 12.0, 40.0) == "Naive · 12 h · 40 s"
     assert strategy_name("snake-random", 7.5, 12.5) == "Snake-random · 7.5 h · 12.5 s"
+
+
+def test_several_robots_are_counted_before_the_name():
+    assert strategy_name("naive", 12.0, 40.0, 2) == "2 × Naive · 12 h · 40 s"

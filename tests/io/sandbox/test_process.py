@@ -69,6 +69,18 @@ def endless(n):
     return endless(n + 1)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="there the clock holds alone")
+def test_more_memory_than_allowed_is_a_sentence_and_the_process_goes_on(reader):
+    with pytest.raises(FileProblem, match="may take 1 GB of memory at most"):
+        reader.call("tests.io.sandbox.test_process:hungry", (limits.MEMORY_BYTES,), 10.0)
+    assert reader.call("tests.io.sandbox.test_process:hungry", (10,), 10.0) == 10
+
+
+def hungry(n):
+    """Ask for so many bytes; the system gives them only when they are written to."""
+    return len(bytearray(n))
+
+
 def test_it_is_kept_for_the_next_file_and_replaced_after_its_last():
     process.stop()
     first = process.call("os:getpid")

@@ -79,6 +79,8 @@ def unzipped(plan, folder):
     (path,) = write_handoff(plan, folder / "route.zip")
     with zipfile.ZipFile(path) as archive:
         assert archive.testzip() is None
+        # by whoever unpacks it on a system with rights
+        assert {one.external_attr >> 16 & 0o777 for one in archive.infolist()} == {0o644}
         return {name: archive.read(name) for name in archive.namelist()}
 
 

@@ -117,3 +117,9 @@ def test_waypoints_come_back_with_what_was_added_to_their_names(tmp_path):
     findings = read_inspections(Upload("r.gpx", ET.tostring(tree.getroot())), plan.grid).value
     assert findings.plant.tolist() == plan.route.plant[[0, 1, 3]].tolist()
     assert findings.result.tolist() == [FOUND, CLEAN, CLEAN]
+
+
+def test_comment_and_description_say_the_same_as_converters_drop_one_of_them(tmp_path, plan):
+    for waypoint in gpx_of(plan, tmp_path).iter(f"{GPX}wpt"):
+        assert waypoint.find(f"{GPX}cmt").text == waypoint.find(f"{GPX}desc").text
+        assert "plant" in waypoint.find(f"{GPX}cmt").text

@@ -42,22 +42,23 @@ def of_graph(paths):
         pair for node in named if node for pair in zip(node["stops"], node["plants"], strict=True)
     ]
     plants = [plant for _, plant in sorted(stops)]
-    assert plants == [stop["plant"] for stop in yaml.safe_load(waypoints)["waypoints"]]
+    assert plants == [stop["plant"] for stop in yaml.safe_load(waypoints)["waypoints"].values()]
     return plants
 
 
 #: by format, who reads it here: plants in order, from the files written
 READERS = {
     "nav2": of_graph,
+    "nav2-pauses": of_graph,
     "waypoints": lambda paths: [
-        stop["plant"] for stop in yaml.safe_load(paths[0].read_text("utf-8"))["waypoints"]
+        stop["plant"] for stop in yaml.safe_load(paths[0].read_text("utf-8"))["waypoints"].values()
     ],
     "geojson": lambda paths: pyogrio.read_dataframe(paths[0], where="kind = 'stop'")["plant"],
     "gpkg": by_gdal("stops"),
     "shapefile": zipped,
     "csv": lambda paths: pd.read_csv(paths[0])["plant"],
     "kml": by_gdal("stops"),
-    "gpx": lambda paths: by_gdal("waypoints", "cmt")(paths).str.removeprefix("plant "),
+    "gpx": lambda paths: by_gdal("waypoints", "cmt")(paths).str.extract(r"plant (\d+);")[0],
     "sheet": lambda paths: [
         row["data-plant"]
         for row in Page(paths[0].read_text("utf-8")).all("tr")
@@ -114,7 +115,7 @@ def test_the_ending_or_the_name_tells_the_format(tmp_path):
     assert by_ending.read_bytes() == by_name.read_bytes()
     with pytest.raises(SettingError, match="must end in one of"):
         write_handoff(plan, tmp_path / "a.docx")
-    with pytest.raises(SettingError, match=r"written as nav2, .* not as 'docx'"):
+    with pytest.raises(SettingError, match=r"written as nav2-pauses, nav2, .* not as 'docx'"):
         write_handoff(plan, tmp_path / "a.csv", "docx")
 
 
@@ -132,7 +133,7 @@ def test_a_place_that_cannot_be_written_to_is_a_sentence(tmp_path, name):
 @pytest.mark.parametrize("name", FORMATS)
 def test_every_format_is_written_for_every_day(tmp_path, name, plan):
     to = tmp_path / f"a{FORMATS[name].endings[0]}"
-    if name in {"nav2", "waypoints"} and not len(plan.route):
+    if name in {"nav2", "nav2-pauses", "waypoints"} and not len(plan.route):
         with pytest.raises(SettingError, match="drives nowhere"):
             write_handoff(plan, to)
         assert list(tmp_path.iterdir()) == []

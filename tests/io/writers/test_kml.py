@@ -51,3 +51,8 @@ def test_kml_is_read_by_gdal_to_the_centimetre(tmp_path):
     line = pyogrio.read_dataframe(path, layer=plan.title)
     drawn = line[line.geom_type == "LineString"].get_coordinates()[["x", "y"]]
     assert apart_m(drawn, plan.route.line_lonlat()) < CM
+
+
+def test_kml_asks_nobody_for_a_picture(tmp_path, plan):
+    (path,) = write_handoff(plan, tmp_path / "route.kml")
+    assert "href" not in path.read_text("utf-8")

@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.io.writers import write_handoff
-from fieldmon.io.writers.nav2 import graph_of
+from fieldmon.io.writers import nav2, write_handoff
+from fieldmon.io.writers.nav2 import graph_of, nav2_files
 from fieldmon.plot.layout import Planting, lay
 from fieldmon.plot.travel import crosses_rows
 from tests.crooked import crooked_fields
@@ -93,7 +93,7 @@ def test_the_loader_takes_the_graph(tmp_path, plan):
     assert len(nodes) == len(points)  # ids of nodes are theirs alone
     assert len(edges) == len(lines)
     assert not nodes.keys() & edges.keys()  # and edges share none with them
-    assert max(nodes) < 2**16  # requests name nodes in 16 bits
+    assert max(edges) < 2**16  # requests name nodes, and feedback edges, in 16 bits
     assert all(start != end for start, end in edges.values())
     assert len(set(edges.values())) == len(edges)
     assert {(end, start) for start, end in edges.values()} == set(edges.values())
@@ -187,7 +187,7 @@ def test_every_stop_stands_in_the_metadata_of_its_node(tmp_path, plan):
         if data:
             assert data["pause_s"] == pytest.approx(plan.stops[data["stops"][0] - 1].inspect_s)
             told |= dict.fromkeys(data["stops"], feature["properties"]["id"])
-    assert told == {point["stop"]: point["node"] for point in waypoints["waypoints"]}
+    assert told == {point["stop"]: point["node"] for point in waypoints["waypoints"].values()}
 
 
 # --- waypoints ---------------------------------------------------------------------------------
@@ -199,9 +199,11 @@ def test_waypoints_are_where_the_robot_stands_and_how_long(tmp_path, plan):
     assert told["datum"] == {"latitude": lat, "longitude": lon}
     assert told["frame_id"] == "map"
     assert told["plot"] == plan.notes.plot
-    points = told["waypoints"]
+    assert list(told["waypoints"]) == [f"waypoint{k}" for k in range(len(plan.route))]
+    points = told["waypoints"].values()
     assert [point["plant"] for point in points] == plan.route.plant.tolist()
-    places = [[p["pose"]["position"][axis] for axis in "xy"] for p in points]
+    places = [p["pose"][:2] for p in points]
+    assert {p["pose"][2] for p in points} == {0.0}
     stands = plan.grid.frame.lonlat(plan.route.line_m[plan.route.line_stop])
     assert apart_m(lonlat_of(places, datum), stands) < 0.01
     pauses = [point["pause_s"] for point in points]
@@ -212,11 +214,12 @@ def test_waypoints_are_where_the_robot_stands_and_how_long(tmp_path, plan):
 def test_waypoints_face_the_way_the_robot_comes(tmp_path, plan):
     _, _, told = nav2_of(plan, tmp_path)
     enu = plan.grid.frame.turned(90.0).xy_m(plan.route.line_lonlat())
-    for point, vertex in zip(told["waypoints"], plan.route.line_stop.tolist(), strict=True):
-        turn = point["pose"]["orientation"]
-        assert (turn["x"], turn["y"]) == (0, 0)
-        assert np.hypot(turn["z"], turn["w"]) == pytest.approx(1.0, abs=1e-8)
-        yaw = 2 * np.arctan2(turn["z"], turn["w"])
+    points = told["waypoints"].values()
+    for point, vertex in zip(points, plan.route.line_stop.tolist(), strict=True):
+        w, x, y, z = point["orientation"]  # as RViz's panel reads it
+        assert (x, y) == (0, 0)
+        assert np.hypot(z, w) == pytest.approx(1.0, abs=1e-8)
+        yaw = 2 * np.arctan2(z, w)
         way = enu[vertex] - enu[:vertex]
         way = way[np.hypot(*way.T) > 0.01][-1:]
         if len(way):
@@ -231,6 +234,41 @@ def test_the_datum_file_holds_parameters_alone(tmp_path):
     assert all(type(value) is float for value in parameters["datum"])
     assert parameters["wait_for_datum"] is True  # else the datum is not looked at
     assert parameters["use_local_cartesian"] is True  # else metres are those of UTM
+    assert parameters["yaw_offset"] == parameters["magnetic_declination_radians"] == 0.0
+
+
+def test_the_datum_file_says_how_far_ways_keep_off_plants(tmp_path):
+    nav2_of(crooked(), tmp_path)
+    said = (tmp_path / "day.datum.yaml").read_text("utf-8")
+    assert "width was not said: ways keep 0.3 m" in said
+    assert "Humble" in said
+    assert "Heights are ignored" in said
+
+
+def test_pauses_are_operations_only_where_they_are_asked_for(tmp_path):
+    plan = crooked()
+    paths = write_handoff(plan, tmp_path / "day.pauses.nav2.geojson")
+    assert [path.name for path in paths] == [
+        *("day.pauses.nav2.geojson", "day.datum.yaml", "day.waypoints.yaml")
+    ]
+    root = json.loads(paths[0].read_text("utf-8"))
+    told = {}
+    for feature in root["features"]:
+        for each in feature["properties"].pop("operations", {}).values():
+            assert (each["type"], each["trigger"]) == ("InspectPlant", "NODE")
+            metadata(each["metadata"])
+            told |= dict(zip(each["metadata"]["stops"], each["metadata"]["plants"], strict=True))
+    assert [told[k + 1] for k in range(len(plan.route))] == plan.route.plant.tolist()
+    assert root == json.loads(nav2_files(plan)[".nav2.geojson"])
+
+
+def test_a_day_of_more_nodes_and_edges_than_feedback_can_name_is_refused(monkeypatch):
+    graph = graph_of(usual())
+    monkeypatch.setattr(nav2, "_MOST_IDS", len(graph.xy_m) + len(graph.pair))
+    graph_of(usual())
+    monkeypatch.setattr(nav2, "_MOST_IDS", len(graph.xy_m) + len(graph.pair) - 1)
+    with pytest.raises(SettingError, match="nodes and edges at most"):
+        graph_of(usual())
 
 
 def test_waypoints_alone_are_the_same(tmp_path):

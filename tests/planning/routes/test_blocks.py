@@ -78,3 +78,19 @@ def test_a_route_through_both_parts_drives_there_once_and_back(returns):
     part = aisles.grid.xy_m[route.plant, 0] > aisles.grid.xy_m[:, 0].mean()
     assert sum(a != b for a, b in pairwise(part.tolist())) <= 2
     assert route.gap < 0.05
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_a_price_for_each_set_of_parts_bounds_no_less_sharply_than_one_for_all(returns):
+    """At one price a drive half-way between two sets seems possible, which does not exist."""
+    aisles, robot = far_apart(), Robot(hours=0.6, returns=returns)
+    reward = np.random.default_rng(1).beta(0.3, 3.0, len(aisles.grid))
+    ladders = Ladders(aisles)
+    (block, *_) = blockings(ladders.rungs)
+    parts = Blocks(ladders, block, reward, robot)
+    highest = float(reward.max()) / robot.visit_s
+    prices = highest / 1.1 ** np.arange(150)
+    at_one = min(parts.bound(parts.best(p), p, robot.day_s) for p in prices)
+    middle = float(min(prices, key=lambda p: parts.bound(parts.best(p), p, robot.day_s)))
+    by_set = parts.bound_by_set(robot.day_s, middle, 30.0, np.inf)
+    assert best(aisles, reward, robot).reward <= by_set <= at_one * (1 + 1e-3)

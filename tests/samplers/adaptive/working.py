@@ -6,6 +6,7 @@ import numpy as np
 
 from fieldmon.infestation.clustering import ClusterEstimate
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances
+from fieldmon.infestation.tracing import Raised, Traces
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers.adaptive.arrays import NOWHERE, BeliefArrays, BestTours, OwnRow, RowTours
 from fieldmon.samplers.adaptive.tours import measure_ways
@@ -38,7 +39,8 @@ def belief_on(grid, chance, together=0.0):
                 before[i] = e
     return BeliefArrays(
         chance.copy(), pair_chance.copy(), np.ones(n), Neighbourhood.of(n), before,
-        chance.copy(), pair_chance.copy(), ClusterEstimate.none(n), np.ones(1),
+        chance.copy(), pair_chance.copy(), ClusterEstimate.none(n),
+        np.array([1.0, 0.0]), Traces.none(n), Raised.of(n),
     )  # fmt: skip
 
 

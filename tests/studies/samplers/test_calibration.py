@@ -13,7 +13,7 @@ from fieldmon.studies.samplers.scenarios import Scenario
 def made():
     return {
         name: calibration([Scenario("B")], Naive(), BELIEFS[name], seeds=3, n_days=8)
-        for name in ("independent plants", "pairs")
+        for name in ("independent plants", "pairs", "traced pairs")
     }
 
 
@@ -39,7 +39,7 @@ def test_the_interval_for_the_number_infested_holds_it_mostly(made):
 def test_a_belief_that_never_learns_scores_as_the_share_it_says():
     class Stubborn:
         def __init__(self, chance):
-            self.chance, self.pair_chance = chance, None
+            self.chance, self.pair_chance, self.traces, self.doubt = chance, None, None, 0.0
 
         def learn(self, *_):
             return self

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from fieldmon.studies.outcome_table import outcomes_from
 from fieldmon.studies.samplers.calibration import Calibration
 from fieldmon.studies.samplers.calibration import report_html as beliefs_html
 from fieldmon.studies.samplers.contenders import NAMES
-from fieldmon.studies.samplers.outcome_table import outcomes_from
 from fieldmon.studies.samplers.report import report_html
 from fieldmon.studies.samplers.seasons import MEASURES, SeasonOutcome
 from fieldmon.studies.samplers.summary import means, sentences
@@ -59,7 +59,8 @@ def test_names_of_scenarios_in_a_table_that_is_gone_on_with_are_texts():
         for k in (0, 1)
         for who in NAMES
     ]
-    page = held(report_html(outcomes_from("\n".join([head, *lines]), "samplers.csv")))
+    text = "\n".join([head, *lines])
+    page = held(report_html(outcomes_from(text, "samplers.csv", SeasonOutcome)))
     assert [row[0] for row in page.tables[0][1:]] == list(HOSTILE)
 
 

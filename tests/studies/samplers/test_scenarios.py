@@ -15,6 +15,7 @@ from fieldmon.studies.samplers.scenarios import (
     STARTS,
     Scenario,
     all_scenarios,
+    in_worlds,
     usual_scenarios,
 )
 
@@ -87,3 +88,24 @@ def test_an_unknown_level_is_refused(levels):
     (name,) = levels
     with pytest.raises(SettingError, match=f"The {name} must be one of"):
         Scenario(**levels)
+
+
+def test_every_world_is_there_on_two_plots_with_long_and_short_days_and_none_is_usual():
+    worlds = in_worlds()
+    assert len({each.name for each in (*worlds, *all_scenarios())}) == 40 + len(all_scenarios())
+    assert "world, B, 12 h, Cauchy" in {each.name for each in worlds}
+    assert {each.robot.hours for each in worlds} == {4.0, 12.0}
+    assert {each.settings.hidden_nights for each in worlds} == {0, 4}
+
+
+@pytest.mark.parametrize("world", ["wind", "edges and road all season"])
+def test_a_season_in_a_world_starts_with_the_same_share_in_groups_that_came_about_there(world):
+    start = Scenario(world=world).draw_start(RandomStreams(2))
+    assert start.infested.mean() == pytest.approx(0.015, rel=0.02)
+    assert (start.chance == 0.015).all()
+
+
+def test_what_is_believed_in_a_world_is_what_is_believed_elsewhere():
+    world, usual = Scenario(world="Cauchy").settings, Scenario().settings
+    assert (world.spread, world.learning) == (usual.spread, usual.learning)
+    assert world.pests is not None

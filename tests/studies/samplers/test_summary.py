@@ -7,7 +7,14 @@ import pytest
 
 from fieldmon.studies.samplers.contenders import ADAPTIVE, CLAIRVOYANT, NAMES, TUNED, WORDED
 from fieldmon.studies.samplers.seasons import MEASURES, SeasonOutcome
-from fieldmon.studies.samplers.summary import by_scenario, means, ratio, sentences
+from fieldmon.studies.samplers.summary import (
+    by_scenario,
+    means,
+    ratio,
+    ratio_lines,
+    ratios,
+    sentences,
+)
 
 
 def outcome(scenario, seed, contender, loss=10.0, days=5.0):
@@ -73,3 +80,13 @@ def test_inspections_per_find_are_compared():
     idle = [replace(o, inspected=500.0) if o.contender == ADAPTIVE else o for o in MADE]
     assert f"fewer than {TUNED} in 0 of 2 scenarios" in sentences(idle)[-1]
     assert f"fewer than {TUNED} in 2 of 2 scenarios" in sentences(MADE)[-1]
+
+
+def test_adaptive_is_held_against_each_other_that_took_part_in_all_seasons():
+    made = ratios(MADE)
+    assert set(made["one"]) == {WORDED, TUNED, "naive"}
+    assert made["one"][TUNED].value == pytest.approx(11.5 / 16.5)
+    head, *lines = ratio_lines(MADE)
+    assert WORDED in head
+    assert [line.split()[0] for line in lines] == ["one", "other"]
+    assert all(line.count("0.70 (") == 3 for line in lines)

@@ -1,12 +1,16 @@
 """Numbers on a map: legs from far, stops from near; rows before their first plants."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from shapely import MultiPolygon, Point, box
 
 from app.show.maps import labels
 from fieldmon.planning.plan import PlanSettings, plan_from
+from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
-from tests.app.chosen import a_plot
+from tests.app.chosen import CORNER, a_plot
 
 PLOT = a_plot(0.001)
 
@@ -63,3 +67,23 @@ def test_every_row_has_its_number_before_its_first_plant_tens_first():
         x, y = grid.frame.xy_m(np.array([one["p"]]))[0]
         assert x < own[:, 0].min()
         assert np.hypot(*(own - [x, y]).T).min() < 2 * grid.plant_spacing_m
+
+
+def test_the_gate_and_what_is_not_driven_through_are_named_where_they_are():
+    lon, lat = CORNER
+    pond = MultiPolygon([box(lon + 0.0004, lat + 0.0004, lon + 0.0006, lat + 0.0006)])
+    plot = Plot.of(replace(PLOT.field, no_go=pond))
+    gate, no_go = labels.places(plot)
+    assert (gate["t"], no_go["t"]) == ("gate", "no-go")
+    assert pond.contains(Point(no_go["p"]))
+    far = plot.grid.frame.xy_m(np.array([gate["p"]])) - plot.aisles.gate_m
+    assert np.hypot(*far[0]) < 2 * plot.grid.row_spacing_m
+
+
+def test_blocks_are_named_where_there_are_several():
+    assert labels.blocks(PLOT.grid) == []
+    halves = (PLOT.grid.row_line >= PLOT.grid.row_line.max() / 2).astype(np.int32)
+    made = labels.blocks(replace(PLOT.grid, block=halves))
+    assert [one["t"] for one in made] == ["block 1", "block 2"]
+    below, above = PLOT.grid.frame.xy_m(np.array([one["p"] for one in made]))[:, 1]
+    assert below < above

@@ -35,8 +35,8 @@ def test_ages_are_whole_days_without_a_gap():
 @pytest.mark.parametrize("dark", [False, True])
 def test_every_layer_that_can_be_switched_has_its_signs_in_its_own_colours(dark):
     parts = {part["of"]: part["items"] for part in legends.signs(dark=dark)}
-    switched = set(map_layers.PARTS) - {"numbers", "rows", "backdrop"}
-    assert set(parts) == switched, "numbers are words, and a picture speaks for itself"
+    switched = set(map_layers.PARTS) - {"numbers", "rows", "plan", "before"}
+    assert set(parts) == switched, "numbers are words, and a plan has signs of its own"
     route, hot = (
         (colours.ROUTE_IN_DARK, colours.HOT_IN_DARK) if dark else (colours.ROUTE, colours.HOT)
     )

@@ -73,8 +73,3 @@ def test_what_is_drawn_so_far_is_joined_from_the_second_point_on():
     assert one[0].data == []
     assert several[0].data == [{"path": [[1.0, 2.0], [3.0, 4.0]]}]
     assert len(several[1].data) == 2
-
-
-def test_a_picture_of_the_ground_is_not_fetched_from_anywhere():
-    layer = marks.backdrop("data:image/png;base64,AA", [[0, 0], [0, 1], [1, 1], [1, 0]])
-    assert str(layer.image.value).startswith("data:")

@@ -5,9 +5,9 @@ from typer.testing import CliRunner
 
 from fieldmon.cli import main
 from fieldmon.errors import FileProblem
-from fieldmon.studies.samplers import outcome_table
+from fieldmon.studies import outcome_table
+from fieldmon.studies.outcome_table import OutcomeTable, csv_text, outcomes_from
 from fieldmon.studies.samplers.contenders import CONTENDERS, NAMES
-from fieldmon.studies.samplers.outcome_table import OutcomeTable, csv_text, outcomes_from
 from fieldmon.studies.samplers.seasons import SeasonOutcome
 
 ALWAYS = [contender.name for contender in CONTENDERS if contender.every == 1]
@@ -22,32 +22,33 @@ def outcomes(scenario, seed):
 
 def test_a_table_is_read_back_as_it_was_written():
     made = outcomes("A, spread 30% to one", 0) + outcomes("B", 7)
-    assert outcomes_from(csv_text(made), "samplers.csv") == made
-    assert csv_text(made).startswith("cell,seed,who,infested_plant_days,d50,d80,inspected,found,")
+    assert outcomes_from(csv_text(made, SeasonOutcome), "samplers.csv", SeasonOutcome) == made
+    begin = "cell,seed,who,infested_plant_days,d50,d80,inspected,found,"
+    assert csv_text(made, SeasonOutcome).startswith(begin)
 
 
 @pytest.mark.parametrize("text", ["", "a,b\n1,2\n", "cell,seed,who\n"])
 def test_another_table_is_refused(text):
     with pytest.raises(FileProblem, match="must be a table of this study"):
-        outcomes_from(text, "samplers.csv")
+        outcomes_from(text, "samplers.csv", SeasonOutcome)
 
 
 def test_it_is_written_when_it_is_left_even_by_an_error(tmp_path):
     file = tmp_path / "samplers.csv"
 
     def interrupted():
-        with OutcomeTable(file, [("A", 0), ("A", 1)]) as table:
+        with OutcomeTable(file, [("A", 0), ("A", 1)], SeasonOutcome) as table:
             table.keep(("A", 1), outcomes("A", 1))
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         interrupted()
-    assert outcomes_from(file.read_text(), "") == outcomes("A", 1)
+    assert outcomes_from(file.read_text(), "", SeasonOutcome) == outcomes("A", 1)
 
 
 def test_it_is_written_now_and_then(tmp_path, monkeypatch):
     file = tmp_path / "samplers.csv"
-    table = OutcomeTable(file, [("A", 0)])
+    table = OutcomeTable(file, [("A", 0)], SeasonOutcome)
     table.keep(("A", 0), outcomes("A", 0))
     assert not file.exists()
     monkeypatch.setattr(outcome_table, "_SAVED_EVERY_S", -1.0)
@@ -59,24 +60,25 @@ def test_rows_stand_in_the_order_asked_for_whatever_was_done_first(tmp_path):
     order = [("A", 0), ("B", 0), ("A", 1), ("B", 1)]
     texts = []
     for k, done in enumerate((order, order[::-1], [*order[2:], *order[:2]])):
-        with OutcomeTable(tmp_path / f"{k}.csv", order) as table:
+        with OutcomeTable(tmp_path / f"{k}.csv", order, SeasonOutcome) as table:
             for key in done:
                 table.keep(key, outcomes(*key))
         texts.append((tmp_path / f"{k}.csv").read_text())
     assert texts[0] == texts[1] == texts[2]
-    assert [o.scenario for o in outcomes_from(texts[0], "")][::2] == ["A", "B", "A", "B"]
+    made = outcomes_from(texts[0], "", SeasonOutcome)
+    assert [o.scenario for o in made][::2] == ["A", "B", "A", "B"]
 
 
 def test_what_the_file_holds_is_not_done_again_and_others_stay(tmp_path):
     file = tmp_path / "samplers.csv"
-    file.write_text(csv_text(outcomes("other", 3) + outcomes("A", 0)))
-    table = OutcomeTable(file, [("A", 0), ("A", 1)])
+    file.write_text(csv_text(outcomes("other", 3) + outcomes("A", 0), SeasonOutcome))
+    table = OutcomeTable(file, [("A", 0), ("A", 1)], SeasonOutcome)
     assert table.holds(("A", 0))
     assert not table.holds(("A", 1))
     with table:
         table.keep(("A", 1), outcomes("A", 1))
     assert table.asked() == outcomes("A", 0) + outcomes("A", 1)
-    written = outcomes_from(file.read_text(), "")
+    written = outcomes_from(file.read_text(), "", SeasonOutcome)
     assert written == outcomes("other", 3) + outcomes("A", 0) + outcomes("A", 1)
 
 
@@ -89,7 +91,7 @@ def test_the_command_writes_table_and_report_and_goes_on_where_it_stopped(tmp_pa
         text = (tmp_path / "samplers.csv").read_text()
         assert text.startswith(before)
         before = text
-        table = outcomes_from(text, "samplers.csv")
+        table = outcomes_from(text, "samplers.csv", SeasonOutcome)
         assert len(table) == len(NAMES) + (int(seeds) - 1) * len(ALWAYS)
     assert "Infested plant-days against dynamic, tuned" in result.output
     assert (tmp_path / "samplers.html").stat().st_size > 2000

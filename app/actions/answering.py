@@ -1,0 +1,35 @@
+"""Answering what a plot's file leaves open: by its sentence, by buttons, and on the map."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from fieldmon.errors import ChoiceNeeded
+
+from ..show import answers_map, field_map
+from ..show.map_view import MapAnswers
+from ..state import brought_files, browser
+from ..state.tried_answers import tried
+from . import bringing_files
+
+if TYPE_CHECKING:
+    from fieldmon.errors import FieldmonError
+
+    from ..state.tried_answers import TriedAnswer
+
+
+def show(problem: FieldmonError) -> None:
+    """Say a problem; where it is a question, try each answer and draw what it leads to."""
+    answers = tried(problem)
+    bringing_files.say(problem, tried=answers)
+    looked_at = answers_map.content(answers, browser.is_dark())
+    if looked_at is not None:
+        field_map.want(looked_at, MapAnswers(tapped=partial(take, problem, answers)))
+
+
+def take(problem: FieldmonError, answers: tuple[TriedAnswer, ...], layer: str, n: int) -> None:
+    """Take the answer that was tapped on the map."""
+    answer = answers_map.tapped(answers, layer, n)
+    if isinstance(problem, ChoiceNeeded) and answer is not None:
+        brought_files.answer(brought_files.asking(), problem.option, answer)

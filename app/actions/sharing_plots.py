@@ -1,0 +1,122 @@
+"""Planning all plots that are due: who works, what comes of it, and its files."""
+
+from __future__ import annotations
+
+import csv
+import io
+import zipfile
+from functools import partial
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.io.writers.geojson import RouteNotes, route_geojson
+
+from ..state import shared_plots, widget_memory
+from ..state.shared_plots import EstateCrew, SharedPlots
+from ..words import texts
+from ..words.language import number
+
+if TYPE_CHECKING:
+    from ..state.estate import PlotState
+
+_ON = "plan all"
+#: least, most and step of each number that makes a crew
+_LIMITS = {
+    "robots": (0, 20, 1), "robot_hours": (0.5, 16.0, 0.5), "scouts": (0, 20, 1),
+    "scout_hours": (0.5, 16.0, 0.5), "move_min": (0.0, 120.0, 5.0),
+}  # fmt: skip
+
+
+def is_on() -> bool:
+    """Return whether the plan of all plots is shown."""
+    return bool(st.session_state.get(_ON))
+
+
+def show_button(plots: list[PlotState]) -> None:
+    """Show the button that plans, or that goes back."""
+    if is_on():
+        st.button(texts.PLAN_ALL_OFF, key="plan_all_off", icon=":material/undo:", on_click=_set,
+                  args=(False,))  # fmt: skip
+    elif len(plots) > 1:
+        st.button(texts.PLAN_ALL, key="plan_all", type="primary", icon=":material/route:",
+                  on_click=_set, args=(True,))  # fmt: skip
+
+
+def show(plots: list[PlotState]) -> SharedPlots:
+    """Show who works and what comes of it; return the plan."""
+    crew = _crew()
+    wanted = shared_plots.due(plots)
+    if not wanted:
+        st.info(texts.PLAN_ALL_NONE)
+        return SharedPlots(())
+    with st.empty():
+        bar = st.progress(0.0, texts.PLAN_ALL_WORKING)
+        made = shared_plots.planned(
+            wanted, crew, lambda k, n: bar.progress(k / n, texts.PLAN_ALL_WORKING)
+        )
+        st.empty()
+    _say(made, crew)
+    return made
+
+
+def _crew() -> EstateCrew:
+    usual = EstateCrew()
+    columns = st.columns(2)
+    chosen = {}
+    for k, (name, (least, most, step)) in enumerate(_LIMITS.items()):
+        with columns[k % 2]:
+            chosen[name] = widget_memory.show(
+                st.number_input, texts.PLAN_ALL_CREW[name], least, most, step=step,
+                key=f"crew_{name}", default=getattr(usual, name),
+            )  # fmt: skip
+    return EstateCrew(
+        **{name: getattr(usual, name) if v is None else v for name, v in chosen.items()}
+    )
+
+
+def _say(made: SharedPlots, crew: EstateCrew) -> None:
+    routes = [one.plan.route for one in made.turns]
+    plants = sum(len(route) for route in routes)
+    finds = sum(route.expected_finds for route in routes)
+    with st.container(key="lead"):
+        said = texts.PLAN_ALL_LEAD.format(
+            plants=number(plants, ","), n=len({one.plot.name for one in made.turns}), finds=finds
+        )
+        st.markdown(said)
+    st.caption(texts.PLAN_ALL_RULE)
+    if made.waiting:
+        names = ", ".join(texts.isolated(one.name) for one in made.waiting)
+        st.markdown(texts.PLAN_ALL_WAITING.format(names=names))
+    busy = {one.who for one in made.turns}
+    free = [one.name for one in crew.members() if one.name not in busy]
+    if free:
+        st.markdown(texts.PLAN_ALL_FREE.format(names=", ".join(free)))
+    for problem in made.problems:
+        st.warning(problem)
+    if made.turns:
+        st.download_button(texts.PLAN_ALL_DOWNLOAD, partial(packed, made), "routes.zip",
+                           "application/zip", key="plan_all_files", on_click="ignore")  # fmt: skip
+
+
+def packed(made: SharedPlots) -> bytes:
+    """Return the routes as GeoJSON, a file each, and a table of them."""
+    out, table = io.BytesIO(), io.StringIO()
+    rows = csv.writer(table)
+    rows.writerow(("file", "plot", "who", "from", "to", "plants", "finds_expected"))
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
+        for k, one in enumerate(made.turns, start=1):
+            name = "".join(c if c.isalnum() or c in "-_" else "_" for c in one.plot.name)[:60]
+            file = f"{k:02d}-{name}.geojson"
+            notes = RouteNotes(one.plot.name, one.sampler, one.begins)
+            archive.writestr(file, route_geojson(one.plan.route, notes))
+            rows.writerow((
+                file, one.plot.name, one.who, one.begins.isoformat(), one.ends.isoformat(),
+                len(one.plan.route), round(one.plan.route.expected_finds, 2),
+            ))  # fmt: skip
+        archive.writestr("plan.csv", ("\ufeff" + table.getvalue()).encode())
+    return out.getvalue()
+
+
+def _set(on: bool) -> None:  # noqa: FBT001 - a callback's argument
+    st.session_state[_ON] = on

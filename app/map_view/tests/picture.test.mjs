@@ -1,0 +1,21 @@
+// A picture for a report: what the panel leaves free, and every sign of the legend.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { freePart, linesOf } from "../src/picture.js";
+
+test("what panels leave free is taken, and never nothing", () => {
+  const size = { width: 1440, height: 840 };
+  assert.deepEqual(freePart(size, { left: 400, right: 0, bottom: 0 }), { x: 400, y: 0, width: 1040, height: 840 });
+  assert.deepEqual(freePart(size, { left: 0, right: 400, bottom: 0 }), { x: 0, y: 0, width: 1040, height: 840 });
+  assert.deepEqual(freePart(size, { left: 0, right: 0, bottom: 840 }), { x: 0, y: 0, width: 1440, height: 50 });
+});
+
+test("each part of a legend has its title, if it has one, and a line a sign", () => {
+  const lines = linesOf([
+    { title: "Chance", scale: true, items: [["square", [1, 2, 3], "0 %"], ["square", [4, 5, 6], "1 %"]] },
+    { title: "", items: [["line", [7, 8, 9], "route"]] },
+  ]);
+  assert.deepEqual(lines.map((one) => one.title ?? one.text), ["Chance", "0 %", "1 %", "route"]);
+});

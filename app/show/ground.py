@@ -1,0 +1,64 @@
+"""The ground under the plot, as every map of it shows it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..state import cached, ground, map_tiles, web_maps
+from ..state.kept_ground import GroundPicture, GroundTiles
+from .maps import ground_layers
+
+if TYPE_CHECKING:
+    from pydeck import Layer
+
+    from ..state.choices import Choices
+
+
+@dataclass(frozen=True, eq=False)
+class GroundShown:
+    """What lies under the plants.
+
+    Parameters
+    ----------
+    layers
+        From below to above.
+    credit
+        Whom to name on the map; empty: nobody.
+    is_picture
+        Whether it may be dark, light and of any colour: what is drawn on it then needs a rim.
+    """
+
+    layers: tuple[Layer, ...] = ()
+    credit: str = ""
+    is_picture: bool = False
+
+
+def of(choices: Choices) -> GroundShown:
+    """Return what lies under a plot: a map that was agreed to, and on it what was brought."""
+    agreed, made = ground.agreement(choices), ground.of(choices)
+    layers, credits_ = [], []
+    if agreed is not None:
+        layers += cached.layers(
+            f"ground {agreed}",
+            lambda: [ground_layers.web_map(agreed.address, web_maps.LAST_ZOOM)],
+        )
+        credits_.append(agreed.credit)
+    if isinstance(made, GroundTiles):
+        address = map_tiles.SHELF.publish(made.tiles)
+        layers += cached.layers(address, lambda: [ground_layers.tiles(address, made.tiles)])
+        credits_.append(made.tiles.credit)
+    elif isinstance(made, GroundPicture):
+        layers += _picture(made, dark=choices.dark)
+    is_picture = agreed is not None or (
+        made is not None and not (isinstance(made, GroundPicture) and made.is_relief)
+    )
+    return GroundShown(tuple(layers), " · ".join(filter(None, credits_)), is_picture)
+
+
+def _picture(made: GroundPicture, *, dark: bool) -> list[Layer]:
+    key = f"ground {cached.digest(made.picture.image)} {made.picture.corners_lonlat.tolist()}"
+    return cached.layers(
+        f"{key} {made.is_relief} {dark}",
+        lambda: [ground_layers.picture(made.picture, is_relief=made.is_relief, dark=dark)],
+    )

@@ -1,0 +1,197 @@
+"""`fieldmon compare`: is a further robot worth it? Heavy imports wait."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fieldmon.cli.messages import tell_unusable
+from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.options import (
+    Contact,
+    Feature,
+    LeastGain,
+    MaybePlotFile,
+    PlotFiles,
+    Records,
+    WorkDate,
+    WorkerOptions,
+)
+from fieldmon.cli.preparing import prepared
+from fieldmon.cli.sampler_names import USUAL_SAMPLER, SamplerName
+from fieldmon.cli.study_output import must_be_folder, write_all
+from fieldmon.cli.times import day, day_on
+from fieldmon.cli.waiting import counting
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.plot import Plot
+    from fieldmon.studies.teams.seasons import TeamOutcome, TeamScenario, TeamSetting
+
+_MOST_ROBOTS = 20
+
+
+@dataclass(frozen=True)
+class CompareOptions:
+    """What `fieldmon compare` is told."""
+
+    plot: MaybePlotFile = None
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder for the tables and the report.")
+    ] = Path()
+    observations: Records = None
+    feature: Feature = None
+    robots: Annotated[str, typer.Option(help="How many robots: 1-5, or 1,2,4.")] = "1-3"
+    hectares: Annotated[
+        list[float] | None,
+        typer.Option(help="A square plot of so many hectares instead of a file; repeat for more."),
+    ] = None
+    sampler: Annotated[
+        list[SamplerName] | None,
+        typer.Option(help="Who chooses for each robot; repeat to compare. Adaptive if none."),
+    ] = None
+    sections: Annotated[
+        bool,
+        typer.Option(
+            "--sections", help="Teams with even sections of rows, too, who hear of nothing."
+        ),
+    ] = False
+    contact: Contact = 30.0
+    least_gain: LeastGain = 0.5
+    days: Annotated[int, typer.Option(help="Working days.")] = 25
+    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons of each.")] = 10
+    infested: Annotated[float, typer.Option(help="Share of plants infested at the start.")] = 0.02
+    spread: Annotated[
+        list[float] | None, typer.Option(help="Chance a night; repeat for more. 0.1 if none.")
+    ] = None
+    to: Annotated[
+        str, typer.Option(help="Whom an infested plant infests: each neighbour, one, or all.")
+    ] = "each"
+    on: WorkDate = None
+    worker: WorkerOptions = field(default_factory=WorkerOptions)
+    files: PlotFiles = field(default_factory=PlotFiles)
+
+
+@with_options
+def compare(options: CompareOptions) -> None:
+    """Simulate seasons of one, two and more robots, and say what each further one saves.
+
+    All of them meet the same insects. On a plot of your own, or on square ones of several sizes.
+    A comparison that was stopped goes on where its table ends.
+
+    Example: fieldmon compare vines.zip --feature 3 --observations mites.csv --robots 1-3
+    Example: fieldmon compare --hectares 1 --hectares 5 --spread 0.1 --spread 0.3 --robots 1-5
+    """
+    from fieldmon.studies.teams.report import report_html  # noqa: PLC0415
+    from fieldmon.studies.teams.summary import rows, sentences, table  # noqa: PLC0415
+
+    must_be_folder(options.output)
+    sizes = robot_numbers(options.robots)
+    settings = [each for one in _scenarios(options) for each in _settings(one, sizes, options)]
+    made = rows(_outcomes(settings, options))
+    for sentence in sentences(made):
+        typer.echo(sentence)
+    write_all(options.output, {"robots.md": table(made), "robots.html": report_html(made)})
+
+
+def robot_numbers(text: str) -> list[int]:
+    """Return the numbers of robots that ``1-5`` or ``1,2,4`` says."""
+    try:
+        low, dash, high = text.partition("-")
+        sizes = [*range(int(low), int(high) + 1)] if dash else [int(n) for n in text.split(",")]
+    except ValueError:
+        sizes = []
+    if not sizes or min(sizes) < 1 or max(sizes) > _MOST_ROBOTS:
+        raise SettingError(
+            f"--robots must be as 1-5 or 1,2,4, from 1 to {_MOST_ROBOTS}, but it is {text!r}."
+        )
+    return sorted(set(sizes))
+
+
+def _scenarios(options: CompareOptions) -> list[TeamScenario]:
+    """Return every plot with every spread."""
+    from fieldmon.infestation.spread import Spread  # noqa: PLC0415
+    from fieldmon.studies.teams.seasons import (  # noqa: PLC0415
+        TeamScenario,
+        square_plot,
+        unknown_chance,
+    )
+
+    if options.hectares and options.plot is not None:
+        raise SettingError("Give a plot file or --hectares, but not both.")
+    plots = [square_plot(hectares) for hectares in options.hectares or ()]
+    known = [(plot, unknown_chance(plot)) for plot in plots] or [_own(options)]
+    robot = options.worker.robot()
+    return [
+        TeamScenario(
+            plot, chance,
+            Spread(rate, options.to),  # type: ignore[arg-type]
+            robot, options.infested, options.days,
+        )
+        for plot, chance in known
+        for rate in options.spread or [0.1]
+    ]  # fmt: skip
+
+
+def _own(options: CompareOptions) -> tuple[Plot, NDArray[np.float64]]:
+    """Return the plot of the command's files, and what is believed of it."""
+    import numpy as np  # noqa: PLC0415
+
+    from fieldmon.infestation.prior import PriorSettings, prior_chance  # noqa: PLC0415
+
+    told = day(options.on)
+    known = prepared(options.files.request(options.plot, options.feature, options.observations))
+    plot = known.plot
+    on = np.datetime64(day_on(plot.field, told), "D")
+    tell_unusable(known.records, on)
+    chance = prior_chance(plot.grid, plot.field, known.records, on, PriorSettings(), known.risk)
+    return plot, chance
+
+
+def _settings(
+    scenario: TeamScenario, sizes: list[int], options: CompareOptions
+) -> list[TeamSetting]:
+    """Return the teams that work in a scenario."""
+    from fieldmon.planning.members import Teamwork  # noqa: PLC0415
+    from fieldmon.simulation.team_season import Team  # noqa: PLC0415
+    from fieldmon.studies.teams.seasons import TeamSetting  # noqa: PLC0415
+
+    together = Teamwork(contact_s=60.0 * options.contact, least_gain=options.least_gain)
+    apart = Teamwork(together=False)
+    made = []
+    for name in options.sampler or [SamplerName(USUAL_SAMPLER)]:
+        reads = _reads_chance(name)
+        ways = [*([together] if reads else []), *([apart] if options.sections or not reads else [])]
+        for k in sizes:
+            # alone there is one way to work
+            own = ways[:1] if k == 1 else ways
+            made += [TeamSetting(scenario, name.value, Team(k, way)) for way in own]
+    return made
+
+
+def _reads_chance(name: SamplerName) -> bool:
+    from fieldmon.samplers import kind_of  # noqa: PLC0415
+
+    return kind_of(name.value).reads_chance
+
+
+def _outcomes(settings: list[TeamSetting], options: CompareOptions) -> list[TeamOutcome]:
+    """Simulate what the table lacks, and keep it there; return the outcomes asked for."""
+    from fieldmon.simulation import executor  # noqa: PLC0415
+    from fieldmon.simulation.experiment import run  # noqa: PLC0415
+    from fieldmon.studies.outcome_table import OutcomeTable  # noqa: PLC0415
+    from fieldmon.studies.teams.seasons import TeamOutcome, study_of  # noqa: PLC0415
+
+    study = study_of(settings, range(1, options.seeds + 1))
+    file = options.output / "robots.csv"
+    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], TeamOutcome)
+    with counting("Seasons") as count, table, executor.threads() as workers:
+        run(study, workers, table, count)
+    typer.echo(f"Seasons written to {file}")
+    return table.asked()

@@ -1,0 +1,250 @@
+"""`fieldmon drive`: a day driven, simulated or live. Heavy imports wait."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import time
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from fieldmon.cli.messages import tell_assumed
+from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.options import (
+    Every,
+    Feature,
+    MaybePlotFile,
+    OneSampler,
+    PlotFiles,
+    Records,
+    WorkDate,
+    WorkerOptions,
+    sampler_of,
+)
+from fieldmon.cli.preparing import prepared
+from fieldmon.cli.sampler_names import USUAL_SAMPLER
+from fieldmon.cli.times import day, day_on
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from datetime import date, datetime
+
+    from fieldmon.drive.day import DrivenDay
+    from fieldmon.drive.errand import DayToDrive, DrivingRobot
+    from fieldmon.drive.recording import Recording
+    from fieldmon.plot.robot import Robot
+    from fieldmon.plot.travel import Aisles
+
+BrokerName = Annotated[
+    str, typer.Option("--broker", help="MQTT broker: HOST:PORT or mqtts://USER:PASSWORD@HOST:PORT.")
+]
+Serial = Annotated[str, typer.Option(help="Serial number of the robot, as in its topics.")]
+Maker = Annotated[str, typer.Option("--manufacturer", help="Manufacturer, as in its topics.")]
+
+
+class Drives(StrEnum):
+    """Who drives."""
+
+    CHARGED = "charged"
+    MUJOCO = "mujoco"
+    VDA5050 = "vda5050"
+
+
+@dataclass(frozen=True)
+class DriveOptions:
+    """What `fieldmon drive` is told."""
+
+    plot: MaybePlotFile = None
+    robot: Annotated[
+        Drives,
+        typer.Option(
+            help="charged: the seconds that are charged, no physics. mujoco: wheels in a physical "
+            "simulation. vda5050: a robot that takes orders over MQTT."
+        ),
+    ] = Drives.CHARGED
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Table of the day (CSV); its stops go beside it."),
+    ] = None
+    bag: Annotated[
+        Path | None, typer.Option(help="Bag of ROS 2 (.mcap), for RViz and Foxglove.")
+    ] = None
+    observations: Records = None
+    feature: Feature = None
+    sampler: OneSampler = USUAL_SAMPLER
+    every: Every = None
+    on: WorkDate = None
+    infested: Annotated[
+        float, typer.Option(help="Share of plants infested, of a simulated robot's finds.")
+    ] = 0.02
+    seed: Annotated[int, typer.Option(help="Of simulated insects and noise.")] = 1
+    gnss: Annotated[
+        float, typer.Option(help="Noise of simulated positions, metres (standard deviation).")
+    ] = 0.0
+    made_up: Annotated[
+        bool,
+        typer.Option("--made-up", help="Record a simulated robot's made-up finds in the season."),
+    ] = False
+    broker: BrokerName = "127.0.0.1:1883"
+    serial: Serial = "robot1"
+    manufacturer: Maker = "fieldmon"
+    worker: WorkerOptions = field(default_factory=WorkerOptions)
+    files: PlotFiles = field(default_factory=PlotFiles)
+
+
+@with_options
+def drive(options: DriveOptions) -> None:
+    """Drive a day on a plot or in a season: plant by plant, learning from each find.
+
+    On a plot the finds are simulated, and nothing is kept but what -o and --bag write. In a
+    season every plant told is in its file before the next one is asked for: a day is one batch,
+    and after a crash the same command goes on from the plant told last. A simulated robot makes
+    its finds up, so that a season takes them only with --made-up.
+
+    Example: fieldmon drive estate.zip --feature Gate --rover --hours 1 --robot mujoco -o day.csv
+    Example: fieldmon drive season.gpkg --robot vda5050 --broker farm.local --serial robot1
+    """
+    from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
+
+    if options.plot is not None and is_season(options.plot):
+        driven, on = _season(options, options.plot)
+    else:
+        driven, on = _plot(options)
+    _write(driven, on, options)
+
+
+def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
+    """Drive a day on a plot of which nothing but records is known."""
+    import numpy as np  # noqa: PLC0415
+
+    from fieldmon.infestation.prior import PriorSettings, prior_chance  # noqa: PLC0415
+    from fieldmon.monitoring.monitor import Monitor  # noqa: PLC0415
+    from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
+    from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415
+
+    worker = options.worker.robot()
+    known = prepared(options.files.request(options.plot, options.feature, options.observations))
+    plot, on = known.plot, day_on(known.plot.field, day(options.on))
+    aisles, prior = plot.aisles.for_robot(worker), PriorSettings()
+    chance = prior_chance(
+        plot.grid, plot.field, known.records, np.datetime64(on, "D"), prior, known.risk
+    )
+    decides = sampler_of(options.sampler, options.every)
+    monitor = Monitor(plot, decides, worker, chance, seed=options.seed)
+    tell_assumed(assumed_by((), prior, worker, plot.grid))
+    if told := aisles.told_shut():
+        typer.echo(told)
+    with monitor.day() as today, _driver(options, aisles, worker, (chance, on)) as driver:
+        begins = local_clock(plot.field).moment(on, time(6))
+        return _driven(options, today, aisles, (worker, driver), begins), on
+
+
+def _season(options: DriveOptions, file: Path) -> tuple[DrivenDay, date]:
+    """Drive what is left of a day of a season, each plant told recorded at once."""
+    from fieldmon.drive.season_day import SeasonDay  # noqa: PLC0415
+    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415
+
+    if options.robot is not Drives.VDA5050 and not options.made_up:
+        raise SettingError(
+            f"A season takes what was found, but a {options.robot.value} robot makes its finds up. "
+            "Drive a copy of the season with --made-up, or a robot with --robot vda5050."
+        )
+    season = Season(file)
+    on, worker = day_on(season.plot.field, day(options.on)), season.settings.robot
+    aisles = season.plot.aisles.for_robot(worker)
+    made_up = "" if options.robot is Drives.VDA5050 else ", finds made up"
+    today = SeasonDay(season, on, f"{_name(options)}{made_up}")
+    tell_assumed(season.assumed())
+    if told := aisles.told_shut():
+        typer.echo(told)
+    if today.batch is not None:
+        typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")
+    with _driver(options, aisles, worker, (season.morning(on), on)) as driver:
+        begins = local_clock(season.plot.field).moment(on, season.settings.starts)
+        return _driven(options, today, aisles, (worker, driver), begins), on
+
+
+def _driven(
+    options: DriveOptions,
+    today: DayToDrive,
+    aisles: Aisles,
+    who: tuple[Robot, tuple[DrivingRobot, Recording]],
+    begins: datetime,
+) -> DrivenDay:
+    from fieldmon.drive.day import drive_day  # noqa: PLC0415
+
+    robot, (driver, recording) = who
+    driven = drive_day(today, aisles, (robot, driver), recording.note)
+    if options.bag is not None:
+        from fieldmon.drive.bag import write_bag  # noqa: PLC0415
+
+        bag, *layouts = write_bag(recording, begins, options.bag)
+        beside = " and ".join(path.name for path in layouts)
+        typer.echo(f"Bag written to {bag}; layouts beside it: {beside}")
+    return driven
+
+
+@contextmanager
+def _driver(
+    options: DriveOptions, aisles: Aisles, worker: Robot, believed: tuple[Any, date]
+) -> Iterator[tuple[DrivingRobot, Recording]]:
+    """Yield whoever drives, and what it notes."""
+    from fieldmon.drive.recording import Recording  # noqa: PLC0415
+
+    recording = Recording(aisles, worker, believed[0])
+    if options.robot is Drives.VDA5050:
+        from fieldmon.drive.vda5050.fleet import live_robot  # noqa: PLC0415
+        from fieldmon.drive.vda5050.wire import Broker  # noqa: PLC0415
+
+        who = options.manufacturer, options.serial
+        say = lambda told: typer.echo(told, err=True)  # noqa: E731
+        with live_robot(Broker.of(options.broker), who, str(believed[1]), say) as live:
+            yield live, recording
+        return
+    look = _insects(options, aisles, worker, believed[0])
+    if options.robot is Drives.MUJOCO:
+        from fieldmon.drive.mujoco_robot import MujocoRobot  # noqa: PLC0415
+
+        driver = MujocoRobot(worker, look, options.gnss, options.seed, recording.track)
+        yield driver, recording
+        return
+    from fieldmon.drive.charged import ChargedRobot  # noqa: PLC0415
+
+    yield ChargedRobot(look), recording
+
+
+def _insects(options: DriveOptions, aisles: Aisles, worker: Robot, chance: Any) -> Any:  # noqa: ANN401
+    """Return what a simulated robot finds at each plant."""
+    from fieldmon.compute.random_streams import RandomStreams  # noqa: PLC0415
+    from fieldmon.drive.insects import Insects  # noqa: PLC0415
+    from fieldmon.simulation.start import season_start  # noqa: PLC0415
+
+    streams = RandomStreams(options.seed)
+    start = season_start(aisles.grid, chance, options.infested, streams)
+    times = sampler_of(options.sampler, options.every).inspection_times(worker)
+    return Insects(aisles.grid, start, times.detects, streams=streams).look
+
+
+def _write(driven: DrivenDay, on: date, options: DriveOptions) -> None:
+    from fieldmon.drive.account import day_table, in_words, stop_table, stops_beside  # noqa: PLC0415
+
+    typer.echo(f"{on}: {in_words(driven)}")
+    if options.output is None:
+        return
+    from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
+
+    write_whole(options.output, day_table(driven, on, _name(options)))
+    write_whole(stops_beside(options.output), stop_table(driven))
+    typer.echo(f"Written to {options.output} and {stops_beside(options.output)}")
+
+
+def _name(options: DriveOptions) -> str:
+    """Return what the robot is called in tables and batches."""
+    if options.robot is Drives.VDA5050:
+        return f"{options.manufacturer}/{options.serial}"
+    return str(options.robot)

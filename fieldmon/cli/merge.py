@@ -1,0 +1,36 @@
+"""`fieldmon merge`: two copies of a season become one again. Heavy imports wait."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fieldmon.cli.options import SeasonFile
+from fieldmon.cli.status import lines
+
+OtherCopy = Annotated[Path, typer.Argument(help="The other copy of the season; it stays as it is.")]
+
+
+def merge(season: SeasonFile, other: OtherCopy) -> None:
+    """Take in what another copy of the season holds: all that is in either, once each.
+
+    For a folder that is synchronised, or two people who worked apart. What was taken back in one
+    copy is taken back. Results that contradict one another are listed; both are kept, and fieldmon
+    undo takes out what was wrong.
+
+    Example: fieldmon merge season.gpkg "season (conflict).gpkg"
+    """
+    from fieldmon.monitoring import Season, copy_season  # noqa: PLC0415
+
+    kept = Season(season)
+    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+        copy = Path(folder) / "other.gpkg"
+        copy_season(other, copy)  # an older one is brought up to date in the copy
+        done = kept.merge(Season(copy))
+    typer.echo(f"{other.name}: {done.new} inspections were new")
+    for sentence in done.contradictions:
+        typer.echo(f"  differs: {sentence}")
+    typer.echo("\n".join(lines(kept, kept.status(kept.last_date()))))

@@ -1,0 +1,57 @@
+"""`fieldmon stand-in`: a simulated robot that speaks VDA 5050. Heavy imports wait."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import typer
+
+from fieldmon.cli.drive import BrokerName, Maker, Serial
+from fieldmon.cli.option_groups import with_options
+from fieldmon.errors import SettingError
+
+
+@dataclass(frozen=True)
+class StandInOptions:
+    """What `fieldmon stand-in` is told."""
+
+    broker: BrokerName = "127.0.0.1:1883"
+    serial: Serial = "robot1"
+    manufacturer: Maker = "fieldmon"
+    speed: Annotated[float, typer.Option(help="Driving speed, km/h.")] = 2.5
+    faster: Annotated[float, typer.Option(help="How many times faster than the clock.")] = 60.0
+    infested: Annotated[float, typer.Option(help="Share of plants found infested.")] = 0.02
+    seed: Annotated[int, typer.Option(help="Of what it finds.")] = 1
+
+    def look(self, plant: int) -> bool:
+        """Return what it makes up of a plant: the same each time."""
+        import numpy as np  # noqa: PLC0415
+
+        return bool(np.random.default_rng((self.seed, plant)).random() < self.infested)
+
+
+@with_options
+def stand_in(options: StandInOptions) -> None:
+    """Be a robot that speaks VDA 5050, for trying fieldmon drive --robot vda5050; Ctrl-C ends it.
+
+    It drives what it is ordered, looks, and makes up what it finds.
+
+    Example: fieldmon stand-in --broker 127.0.0.1:1883 --faster 100
+    """
+    from fieldmon.drive.vda5050.stand_in import StandIn  # noqa: PLC0415
+    from fieldmon.drive.vda5050.wire import Broker  # noqa: PLC0415
+
+    if not (options.speed > 0 and options.faster > 0 and 0 <= options.infested <= 1):
+        raise SettingError("--speed and --faster must be above 0, and --infested in 0..1.")
+    who = options.manufacturer, options.serial
+    robot = StandIn(
+        Broker.of(options.broker), who, options.look, options.speed / 3.6, options.faster
+    )
+    typer.echo(f"{'/'.join(who)} waits for orders at {options.broker}. End it with Ctrl-C.")
+    try:
+        robot.run()
+    except KeyboardInterrupt:
+        typer.echo("Ended.")
+    finally:
+        robot.stop()

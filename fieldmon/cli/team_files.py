@@ -1,0 +1,80 @@
+"""Who is in a team, as told, and the files that each of it is given. Heavy imports wait."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from fieldmon.cli.times import clock
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from datetime import datetime, time
+
+    from fieldmon.cli.options import WorkerOptions
+    from fieldmon.planning.members import TeamMember
+    from fieldmon.planning.route import Route
+
+_NOT_IN_A_NAME = re.compile(r"[^\w-]+")
+
+
+def members_of(
+    robots: str, usual: time, worker: WorkerOptions
+) -> tuple[tuple[TeamMember, ...], time]:
+    """Return the team of ``--robots``, and the local time at which the first of it starts."""
+    from fieldmon.io.readers.team import read_team  # noqa: PLC0415
+    from fieldmon.planning.members import TeamMember, team_of  # noqa: PLC0415
+
+    if robots.isdigit():
+        return team_of(int(robots), worker.robot()), usual
+    stated = read_team(Path(robots))
+    starts = [usual if one.start is None else clock(one.start, "start") for one in stated]
+    first = min(starts)
+    members = [
+        TeamMember(
+            one.name,
+            replace(replace(worker, scout=worker.scout or one.scout).robot(), **one.settings),  # type: ignore[arg-type]
+            one.gate,
+            60.0 * (60 * (start.hour - first.hour) + start.minute - first.minute),
+        )
+        for one, start in zip(stated, starts, strict=True)
+    ]
+    return tuple(members), first
+
+
+def files_of_each(outputs: list[Path] | None, members: tuple[TeamMember, ...]) -> list[list[Path]]:
+    """Return the files of each member: those asked for, with its name."""
+    names = [_NOT_IN_A_NAME.sub("_", member.name) for member in members]
+    if len({name.casefold() for name in names}) < len(names):
+        raise SettingError(
+            f"Members must have names that differ in file names, but they are {', '.join(names)}."
+        )
+    made = []
+    for name in names:
+        parts = [(path, *path.name.partition(".")) for path in outputs or [Path("route.geojson")]]
+        made.append(
+            [path.with_name(f"{stem}-{name}{dot}{rest}") for path, stem, dot, rest in parts]
+        )
+    return made
+
+
+def tell_member(name: str, start: datetime, route: Route) -> None:
+    """Say what one of a team is to do."""
+    typer.echo(
+        f"{name}: from {start:%H:%M}, {len(route)} plants in {route.end_s / 3600:.1f} h, "
+        f"{route.drive_m / 1000:.2f} km; about {route.expected_found:.1f} finds."
+    )
+
+
+def write_member(name: str, route: Route, paths: list[Path]) -> None:
+    """Write the route of one of a team, if it has one, and say where."""
+    if not len(route):
+        typer.echo(f"{name} has no route: the others leave it none in its hours.")
+        return
+    for path in paths:
+        for written in route.to_file(path):
+            typer.echo(f"Route of {name} written to {written}")

@@ -1,0 +1,58 @@
+"""What a driven day comes to, as tables."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from datetime import date
+    from pathlib import Path
+
+    from fieldmon.drive.day import DrivenDay
+
+DAY_COLUMNS = "date,robot,stops,found,touched,stuck,charged_s,driven_s,worst_cross_track_m"
+STOP_COLUMNS = "stop,plant,row,number,found,done_s,charged_s,driven_s,cross_track_m,touched,stuck"
+
+
+def day_table(driven: DrivenDay, on: date, robot: str) -> bytes:
+    """Return a driven day as a table of one line (CSV)."""
+    figures = (
+        f"{on},{robot},{len(driven.stops)},{driven.found},{len(driven.touched)},"
+        f"{len(driven.stuck)},{driven.charged_s:.1f},{driven.driven_s:.1f},{driven.strayed_m:.3f}"
+    )
+    return f"{DAY_COLUMNS}\n{figures}\n".encode()
+
+
+def stop_table(driven: DrivenDay) -> bytes:
+    """Return the stops of a driven day, a line each (CSV); ``touched`` names plants."""
+    lines = [STOP_COLUMNS]
+    for k, one in enumerate(driven.stops, 1):
+        stop, visit = one.stop, one.visit
+        found = "" if visit.found is None else int(visit.found)
+        done_s = stop.arrive_s + stop.inspect_s if visit.done_s is None else visit.done_s
+        touched = " ".join(str(plant) for plant in sorted(visit.touched))
+        lines.append(
+            f"{k},{stop.plant},{stop.row},{stop.number},{found},{done_s:.1f},{one.charged_s:.1f},"
+            f"{one.driven_s:.1f},{visit.strayed_m:.3f},{touched},{int(bool(visit.stuck))}"
+        )
+    return "\n".join([*lines, ""]).encode()
+
+
+def stops_beside(path: Path) -> Path:
+    """Return where the stops are written beside the table of the day."""
+    return path.with_name(f"{path.stem}.stops{path.suffix}")
+
+
+def in_words(driven: DrivenDay) -> str:
+    """Return what a driven day comes to, in a sentence or two."""
+    said = (
+        f"{len(driven.stops)} plants inspected, {driven.found} found infested; charged "
+        f"{driven.charged_s / 3600:.2f} h, driven {driven.driven_s / 3600:.2f} h "
+        f"({100 * (driven.driven_s / driven.charged_s - 1) if driven.charged_s else 0:+.1f} %)."
+    )
+    if driven.strayed_m:
+        said += (
+            f" {len(driven.touched)} plants touched; at worst {100 * driven.strayed_m:.0f} cm off "
+            "the way."
+        )
+    return "\n".join([said, *driven.stuck])

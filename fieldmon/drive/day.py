@@ -1,0 +1,174 @@
+"""One loop for every robot: ask for a plant, drive there, look, tell, and again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.compute.wording import counted
+from fieldmon.drive.errand import Errand
+from fieldmon.plot.travel import GATE, robot_clock, travel_s
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fieldmon.drive.errand import DayToDrive, DrivingRobot, Float, Visit
+    from fieldmon.monitoring.monitor import PlantToInspect
+    from fieldmon.plot.robot import Robot
+    from fieldmon.plot.travel import Aisles
+
+#: plants of the plan after the one asked for that a robot is told of
+_AHEAD = 2
+
+
+class DrivenStop(NamedTuple):
+    """A plant that was driven to.
+
+    Parameters
+    ----------
+    stop
+        As it was asked for.
+    visit
+        What came of it.
+    charged_s, driven_s
+        Seconds from the stop before it until this one was done: as charged, and as driven.
+    """
+
+    stop: PlantToInspect
+    visit: Visit
+    charged_s: float
+    driven_s: float
+
+
+@dataclass(eq=False)
+class DrivenDay:
+    """A day as it was driven.
+
+    Parameters
+    ----------
+    stops
+        In order.
+    home_charged_s, home_driven_s
+        Seconds of the way back to the gate.
+    home
+        What came of it; None: there was none, or as charged.
+    """
+
+    stops: list[DrivenStop] = field(default_factory=list)
+    home_charged_s: float = 0.0
+    home_driven_s: float = 0.0
+    home: Visit | None = None
+
+    def __repr__(self) -> str:
+        return f"<DrivenDay: {counted(len(self.stops), 'stop')}, {self.found} found>"
+
+    @property
+    def visits(self) -> list[Visit]:
+        """What came of every errand, the way home included."""
+        return [one.visit for one in self.stops] + ([] if self.home is None else [self.home])
+
+    @property
+    def found(self) -> int:
+        """Plants found infested."""
+        return sum(one.visit.found is True for one in self.stops)
+
+    @property
+    def touched(self) -> frozenset[int]:
+        """Plants that were touched."""
+        return frozenset().union(*(one.touched for one in self.visits))
+
+    @property
+    def stuck(self) -> list[str]:
+        """Why the robot did not get somewhere, a sentence each."""
+        return [one.stuck for one in self.visits if one.stuck]
+
+    @property
+    def charged_s(self) -> float:
+        """Seconds of the day as charged."""
+        return sum(one.charged_s for one in self.stops) + self.home_charged_s
+
+    @property
+    def driven_s(self) -> float:
+        """Seconds of the day as driven."""
+        return sum(one.driven_s for one in self.stops) + self.home_driven_s
+
+    @property
+    def strayed_m(self) -> float:
+        """The furthest that the robot was from its way."""
+        return max((one.strayed_m for one in self.visits), default=0.0)
+
+
+def drive_day(
+    day: DayToDrive,
+    aisles: Aisles,
+    who: tuple[Robot, DrivingRobot],
+    watch: Callable[[DrivenStop, Errand], None] | None = None,
+) -> DrivenDay:
+    """Drive what is left of a day.
+
+    Parameters
+    ----------
+    day
+        Asked for plants and told of them.
+    aisles
+        The ways that the robot can drive.
+    who
+        The robot's numbers, by which seconds are charged, and whoever drives.
+    watch
+        Told of every stop once it is told to the day.
+
+    A robot that is stuck ends the day: its plant counts as not inspected.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> from fieldmon.drive.charged import ChargedRobot
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
+    >>> robot = fm.Robot(hours=1)
+    >>> with fm.Monitor(plot, robot=robot).day() as day:
+    ...     driven = drive_day(day, plot.aisles, (robot, ChargedRobot(lambda stop: False)))
+    >>> driven.charged_s == driven.driven_s, driven.touched
+    (True, frozenset())
+    """
+    robot, driver = who
+    clock = robot_clock(robot, robot.day_s)
+    driven = DrivenDay()
+    driver.begin(aisles, place_m(aisles, day.at), day.gone_s)
+    while (stop := day.ask()) is not None:
+        at, since_s = day.at, day.gone_s
+        plants = [stop.plant, *day.ahead(_AHEAD)]
+        after = tuple((b, aisles.path(a, b)) for a, b in pairwise(plants))
+        errand = Errand(len(driven.stops) + 1, stop, way_m(aisles, at, stop.plant), after)
+        visit = driver.visit(errand)
+        charged_s = travel_s(aisles.travel, clock, at, stop.plant) + stop.inspect_s
+        driven_s = charged_s if visit.done_s is None else visit.done_s - since_s
+        day.tell(visit.found, visit.done_s)
+        driven.stops.append(DrivenStop(stop, visit, charged_s, driven_s))
+        if watch is not None:
+            watch(driven.stops[-1], errand)
+        if visit.stuck:
+            return driven
+    if robot.returns and driven.stops and day.at != GATE:
+        driven.home_charged_s = travel_s(aisles.travel, clock, day.at, GATE)
+        since_s, visit_home = day.gone_s, driver.home(way_m(aisles, day.at, GATE))
+        driven.home, driven.home_driven_s = visit_home, driven.home_charged_s
+        if visit_home is not None and visit_home.done_s is not None:
+            driven.home_driven_s = visit_home.done_s - since_s
+    return driven
+
+
+def place_m(aisles: Aisles, at: int) -> Float:
+    """Return where a robot stands at a plant, or at the gate (-1), ``(2,)``."""
+    here: Float = aisles.gate_m if at < 0 else aisles.stop_m[at]
+    return here
+
+
+def way_m(aisles: Aisles, a: int, b: int) -> Float:
+    """Return the line ``(k, 2)`` from plant a to plant b, without points of no way."""
+    line = aisles.path(a, b)
+    moves = np.hypot(*np.diff(line, axis=0).T) > 1e-6
+    kept: Float = line[np.append(True, moves)]
+    return kept

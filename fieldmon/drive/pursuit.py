@@ -1,0 +1,181 @@
+"""Along a line by pure pursuit: ahead or backwards, turning on the spot where the line does."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import shapely
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Float = NDArray[np.float64]
+
+# sharper corners are turned on the spot
+_HARD_RAD = math.radians(20.0)
+_AIMED_RAD = 0.02
+_LOOK_AHEAD_M = 0.6
+#: how near the end of a stretch counts as there
+REACH_M = 0.03
+_TURN_GAIN = 3.0
+_SLOWEST_M_S = 0.03
+
+
+class Pace(NamedTuple):
+    """How fast a robot drives, gathers speed and turns.
+
+    Parameters
+    ----------
+    speed_m_s, turn_rad_s
+        At most.
+    gathers_m_s2
+        Speed gained or lost in a second.
+    """
+
+    speed_m_s: float
+    turn_rad_s: float = 1.2
+    gathers_m_s2: float = 0.5
+
+
+class Pursuit:
+    """Follows one line from its first point to its last, and stops there.
+
+    A robot with two driven wheels drives as well backwards: it turns a right angle at most.
+
+    Parameters
+    ----------
+    line_m
+        ``(k, 2)``, two points or more.
+    pace
+        How fast.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from fieldmon.drive.pursuit import Pace, Pursuit
+    >>> drive = Pursuit(np.array([[0.0, 0.0], [2.0, 0.0]]), Pace(0.5))
+    >>> drive.command((0.0, 0.0), yaw=0.0, v=0.0, dt=0.05)
+    (0.025, 0.0)
+    """
+
+    def __init__(self, line_m: Float, pace: Pace) -> None:
+        self._pace, self._stretches = pace, _stretches(line_m)
+        self._k, self._from, self._aimed = 0, 0, False
+        self._whole = shapely.linestrings(line_m) if len(line_m) > 1 else None
+
+    @property
+    def done(self) -> bool:
+        """Whether the robot stands at the end of the line."""
+        return self._k >= len(self._stretches)
+
+    def command(
+        self, xy_m: tuple[float, float], yaw: float, v: float, dt: float
+    ) -> tuple[float, float]:
+        """Return the speed (below 0: backwards) and the turn, radians a second, for a step.
+
+        Parameters
+        ----------
+        xy_m, yaw
+            Where the robot believes to be, and where it points.
+        v
+            Its speed now.
+        dt
+            Seconds of the step.
+        """
+        if self.done:
+            return 0.0, 0.0
+        line = self._stretches[self._k]
+        gone_m, left_m = self._gone(line, xy_m)
+        if not self._aimed:
+            ahead = line[min(1, len(line) - 1)] - line[0]
+            error = self._to_axis(math.atan2(ahead[1], ahead[0]) - yaw)
+            if abs(error) > _AIMED_RAD:
+                most = self._pace.turn_rad_s
+                return 0.0, max(-most, min(most, _TURN_GAIN * error))
+            self._aimed = True
+            self._gear = 1.0 if self._forward else -1.0
+        if left_m < REACH_M:
+            self._k, self._from, self._aimed = self._k + 1, 0, False
+            return 0.0, 0.0
+        return self._along(line, (gone_m, left_m), (*xy_m, yaw), abs(v), dt)
+
+    def off_m(self, xy_m: tuple[float, float]) -> float:
+        """Return how far a place is from the line."""
+        if self._whole is None:
+            return 0.0
+        return float(shapely.distance(self._whole, shapely.points(xy_m)))
+
+    def _along(
+        self,
+        line: Float,
+        place: tuple[float, float],
+        pose: tuple[float, float, float],
+        v: float,
+        dt: float,
+    ) -> tuple[float, float]:
+        gone_m, left_m = place
+        x, y, yaw = pose
+        aim = _at(line, gone_m + _LOOK_AHEAD_M)
+        heading = yaw if self._gear > 0 else yaw + math.pi
+        alpha = _turn(math.atan2(aim[1] - y, aim[0] - x) - heading)
+        limit = math.sqrt(2.0 * self._pace.gathers_m_s2 * max(left_m - REACH_M / 2, 0.0))
+        faster = v + self._pace.gathers_m_s2 * dt
+        speed = min(self._pace.speed_m_s * max(math.cos(alpha), 0.1), limit, faster)
+        speed = max(speed, _SLOWEST_M_S if left_m < 0.1 else 0.0)
+        most = self._pace.turn_rad_s
+        bend = 2.0 * speed * math.sin(alpha) / _LOOK_AHEAD_M
+        return self._gear * speed, max(-most, min(most, bend))
+
+    def _to_axis(self, error: float) -> float:
+        """Return the smaller turn: to point ahead along the line, or backwards."""
+        ahead = _turn(error)
+        self._forward = abs(ahead) <= math.pi / 2 + _AIMED_RAD
+        return ahead if self._forward else _turn(error + math.pi)
+
+    def _gone(self, line: Float, xy_m: tuple[float, float]) -> tuple[float, float]:
+        """Return how far along the stretch the robot is, and how far it has yet."""
+        best = (math.inf, 0.0)
+        length = np.hypot(*np.diff(line, axis=0).T)
+        before = np.append(0.0, np.cumsum(length))
+        for i in range(self._from, min(self._from + 4, len(line) - 1)):
+            ux, uy = (line[i + 1] - line[i]) / length[i]
+            dx, dy = xy_m[0] - line[i, 0], xy_m[1] - line[i, 1]
+            along, off = dx * ux + dy * uy, ux * dy - uy * dx
+            low = -1e9 if i == 0 else 0.0
+            high = 1e9 if i == len(line) - 2 else float(length[i])
+            beyond = along - max(low, min(high, along))
+            if math.hypot(beyond, off) < best[0] - 1e-9:
+                best = (math.hypot(beyond, off), float(before[i]) + along)
+                self._from = i
+        return best[1], float(before[-1]) - best[1]
+
+
+def _stretches(line_m: Float) -> list[Float]:
+    """Return a line cut at its hard corners; points of no way are left out."""
+    line = np.asarray(line_m, float)
+    line = line[np.append(True, np.hypot(*np.diff(line, axis=0).T) > 1e-3)]
+    if len(line) < 2:
+        return []
+    step = np.diff(line, axis=0)
+    heading = np.arctan2(step[:, 1], step[:, 0])
+    turn = np.abs((np.diff(heading) + np.pi) % (2 * np.pi) - np.pi)
+    cuts = [0, *(np.flatnonzero(turn > _HARD_RAD) + 1).tolist(), len(line) - 1]
+    return [line[a : b + 1] for a, b in pairwise(cuts)]
+
+
+def _at(line: Float, gone_m: float) -> tuple[float, float]:
+    """Return a point so far along a line, or straight on beyond its end."""
+    step = np.diff(line, axis=0)
+    length = np.hypot(step[:, 0], step[:, 1])
+    before = np.append(0.0, np.cumsum(length))
+    i = int(np.clip(np.searchsorted(before, gone_m, "right") - 1, 0, len(length) - 1))
+    x, y = line[i] + step[i] / length[i] * (gone_m - before[i])
+    return float(x), float(y)
+
+
+def _turn(angle: float) -> float:
+    """Return an angle as a turn of half a circle at most."""
+    return math.atan2(math.sin(angle), math.cos(angle))

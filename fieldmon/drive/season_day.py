@@ -1,0 +1,132 @@
+"""A day of a season on disk, driven: every plant told is in the file before the next is asked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.errors import ObservationError
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
+from fieldmon.monitoring.monitor import PlantToInspect
+from fieldmon.monitoring.settings import seconds
+
+if TYPE_CHECKING:
+    from datetime import date
+
+    from fieldmon.monitoring.season_file import Season
+    from fieldmon.planning.plan import DayPlan
+    from fieldmon.planning.wishes import Wishes
+
+#: a robot that is so much later or earlier than planned is planned for anew
+_LATE_S = 30.0
+
+
+class SeasonDay:
+    """A day of a season that is asked for the next plant and told what was seen there.
+
+    All that is told of a day is one batch. Who begins again after a crash goes on from the plant
+    told last, at its time.
+
+    Parameters
+    ----------
+    season, on
+        The season and the day.
+    source
+        What the batch is called: the robot.
+    wishes
+        What people want of the day besides.
+    """
+
+    def __init__(
+        self, season: Season, on: date, source: str = "robot", wishes: Wishes | None = None
+    ) -> None:
+        self._season, self._on, self._wishes = season, on, wishes
+        self._source = f"{source} {on}"
+        begun = [
+            one.number
+            for one in season.batches()
+            if one.source == self._source and one.kind == "findings" and not one.undone
+        ]
+        self.batch: int | None = begun[0] if begun else None
+        self.replanned = 0
+        self._asked: PlantToInspect | None = None
+        self._plan()
+
+    def __repr__(self) -> str:
+        """Say which day of which season."""
+        return f"<SeasonDay {self._on} of {self._season.path.name}>"
+
+    @property
+    def at(self) -> int:
+        """Where the robot stands: a plant, or -1 for the gate."""
+        return self._at
+
+    @property
+    def gone_s(self) -> float:
+        """Seconds of the day that are gone."""
+        return self._gone_s
+
+    def ask(self) -> PlantToInspect | None:
+        """Return the plant to inspect next; None where the day's hours allow no other."""
+        if self._asked is None and self._next < len(self._today.route):
+            self._asked = self._stop(self._next)
+        return self._asked
+
+    def ahead(self, n: int) -> list[int]:
+        """Return up to n plants that follow the one asked for if nothing is found."""
+        plants: list[int] = self._today.route.plant[self._next + 1 : self._next + 1 + n].tolist()
+        return plants
+
+    def tell(self, found: bool | None, at_s: float | None = None) -> None:  # noqa: FBT001 - a result
+        """Record what was seen at the plant that was asked for; None: it could not be inspected.
+
+        `at_s` is when it was done, seconds since the day began; None: as charged.
+        """
+        stop = self._asked
+        if stop is None:
+            raise ObservationError("A plant must be asked for before it is told of. Call ask().")
+        done_s = stop.arrive_s + stop.inspect_s
+        now_s = done_s if at_s is None else at_s
+        self._record(stop.plant, found, now_s)
+        self._asked, self._at, self._gone_s = None, stop.plant, now_s
+        self._late_s = now_s - done_s
+        self._next += 1
+        if found or found is None or abs(self._late_s) > _LATE_S:
+            self._plan()
+
+    def _record(self, plant: int, found: bool | None, now_s: float) -> None:  # noqa: FBT001
+        result = SKIPPED if found is None else FOUND if found else CLEAN
+        settings = self._season.settings
+        one = Inspections.of(
+            np.array([plant]),
+            np.array([result]),
+            np.datetime64(self._on),
+            # files hold whole seconds
+            second=np.array([np.round(seconds(settings.starts) + now_s)]),
+        )
+        done = self._season.record(one, self._source, into=self.batch)
+        self.batch = self.batch or done.batch
+
+    def _plan(self) -> None:
+        today = self._season.plan(self._on, keep=self.batch is None, wishes=self._wishes)
+        self._today: DayPlan = today
+        self._next, self._late_s = 0, 0.0
+        self._at = today.scene.at
+        self._gone_s = today.scene.robot.day_s - today.scene.seconds_left
+        self._since_s = self._gone_s
+        self.replanned += 1
+
+    def _stop(self, k: int) -> PlantToInspect:
+        route, label = self._today.route, self._season.label
+        plant = int(route.plant[k])
+        lon, lat = self._season.plot.grid.lonlat(route.plant[k : k + 1])[0]
+        return PlantToInspect(
+            plant=plant,
+            row=int(label.line[plant]),
+            number=int(label.number[plant]),
+            lonlat=(float(lon), float(lat)),
+            arrive_s=self._since_s + float(route.arrive_s[k]),
+            inspect_s=float(route.leave_s[k] - route.arrive_s[k]),
+            detects=float(route.detects[k]),
+        )

@@ -1,0 +1,51 @@
+"""The way that a robot really took, noted as it drives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Float = NDArray[np.float64]
+
+_LEAST_S = 0.1
+
+
+class Track:
+    """Places in time, ten a second at most.
+
+    Examples
+    --------
+    >>> from fieldmon.drive.track import Track
+    >>> track = Track()
+    >>> for k in range(4):
+    ...     track.add(0.05 * k, 0.1 * k, 0.0, 0.0)
+    >>> track.poses[:, 0].tolist()
+    [0.0, 0.1, 0.15]
+    """
+
+    def __init__(self) -> None:
+        self._rows: list[tuple[float, float, float, float]] = []
+        self._last: tuple[float, float, float, float] | None = None
+
+    def __repr__(self) -> str:
+        """Say how many places there are."""
+        return f"<Track of {len(self._rows)} places>"
+
+    def add(self, at_s: float, x_m: float, y_m: float, yaw: float) -> None:
+        """Note where the robot is, seconds since the day began."""
+        row = (at_s, x_m, y_m, yaw)
+        if not self._rows or at_s >= self._rows[-1][0] + _LEAST_S - 1e-9:
+            self._rows.append(row)
+            self._last = None
+        else:
+            self._last = row
+
+    @property
+    def poses(self) -> Float:
+        """Seconds, x, y and heading, ``(k, 4)``; the last one is always there."""
+        rows = self._rows + ([] if self._last is None else [self._last])
+        return np.array(rows, float).reshape(-1, 4)

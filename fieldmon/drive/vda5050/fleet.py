@@ -1,0 +1,224 @@
+"""Fleet control: a robot that speaks VDA 5050 is asked for plants, one after the other."""
+
+from __future__ import annotations
+
+import json
+import queue
+import time
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.drive.errand import Visit
+from fieldmon.drive.vda5050.messages import decoded, encoded, header_of, home_order, order_of
+from fieldmon.drive.vda5050.wire import Wire
+from fieldmon.errors import ObservationError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from fieldmon.drive.errand import Errand, Float
+    from fieldmon.drive.vda5050.wire import Broker
+    from fieldmon.plot.travel import Aisles
+
+# an order that nobody acknowledged is sent again; robots take the same one once
+_AGAIN_S = 5.0
+_POLL_S = 0.2
+
+
+class Vda5050Robot:
+    """Sends orders and waits for what the robot tells.
+
+    One order a run, with an update for each plant: its base is the way to that plant, its horizon
+    what comes after. The robot answers in the action's ``resultDescription``, as JSON: ``found``
+    (true, false, or null where it could not look) and, if its clock is not ours, ``day_s``, the
+    seconds since the day began.
+
+    Parameters
+    ----------
+    wire
+        The robot's topics.
+    robot
+        Manufacturer and serial number.
+    order_id
+        A name that no order had before.
+    say
+        Told what people should know: lost connections, pauses, messages that are none.
+    patience_s
+        Seconds without any word of the robot after which the day ends; a pause is a word.
+    least_battery
+        Percent below which the day ends after the plant in hand.
+    """
+
+    def __init__(
+        self,
+        wire: Wire,
+        robot: tuple[str, str],
+        order_id: str,
+        say: Callable[[str], None] = lambda _: None,
+        *,
+        patience_s: float = 600.0,
+        least_battery: float = 15.0,
+    ) -> None:
+        self._wire, self._say = wire, say
+        self._header = header_of(*robot)
+        self._known: dict[str, Any] = {"orderId": order_id, "orderUpdateId": -1, "node": None}
+        self._patience_s, self._least_battery = patience_s, least_battery
+        self._state: dict[str, Any] | None = None
+        self._told = ""
+
+    def begin(self, aisles: Aisles, at_m: Float, gone_s: float) -> None:  # noqa: ARG002 - it is there
+        """Take the plot's metres for those east and north of its datum."""
+        frame = aisles.grid.frame
+        east_north = frame.turned(90.0)
+        self._places = lambda line_m: east_north.xy_m(frame.lonlat(line_m))
+        self._gone_s, self._begun = gone_s, time.monotonic()
+        self._own_clock = False
+
+    def visit(self, errand: Errand) -> Visit:
+        """Send the robot to a plant, and wait for what it found."""
+        self._known["orderUpdateId"] += 1
+        update = self._known["orderUpdateId"]
+        action = f"{self._known['orderId']}-{update}-{errand.stop.plant}"
+        order, node = order_of(errand, self._places, self._known, action)
+        said = self._done(order, lambda state: _finished(state, action))
+        # the next update begins at the node where it stands; what was done there is not done again
+        self._known["node"] = {**node, "actions": []}
+        if isinstance(said, str):
+            return Visit(None, self._now_s(), stuck=said)
+        result = _result(said)
+        found = result.get("found") if said["actionStatus"] == "FINISHED" else None
+        return Visit(found, self._at_s(result.get("day_s")), stuck=self._low())
+
+    def home(self, line_m: Float) -> Visit | None:
+        """Send the robot back to the gate."""
+        self._known["orderUpdateId"] += 1
+        order, node = home_order(line_m, self._places, self._known)
+        last = node["sequenceId"]
+
+        def there(state: dict[str, Any]) -> dict[str, Any] | None:
+            return state if state["lastNodeSequenceId"] >= last else None
+
+        said = self._done(order, there)
+        if isinstance(said, str):
+            return Visit(None, self._now_s(), stuck=said)
+        told = [one for one in said.get("information", []) if one.get("infoType") == "day_s"]
+        return Visit(None, self._at_s(told[-1].get("infoDescription") if told else None))
+
+    def _done(
+        self, order: dict[str, Any], wanted: Callable[[dict[str, Any]], dict[str, Any] | None]
+    ) -> dict[str, Any] | str:
+        """Send an order until it is taken; return what is wanted of a state, or why not."""
+        sent, heard = 0.0, time.monotonic()
+        while True:
+            now = time.monotonic()
+            if not self._taken(order) and now - sent > _AGAIN_S:
+                self._wire.send("order", encoded("order", self._header, order))
+                sent = now
+            state = self._hear()
+            if state is None:
+                if now - heard > self._patience_s:
+                    return f"The robot has not been heard for {self._patience_s:.0f} s."
+                continue
+            heard = time.monotonic()
+            if (found := wanted(state)) is not None and self._taken(order):
+                return found
+            if fatal := [one for one in state["errors"] if one["errorLevel"] == "FATAL"]:
+                told = fatal[0].get("errorDescription") or fatal[0]["errorType"]
+                return f"The robot reports an error that it cannot mend: {told}."
+
+    def _taken(self, order: dict[str, Any]) -> bool:
+        """Tell whether the robot has said that it has this order."""
+        state = self._state
+        return (
+            state is not None
+            and state["orderId"] == order["orderId"]
+            and state["orderUpdateId"] >= order["orderUpdateId"]
+        )
+
+    def _hear(self) -> dict[str, Any] | None:
+        """Return the robot's next state; None: nothing was heard for a moment.
+
+        One that is older than what was heard last is passed by: it came late, or twice.
+        """
+        try:
+            kind, data = self._wire.heard.get(timeout=_POLL_S)
+            message = decoded(kind, data)
+        except queue.Empty:
+            return None
+        except ObservationError as error:
+            self._tell(str(error))
+            return None
+        if kind == "connection":
+            if message["connectionState"] != "ONLINE":
+                self._tell("The robot's connection is lost; waiting for it.")
+            return None
+        if kind != "state" or self._late(message):
+            return None
+        self._state = message
+        if message.get("paused") or message["operatingMode"] != "AUTOMATIC":
+            self._tell("The robot is paused, or driven by hand; waiting.")
+        else:
+            self._told = ""
+        return message
+
+    def _late(self, message: dict[str, Any]) -> bool:
+        last = self._state
+        return last is not None and str(message["timestamp"]) < str(last["timestamp"])
+
+    def _tell(self, sentence: str) -> None:
+        """Say something once, not with every message."""
+        if sentence != self._told:
+            self._told = sentence
+            self._say(sentence)
+
+    def _low(self) -> str:
+        charge = 100.0 if self._state is None else self._state["batteryState"]["batteryCharge"]
+        if charge >= self._least_battery:
+            return ""
+        return f"The robot's battery is at {charge:.0f} %: the day ends here. Charge it."
+
+    def _at_s(self, told_s: object) -> float:
+        """Return the robot's own clock if it says one, which never goes backwards; else ours."""
+        try:
+            at_s = float(str(told_s))
+        except ValueError:
+            return self._now_s()
+        if self._own_clock or at_s >= self._gone_s:
+            self._own_clock = True
+            self._gone_s, self._begun = max(at_s, self._gone_s), time.monotonic()
+        return self._gone_s
+
+    def _now_s(self) -> float:
+        return self._gone_s + time.monotonic() - self._begun
+
+
+@contextmanager
+def live_robot(
+    broker: Broker, robot: tuple[str, str], on: str, say: Callable[[str], None]
+) -> Iterator[Vda5050Robot]:
+    """Yield a robot on its wire; the order's name holds the day and when it was made."""
+    wire = Wire(broker, f"fieldmon-{robot[1]}", robot, ("state", "connection"))
+    try:
+        yield Vda5050Robot(wire, robot, f"{on}-{time.time_ns() // 10**6}", say)
+    finally:
+        wire.close()
+
+
+def _finished(state: dict[str, Any], action: str) -> dict[str, Any] | None:
+    """Return the state of an action that is over, whether it failed or not."""
+    for one in state["actionStates"]:
+        if one["actionId"] == action and one["actionStatus"] in {"FINISHED", "FAILED"}:
+            done: dict[str, Any] = one
+            return done
+    return None
+
+
+def _result(action: dict[str, Any]) -> dict[str, Any]:
+    """Return what a robot said of an action; empty if it is nothing that can be read."""
+    try:
+        said = json.loads(action.get("resultDescription") or "{}")
+    except ValueError:
+        return {}
+    if not isinstance(said, dict) or not isinstance(said.get("found"), bool | None):
+        return {}
+    return said

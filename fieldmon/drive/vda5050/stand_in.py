@@ -1,0 +1,198 @@
+"""A simulated robot that speaks VDA 5050: the other side, for whoever has no robot at hand."""
+
+from __future__ import annotations
+
+import json
+import math
+import queue
+import threading
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.drive.vda5050.messages import decoded, encoded, header_of
+from fieldmon.drive.vda5050.wire import Wire
+from fieldmon.errors import ObservationError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fieldmon.drive.vda5050.wire import Broker
+
+# the standard wants a state every 30 s at least
+_STATE_EVERY_S = 5.0
+
+
+@dataclass
+class _Self:
+    """What the robot knows of itself."""
+
+    order_id: str = ""
+    update: int = 0
+    node: str = ""
+    sequence: int = 0
+    place: tuple[float, float] | None = None
+    day_s: float = 0.0
+    todo: list[dict[str, Any]] = field(default_factory=list)
+    actions: dict[str, dict[str, Any]] = field(default_factory=dict)
+    errors: list[dict[str, Any]] = field(default_factory=list)
+    battery: float = 100.0
+    paused: bool = False
+
+
+class StandIn:
+    """Drives what is released, looks at plants, and tells.
+
+    Parameters
+    ----------
+    broker, robot
+        Where, and under which manufacturer and serial number.
+    look
+        Told a plant; says whether it is found infested.
+    speed_m_s
+        Of driving.
+    faster
+        How many times faster than the clock; seconds told are those of its own day.
+    """
+
+    def __init__(
+        self,
+        broker: Broker,
+        robot: tuple[str, str],
+        look: Callable[[int], bool | None],
+        speed_m_s: float = 2.5 / 3.6,
+        faster: float = 1.0,
+    ) -> None:
+        self._header, self._look = header_of(*robot), look
+        self._speed_m_s, self._faster = speed_m_s, faster
+        self.self = _Self()
+        broken = encoded("connection", dict(self._header), {"connectionState": "CONNECTIONBROKEN"})
+        hears, name = ("order", "instantActions"), f"stand-in-{robot[1]}"
+        self.wire = Wire(broker, name, robot, hears, ("connection", broken))
+        self._connected("ONLINE")
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self.run, daemon=True)
+
+    def start(self) -> None:
+        """Drive in a thread of its own."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop, and say so."""
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join(timeout=10)
+        self._connected("OFFLINE")
+        self.wire.close()
+
+    def run(self) -> None:
+        """Take orders and drive, until it is stopped."""
+        self.tell()
+        told = time.monotonic()
+        while not self._stop.is_set():
+            self._hear()
+            if self._drive_on() or time.monotonic() - told > _STATE_EVERY_S:
+                self.tell()
+                told = time.monotonic()
+
+    def tell(self) -> None:
+        """Send the robot's state."""
+        me = self.self
+        place = me.place or (0.0, 0.0)
+        body = {
+            "orderId": me.order_id,
+            "orderUpdateId": me.update,
+            "lastNodeId": me.node,
+            "lastNodeSequenceId": me.sequence,
+            "driving": False,
+            "paused": me.paused,
+            "nodeStates": [_part(one, "nodeId") for one in me.todo],
+            "edgeStates": [],
+            "actionStates": list(me.actions.values()),
+            "agvPosition": {
+                "x": place[0],
+                "y": place[1],
+                "theta": 0.0,
+                "mapId": "map",
+                "positionInitialized": me.place is not None,
+            },
+            "batteryState": {"batteryCharge": me.battery, "charging": False},
+            "operatingMode": "AUTOMATIC",
+            "errors": me.errors,
+            "information": [
+                {"infoType": "day_s", "infoLevel": "INFO", "infoDescription": f"{me.day_s:.1f}"}
+            ],
+            "safetyState": {"eStop": "NONE", "fieldViolation": False},
+        }
+        self.wire.send("state", encoded("state", self._header, body))
+
+    def _hear(self) -> None:
+        try:
+            kind, data = self.wire.heard.get(timeout=0.005 if self.self.todo else 0.1)
+            message = decoded(kind, data)
+        except (queue.Empty, ObservationError):
+            return
+        if kind == "order":
+            self._take(message)
+        elif kind == "instantActions":
+            for one in message["actions"]:
+                if one["actionType"] in {"startPause", "stopPause"}:
+                    self.self.paused = one["actionType"] == "startPause"
+        self.tell()
+
+    def _take(self, order: dict[str, Any]) -> None:
+        """Take an order or an update of it; one that came before, or twice, changes nothing."""
+        me = self.self
+        if order["orderId"] != me.order_id:
+            me.order_id, me.update, me.sequence, me.actions = order["orderId"], -1, -1, {}
+        if order["orderUpdateId"] <= me.update:
+            return
+        me.update = order["orderUpdateId"]
+        me.todo = [one for one in order["nodes"] if one["sequenceId"] > me.sequence]
+        for node in me.todo:
+            if node["released"]:
+                for action in node["actions"]:
+                    me.actions[action["actionId"]] = _action(action, "WAITING")
+
+    def _drive_on(self) -> bool:
+        """Drive to the next released node and do what is to be done there; tell whether any."""
+        me = self.self
+        if me.paused or me.errors or not me.todo or not me.todo[0]["released"]:
+            return False
+        node = me.todo.pop(0)
+        there = (node["nodePosition"]["x"], node["nodePosition"]["y"])
+        self._pass(0.0 if me.place is None else math.dist(me.place, there) / self._speed_m_s)
+        me.place, me.node, me.sequence = there, node["nodeId"], node["sequenceId"]
+        for action in node["actions"]:
+            self._do(action)
+        # a corner is passed without a word
+        return bool(node["actions"]) or not me.todo or not me.todo[0]["released"]
+
+    def _do(self, action: dict[str, Any]) -> None:
+        told = {one["key"]: one["value"] for one in action.get("actionParameters", [])}
+        self._pass(float(told.get("seconds", 0.0)))
+        found = self._look(int(told["plant"]))
+        done = _action(action, "FAILED" if found is None else "FINISHED")
+        result = {"plant": told["plant"], "found": found, "day_s": round(self.self.day_s, 1)}
+        done["resultDescription"] = json.dumps(result)
+        self.self.actions[action["actionId"]] = done
+
+    def _pass(self, seconds: float) -> None:
+        self.self.day_s += seconds
+        self._stop.wait(seconds / self._faster)
+
+    def _connected(self, state: str) -> None:
+        data = encoded("connection", self._header, {"connectionState": state})
+        self.wire.send("connection", data, kept=True)
+
+
+def _action(action: dict[str, Any], status: str) -> dict[str, Any]:
+    return {
+        "actionId": action["actionId"],
+        "actionType": action["actionType"],
+        "actionStatus": status,
+    }
+
+
+def _part(one: dict[str, Any], name: str) -> dict[str, Any]:
+    return {name: one[name], "sequenceId": one["sequenceId"], "released": one["released"]}

@@ -1,0 +1,369 @@
+"""Chances of plants and pairs that know of more than the plants next to an infestation.
+
+Beside a plant lies what `fieldmon.infestation.pairs` says of pairs of neighbours. Beyond, insects
+jump by a mixture of kernels (`reach`), arrive from outside, and are overlooked; a find is traced to
+where it came from and what it sent out (`tracing`). Which of that is so, and how much, the season's
+own inspections tell (`clustering`, `origins`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.compute.jit import loop, part
+from fieldmon.infestation.belief import LEAST_CHANCE, MOST_CHANCE, lesser
+from fieldmon.infestation.clustering import (
+    CLUSTERING,
+    ClusterEstimate,
+    chance_apart,
+    kept_evidence,
+    learn_clustering,
+    no_evidence,
+)
+from fieldmon.infestation.origins import (
+    ANYWHERE,
+    AT_START,
+    BESIDE_IT,
+    BY_EDGE,
+    JUMPED,
+    N_ORIGINS,
+    OVERLOOKED,
+    OriginCounts,
+)
+from fieldmon.infestation.pair_nights import night_of_pairs
+from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
+from fieldmon.infestation.reach import BESIDE, BEYOND, reach_of
+from fieldmon.infestation.tracing import Raised, Traces, trace
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.belief import Learning
+    from fieldmon.infestation.reach import Reach
+    from fieldmon.infestation.spread import Spread
+    from fieldmon.plot.grid import Linked, PlantGrid
+
+    Floats = NDArray[np.float64]
+
+# an infested plant of which nothing is known has sent out so many before the season, and no more
+# than so many unseen: clusters of eight (our choice)
+_SENT, _MOST_SENT = 3.5, 7.0
+#: share of the plants infested from outside in a night, at least, anywhere and by the edge, before
+#: anything was found (our choice)
+ARRIVE, ARRIVE_BY_EDGE = 0.0002, 0.0001
+# a plant found and left where it is; only another inspection can say otherwise
+_KNOWN, _UNKNOWN = 0.99, 0.95
+# what was inspected around a plant never lowers it by more in a day (as an exponent)
+_MOST_LOWERED = 3.0
+# two neighbours' fates never hang together more
+_MOST_DEPENDENCE = 0.9
+# what jumps were expected to bring is not made up from a chance of jumping below this
+_LEAST_JUMPS = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class TracedPairs:
+    """A chance for every plant and every two neighbours, by where infestations come from.
+
+    Parameters
+    ----------
+    grid
+        The plants.
+    chance, pair_chance
+        ``(n,)`` and ``(e,)``, see `Belief`.
+    shares
+        ``(n, N_ORIGINS)`` float32: how much of each plant's chance each origin brought.
+    unseen
+        ``(n,)`` how many infestations a plant would have sent out since it was seen clean.
+    counts
+        What each origin brought, and was expected to.
+    evidence
+        ``(4,)`` of how infested plants stand, see `ClusterEstimate`.
+    share_at_start
+        Mean chance on the first morning, as it was believed then.
+    """
+
+    grid: PlantGrid
+    chance: Floats
+    pair_chance: Floats
+    shares: NDArray[np.float32]
+    unseen: Floats
+    counts: OriginCounts
+    evidence: Floats
+    share_at_start: float
+
+    @classmethod
+    def of(cls, grid: PlantGrid, chance: Floats, clustering: float = CLUSTERING) -> TracedPairs:
+        """Begin with a chance map, see :func:`fieldmon.infestation.pairs.pair_chances`."""
+        chance = np.clip(chance, LEAST_CHANCE, MOST_CHANCE)
+        shares = np.zeros((len(chance), N_ORIGINS), np.float32)
+        shares[:, AT_START] = 1.0
+        together = pair_chances(chance, grid, clustering)
+        unseen, mean = np.full(len(chance), _SENT), float(chance.mean())
+        counts = OriginCounts.none()
+        return cls(grid, chance, together, shares, unseen, counts, no_evidence(), mean)
+
+    @property
+    def reach(self) -> Reach:
+        """The kernels of the plot."""
+        return reach_of(self.grid)
+
+    @property
+    def jumps(self) -> float:
+        """Chance that the plot's insects jump beyond the plants next to them."""
+        return float(chance_apart(self.evidence))
+
+    @property
+    def beyond(self) -> Floats:
+        """What an infested plant sends out by each kernel if insects jump, ``(6,)``."""
+        beyond: Floats = BEYOND * self.counts.scale[JUMPED:]
+        return beyond
+
+    @property
+    def doubt(self) -> float:
+        """How far the expected number may be off, see `Belief`.
+
+        As far as what each origin brings is known, and as infestations that jumped come in groups.
+        """
+        brought = self.chance @ self.shares.astype(np.float64)
+        expected = float(brought.sum())
+        origins = float(((brought * self.counts.doubt) ** 2).sum()) / expected**2
+        sent = float(self.unseen @ self.chance) / expected
+        relatives = 2.0 * self.jumps * float(self.beyond.sum()) * sent
+        return float(np.sqrt(origins + relatives / expected))
+
+    @cached_property
+    def traces(self) -> Traces:
+        """What a day needs to trace a find."""
+        kernel = np.tensordot(self.beyond, self.reach.kernels, 1)
+        afar = self.shares[:, JUMPED:].sum(axis=1, dtype=np.float64)
+        return Traces(self.reach.cells, kernel, self.unseen, afar, self.evidence)
+
+    def learn(
+        self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
+    ) -> TracedPairs:
+        """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
+        n, nothing = len(self.chance), np.zeros((2, N_ORIGINS))
+        none = np.zeros((2, n))
+        inspections = plants, found, self.counts.detects(learning.detects(len(plants)))
+        day = _Day(self.shares.copy(), self.chance.copy(), *none, *nothing)
+        clusters = ClusterEstimate.none(n, self.evidence)
+        believed = self.chance.copy(), self.pair_chance.copy()
+        learn_clustering(believed, self.grid.linked, inspections, clusters)
+        evidence = kept_evidence(clusters.evidence)
+        jumps = float(chance_apart(evidence))
+        traces = self.traces.own()
+        each = self.reach.kernels * self.beyond[:, None, None]
+        room = _Room(each, Neighbourhood.of(n), Raised.of(n))
+        rule = learning.treated, jumps
+        _learn(believed, self.grid.linked, inspections, rule, (day, traces), room)
+        after = replace(
+            self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
+            unseen=traces.unseen, evidence=evidence,
+        )  # fmt: skip
+        lowered = after.times(self._lowered(after, day, jumps * self.beyond))
+        return lowered.counting(self, day)
+
+    def _lowered(self, after: TracedPairs, day: _Day, beyond: Floats) -> Floats:
+        """Return how much less likely plants are as no relatives were found about them, ``(n,)``.
+
+        What clean inspections took from the chances about a plant, it would have infested, or
+        would have been infested by, in that proportion.
+        """
+        sent = self.reach.brought(day.dropped, beyond) * after.unseen / after.chance
+        sent += self.reach.brought(day.cleared * self.unseen, beyond, back=True)
+        return np.exp(-np.minimum(sent, _MOST_LOWERED))
+
+    def counting(self, before: TracedPairs, day: _Day) -> TracedPairs:
+        """Return the same with each origin believed as it now counts."""
+        expected = day.expected / before.counts.scale
+        expected[JUMPED:] /= max(self.jumps, _LEAST_JUMPS)
+        counts = self.counts.and_those(day.found, expected)
+        ratio = counts.scale / before.counts.scale
+        ratio[JUMPED:] *= self.jumps / before.jumps
+        scaled = self.shares * ratio.astype(np.float32)
+        total = np.maximum(scaled.sum(axis=1, dtype=np.float64), LEAST_CHANCE)
+        shares = scaled / total[:, None].astype(np.float32)
+        return replace(self.times(total), shares=shares, counts=counts)
+
+    def times(self, scale: Floats) -> TracedPairs:
+        """Return the same with all chances ``(n,)`` times a scale, but those of known finds."""
+        start, other = self.grid.adjacent
+        scale = np.where(self.chance > _KNOWN, 1.0, scale)
+        chance = np.clip(self.chance * scale, LEAST_CHANCE, np.maximum(self.chance, _UNKNOWN))
+        own = np.repeat(scale, np.diff(start))
+        p, q = np.repeat(chance, np.diff(start)), chance[other]
+        most = p * q + _MOST_DEPENDENCE * (np.minimum(p, q) - p * q)
+        both = np.minimum(self.pair_chance * np.sqrt(own * scale[other]), most)
+        return replace(self, chance=chance, pair_chance=np.maximum(both, p + q - 1.0).clip(0.0))
+
+    def overnight(self, spread: Spread) -> TracedPairs:
+        """Return what is believed the next morning."""
+        start, other = self.grid.adjacent
+        sends = spread.rate_per_day
+        if spread.to != "one":
+            sends *= float(np.diff(start).mean())
+        beside = 1.0 - self.jumps * (1.0 - BESIDE)
+        rate = spread.rate_per_day * min(1.0, beside * self.counts.scale[BESIDE_IT])
+        near = replace(spread, rate_per_day=rate, arrivals_per_day=0.0)
+        pairs = self.chance, self.pair_chance
+        chance, pair_chance = night_of_pairs(pairs, self.grid.linked, near)
+        brought = self._brought(sends, spread)
+        arrives = 1.0 - np.exp(-brought.sum(axis=0))
+        gain = (1.0 - chance) * arrives
+        after = np.clip(chance + gain, LEAST_CHANCE, MOST_CHANCE)
+        shares = self._shares_after(chance - self.chance, gain, brought)
+        own = np.repeat(arrives, np.diff(start))
+        p, q = np.repeat(chance, np.diff(start)), chance[other]
+        neither = (1.0 - p - q + pair_chance).clip(0.0) * (1.0 - own) * (1.0 - arrives[other])
+        p, q = np.repeat(after, np.diff(start)), after[other]
+        both = np.clip(p + q - 1.0 + neither, (p + q - 1.0).clip(0.0), np.minimum(p, q))
+        unseen = np.minimum(self.unseen + sends, _MOST_SENT)
+        return replace(self, chance=after, pair_chance=both, shares=shares, unseen=unseen)
+
+    def _brought(self, sends: float, spread: Spread) -> Floats:
+        """Return what a night brings each plant from farther than beside it, ``(o, n)``."""
+        scale = self.counts.scale
+        brought = np.zeros((N_ORIGINS, len(self.chance)))
+        jumped = self.reach.brought_by_each(self.chance)
+        brought[JUMPED:] = jumped * (sends * self.jumps * self.beyond)[:, None]
+        brought[ANYWHERE] = max(spread.arrivals_per_day, ARRIVE) * scale[ANYWHERE]
+        brought[BY_EDGE] = ARRIVE_BY_EDGE * scale[BY_EDGE] * self.reach.at_edge
+        return brought
+
+    def _shares_after(self, beside: Floats, gain: Floats, brought: Floats) -> NDArray[np.float32]:
+        """Return the shares of the origins after a night that brought so much."""
+        parts = self.shares * self.chance[:, None].astype(np.float32)
+        parts[:, BESIDE_IT] += np.maximum(beside, 0.0).astype(np.float32)
+        parts += (brought * (gain / np.maximum(brought.sum(axis=0), 1e-12))).T.astype(np.float32)
+        shares: NDArray[np.float32] = parts / parts.sum(axis=1, keepdims=True)
+        return shares
+
+    def treated(self, left: Floats) -> TracedPairs:
+        """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
+        start, other = self.grid.adjacent
+        chance = np.maximum(self.chance * left, LEAST_CHANCE)
+        together = self.pair_chance * np.repeat(left, np.diff(start)) * left[other]
+        return replace(self, chance=chance, pair_chance=together)
+
+
+class _Day(NamedTuple):
+    """What a day's inspections say beside the chances.
+
+    Parameters
+    ----------
+    shares
+        ``(n, o)`` how much of each chance each origin brought.
+    before
+        ``(n,)`` each plant's chance before the inspection under way.
+    dropped, cleared
+        ``(n,)`` what clean inspections took from each plant's chance, and as a share of it.
+    found, expected
+        ``(o,)`` finds of each origin.
+    """
+
+    shares: NDArray[np.float32]
+    before: Floats
+    dropped: Floats
+    cleared: Floats
+    found: Floats
+    expected: Floats
+
+
+class _Room(NamedTuple):
+    """The kernels by which insects jump ``(6, d, d)``, and room for the plants reached."""
+
+    each: Floats
+    near: Neighbourhood
+    raised: Raised
+
+
+@loop
+def _learn(
+    believed: tuple[Floats, Floats],
+    linked: Linked,
+    inspections: tuple[NDArray[np.int32], NDArray[np.bool_], Floats],
+    rule: tuple[bool, float],
+    work: tuple[_Day, Traces],
+    room: _Room,
+) -> None:
+    """Learn from a day's inspections, one after the other, in place.
+
+    `rule` is whether finds are treated, and the chance that insects jump.
+    """
+    plants, found, detects = inspections
+    treated, jumps = rule
+    day, traces = work
+    chance = believed[0]
+    for k in range(plants.size):
+        i = 0 + plants[k]
+        p, unseen = chance[i], traces.unseen[i]
+        _count(day, i, found[k], detects[k] * p)
+        n = update_neighbourhood(believed, linked, (i, found[k]), (detects[k], treated), room.near)
+        for t in range(n):
+            _share(day, chance, room.near.plant[t])
+        day.shares[i, :] = 0.0
+        day.shares[i, OVERLOOKED] = 1.0
+        if found[k]:
+            n = trace(believed, linked, traces, (i, p, jumps), room.raised)
+            for t in range(n):
+                _share_traced(day, traces, room, (i, p, unseen), t)
+                day.before[room.raised.plant[t]] = chance[room.raised.plant[t]]
+            traces.unseen[i] = 0.0
+        else:
+            day.dropped[i] += p - chance[i]
+            day.cleared[i] = 1.0 - chance[i] / p
+            traces.unseen[i] *= 1.0 - detects[k]
+
+
+@part
+def _count(day: _Day, i: int, found: bool, expected: float) -> None:  # noqa: FBT001 - a result
+    """Count what an inspection found and was expected to find, origin by origin.
+
+    A plant known to be infested tells how much is overlooked.
+    """
+    if day.before[i] > _KNOWN:
+        day.found[OVERLOOKED] += 1.0 - found
+        day.expected[OVERLOOKED] += 1.0 - expected
+        return
+    for o in range(N_ORIGINS):
+        day.found[o] += found * day.shares[i, o]
+        day.expected[o] += expected * day.shares[i, o]
+
+
+@part
+def _share(day: _Day, chance: Floats, j: int) -> None:
+    """Ascribe what a plant's chance has risen by to the plant beside it."""
+    more = chance[j] - day.before[j]
+    if more > 0.0:
+        for o in range(N_ORIGINS):
+            day.shares[j, o] *= day.before[j] / chance[j]
+        day.shares[j, BESIDE_IT] += more / chance[j]
+    day.before[j] = chance[j]
+
+
+@part
+def _share_traced(
+    day: _Day, traces: Traces, room: _Room, find: tuple[int, float, float], t: int
+) -> None:
+    """Ascribe what a find has raised a plant by to the kernels that reach it."""
+    i, p, unseen = find
+    cells, each = traces.cells, room.each
+    j, more = room.raised.plant[t], room.raised.by[t]
+    along, h = cells.shape[1], each.shape[1] // 2
+    y = cells.of_plant[j] // along - cells.of_plant[i] // along
+    x = cells.of_plant[j] % along - cells.of_plant[i] % along
+    q = day.before[j]
+    parent = lesser(q / p, 1.0) * unseen
+    total = 0.0
+    for k in range(each.shape[0]):
+        total += traces.unseen[j] * each[k, h + y, h + x] + parent * each[k, h - y, h - x]
+    for o in range(N_ORIGINS):
+        day.shares[j, o] *= q / (q + more)
+    for k in range(each.shape[0]):
+        own = traces.unseen[j] * each[k, h + y, h + x] + parent * each[k, h - y, h - x]
+        day.shares[j, JUMPED + k] += more / (q + more) * own / total

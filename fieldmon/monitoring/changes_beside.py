@@ -1,0 +1,110 @@
+"""Changes that another program keeps in a file beside a season while it has it open.
+
+QGIS does so: what it changed stands in ``season.gpkg-wal`` until the last program closes the
+season. In a folder that is synchronised the two files come one by one, and not always both.
+Source: the SQLite file format, section 4, "The Write-Ahead Log".
+"""
+
+from __future__ import annotations
+
+import shutil
+import sqlite3
+import tempfile
+from contextlib import closing
+from pathlib import Path
+
+from fieldmon.compute.wording import worded
+from fieldmon.errors import FileProblem
+
+#: where a file says that changes may lie beside it, and how it says so
+_AT, _MAY_LIE_BESIDE = 18, b"\x02\x02"
+_HEADER, _FRAME_HEADER = 32, 24
+#: of a season that was open elsewhere, and whose other file is not here
+PARTED = (
+    "{path} was open in another program (QGIS?) that keeps changes in a file beside it, and that "
+    "file is not here. If this is a copy, what was done last may be missing: bring the other file "
+    "too, or copy the season after that program was closed."
+)
+
+
+def beside(path: Path) -> Path:
+    """Return where such changes lie."""
+    return path.with_name(f"{path.name}-wal")
+
+
+def refuse_foreign(path: Path) -> bool:
+    """Return whether changes lie beside a season; raise `FileProblem` if they are not its own.
+
+    SQLite would take them for its own and write them into the season.
+    """
+    more = beside(path)
+    if not more.is_file():
+        return False
+    try:
+        with path.open("rb") as file:
+            may = file.read(100)[_AT : _AT + 2] == _MAY_LIE_BESIDE
+        # twice: another program may write while the one is copied and then the other
+        if not more.stat().st_size or (may and (_fit(path, more) or _fit(path, more))):
+            return True
+    except OSError as error:
+        raise FileProblem(
+            worded(
+                "{path} must be readable, but it is not ({strerror}). Check its permissions.",
+                path=path,
+                strerror=error.strerror,
+            )
+        ) from error
+    raise FileProblem(
+        worded(
+            "{path} and {beside} beside it must belong together, but they do not: they are of "
+            "different moments, as when a folder was synchronised while a program had the season "
+            "open. Close the season everywhere and let both synchronise; or move that file away "
+            "to go on without what is in it. Nothing was changed.",
+            path=path,
+            beside=more.name,
+        )
+    )
+
+
+def _fit(path: Path, more: Path) -> bool:
+    """Tell whether a season is whole with the changes beside it, and no older; in a copy."""
+    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+        copy = Path(folder) / "season.gpkg"
+        shutil.copyfile(path, copy)
+        shutil.copyfile(more, beside(copy))
+        try:
+            alone = f"{copy.as_uri()}?immutable=1"
+            with closing(sqlite3.connect(alone, uri=True)) as db:
+                before = _revision(db)
+                (n_pages,) = db.execute("PRAGMA page_count").fetchone()
+            if not _reaches(beside(copy).read_bytes(), n_pages):
+                return False
+            with closing(sqlite3.connect(copy)) as db:
+                (said,) = db.execute("PRAGMA integrity_check(1)").fetchone()
+                return said == "ok" and _revision(db) >= before
+        except sqlite3.Error:
+            return False
+
+
+def _revision(db: sqlite3.Connection) -> int:
+    row = db.execute("SELECT value FROM fieldmon WHERE key = 'revision'").fetchone()
+    return 0 if row is None else int(row[0])
+
+
+def _reaches(log: bytes, n_pages: int) -> bool:
+    """Tell whether every page behind the file's last is there, and none of the file's is cut off.
+
+    A season never shrinks. Each frame holds a page: its number, the pages of the file if the frame
+    ends a transaction, and two numbers that are the same in all that count.
+    """
+    size, salts = int.from_bytes(log[8:12]), log[16:24]
+    after = n_pages
+    pages: set[int] = set()
+    told: set[int] = set()
+    for at in range(_HEADER, len(log) - size - _FRAME_HEADER + 1, size + _FRAME_HEADER):
+        if log[at + 8 : at + 16] != salts:
+            break
+        told.add(int.from_bytes(log[at : at + 4]))
+        if ends := int.from_bytes(log[at + 4 : at + 8]):
+            after, pages = ends, pages | told
+    return after >= n_pages and pages >= set(range(n_pages + 1, after + 1))

@@ -1,0 +1,228 @@
+"""Two copies of a season that went apart become one: all that is in either, once each.
+
+A row is known again by what it says and by the batch it came with, never by its number. What was
+taken back in one copy is taken back. What both recorded for themselves counts once; the later one
+stays as a row that does not count. Everything is put in the order in which it was recorded, so
+that it does not matter which copy takes in the other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.errors import FileProblem
+from fieldmon.monitoring import schema
+from fieldmon.monitoring.geopackage import touch
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Callable, Hashable, Iterable
+
+    from fieldmon.monitoring.geopackage import GeoPackageTable
+
+#: a row by the names of its columns, its number (fid) among them
+Row = dict[str, Any]
+
+#: what makes a season this one, and must be the same in both
+SAME = (schema.ARRAYS, schema.PLOTS, schema.PLACES, schema.ROWS, schema.PLANTS, schema.OBSERVATIONS)
+#: what is taken row by row, each as the functions below say
+TAKEN = (
+    *(schema.BATCHES, schema.INSPECTIONS, schema.TREATMENTS, schema.SETTINGS),
+    *(schema.ROUTES, schema.STOPS, schema.IMPORTS, schema.OUTSIDE_CHANGES),
+)
+
+
+@dataclass(frozen=True)
+class Merged:
+    """What came of merging.
+
+    Parameters
+    ----------
+    new
+        Inspections that count now and did not before.
+    contradictions
+        A sentence for each result that the copies tell differently, and for each setting.
+    """
+
+    new: int
+    contradictions: tuple[str, ...]
+
+
+def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:
+    """Put all that another copy holds into `db`; return a sentence for each setting that differs.
+
+    Raise `FileProblem` if it is no copy of the same season.
+    """
+    _refuse_strangers(db, other)
+    copies = [{table.name: _rows(one, table) for table in TAKEN} for one in (db, other)]
+    batches = _merged_batches(copies)
+    for table in (schema.INSPECTIONS, schema.TREATMENTS):
+        rows = _merged_findings(copies, table.name, batches)
+        _write(db, table, rows)
+        _count(batches, rows)
+    _write(db, schema.BATCHES, list(batches.values()))
+    _write_routes(db, copies)
+    said = _differing(copies)
+    _write(db, schema.SETTINGS, _once(copies, "settings", ("changed", "name", "value")))
+    _write(db, schema.IMPORTS, _once(copies, "import_findings", schema.IMPORTS.names, ("at",)))
+    for copied in copies:
+        for row in copied["outside_changes"]:
+            row["batch"] = _number(batches, copied, row["batch"])
+    changes = _once(copies, "outside_changes", schema.OUTSIDE_CHANGES.names, ("at",))
+    _write(db, schema.OUTSIDE_CHANGES, changes)
+    return said
+
+
+def _refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
+    for table in SAME:
+        names = ", ".join(table.names)
+        wanted = f"SELECT {names} FROM {table.name} ORDER BY fid"  # noqa: S608 - names of ours
+        if db.execute(wanted).fetchall() != other.execute(wanted).fetchall():
+            raise FileProblem(
+                f"Two copies of one season can be merged, but these differ in the layer "
+                f"{table.name}: they are seasons of their own, or another program changed one of "
+                "them. Record what was found in the one into the other with: fieldmon record"
+            )
+
+
+def _rows(db: sqlite3.Connection, table: GeoPackageTable) -> list[Row]:
+    names = ("fid", *table.names)
+    rows = db.execute(f"SELECT {', '.join(names)} FROM {table.name} ORDER BY fid")  # noqa: S608 - ours
+    return [dict(zip(names, row, strict=True)) for row in rows]
+
+
+def _write(db: sqlite3.Connection, table: GeoPackageTable, rows: list[Row]) -> None:
+    """Let these be the rows of a table, numbered in their order."""
+    names = ("fid", *table.names)
+    db.execute(f"DELETE FROM {table.name}")  # noqa: S608 - names of ours
+    db.executemany(
+        f"INSERT INTO {table.name} ({', '.join(names)}) VALUES ({', '.join('?' * len(names))})",  # noqa: S608 - ours
+        [(number, *(row[name] for name in table.names)) for number, row in enumerate(rows, 1)],
+    )
+    touch(db, table.name)
+
+
+#: what a batch is known by in every copy
+_BATCH = ("at", "source", "who", "kind")
+
+
+def _merged_batches(copies: list[dict[str, list[Row]]]) -> dict[Hashable, Row]:
+    """Return the batches of both by what they are known by, numbered as they were recorded."""
+    found = {
+        _key(row, _BATCH): {**row, "rows": 0, "undone": 0}
+        for copied in copies
+        for row in copied["batches"]
+    }
+    ordered = sorted(found.items(), key=lambda item: repr(item[0]))
+    return {key: {**row, "fid": number} for number, (key, row) in enumerate(ordered, 1)}
+
+
+def _number(
+    batches: dict[Hashable, Row], copied: dict[str, list[Row]], number: int | None
+) -> int | None:
+    """Return the number that a batch of a copy has now."""
+    row = next((row for row in copied["batches"] if row["fid"] == number), None)
+    return None if row is None else int(batches[_key(row, _BATCH)]["fid"])
+
+
+def _merged_findings(
+    copies: list[dict[str, list[Row]]], name: str, batches: dict[Hashable, Row]
+) -> list[Row]:
+    """Return inspections or treatments of both copies, once each, in the order of their batches."""
+    found: dict[Hashable, Row] = {}
+    for copied in copies:
+        batch_of = {row["fid"]: batches[_key(row, _BATCH)]["fid"] for row in copied["batches"]}
+        for own in copied[name]:
+            row = {**own, "batch": batch_of.get(own["batch"])}
+            if row["digest"] is None:  # a draft of another program
+                key: Hashable = _key(row, tuple(k for k in row if k != "fid"))
+            else:
+                key = row["digest"], row["batch"]
+            known = found.setdefault(key, row)
+            known["undone"] = max(known["undone"] or 0, row["undone"] or 0)
+            known["fid"] = min(known["fid"], row["fid"])
+            for free in ("notes", "who"):  # what is no part of what makes it the same
+                if free in row:
+                    known[free] = max(known[free] or "", row[free] or "")
+    drafts_last = len(batches) + 1
+    rows = sorted(
+        found.values(), key=lambda r: (r["batch"] or drafts_last, r["fid"], repr(r["digest"]))
+    )
+    counting: set[str] = set()
+    for row in rows:
+        if row["digest"] is not None and not row["undone"]:
+            row["undone"] = int(row["digest"] in counting)
+            counting.add(row["digest"])
+    return rows
+
+
+def _count(batches: dict[Hashable, Row], rows: list[Row]) -> None:
+    """Note in the batches how many rows they have; one of which nothing counts is undone."""
+    by_number = {row["fid"]: row for row in batches.values()}
+    live = set()
+    mine: set[int] = set()
+    for row in rows:
+        if row["batch"] is not None:
+            by_number[row["batch"]]["rows"] += 1
+            mine.add(row["batch"])
+            if not row["undone"]:
+                live.add(row["batch"])
+    for number in mine - live:
+        by_number[number]["undone"] = 1
+
+
+def _write_routes(db: sqlite3.Connection, copies: list[dict[str, list[Row]]]) -> None:
+    """Keep the routes of both, those of a day in the order of their revisions, with their stops."""
+    found: dict[Hashable, tuple[Row, list[Row]]] = {}
+    for copied in copies:
+        stops: dict[int, list[Row]] = {}
+        for stop in copied["stops"]:
+            stops.setdefault(stop["route"], []).append(stop)
+        for route in copied["routes"]:
+            kept = found.setdefault(
+                (route["day"], route["digest"]), (route, stops.get(route["fid"], []))
+            )
+            kept[0]["revision"] = min(kept[0]["revision"], route["revision"])
+    ordered = sorted(found.values(), key=lambda r: _key(r[0], ("day", "revision", "digest")))
+    all_stops, last = [], (None, 0)
+    for number, (route, own) in enumerate(ordered, 1):
+        revision = last[1] + 1 if last[0] == route["day"] else 1
+        last, route["revision"] = (route["day"], revision), revision
+        all_stops += [{**stop, "route": number} for stop in own]
+    _write(db, schema.ROUTES, [route for route, _ in ordered])
+    _write(db, schema.STOPS, all_stops)
+
+
+def _once(
+    copies: list[dict[str, list[Row]]],
+    name: str,
+    known_by: tuple[str, ...],
+    order: tuple[str, ...] = (),
+) -> list[Row]:
+    """Return the rows of both copies, once each, in an order that both would give."""
+    found = {_key(row, known_by): row for copied in copies for row in copied[name]}
+    first: Callable[[Row], Any] = lambda row: repr((_key(row, order), _key(row, known_by)))  # noqa: E731
+    return sorted(found.values(), key=first)
+
+
+def _differing(copies: list[dict[str, list[Row]]]) -> tuple[str, ...]:
+    """Return a sentence for each setting that was last chosen differently in the two copies."""
+    ours, theirs = (
+        {row["name"]: row for row in sorted(copied["settings"], key=lambda r: str(r["changed"]))}
+        for copied in copies
+    )
+    said = []
+    for name in sorted(set(ours) & set(theirs)):
+        one, other = ours[name], theirs[name]
+        if one["value"] != other["value"]:
+            last = max(one, other, key=lambda row: str(row["changed"]))
+            said.append(
+                f"The setting {name} differs: {one['value']} here, {other['value']} there. What "
+                f"was chosen last counts: {last['value']}."
+            )
+    return tuple(said)
+
+
+def _key(row: Row, names: Iterable[str]) -> tuple[Any, ...]:
+    return tuple(row[name] for name in names)

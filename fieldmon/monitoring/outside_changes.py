@@ -1,0 +1,181 @@
+"""What other programs changed of what was recorded: refused by name, or taken as a correction.
+
+The file notes it by itself (`fieldmon.monitoring.schema.watch`), whoever the other program is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import date
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.errors import FieldmonError, FileProblem
+from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
+from fieldmon.monitoring import batches, inspection_table
+from fieldmon.monitoring.schema import INSPECTIONS
+
+if TYPE_CHECKING:
+    import sqlite3
+
+    from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.plot.grid import PlantGrid, RowLabel
+
+_MOST_NAMED = 5
+_DONE = {"update": "was changed", "delete": "was deleted", "insert": "was added"}
+_CODES = {name: code for code, name in RESULT_NAMES.items()}
+_SEEN = ("plant", "date", "time", "result", "count", "who", "notes")
+
+
+@dataclass(frozen=True)
+class OutsideChange:
+    """One row that another program changed, deleted or added.
+
+    Parameters
+    ----------
+    layer, row
+        Where, and the row's number (fid).
+    what
+        ``"update"``, ``"delete"`` or ``"insert"``; of a row changed twice, what it came to.
+    was
+        What stood there first, for people.
+    """
+
+    layer: str
+    row: int
+    what: str
+    was: str
+
+    def __str__(self) -> str:
+        """Return what was done to which row."""
+        stood = f" ({self.was})" if self.was else ""
+        return f"row {self.row} of the layer {self.layer}{stood} {_DONE[self.what]}"
+
+
+def waiting(db: sqlite3.Connection) -> tuple[OutsideChange, ...]:
+    """Return what other programs changed and nobody has taken yet, one for each row."""
+    seen: dict[tuple[str, int], OutsideChange | None] = {}
+    rows = db.execute(
+        "SELECT layer, row, what, was FROM outside_changes WHERE batch IS NULL ORDER BY fid"
+    )
+    for layer, row, what, was in rows:
+        key = layer, row
+        first = seen.get(key)
+        if what == "delete" and first is not None and first.what == "insert":
+            seen[key] = None  # added and taken away again
+        elif first is None:
+            seen[key] = OutsideChange(layer, row, what, was or "")
+        elif first.what == "delete" or what == "delete":  # replaced, or changed and then deleted
+            ends = "update" if what == "insert" else what
+            seen[key] = OutsideChange(layer, row, ends, first.was)
+    return tuple(change for change in seen.values() if change is not None)
+
+
+def refuse(db: sqlite3.Connection) -> None:
+    """Raise `FileProblem` if other programs changed what was recorded, with the rows by name."""
+    found = waiting(db)
+    if not found:
+        return
+    named = "; ".join(map(str, found[:_MOST_NAMED])) + ("; ..." if len(found) > _MOST_NAMED else "")
+    if all(change.layer == INSPECTIONS.name for change in found):
+        remedy = "Take it as a correction with: fieldmon correct SEASON --who NAME; or go"
+    else:
+        remedy = "Only inspections can be corrected so: change the rest with fieldmon, and go"
+    raise FileProblem(
+        f"What was recorded must be as fieldmon left it, but another program changed it: {named}. "
+        f"{remedy} back to a copy from before."
+    )
+
+
+def refuse_more(db: sqlite3.Connection) -> None:
+    """Raise `FileProblem` if more was changed than inspections, which alone can be corrected."""
+    if any(change.layer != INSPECTIONS.name for change in waiting(db)):
+        refuse(db)
+
+
+def correct(
+    db: sqlite3.Connection,
+    plot: tuple[PlantGrid, RowLabel],
+    settings: MonitoringSettings,
+    who: str,
+) -> int:
+    """Take what other programs changed of inspections as a batch of its own; return how many.
+
+    Place, row and number in the row follow the plant's number. A row added with a digest is a copy
+    of another, and counts once it has its own.
+
+    Raises
+    ------
+    FileProblem
+        If a changed row makes no sense: which one.
+    """
+    found = waiting(db)
+    if not found:
+        return 0
+    batch = batches.begin(db, "corrections", "changed by another program", who)
+    for change in found:
+        if change.what != "delete":
+            _take_row(db, change, plot, settings, batch)
+    # what a batch added is what is left of it: some rows were deleted, some are corrections now
+    db.execute(
+        "UPDATE batches SET rows = (SELECT count(*) FROM inspections WHERE batch = batches.fid) "
+        "WHERE kind = 'findings'"
+    )
+    db.execute("UPDATE batches SET rows = ? WHERE fid = ?", (len(found), batch))
+    db.execute("UPDATE outside_changes SET batch = ? WHERE batch IS NULL", (batch,))
+    return len(found)
+
+
+def _take_row(
+    db: sqlite3.Connection,
+    change: OutsideChange,
+    plot: tuple[PlantGrid, RowLabel],
+    settings: MonitoringSettings,
+    batch: int,
+) -> None:
+    """Make one row of inspections what it says now, in every column."""
+    row = db.execute(
+        f"SELECT {', '.join(_SEEN)} FROM inspections WHERE fid = ?",  # noqa: S608 - names of ours
+        (change.row,),
+    ).fetchone()
+    try:
+        (made,) = inspection_table.rows(_inspection(row), *plot, settings, (batch, ""))
+    except (FieldmonError, ValueError, TypeError, KeyError) as error:
+        raise FileProblem(
+            f"A changed inspection must say plant, date and result as the others do, but {change} "
+            f"and does not ({error}). Mend it with the program that changed it; nothing was taken."
+        ) from error
+    values = dict(zip(INSPECTIONS.names, made, strict=True))
+    del values["undone"]
+    twice = db.execute(
+        "SELECT fid FROM inspections WHERE digest = ? AND undone = 0 AND fid <> ?",
+        (values["digest"], change.row),
+    ).fetchone()
+    if twice is not None:
+        raise FileProblem(
+            f"No inspection may stand there twice, but {change} and says what row {twice[0]} says. "
+            "Delete one of them with the program that changed it; nothing was taken."
+        )
+    names = ", ".join(f"{name} = ?" for name in values)
+    db.execute(
+        f"UPDATE inspections SET {names} WHERE fid = ?",  # noqa: S608 - names of ours
+        (*values.values(), change.row),
+    )
+
+
+def _inspection(row: tuple[object, ...]) -> Inspections:
+    """Return one inspection from what its row says; raise where it makes no sense."""
+    said = dict(zip(_SEEN, row, strict=True))
+    on = date.fromisoformat(str(said["date"])[:10])
+    second = np.nan if said["time"] is None else inspection_table.second_of(str(said["time"]))
+    count = np.nan if said["count"] is None else float(str(said["count"]))
+    return Inspections.of(
+        np.array([int(str(said["plant"]))]),
+        np.array([_CODES[str(said["result"])]]),
+        np.datetime64(on, "D"),
+        second=np.array([second]),
+        count=np.array([count]),
+        who=np.array([str(said["who"] or "")], object),
+        notes=np.array([str(said["notes"] or "")], object),
+    )

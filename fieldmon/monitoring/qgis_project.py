@@ -1,0 +1,237 @@
+"""A QGIS project inside a season's file: today's route, findings to fill in, nothing internal.
+
+QGIS and QField list it with the file and open it with one tap, without a network. It is XML in a
+zip, in hexadecimal, as QGIS itself keeps projects in GeoPackages (``qgsgeopackageprojectstorage``).
+It names the file that it is in: a copy under another name gets its own with the next recording.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+import zipfile
+from html import escape
+from typing import TYPE_CHECKING, NamedTuple
+
+from fieldmon.monitoring.qgis_styles import STYLES
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Iterable
+
+PROJECT = "fieldmon"
+_TABLE = (
+    "CREATE TABLE IF NOT EXISTS qgis_projects (name TEXT PRIMARY KEY, metadata BLOB, content BLOB)"
+)
+_EPOCH = (1980, 1, 1, 0, 0, 0)
+_MOST_DAYS = 14
+_LAST_ROUTE = "(SELECT fid FROM routes ORDER BY day DESC, revision DESC LIMIT 1)"
+_SHAPES = {"POINT": "Point", "LINESTRING": "Line", "MULTIPOLYGON": "Polygon"}
+_RESULTS = (("found infested", "found"), ("looked clean", "clean"), ("could not look", "skipped"))
+_HIDDEN = ("fid", "plant", "line", "number", "day", "time", "batch", "digest", "undone")
+_WKT = {
+    4326: 'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],'
+    'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4326"]]',
+    3857: 'PROJCS["WGS 84 / Pseudo-Mercator",GEOGCS["WGS 84",DATUM["WGS_1984",'
+    'SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],'
+    'UNIT["degree",0.0174532925199433]],PROJECTION["Mercator_1SP"],'
+    'PARAMETER["central_meridian",0],PARAMETER["scale_factor",1],PARAMETER["false_easting",0],'
+    'PARAMETER["false_northing",0],UNIT["metre",1],AUTHORITY["EPSG","3857"]]',
+}
+
+
+class Shown(NamedTuple):
+    """A layer of the project.
+
+    Parameters
+    ----------
+    table, title
+        Where it is from, and what it is called.
+    only
+        SQL of the rows that are shown; "": all.
+    on
+        Whether it is drawn when the project is opened.
+    edited
+        Whether people may add to it.
+    """
+
+    table: str
+    title: str
+    only: str = ""
+    on: bool = True
+    edited: bool = False
+
+    @property
+    def id(self) -> str:
+        """Return its name in the project: of more than ten letters, or QGIS makes its own."""
+        return "fieldmon_" + re.sub(r"\W+", "_", f"{self.table} {self.title}".lower())
+
+
+_TODAY = (
+    Shown("inspections", "Findings", '"undone" = 0', edited=True),
+    Shown("stops", "Stops today", f'"route" = {_LAST_ROUTE}'),
+    Shown("routes", "Route today", f'"fid" = {_LAST_ROUTE}'),
+)
+_PLOT = (
+    Shown("hot_spots", "Hot spots"),
+    Shown("treatments", "Treatments", '"undone" = 0', on=False),
+    Shown("chance", "Chance of infestation"),
+    Shown("rows", "Rows", on=False),
+    Shown("plots", "Plot"),
+)
+
+
+def keep(db: sqlite3.Connection, file: str) -> None:
+    """Keep the project of a file of this name, unless it is there as it should be."""
+    days = [on for (on,) in db.execute(
+        "SELECT DISTINCT date FROM routes ORDER BY date DESC LIMIT ?", (_MOST_DAYS + 1,)
+    )]  # fmt: skip
+    earlier = [Shown("routes", f"Route {on}", _last_of(on), on=False) for on in days[1:]]
+    box = db.execute(
+        "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'plots'"
+    ).fetchone()
+    shapes = dict(db.execute("SELECT table_name, geometry_type_name FROM gpkg_geometry_columns"))
+    content = _packed(_project(file, earlier, shapes, box))
+    db.execute(_TABLE)
+    held = db.execute("SELECT content FROM qgis_projects WHERE name = ?", (PROJECT,)).fetchone()
+    if held is None or held[0] != content:
+        told = '{"last_modified_time": "2026-01-01T00:00:00", "last_modified_user": "fieldmon"}'
+        db.execute("INSERT OR REPLACE INTO qgis_projects VALUES (?, ?, ?)",
+                   (PROJECT, told, content))  # fmt: skip
+
+
+def _last_of(on: str) -> str:
+    """Return SQL of the last route kept for a day."""
+    return f'"fid" IN (SELECT max("fid") FROM "routes" WHERE "date" = \'{on}\')'  # noqa: S608 - a date of ours
+
+
+def _packed(project: str) -> str:
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w") as archive:
+        info = zipfile.ZipInfo(f"{PROJECT}.qgs", _EPOCH)  # equal projects are equal bytes
+        archive.writestr(info, project, zipfile.ZIP_DEFLATED)
+    return data.getvalue().hex()
+
+
+def _project(
+    file: str, earlier: list[Shown], shapes: dict[str, str], box: tuple[float, ...]
+) -> str:
+    layers = [*_TODAY, *earlier, *_PLOT]
+    tree = (
+        _group("Today", _TODAY)
+        + (_group("Earlier days", earlier, on=False) if earlier else "")
+        + _group("Plot", _PLOT)
+    )
+    view = _mercator(box)
+    extent = "".join(
+        f' {name}="{value}"' for name, value in zip(("xmin", "ymin", "xmax", "ymax"), view,
+                                                      strict=True)
+    )  # fmt: skip
+    drawn = "".join(_layer(file, one, shapes[one.table]) for one in layers)
+    return (
+        "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>"
+        '<qgis version="3.22.0" projectname="fieldmon"><title>fieldmon</title>'
+        f"<projectCrs>{_system(3857)}</projectCrs><layer-tree-group>{tree}</layer-tree-group>"
+        f'<mapcanvas name="theMapCanvas"><units>meters</units><extent>'
+        + "".join(f"<{n}>{v}</{n}>" for n, v in zip(("xmin", "ymin", "xmax", "ymax"), view,
+                                                     strict=True))
+        + f"</extent><destinationsrs>{_system(3857)}</destinationsrs></mapcanvas>"
+        f"<ProjectViewSettings><DefaultViewExtent{extent}>{_system(3857)}</DefaultViewExtent>"
+        f"</ProjectViewSettings><projectlayers>{drawn}</projectlayers>{_themes(earlier)}"
+        '<properties><SpatialRefSys><ProjectionsEnabled type="int">1</ProjectionsEnabled>'
+        '</SpatialRefSys><Paths><Absolute type="bool">false</Absolute></Paths></properties></qgis>'
+    )  # fmt: skip
+
+
+def _group(name: str, layers: Iterable[Shown], *, on: bool = True) -> str:
+    inner = "".join(
+        f'<layer-tree-layer id="{one.id}" name="{escape(one.title)}" providerKey="ogr" '
+        f'checked="{_checked(one.on)}" expanded="0" source=""/>'
+        for one in layers
+    )
+    return (
+        f'<layer-tree-group name="{name}" checked="{_checked(on)}" expanded="{int(on)}">{inner}'
+        "</layer-tree-group>"
+    )
+
+
+def _checked(on: bool) -> str:  # noqa: FBT001 - one flag
+    return "Qt::Checked" if on else "Qt::Unchecked"
+
+
+def _layer(file: str, one: Shown, shape: str) -> str:
+    source = f"./{file}|layername={one.table}" + (f"|subset={one.only}" if one.only else "")
+    drawn = re.search(r"<renderer-v2.*</renderer-v2>", STYLES[one.table], re.DOTALL)
+    return (
+        f'<maplayer type="vector" geometry="{_SHAPES[shape]}" readOnly="{int(not one.edited)}">'
+        f"<id>{one.id}</id><datasource>{escape(source)}</datasource>"
+        f"<layername>{escape(one.title)}</layername><srs>{_system(4326)}</srs>"
+        f'<provider encoding="UTF-8">ogr</provider>{_form() if one.edited else ""}'
+        f"{drawn.group(0) if drawn else ''}</maplayer>"
+    )
+
+
+def _themes(earlier: list[Shown]) -> str:
+    """Return the theme for print: no chance map, whose colours a printer drowns the route in."""
+    printed = [one for one in (*_TODAY, *_PLOT) if one.on and one.table != "chance"]
+    everything = [one for one in (*_TODAY, *_PLOT) if one.on]
+    presets = (("Print", printed), ("Screen", everything), ("All routes", [*everything, *earlier]))
+    inner = "".join(
+        f'<visibility-preset name="{name}" has-expanded-info="0">'
+        + "".join(f'<layer id="{one.id}" visible="1" style="default"/>' for one in layers)
+        + "</visibility-preset>"
+        for name, layers in presets
+    )
+    return f"<visibility-presets>{inner}</visibility-presets>"
+
+
+def _form() -> str:
+    """Return what people fill in of a finding: a choice list, today's date, a count."""
+    results = "".join(f'<Option type="Map">{_option(a, b)}</Option>' for a, b in _RESULTS)
+    day = _option("display_format", "yyyy-MM-dd") + _option("field_format", "yyyy-MM-dd")
+    count = (
+        *(_option("AllowNull", "true", "bool"), _option("Min", "0", "int")),
+        *(_option("Max", "999", "int"), _option("Step", "1", "int"), _option("Style", "SpinBox")),
+    )
+    return (
+        "<fieldConfiguration>"
+        + "".join(_field(name, "Hidden") for name in _HIDDEN)
+        + _field("result", "ValueMap", f'<Option type="List" name="map">{results}</Option>')
+        + _field("date", "DateTime", f"{day}{_option('calendar_popup', 'true', 'bool')}")
+        + _field("count", "Range", "".join(count))
+        + "</fieldConfiguration><defaults>"
+        '<default field="date" expression="to_date(now())" applyOnUpdate="0"/>'
+        '<default field="undone" expression="0" applyOnUpdate="0"/></defaults><constraints>'
+        '<constraint field="result" constraints="1" notnull_strength="1" unique_strength="0" '
+        'exp_strength="0"/></constraints>'
+    )
+
+
+def _field(name: str, widget: str, inside: str = "") -> str:
+    return (
+        f'<field name="{name}" configurationFlags="None"><editWidget type="{widget}"><config>'
+        f'<Option type="Map">{inside}</Option></config></editWidget></field>'
+    )
+
+
+def _option(name: str, value: str, kind: str = "QString") -> str:
+    return f'<Option type="{kind}" name="{name}" value="{escape(value)}"/>'
+
+
+def _system(code: int) -> str:
+    return (
+        f'<spatialrefsys nativeFormat="Wkt"><wkt>{escape(_WKT[code])}</wkt><srid>{code}</srid>'
+        f"<authid>EPSG:{code}</authid><geographicflag>{str(code == 4326).lower()}</geographicflag>"
+        "</spatialrefsys>"
+    )
+
+
+def _mercator(box: tuple[float, ...]) -> tuple[float, float, float, float]:
+    """Return a box of degrees in metres of web maps (EPSG 3857: spherical Mercator)."""
+    radius = 6378137.0
+    west, east = (math.radians(box[k]) * radius for k in (0, 2))
+    south, north = (
+        radius * math.log(math.tan(math.pi / 4 + math.radians(box[k]) / 2)) for k in (1, 3)
+    )
+    return west, south, east, north

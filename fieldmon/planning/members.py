@@ -1,0 +1,93 @@
+"""Who is in a team, and how they work together."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from fieldmon.errors import SettingError
+from fieldmon.plot.robot import Robot
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+@dataclass(frozen=True)
+class TeamMember:
+    """One of a team.
+
+    Parameters
+    ----------
+    name
+        What it is called, for people and in file names.
+    robot
+        Its speed, hours, inspection and detection.
+    gate
+        ``(lon, lat)`` where its day starts and ends; None: the plot's gate.
+    starts_s
+        Seconds after the team's day begins at which its own does.
+    """
+
+    name: str
+    robot: Robot = field(default_factory=Robot)
+    gate: tuple[float, float] | None = None
+    starts_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.starts_s < 24 * 3600.0:
+            raise SettingError(
+                f"{self.name} must start within a day, but it is {self.starts_s} s after the first."
+            )
+
+
+@dataclass(frozen=True)
+class Teamwork:
+    """How several work together.
+
+    Parameters
+    ----------
+    together
+        Whether aisles are given out by what is believed, each morning and after finds; if not,
+        each has the same even section of rows every day, and nobody hears of the others' finds
+        before the evening.
+    contact_s
+        How often they are in contact: a find is known to all at the next multiple of so many
+        seconds since the day began; 0: at once.
+    least_gain
+        Finds that must be expected beyond those of going on as before, for aisles to be given out
+        anew during a day: nobody is sent back and forth for less.
+    """
+
+    together: bool = True
+    contact_s: float = 0.0
+    least_gain: float = 0.5
+
+    def __post_init__(self) -> None:
+        for name in ("contact_s", "least_gain"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0):
+                raise SettingError(f"A team's {name} must be 0 or more, but it is {value}.")
+
+
+def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
+    """Return n robots of one kind.
+
+    Examples
+    --------
+    >>> [member.name for member in team_of(3)]
+    ['robot-1', 'robot-2', 'robot-3']
+    """
+    if n < 1:
+        raise SettingError(f"A team must have 1 member or more, but it has {n}.")
+    return tuple(TeamMember(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))
+
+
+def must_differ(members: Sequence[TeamMember]) -> None:
+    """Refuse a team of none, or one in which two share a name."""
+    names = [member.name.casefold() for member in members]
+    if not names or len(set(names)) < len(names):
+        raise SettingError(
+            "A team must have members of different names, but they are "
+            f"{', '.join(member.name for member in members) or 'none'}."
+        )

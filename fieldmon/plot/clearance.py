@@ -1,0 +1,134 @@
+"""What a robot's size means on a plot: how far ways keep off plants, and what is too narrow."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import shapely
+
+from fieldmon.compute.wording import counted, worded
+from fieldmon.errors import PlotError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.grid import PlantGrid
+    from fieldmon.plot.robot import Robot
+
+    Float = NDArray[np.float64]
+    Mask = NDArray[np.bool_]
+    Shapes = NDArray[np.object_]
+
+#: taken where nobody said how far plants reach to each side of their middle
+USUAL_HALF_CANOPY_M = 0.25
+#: how far a robot may stray from its line: twice the worst of simulated drives, see docs/drive
+STRAY_M = 0.1
+
+
+class Clearance(NamedTuple):
+    """How far a robot's way must keep off the middle of plants.
+
+    Parameters
+    ----------
+    way_m
+        Where it drives on.
+    turn_m
+        Where it turns on the spot, as at row ends.
+    """
+
+    way_m: float
+    turn_m: float
+
+    @classmethod
+    def of(cls, robot: Robot, grid: PlantGrid) -> Clearance | None:
+        """Return what a robot needs among these plants; None if its width is not known."""
+        if robot.width_m is None or robot.turning_m is None:
+            return None
+        beside_m = half_canopy_m(grid) + STRAY_M
+        return cls(robot.width_m / 2 + beside_m, robot.turning_m / 2 + beside_m)
+
+    def shut(self, grid: PlantGrid) -> Mask:
+        """Tell of each row ``(r,)`` whether it cannot be inspected: its aisle is too narrow.
+
+        Or there is no room to turn at either end. Rows that are inspected from the same stretch
+        of aisle are shut together. Raise `PlotError` if all are.
+        """
+        room_m = lane_room_m(grid)
+        narrow = np.zeros(int(grid.corridor.max()) + 1, np.bool_)
+        closed = (room_m < self.way_m) | self.tight_ends(grid).all(axis=1)
+        narrow[grid.corridor[closed]] = True
+        shut: Mask = narrow[grid.corridor]
+        if shut.all() and (room_m >= self.way_m).any():
+            raise PlotError(
+                worded(
+                    "A robot must have room to turn at the ends of rows: {need_m:.2f} m around it, "
+                    "but no row of this plot has it. Take a shorter robot, or say how much "
+                    "headland there is.",
+                    need_m=self.turn_m,
+                )
+            )
+        if shut.all():
+            raise PlotError(
+                worded(
+                    "A robot's aisles must be as wide as it is, with plants' canopies and 0.1 m on "
+                    "either side: {need_m:.2f} m between the middles of plants, but the widest "
+                    "here is {room_m:.2f} m. Take a narrower robot, or say how far plants reach "
+                    "to each side (half a canopy).",
+                    need_m=2 * self.way_m,
+                    room_m=2 * float(room_m.max()),
+                )
+            )
+        return shut
+
+    def tight_ends(self, grid: PlantGrid) -> Mask:
+        """Tell of each lane end ``(r, 2)`` whether there is no room to turn on the spot."""
+        ends_m = np.stack([_lane_points(grid, end) for end in range(2)], axis=1)
+        tight: Mask = grid.tree.query(ends_m)[0] < self.turn_m
+        return tight
+
+
+def half_canopy_m(grid: PlantGrid) -> float:
+    """Return how far plants reach to each side of their middle, as said or as usual."""
+    return USUAL_HALF_CANOPY_M if grid.half_canopy_m is None else grid.half_canopy_m
+
+
+def lane_room_m(grid: PlantGrid) -> Float:
+    """Return how near the lane of each row comes to the middle of any plant, ``(r,)`` metres."""
+    points: Any = shapely.points(grid.xy_m)
+    plants = shapely.STRtree(points)
+    near = plants.query_nearest(_lanes(grid), all_matches=False, return_distance=True)
+    room: Float = near[1]
+    return room
+
+
+def told_shut(shut: Mask, grid: PlantGrid, needs: Clearance) -> str:
+    """Return for people which rows ``(r,)`` a robot that needs so much cannot enter."""
+    plants = counted(int(np.diff(grid.row_start)[shut].sum()), "plant")
+    return (
+        f"{counted(int(np.count_nonzero(shut)), 'row')} of {len(shut)} cannot be inspected: in "
+        f"their aisles the robot needs {2 * needs.way_m:.2f} m from plant to plant, and there is "
+        f"less. Their {plants} are not visited."
+    )
+
+
+def _lane_points(grid: PlantGrid, end: int) -> Float:
+    """Return the low or the high end of the lane of each row, ``(r, 2)``."""
+    if grid.aisles_m is None or grid.aisle is None:
+        return np.stack([grid.lane_x_m[:, end], grid.lane_y_m], axis=1)
+    return grid.aisles_m.points(grid.aisle, grid.lane_x_m[:, end])
+
+
+def _lanes(grid: PlantGrid) -> Shapes:
+    """Return the lane of each row as a line, ``(r,)``."""
+    if grid.aisles_m is None or grid.aisle is None:
+        y = np.repeat(grid.lane_y_m, 2).reshape(-1, 2)
+        straight: Any = shapely.linestrings(np.stack([grid.lane_x_m, y], axis=2))
+        return np.asarray(straight, object)
+    aisles, lanes = grid.aisles_m, []
+    for aisle, (low, high) in zip(grid.aisle.tolist(), grid.lane_x_m.tolist(), strict=True):
+        ends = aisles.points(np.full(2, aisle), np.array([low, high]))
+        inner = aisles.corners_between(aisle, low, high)
+        lanes.append(shapely.linestrings(np.concatenate([ends[:1], inner, ends[1:]])))
+    bent: Shapes = np.array(lanes, object)
+    return bent

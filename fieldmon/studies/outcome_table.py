@@ -1,0 +1,122 @@
+"""A study's table of outcomes: a store that is a CSV file, with which a stopped study goes on."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import astuple
+from time import monotonic
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar
+
+from fieldmon.errors import FileProblem
+from fieldmon.io.atomic_write import write_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable, Iterable, Sequence
+    from pathlib import Path
+    from types import TracebackType
+    from typing import Self
+
+_SAVED_EVERY_S = 15.0
+
+
+class StudyOutcome(Protocol):
+    """A row of a study's table: a dataclass of texts, whole numbers and numbers.
+
+    Attributes
+    ----------
+    columns, kinds
+        What its columns are called in files, and what their values are.
+    """
+
+    columns: ClassVar[tuple[str, ...]]
+    kinds: ClassVar[tuple[type[Any], ...]]
+
+    @property
+    def key(self) -> Hashable:
+        """Return the chunk that it is of."""
+        ...
+
+
+Row = TypeVar("Row", bound=StudyOutcome)
+
+
+class OutcomeTable(Generic[Row]):
+    """Outcomes by the keys of their chunks, written now and then, and when it is left.
+
+    Parameters
+    ----------
+    file
+        Where they are; what is there already is read.
+    order
+        Keys in the order in which they are written. Others that the file holds come before them.
+    kind
+        The class of its rows.
+    """
+
+    def __init__(self, file: Path, order: Iterable[Hashable], kind: type[Row]) -> None:
+        self.file, self._kind = file, kind
+        self._by_key: dict[Hashable, list[Row]] = {}
+        self._order = list(order)
+        self._saved = monotonic()
+        text = file.read_text(encoding="utf-8") if file.exists() else None
+        for outcome in [] if text is None else outcomes_from(text, file.name, kind):
+            self._by_key.setdefault(outcome.key, []).append(outcome)
+
+    def holds(self, key: Hashable) -> bool:
+        """Tell whether a chunk is there."""
+        return key in self._by_key
+
+    def keep(self, key: Hashable, result: list[Row]) -> None:
+        """Take the outcomes of a chunk."""
+        self._by_key[key] = result
+        if monotonic() > self._saved + _SAVED_EVERY_S:
+            self.save()
+
+    def save(self) -> None:
+        """Write the file."""
+        asked = set(self._order)
+        others = [key for key in self._by_key if key not in asked]
+        rows = [row for key in (*others, *self._order) for row in self._by_key.get(key, [])]
+        write_whole(self.file, csv_text(rows, self._kind).encode())
+        self._saved = monotonic()
+
+    def asked(self) -> list[Row]:
+        """Return the outcomes that there are of what was asked for, in its order."""
+        return [outcome for key in self._order for outcome in self._by_key.get(key, [])]
+
+    def __enter__(self) -> Self:
+        """Begin, or go on."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Write what is there, however it ended."""
+        self.save()
+
+
+def csv_text(outcomes: Sequence[Row], kind: type[Row]) -> str:
+    """Return outcomes as CSV."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(kind.columns)
+    writer.writerows(astuple(outcome) for outcome in outcomes)  # type: ignore[call-overload]
+    return text.getvalue()
+
+
+def outcomes_from(text: str, name: str, kind: type[Row]) -> list[Row]:
+    """Read outcomes back from :func:`csv_text`; raise `FileProblem` if it is something else."""
+    rows = list(csv.reader(io.StringIO(text)))
+    if not rows or rows[0] != list(kind.columns):
+        raise FileProblem(
+            f"{name} must be a table of this study to go on with, but its columns are others. "
+            "Move it away, or name another folder."
+        )
+    return [
+        kind(*(read(value) for read, value in zip(kind.kinds, row, strict=True)))
+        for row in rows[1:]
+    ]

@@ -1,0 +1,63 @@
+"""Planning all plots from their page: one button, who works, and the files."""
+
+import csv
+import io
+import json
+import zipfile
+from contextlib import nullcontext
+from types import SimpleNamespace
+
+import numpy as np
+
+from app.actions import sharing_plots
+from app.state import estate, shared_plots
+from app.state.shared_plots import EstateCrew
+from app.words import texts
+from tests.app.driving import go, layer, map_of, press, texts_of
+
+
+def test_all_plots_are_planned_by_one_button_and_shown_on_the_map(app):
+    go(app, "plots")
+    press(app, texts.PLAN_ALL)
+    assert not app.exception
+    assert "plots; expect" in texts_of(app)
+    (table,) = (frame.value for frame in app.dataframe)
+    worked = table[table[texts.PLAN_ALL_COLUMNS["who"]].notna()]
+    assert len(worked) == len(layer(app, "route")["data"]) > 3
+    assert sum("robot 1" in one["t"] for one in map_of(app)["labels"]) == len(worked)
+    app.number_input(key="crew_scouts").set_value(1).run()
+    assert not app.exception
+    (table,) = (frame.value for frame in app.dataframe)
+    assert {"robot 1", "scout 1"} == set(table[texts.PLAN_ALL_COLUMNS["who"]].dropna())
+    app.number_input(key="crew_scouts").set_value(0).run()
+    app.number_input(key="crew_robots").set_value(0).run()
+    assert not app.exception
+    assert "No time today" in texts_of(app)
+    press(app, texts.PLAN_ALL_OFF)
+    assert layer(app, "route") is None
+
+
+def test_the_files_hold_each_route_and_a_table(session):  # noqa: ARG001 - read within it
+    nursery = [one for one in estate.plots()[0] if one.name == "Nursery"]
+    made = shared_plots.planned(nursery, EstateCrew(robot_hours=1), lambda *_: None)
+    (turn,) = made.turns
+    with zipfile.ZipFile(io.BytesIO(sharing_plots.packed(made))) as archive:
+        assert sorted(archive.namelist()) == ["01-Nursery.geojson", "plan.csv"]
+        route = json.loads(archive.read("01-Nursery.geojson"))
+        (row,) = csv.DictReader(io.StringIO(archive.read("plan.csv").decode("utf-8-sig")))
+    line = np.array(route["features"][0]["geometry"]["coordinates"])
+    assert np.allclose(line, turn.plan.route.line_lonlat(), atol=1e-8)
+    assert (row["plot"], row["who"], int(row["plants"])) == (
+        "Nursery", "robot 1", len(turn.plan.route)
+    )  # fmt: skip
+
+
+def test_who_has_no_plot_is_said_to_be_free(monkeypatch):
+    said = []
+    monkeypatch.setattr(sharing_plots, "st", SimpleNamespace(
+        container=lambda **_: nullcontext(), caption=lambda _: None,
+        markdown=said.append, warning=said.append,
+    ))  # fmt: skip
+    sharing_plots._say(shared_plots.SharedPlots((), (), ("broken",)), EstateCrew(robots=2))
+    assert "Free today: robot 1, robot 2." in said
+    assert "broken" in said

@@ -1,0 +1,72 @@
+"""One plan of all plots that are due: routes fit the hours, and nobody is in two places."""
+
+import shutil
+from datetime import timedelta
+from itertools import pairwise
+
+import pytest
+import shapely
+
+from app.state import estate, shared_plots
+from app.state.estate import PlotState
+from app.state.shared_plots import EstateCrew
+
+OUTLINE = shapely.MultiPolygon([shapely.box(0, 0, 1, 1)])
+
+
+def plot(name, days):
+    return PlotState(name, name, OUTLINE, days_since=days, expected=1.0)
+
+
+def test_due_is_what_was_not_seen_for_three_days_or_ever():
+    plots = [plot("a", 0), plot("b", 2), plot("c", 3), plot("d", None)]
+    assert [one.name for one in shared_plots.due(plots)] == ["c", "d"]
+    # none is due: what was not seen today
+    assert [one.name for one in shared_plots.due(plots[:2])] == ["b"]
+    assert shared_plots.due(plots[:1]) == []
+
+
+def test_a_crew_has_names_and_hours():
+    members = EstateCrew(robots=1, robot_hours=5, scouts=2, scout_hours=3).members()
+    assert [one.name for one in members] == ["robot 1", "scout 1", "scout 2"]
+    assert [one.robot.hours for one in members] == [5, 3, 3]
+    assert members[1].robot.speed_m_s != members[0].robot.speed_m_s
+
+
+@pytest.mark.usefixtures("session")
+def test_the_sample_s_plots_are_shared_by_two():
+    plots, _ = estate.plots()
+    some = [one for one in plots if one.name in {"Gate", "Nursery", "Bend"}]
+    told = []
+    made = shared_plots.planned(some, EstateCrew(robots=1, robot_hours=3, scouts=1, scout_hours=2),
+                                lambda k, n: told.append((k, n)))  # fmt: skip
+    assert made.problems == ()
+    assert {one.plot.name for one in made.turns} | {one.name for one in made.waiting} == {
+        one.name for one in some
+    }
+    assert {one.who for one in made.turns} == {"robot 1", "scout 1"}
+    for who in ("robot 1", "scout 1"):
+        own = sorted((one for one in made.turns if one.who == who), key=lambda one: one.begins)
+        for first, then in pairwise(own):
+            assert then.begins >= first.ends + timedelta(minutes=15) - timedelta(seconds=1)
+        hours = {"robot 1": 3, "scout 1": 2}[who]
+        assert own[-1].ends - own[0].begins <= timedelta(hours=hours)
+    assert [k for k, _ in told] == sorted(k for k, _ in told)
+    assert all(k < n for k, n in told)
+
+
+@pytest.mark.usefixtures("session")
+def test_a_season_is_planned_by_what_it_knows_and_one_that_is_gone_is_said(
+    begun_file, seasons_folder
+):
+    shutil.copy(begun_file, seasons_folder)
+    (own,), _ = estate.plots()
+    made = shared_plots.planned(
+        [own, plot("gone", None)], EstateCrew(robot_hours=1), lambda *_: None
+    )
+    (turn,) = made.turns
+    assert turn.plot is own
+    assert turn.sampler == "adaptive"
+    assert len(turn.plan.route) > 10
+    assert len(made.problems) == 1
+    assert "gone" in made.problems[0]

@@ -1,0 +1,101 @@
+"""What stands in files is shown as text on every page: it runs nothing and leads nowhere."""
+
+import re
+from dataclasses import replace
+from datetime import date
+
+import numpy as np
+
+from app.state import rooms
+from app.words import language, texts
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.observations import Observations
+from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
+from tests.app.driving import PAGES, go, opened
+from tests.app.on_screen import IDLE, open_part
+from tests.monitoring.seasons import a_plot
+
+EVIL = "evil.example"
+NAMES = (
+    '<img src="x" onerror="window.hit=1">',
+    "<script>window.hit=1</script>",
+    f"[open]( http://{EVIL}/a )",
+    f"![seen](http://{EVIL}/b.png)",
+    f"http://{EVIL}/c www.{EVIL} me@{EVIL}",
+    f"[d]: http://{EVIL}/d\n\n![e][d] [f][d]",
+    "a\u202egpj.exe",
+    ":material/home: :red[hot] $x^2$ `code` **bold**",
+)
+EVERY = " ".join(NAMES)
+#: what Markdown makes a link or a picture of, and what a browser makes a link of by itself
+LEADS = re.compile(r"\]\(|\]\[|\]:|://|www\.|\w@\w", re.IGNORECASE)
+
+
+def hostile_season(path, name=EVERY):
+    """Keep a season in whose every text field stands what does harm where it is not text."""
+    plot = a_plot()
+    plot = replace(plot, field=replace(plot.field, name=name))
+    on = np.datetime64("2026-11-16")
+    records = Observations.of(
+        plot.grid.lonlat()[[3]], np.ones(1, np.int8), np.array([on]),
+        species=np.array([name]), stage=np.array([name]),
+    )  # fmt: skip
+    said = [KeptMessage(name, "repaired", name, f"Something about {name}.", "--crs")]
+    season = Season.create(path, plot, records, MonitoringSettings(date(2026, 11, 16)), said)
+    found = Inspections.of(
+        np.arange(6), np.arange(6) % 2, on,
+        who=np.array([name] * 6, object), notes=np.array([name] * 6, object),
+    )  # fmt: skip
+    season.record(found, name, name)
+    season.treat(date(2026, 11, 16), 0.5, product=name)
+    return season
+
+
+def test_no_name_becomes_a_link_or_a_picture_and_all_of_it_can_be_read():
+    for name in NAMES:
+        for shown in (texts.isolated(name), language.in_words(f"Something about {name}.")):
+            assert not LEADS.search(shown), shown
+            assert set(re.findall(r"\w", name)) <= set(shown)
+    assert "\u202e" not in texts.isolated(NAMES[6])
+    assert language.in_words("Give a number (1 to 5).") == "Give a number (1 to 5)."
+
+
+def test_every_part_of_every_room_shows_such_a_season_as_text(seasons_folder):
+    hostile_season(seasons_folder / "Harm.gpkg", f"{EVERY} {'x' * 10_000}")
+    app = opened("Harm")
+    shown = 0
+    for page in PAGES:
+        go(app, page)
+        assert not app.exception, page
+        for kind in ("markdown", "caption", "error", "warning", "info", "success", "subheader"):
+            for element in getattr(app, kind):
+                about = EVIL in element.value
+                shown += about
+                assert not (about and LEADS.search(element.value)), (page, element.value[:300])
+    assert shown >= 3
+
+
+def test_in_a_browser_nothing_runs_nothing_is_fetched_and_nothing_leads_out(
+    page, address, served_seasons
+):
+    hostile_season(served_seasons / "Harm.gpkg")
+    seen = 0
+    for name, room in rooms.ROOMS.items():
+        page.goto(f"{address}/{'' if name == 'today' else name}?season=Harm")
+        page.wait_for_selector(IDLE, timeout=240_000)
+        for part in ("", *room.parts[1:]):
+            if part:
+                open_part(page, texts.PARTS[part])
+                page.wait_for_selector(IDLE, timeout=60_000)
+            assert page.evaluate("window.hit") is None
+            assert page.locator(f'[src*="{EVIL}"], [href*="{EVIL}"], [onerror]').count() == 0
+            seen += page.get_by_text("onerror").count() > 0
+    assert seen >= 2
+    own = (address, address.replace("http", "ws"), "data:", "blob:", "about:")
+    assert [url for url in page.requests if not url.startswith(own)] == []
+    # and if a picture were there: the page may fetch from its own server only
+    foreign = "fetch('http://127.0.0.1:9/').then(() => 'sent', () => 'refused')"
+    refused = []
+    page.on("console", lambda said: refused.append(said.text))
+    assert page.evaluate(foreign) == "refused"
+    assert any("Content Security Policy" in said for said in refused)

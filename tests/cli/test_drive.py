@@ -1,0 +1,51 @@
+"""`fieldmon drive`: a day driven on a plot, or recorded in a season."""
+
+from fieldmon.monitoring import Season
+from tests.cli.estate import BEGINS, ZIP, table
+
+PLOT = ("drive", ZIP, "--feature", "Nursery", "--hours", "0.3", "--date", BEGINS)
+
+
+def test_a_day_is_driven_as_charged_and_its_tables_written(run, tmp_path):
+    code, out, err, made = run(*PLOT, "-o", "day.csv")
+    assert code == 0, err
+    assert "plants inspected" in out
+    assert {path.name for path in made} == {"day.csv", "day.stops.csv"}
+    (day,) = table(tmp_path / "day.csv")
+    assert (day["robot"], day["stuck"], day["charged_s"]) == ("charged", "0", day["driven_s"])
+    assert len(table(tmp_path / "day.stops.csv")) == int(day["stops"]) > 10
+
+
+def test_a_day_is_driven_with_wheels_and_kept_as_a_bag(run, tmp_path):
+    words = ("--robot", "mujoco", "--rover", "--hours", "0.15", "-o", "day.csv", "--bag", "d.mcap")
+    code, out, err, made = run(*PLOT[:4], *words)
+    assert code == 0, err
+    assert "0 plants touched" in out
+    assert "reach of plants to each side 0.25 m" in err
+    assert {"d.mcap", "d.rviz", "d.foxglove.json"} <= {path.name for path in made}
+    (day,) = table(tmp_path / "day.csv")
+    assert 0 < float(day["worst_cross_track_m"]) < 0.1
+
+
+def test_made_up_finds_are_not_recorded_unless_it_is_said(run, season):
+    code, _, err, _ = run("drive", season, "--date", BEGINS)
+    assert code == 2
+    assert "--made-up" in err
+    assert len(Season(season).history.inspections) == 0
+
+
+def test_a_day_of_a_season_is_one_batch_and_is_not_driven_twice(run, season):
+    code, _, err, _ = run("drive", season, "--date", BEGINS, "--made-up")
+    assert code == 0, err
+    (batch,) = Season(season).batches()
+    assert "made up" in batch.source
+    code, out, _, _ = run("drive", season, "--date", BEGINS, "--made-up")
+    assert code == 0
+    assert "goes on after plant" in out
+    assert Season(season).batches() == (batch,)
+
+
+def test_where_no_broker_answers_it_is_a_sentence(run):
+    code, _, err, _ = run(*PLOT, "--robot", "vda5050", "--broker", "127.0.0.1:1")
+    assert code == 2
+    assert "MQTT broker must answer" in err

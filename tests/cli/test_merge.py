@@ -1,0 +1,36 @@
+"""`fieldmon merge`: two copies of a season become one."""
+
+import shutil
+
+from fieldmon.monitoring import Season
+from tests.cli.estate import BEGINS, filled_in
+
+
+def worked(run, season, route, finds, who):
+    run("plan", season, "--date", BEGINS, "-o", route)
+    filled_in(season.parent / route, finds=finds, n=6)
+    code, _, err, _ = run("record", season, route, "--date", BEGINS, "--who", who)
+    assert code == 0, err
+
+
+def test_two_copies_are_merged_and_what_they_tell_differently_is_listed(run, season, tmp_path):
+    other = shutil.copy(season, tmp_path / "other.gpkg")
+    worked(run, season, "a.csv", {0}, "Ann")
+    worked(run, other, "b.csv", {1}, "Ben")
+    before = other.read_bytes()
+    code, out, err, made = run("merge", season, other)
+    assert (code, made) == (0, set()), err
+    assert "other.gpkg: 2 inspections were new" in out
+    assert out.count("differs: Row") == 2
+    assert other.read_bytes() == before
+    assert {batch.who for batch in Season(season).batches()} == {"Ann", "Ben"}
+    code, out, _, _ = run("merge", season, other)
+    assert "0 inspections were new" in out
+
+
+def test_what_is_no_copy_of_the_season_is_a_sentence(run, season, tmp_path):
+    (tmp_path / "notes.txt").write_text("hello")
+    for other in ("notes.txt", "nowhere.gpkg", "."):
+        code, _, err, made = run("merge", season, other)
+        assert (code, made) == (2, set())
+        assert "must be the file of a season" in err

@@ -1,0 +1,68 @@
+"""A team's season on the command line: one route file each, and several findings at once."""
+
+import pytest
+
+from fieldmon.cli.team_files import files_of_each
+from fieldmon.errors import SettingError
+from fieldmon.monitoring import Season
+from fieldmon.planning.members import TeamMember
+from tests.cli.estate import BEGINS, MITES, ZIP, filled_in
+
+
+@pytest.fixture
+def season(run, tmp_path):
+    code, _, err, _ = run(
+        *("init", "season.gpkg", ZIP, "--feature", "Nursery", "--observations", MITES),
+        *("--begins", BEGINS, "--hours", "0.5", "--robots", "2", "--contact", "10"),
+    )
+    assert code == 0, err
+    return tmp_path / "season.gpkg"
+
+
+def test_each_has_a_route_file_and_the_findings_of_both_are_recorded_at_once(run, season, tmp_path):
+    assert Season(season).settings.teamwork.contact_s == 600.0
+    code, out, err, files = run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    assert code == 0, err
+    assert {file.name for file in files} == {"r-robot-1.csv", "r-robot-2.csv"}
+    assert "robot-1: from 06:00" in out
+    assert "no routes of these hours can expect more than" in out
+    for k, finds in ((1, set()), (2, {0, 1})):
+        filled_in(tmp_path / f"r-robot-{k}.csv", finds, n=5)
+    code, out, err, _ = run("record", season, "r-robot-1.csv", "r-robot-2.csv", "--date", BEGINS)
+    assert code == 0, err
+    assert out.count("5 new, 0 known already") == 2
+    done = Season(season).history.inspections
+    assert [list(done.who).count(f"robot-{k}") for k in (1, 2)] == [5, 5]
+    assert done.result[done.who == "robot-2"].sum() == 2
+    code, out, err, files = run("plan", season, "--date", BEGINS, "-o", "rest.geojson")
+    assert code == 0, err
+    assert f"{BEGINS}: 10 done" in out
+    assert "robot-1: from 06:0" in out
+    assert "no routes" not in out
+    assert len(files) == 2
+
+
+def test_a_season_goes_on_with_another_team(run, season, tmp_path):
+    (tmp_path / "team.csv").write_text("name,who,start\nwheels,robot,05:30\nAnn,scout,06:15\n")
+    code, _, err, _ = run("change", season, "--robots", "team.csv")
+    assert code == 0, err
+    code, out, err, _ = run("plan", season, "--date", BEGINS, "--no-bound")
+    assert code == 0, err
+    assert "wheels: from 05:30" in out
+    assert "Ann: from 06:15" in out
+    run("change", season, "--robots", "1")
+    code, out, err, files = run("plan", season, "--date", BEGINS, "--no-bound")
+    assert code == 0, err
+    assert [file.name for file in files] == ["route.geojson"]
+
+
+def test_a_team_without_time_to_reach_a_plant_is_told_so(run, season):
+    code, _, err, files = run("plan", season, "--date", BEGINS, "--now", "23:00")
+    assert code == 2
+    assert "nobody has" in err
+    assert not files
+
+
+def test_names_that_are_one_in_file_names_are_refused():
+    with pytest.raises(SettingError, match="differ in file names"):
+        files_of_each(None, (TeamMember("a b"), TeamMember("A/b")))

@@ -1,0 +1,55 @@
+"""A driven day as tables and in words."""
+
+import csv
+import io
+from datetime import date
+from pathlib import Path
+
+from fieldmon.drive.account import day_table, in_words, stop_table, stops_beside
+from fieldmon.drive.day import DrivenDay, DrivenStop
+from fieldmon.drive.errand import Visit
+from fieldmon.monitoring.monitor import PlantToInspect
+
+STOP = PlantToInspect(7, 2, 3, (0.0, 0.0), 10.0, 40.0, 0.84)
+DAY = DrivenDay(
+    [
+        DrivenStop(STOP, Visit(True, 51.0, 0.04, frozenset({3, 9})), 50.0, 51.0),
+        DrivenStop(STOP._replace(plant=8), Visit(None, 120.0, 0.12, stuck="Stuck."), 50.0, 69.0),
+    ]
+)
+
+
+def read(data):
+    return list(csv.DictReader(io.StringIO(data.decode())))
+
+
+def test_the_day_is_one_line():
+    (line,) = read(day_table(DAY, date(2026, 4, 6), "mujoco"))
+    assert line == {
+        "date": "2026-04-06",
+        "robot": "mujoco",
+        "stops": "2",
+        "found": "1",
+        "touched": "2",
+        "stuck": "1",
+        "charged_s": "100.0",
+        "driven_s": "120.0",
+        "worst_cross_track_m": "0.120",
+    }
+
+
+def test_each_stop_is_a_line_beside_it():
+    lines = read(stop_table(DAY))
+    assert [line["found"] for line in lines] == ["1", ""]
+    assert lines[0]["touched"] == "3 9"
+    assert [line["stuck"] for line in lines] == ["0", "1"]
+    assert stops_beside(Path("a/day.csv")) == Path("a/day.stops.csv")
+
+
+def test_the_day_in_words_says_what_went_wrong():
+    said = in_words(DAY)
+    assert "2 plants inspected, 1 found infested" in said
+    assert "+20.0 %" in said
+    assert "2 plants touched; at worst 12 cm" in said
+    assert said.endswith("Stuck.")
+    assert "+0.0 %" in in_words(DrivenDay())

@@ -1,0 +1,18 @@
+"""What is asked for and what is told."""
+
+import numpy as np
+
+from fieldmon.drive.errand import Errand, Visit
+from fieldmon.monitoring.monitor import PlantToInspect
+
+
+def test_an_errand_says_itself_as_people_count():
+    stop = PlantToInspect(7, 2, 3, (0.0, 0.0), 10.0, 40.0, 0.84)
+    assert repr(Errand(1, stop, np.zeros((2, 2)))) == "<Errand 1: row 2, plant 3>"
+
+
+def test_a_visit_that_only_says_what_was_found_is_as_charged():
+    visit = Visit(found=True)
+    assert visit.done_s is None
+    assert not visit.touched
+    assert visit.stuck == ""

@@ -1,0 +1,104 @@
+"""A day of a season driven: one batch, in the file before the next plant is asked for."""
+
+from datetime import date
+
+import numpy as np
+import pytest
+
+from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.day import drive_day
+from fieldmon.drive.season_day import SeasonDay
+from fieldmon.errors import ObservationError
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.plot.robot import Robot
+
+ON = date(2026, 4, 6)
+
+
+def found_at(stop):
+    return stop.plant % 6 == 0
+
+
+@pytest.fixture
+def season(plot, tmp_path):
+    settings = MonitoringSettings(ON, robot=Robot(hours=0.3))
+    return Season.create(tmp_path / "season.gpkg", plot, None, settings)
+
+
+class CrashesAfter:
+    """A robot whose program dies after some plants."""
+
+    def __init__(self, n):
+        self.left, self.asked = n, []
+
+    def begin(self, aisles, at_m, gone_s):  # noqa: ARG002
+        self.begun = at_m, gone_s
+
+    def visit(self, errand):
+        if not self.left:
+            raise KeyboardInterrupt
+        self.left -= 1
+        self.asked.append(errand.stop.plant)
+        return ChargedRobot(found_at).visit(errand)
+
+    def home(self, line_m):  # noqa: ARG002
+        return None
+
+
+def driven(season, robot):
+    day = SeasonDay(season, ON, "charged")
+    return drive_day(day, season.plot.aisles, (season.settings.robot, robot)), day
+
+
+def test_a_day_is_one_batch_and_holds_every_plant(season):
+    done, day = driven(season, ChargedRobot(found_at))
+    (batch,) = season.batches()
+    recorded = season.history.inspections
+    assert (batch.number, batch.rows, batch.source) == (day.batch, len(done.stops), f"charged {ON}")
+    assert recorded.plant.tolist() == [one.stop.plant for one in done.stops]
+    assert (recorded.result == FOUND).tolist() == [found_at(one.stop) for one in done.stops]
+    assert done.found > 0
+    season.undo()
+    assert len(season.history.inspections) == 0
+
+
+def test_the_day_is_the_one_that_the_season_plans_as_long_as_nothing_is_found(season):
+    planned = season.plan(ON, keep=False).route
+    done, _ = driven(season, ChargedRobot(lambda stop: False))  # noqa: ARG005
+    assert [one.stop.plant for one in done.stops] == planned.plant.tolist()
+    assert [one.stop.arrive_s for one in done.stops] == pytest.approx(planned.arrive_s.tolist())
+
+
+def test_after_a_crash_it_goes_on_from_the_plant_told_last(season):
+    robot = CrashesAfter(5)
+    with pytest.raises(KeyboardInterrupt):
+        driven(season, robot)
+    again = Season(season.path)
+    assert again.history.inspections.plant.tolist() == robot.asked
+    second = CrashesAfter(10**6)
+    done, day = driven(again, second)
+    stop_m = again.plot.aisles.stop_m[robot.asked[-1]]
+    assert second.begun[0] == pytest.approx(stop_m)
+    assert not set(second.asked) & set(robot.asked)
+    assert len(again.batches()) == 1
+    assert again.batches()[0].rows == 5 + len(done.stops)
+    assert day.gone_s <= again.settings.robot.day_s
+    times = again.history.inspections.second
+    assert (np.diff(times) > 0).all()
+
+
+def test_a_late_robot_is_planned_for_anew(season):
+    day = SeasonDay(season, ON, "late")
+    first = day.ask()
+    assert day.ahead(2)
+    day.tell(found=False, at_s=first.arrive_s + first.inspect_s + 300.0)
+    assert day.replanned == 2
+    second = day.ask()
+    assert second.arrive_s >= first.arrive_s + first.inspect_s + 300.0 - 1.0
+
+
+def test_nothing_is_told_of_a_plant_that_nobody_asked_for(season):
+    with pytest.raises(ObservationError, match="asked for"):
+        SeasonDay(season, ON).tell(found=False)

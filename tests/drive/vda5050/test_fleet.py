@@ -1,0 +1,139 @@
+"""Asked and told over a broker: nothing lost, nothing twice, whatever the line does."""
+
+import threading
+
+import numpy as np
+import pytest
+
+from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.day import drive_day
+from fieldmon.drive.vda5050.fleet import Vda5050Robot
+from fieldmon.drive.vda5050.stand_in import StandIn
+from fieldmon.drive.vda5050.wire import Wire
+from fieldmon.monitoring.monitor import Monitor
+from tests.drive.vda5050.conftest import ROBOT
+
+
+def seen(plant):
+    return plant % 5 == 0
+
+
+def nothing(_other, _errand):
+    pass
+
+
+def drive(broker, plot, robot, monitor, order_id, mishap=nothing, **fleet):
+    """Drive a day with a stand-in; `mishap` happens after each stop."""
+    said = []
+    other = StandIn(broker, ROBOT, fleet.pop("look", seen), robot.speed_m_s, faster=1e6)
+    wire = Wire(broker, "fleet", ROBOT, ("state", "connection"))
+    driver = Vda5050Robot(wire, ROBOT, order_id, said.append, **fleet)
+    other.start()
+    try:
+        with monitor.day() as day:
+            driven = drive_day(
+                day,
+                plot.aisles.for_robot(robot),
+                (robot, driver),
+                lambda _stop, errand: mishap(other, errand),
+            )
+    finally:
+        other.stop()
+        wire.close()
+    return driven, day, said
+
+
+def test_every_plant_asked_for_is_told_of_once(broker, plot, robot, monitor):
+    driven, day, _ = drive(broker, plot, robot, monitor, "plain")
+    assert len(driven.stops) > 10
+    assert day.plants.tolist() == [one.stop.plant for one in driven.stops]
+    assert day.found.tolist() == [seen(one.stop.plant) for one in driven.stops]
+    # its day is driving and looking, and the seconds told are those
+    assert driven.driven_s <= driven.charged_s
+    assert driven.driven_s > 0.8 * driven.charged_s
+
+
+def test_lost_connections_and_doubled_messages_change_nothing(broker, plot, robot, monitor):
+    count = iter(range(10**6))
+
+    def mishap(other, _errand):
+        k = next(count)
+        if k % 3 == 0:
+            other.wire.client.socket().close()
+        if k % 2 == 0:
+            other.tell()
+            other.tell()
+
+    driven, day, _ = drive(broker, plot, robot, monitor, "rough", mishap)
+    plain = Monitor(plot, robot=robot, chance=np.random.default_rng(3).uniform(0.005, 0.3, 96))
+    assert len(set(day.plants.tolist())) == len(day.plants) == len(driven.stops)
+    assert day.found.tolist() == [seen(plant) for plant in day.plants.tolist()]
+    with plain.day() as quiet:
+        drive_day(quiet, plot.aisles.for_robot(robot),
+                  (robot, ChargedRobot(lambda stop: seen(stop.plant))))  # fmt: skip
+    assert abs(len(quiet.plants) - len(day.plants)) <= 1
+
+
+def test_a_plant_that_could_not_be_looked_at_stays_unknown(broker, plot, robot, monitor):
+    blind = lambda plant: None if plant % 2 else False  # noqa: E731
+    driven, day, _ = drive(broker, plot, robot, monitor, "blind", look=blind)
+    skipped = [one for one in driven.stops if one.visit.found is None]
+    assert skipped
+    assert all(one.stop.plant % 2 for one in skipped)
+    assert len(day.plants) == len(driven.stops) - len(skipped)
+
+
+def test_a_low_battery_ends_the_day_after_the_plant_in_hand(broker, plot, robot, monitor):
+    def drain(other, errand):
+        other.self.battery = 10.0 if errand.number >= 3 else 90.0
+
+    driven, _, _ = drive(broker, plot, robot, monitor, "low", drain)
+    assert 4 <= len(driven.stops) <= 5
+    assert driven.stops[-1].visit.found is not None
+    assert "battery is at 10 %" in driven.stuck[0]
+
+
+def test_a_fatal_error_ends_the_day_in_its_own_words(broker, plot, robot, monitor):
+    def fail(other, errand):
+        if errand.number == 2:
+            other.self.errors = [
+                {"errorType": "motor", "errorLevel": "FATAL", "errorDescription": "left wheel"}
+            ]
+
+    driven, day, _ = drive(broker, plot, robot, monitor, "fatal", fail)
+    assert len(driven.stops) == 3
+    assert "left wheel" in driven.stuck[0]
+    assert len(day.plants) == 2
+
+
+def test_a_pause_is_waited_for_and_said(broker, plot, robot, monitor):
+    def pause(other, errand):
+        if errand.number == 2:
+            other.self.paused = True
+            other.tell()
+            threading.Timer(0.5, lambda: setattr(other.self, "paused", False)).start()
+
+    driven, _, said = drive(broker, plot, robot, monitor, "pause", pause)
+    assert len(driven.stops) > 10
+    assert any("paused" in sentence for sentence in said)
+
+
+def test_a_robot_that_is_never_heard_ends_the_day(broker, plot, robot, monitor):
+    wire = Wire(broker, "fleet", ("fieldmon", "nobody"), ("state", "connection"))
+    driver = Vda5050Robot(wire, ("fieldmon", "nobody"), "x", patience_s=0.5)
+    with monitor.day() as day:
+        driven = drive_day(day, plot.aisles.for_robot(robot), (robot, driver))
+    wire.close()
+    assert "has not been heard" in driven.stuck[0]
+    assert len(day.plants) == 0
+
+
+@pytest.mark.parametrize("said", [b"{", b'{"headerId": 1}'])
+def test_what_is_no_message_is_passed_by_and_said(broker, plot, robot, monitor, said):
+    def noise(other, errand):
+        if errand.number == 1:
+            other.wire.send("state", said)
+
+    driven, _, told = drive(broker, plot, robot, monitor, f"noise{len(said)}", noise)
+    assert len(driven.stops) > 10
+    assert any("must be" in sentence for sentence in told)

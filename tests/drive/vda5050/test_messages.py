@@ -1,0 +1,105 @@
+"""Orders and states by the rules of VDA 5050."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fieldmon.drive.errand import Errand
+from fieldmon.drive.vda5050.messages import (
+    decoded,
+    encoded,
+    header_of,
+    home_order,
+    order_of,
+    problems,
+)
+from fieldmon.errors import ObservationError
+from fieldmon.monitoring.monitor import PlantToInspect
+
+STOP = PlantToInspect(7, 2, 3, (35.0, 30.0), 100.0, 41.0, 0.84)
+FIRST = {"orderId": "day", "orderUpdateId": 0, "node": None}
+
+
+def line(*corners):
+    return np.array(corners, float)
+
+
+def errand(*ahead):
+    return Errand(1, STOP, line((0, 0), (5, 0), (5, 3)), ahead)
+
+
+def as_it_is(line_m):
+    return line_m
+
+
+def test_the_way_to_the_plant_is_released_and_what_comes_after_is_not():
+    after = (9, line((5, 3), (5, 8)))
+    order, last = order_of(errand(after), as_it_is, FIRST, "a1")
+    assert [node["released"] for node in order["nodes"]] == [True, True, True, False]
+    assert [edge["released"] for edge in order["edges"]] == [True, True, False]
+    assert last == order["nodes"][2]
+    (look,) = last["actions"]
+    assert (look["actionType"], look["blockingType"], look["actionId"]) == (
+        *("inspectPlant", "HARD", "a1"),
+    )
+    told = {one["key"]: one["value"] for one in look["actionParameters"]}
+    assert told == {"plant": 7, "row": 2, "number": 3, "seconds": 41.0}
+
+
+def test_an_update_begins_at_the_last_released_node_and_goes_on_counting():
+    _, last = order_of(errand(), as_it_is, FIRST, "a1")
+    known = {"orderId": "day", "orderUpdateId": 1, "node": {**last, "actions": []}}
+    order, _ = home_order(line((5, 3), (0, 3)), as_it_is, known)
+    assert order["nodes"][0]["nodeId"] == last["nodeId"]
+    assert [node["sequenceId"] for node in order["nodes"]] == [4, 6]
+    assert [edge["sequenceId"] for edge in order["edges"]] == [5]
+    assert order["nodes"][0]["actions"] == []
+
+
+@settings(max_examples=20)
+@given(n=st.integers(2, 6), ahead=st.integers(0, 2))
+def test_every_order_keeps_the_rules(n, ahead):
+    way = np.cumsum(np.ones((n, 2)), axis=0)
+    after = tuple((k, way[-1] + np.array([[0, 0], [k + 1.0, 0]])) for k in range(ahead))
+    order, _ = order_of(Errand(1, STOP, way, after), as_it_is, FIRST, "a")
+    header = header_of("fieldmon", "r1")
+    message = json.loads(encoded("order", header, order))
+    assert problems("order", message) == []
+    ids = [one["sequenceId"] for one in (*message["nodes"], *message["edges"])]
+    assert sorted(ids) == list(range(len(ids)))  # nodes even, edges odd, none left out
+    for edge, a, b in zip(message["edges"], message["nodes"], message["nodes"][1:], strict=False):
+        assert (edge["startNodeId"], edge["endNodeId"]) == (a["nodeId"], b["nodeId"])
+
+
+def test_headers_count_on():
+    header = header_of("fieldmon", "r1")
+    counted = [
+        json.loads(encoded("connection", header, {"connectionState": "ONLINE"}))["headerId"]
+        for _ in range(3)
+    ]
+    assert counted == [1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b"{", "must be JSON"),
+        (b"[]", "is no object"),
+        (b'{"headerId": 1}', "connectionState is missing"),
+        (b'{"headerId": true, "connectionState": "GONE"}', "none of ONLINE"),
+    ],
+)
+def test_a_message_that_is_none_is_refused_with_what_is_wrong(data, said):
+    with pytest.raises(ObservationError, match=said):
+        decoded("connection", data)
+
+
+def test_what_is_nested_is_looked_at_too():
+    order, _ = order_of(errand(), as_it_is, FIRST, "a1")
+    message = json.loads(encoded("order", header_of("fieldmon", "r1"), order))
+    message["nodes"][2]["actions"][0]["blockingType"] = "MAYBE"
+    del message["edges"][0]["endNodeId"]
+    assert len(problems("order", message)) == 2

@@ -1,0 +1,40 @@
+"""The simulated robot keeps the standard's rules for orders that come late, or twice."""
+
+from fieldmon.drive.vda5050.messages import encoded, header_of
+from fieldmon.drive.vda5050.stand_in import StandIn
+from tests.drive.vda5050.conftest import ROBOT
+
+
+def order(update, *places, first=0):
+    nodes = [
+        {
+            "nodeId": f"n{first + 2 * k}",
+            "sequenceId": first + 2 * k,
+            "released": True,
+            "nodePosition": {"x": x, "y": 0.0, "mapId": "map"},
+            "actions": [],
+        }
+        for k, x in enumerate(places)
+    ]
+    body = {"orderId": "o", "orderUpdateId": update, "nodes": nodes, "edges": []}
+    return encoded("order", header_of(*ROBOT), body)
+
+
+def drive(robot, data):
+    robot.wire.heard.put(("order", data))
+    robot._hear()
+    while robot.self.todo:
+        robot._drive_on()
+
+
+def test_orders_are_driven_once_and_in_their_order(broker):
+    robot = StandIn(broker, ROBOT, lambda plant: False, speed_m_s=1.0, faster=1e9)  # noqa: ARG005
+    drive(robot, order(0, 0.0, 10.0))
+    assert (robot.self.place, robot.self.day_s) == ((10.0, 0.0), 10.0)
+    drive(robot, order(0, 0.0, 10.0))  # twice
+    assert robot.self.day_s == 10.0
+    drive(robot, order(1, 10.0, 15.0, first=2))
+    assert (robot.self.place, robot.self.day_s) == ((15.0, 0.0), 15.0)
+    drive(robot, order(0, 0.0, 10.0))  # late
+    assert robot.self.place == (15.0, 0.0)
+    robot.wire.close()

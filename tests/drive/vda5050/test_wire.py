@@ -1,0 +1,59 @@
+"""Brokers as they are named, and messages over connections that break."""
+
+import builtins
+
+import pytest
+
+from fieldmon.drive.vda5050.wire import Broker, Wire
+from fieldmon.errors import SettingError
+from tests.drive.vda5050.conftest import ROBOT
+
+
+@pytest.mark.parametrize(
+    ("text", "broker"),
+    [
+        ("farm.local", Broker("farm.local", 1883)),
+        ("10.0.0.2:1999", Broker("10.0.0.2", 1999)),
+        ("mqtt://a:b@farm", Broker("farm", 1883, "a", "b")),
+        ("mqtts://a:b@farm", Broker("farm", 8883, "a", "b", encrypted=True)),
+    ],
+)
+def test_a_broker_is_named_as_people_do(text, broker):
+    assert Broker.of(text) == broker
+
+
+@pytest.mark.parametrize("text", ["", "http://farm", "farm:port", "farm:99999"])
+def test_what_is_no_broker_is_refused(text):
+    with pytest.raises(SettingError, match="HOST:PORT"):
+        Broker.of(text)
+
+
+def test_where_no_broker_answers_it_is_said():
+    with pytest.raises(SettingError, match="must answer at"):
+        Wire(Broker("127.0.0.1", 1), "a", ROBOT, ())
+
+
+def test_without_a_client_it_is_said_how_to_get_one(monkeypatch):
+    real = builtins.__import__
+
+    def missing(name, *rest):
+        if name.startswith("paho"):
+            raise ImportError(name)
+        return real(name, *rest)
+
+    monkeypatch.setattr(builtins, "__import__", missing)
+    with pytest.raises(SettingError, match=r"fieldmon\[robot\]"):
+        Wire(Broker(), "a", ROBOT, ())
+
+
+def test_what_is_sent_while_the_line_is_cut_arrives(broker):
+    one = Wire(broker, "one", ROBOT, ("order",))
+    other = Wire(broker, "other", ROBOT, ())
+    other.send("order", b"first")
+    assert one.heard.get(timeout=10) == ("order", b"first")
+    other.client.socket().close()  # as a robot behind a hill
+    other.send("order", b"second")
+    heard = one.heard.get(timeout=30)
+    assert heard == ("order", b"second")
+    one.close()
+    other.close()

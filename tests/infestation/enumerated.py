@@ -1,0 +1,129 @@
+"""Every state of a small plot, each with its chance: what a belief should come to, exactly.
+
+Nothing is shared with the code under test but the words of a rule: who may be infested by a plant
+in a night comes as the chances of sets of plants, so that any kernel fits.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+def by_adjacency(grid, spread):
+    """Return for every plant the sets it may infest in a night, with their chances.
+
+    As `Spread` says it: each neighbour by itself, one of them, or all of them at once. A set is a
+    number whose bit j stands for plant j. A kernel by distance would return the like.
+    """
+    start, neighbour = grid.adjacent
+    told = []
+    for i in range(len(grid)):
+        near = neighbour[start[i] : start[i + 1]].tolist()
+        rate = spread.rate_per_day if near else 0.0
+        if spread.to == "each":
+            told.append(independently(dict.fromkeys(near, rate)))
+        elif spread.to == "one":
+            told.append({1 << j: rate / len(near) for j in near} | {0: 1.0 - rate})
+        else:
+            told.append({sum(1 << j for j in near): rate, 0: 1.0 - rate})
+    return told
+
+
+def independently(chances):
+    """Return the chances of all sets of plants, each of which is in it by itself."""
+    sets = {0: 1.0}
+    for j, chance in chances.items():
+        sets = {
+            s | (bit << j): p * (chance if bit else 1.0 - chance)
+            for s, p in sets.items() for bit in (0, 1)
+        }  # fmt: skip
+    return sets
+
+
+@dataclass(frozen=True)
+class Enumerated:
+    """The chance ``(2^n,)`` of each state of n plants; bit j of a state's number is plant j."""
+
+    weight: np.ndarray
+
+    @classmethod
+    def of(cls, chance):
+        """Return independent plants."""
+        weight = np.ones(1)
+        for p in chance:  # the last plant is the highest bit
+            weight = np.concatenate([weight * (1.0 - p), weight * p])
+        return cls(weight)
+
+    @classmethod
+    def chain(cls, chance, both):
+        """Return a row in which a plant knows of the others through those beside it only.
+
+        `chance` ``(n,)``; `both` ``(n - 1,)`` of each two plants side by side.
+        """
+        here = cls.of(chance[:1]).weight
+        for k, (p, q, pair) in enumerate(zip(chance, chance[1:], both, strict=False)):
+            last = (np.arange(len(here)) >> k & 1).astype(bool)
+            if_last = np.where(last, pair / p, (q - pair) / (1.0 - p))
+            here = np.concatenate([here * (1.0 - if_last), here * if_last])
+        return cls(here)
+
+    @property
+    def n(self):
+        """Return the number of plants."""
+        return len(self.weight).bit_length() - 1
+
+    def infested(self, i):
+        """Return ``(2^n,)`` whether plant i is infested."""
+        return (np.arange(len(self.weight)) >> i & 1).astype(bool)
+
+    @property
+    def chance(self):
+        """Return the chance of every plant, ``(n,)``."""
+        return np.array([self.weight[self.infested(i)].sum() for i in range(self.n)])
+
+    def pair_chance(self, grid):
+        """Return the chance that both are infested of each two side by side, ``(e,)``."""
+        start, neighbour = grid.adjacent
+        own = np.repeat(np.arange(len(grid)), np.diff(start))
+        both = [self.infested(i) & self.infested(j) for i, j in zip(own, neighbour, strict=True)]
+        return np.array([self.weight[each].sum() for each in both])
+
+    def inspected(self, i, found, detection):
+        """Return what is known after an inspection: Bayes' rule for the whole plot."""
+        sick = detection if found else 1.0 - detection
+        weight = self.weight * np.where(self.infested(i), sick, 0.0 if found else 1.0)
+        return Enumerated(weight / weight.sum())
+
+    def thinned(self, left):
+        """Return what is left of it: an infested plant stays so with the chance `left` ``(n,)``."""
+        weight = self.weight
+        for i in range(self.n):
+            now, clean = np.zeros_like(weight), np.arange(len(weight)) & ~(1 << i)
+            stays = np.where(self.infested(i), left[i], 1.0)
+            np.add.at(now, np.arange(len(weight)), weight * stays)
+            np.add.at(now, clean, weight * (1.0 - stays))
+            weight = now
+        return Enumerated(weight)
+
+    def overnight(self, infects, arrivals=0.0):
+        """Return what is true the next morning.
+
+        `infects` as `by_adjacency` returns it. For every set T: the chance that nobody outside it
+        is infested is that of all states within T from which nobody outside is reached.
+        """
+        n_states, n = len(self.weight), self.n
+        states = np.arange(n_states)
+        within = np.empty((n, n_states))  # the chance that what plant i infests lies in the set
+        for i, sets in enumerate(infects):
+            within[i] = sum(p * ((s & ~states) == 0) for s, p in sets.items())
+        inside = np.empty(n_states)
+        for only in range(n_states):
+            some = states[(states & ~only) == 0]
+            reach = self.weight[some]
+            for i in range(n):
+                reach = reach * np.where(some >> i & 1, within[i, only], 1.0)
+            inside[only] = reach.sum() * (1.0 - arrivals) ** (n - int(only).bit_count())
+        for i in range(n):  # from "within the set" to "exactly the set"
+            has = (states >> i & 1).astype(bool)
+            inside[has] -= inside[states[has] & ~(1 << i)]
+        return Enumerated(np.maximum(inside, 0.0))  # differences round to a little less

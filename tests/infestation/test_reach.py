@@ -1,0 +1,56 @@
+"""Kernels hand on what they are given, and by Fourier transform as by hand."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from fieldmon.infestation.cells import Cells
+from fieldmon.infestation.reach import BESIDE, BEYOND, RADIUS, kernel_means, kernels, reach_of
+from fieldmon.plot.layout import rectangle
+from tests.crooked import crooked_grids
+
+SHARES = np.array([0.3, 0.1, 0.0, 0.2, 0.0, 0.4])
+
+
+def by_hand(grid, values, shares):
+    """Sum over all plants what each brings to each."""
+    cells = Cells.of(grid)
+    kernel = np.tensordot(shares, kernels(cells.size_m), 1)
+    y, x = cells.of_plant // cells.shape[1], cells.of_plant % cells.shape[1]
+    brought = np.zeros(len(grid))
+    for i, value in enumerate(values):
+        near = (np.abs(y - y[i]) <= RADIUS) & (np.abs(x - x[i]) <= RADIUS)
+        brought[near] += value * kernel[(y - y[i])[near] + RADIUS, (x - x[i])[near] + RADIUS]
+    return brought
+
+
+@given(crooked_grids(max_plants=300))
+def test_what_is_brought_is_the_sum_over_all_plants(grid):
+    values = np.linspace(0.0, 1.0, len(grid))
+    expected = by_hand(grid, values, SHARES)
+    assert reach_of(grid).brought(values, SHARES) == pytest.approx(expected, abs=1e-9)
+
+
+def test_back_is_from_where_it_would_land():
+    reach, n = reach_of(rectangle(6, 9)), 54
+    sent = np.array([reach.brought(np.eye(n)[i], SHARES) for i in range(n)])
+    back = np.array([reach.brought(np.eye(n)[i], SHARES, back=True) for i in range(n)])
+    assert back == pytest.approx(sent.T, abs=1e-9)
+
+
+def test_each_kernel_hands_on_all_it_is_given_and_none_to_the_plant_itself():
+    made = kernels(np.array([4.0, 3.0]))
+    assert made.sum(axis=(1, 2)) == pytest.approx(1.0)
+    assert (made[:, RADIUS, RADIUS] == 0.0).all()
+    assert BEYOND.sum() + BESIDE == pytest.approx(1.0)
+
+
+def test_the_four_ways_mirror_each_other_and_kernels_reach_as_far_as_they_are_named():
+    size_m = np.array([3.0, 3.0])
+    near, right, up, left, down, far = kernels(size_m)
+    assert right == pytest.approx(left[:, ::-1])
+    assert up == pytest.approx(down[::-1])
+    assert up == pytest.approx(right.T)
+    means = kernel_means(size_m)
+    assert 2.0 < means[0] < means[1] < means[5] < RADIUS
+    assert near.max() > far.max()

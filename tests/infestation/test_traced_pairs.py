@@ -1,0 +1,96 @@
+"""A belief that learns how insects spread: in worlds that were made without it."""
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.origins import ANYWHERE, BY_EDGE, OVERLOOKED
+from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.plot.layout import rectangle
+
+GRID = rectangle(20, 20)
+N = 400
+FLAT = np.full(N, 0.02)
+EVERY = np.arange(N, dtype=np.int32)
+LEARNING, QUIET = Learning(detection=0.84), Spread(0.3, "one")
+
+
+def seen(belief, infested, learning=LEARNING, days=1):
+    """Inspect every plant for some days, by draws of seed 1; finds are treated."""
+    rng, left = np.random.default_rng(1), infested.copy()
+    for _ in range(days):
+        found = left & (rng.random(N) < learning.detection)
+        belief = belief.learn(EVERY, found, learning)
+        left &= ~found
+        belief = belief.overnight(QUIET)
+    return belief
+
+
+@pytest.mark.parametrize("to", ["one", "each"])
+def test_chances_stay_chances_and_their_origins_add_up(to):
+    infested = np.zeros(N, np.bool_)
+    infested[[40, 41, 42, 60, 61, 222, 390]] = True
+    belief = TracedPairs.of(GRID, FLAT)
+    for found in (infested, np.zeros(N, np.bool_)):
+        belief = belief.learn(EVERY[::3], found[::3], LEARNING)
+        belief = belief.overnight(Spread(0.3, to))
+        assert ((belief.chance > 0.0) & (belief.chance < 1.0)).all()
+        assert belief.shares.sum(axis=1) == pytest.approx(1.0, abs=1e-4)
+        start, other = GRID.adjacent
+        p, q = np.repeat(belief.chance, np.diff(start)), belief.chance[other]
+        assert (belief.pair_chance <= np.minimum(p, q) + 1e-9).all()
+        assert (belief.pair_chance >= np.maximum(p + q - 1.0, 0.0) - 1e-9).all()
+        assert belief.doubt > 0.0
+
+
+def test_a_day_in_clusters_says_that_insects_do_not_jump_and_one_apart_that_they_do():
+    apart = np.zeros(N, np.bool_)
+    apart[23::37] = True
+    together = np.zeros(N, np.bool_)
+    together[[21, 22, 41, 42, 150, 151, 170, 171, 305, 306, 325, 326]] = True
+    first = TracedPairs.of(GRID, FLAT)
+    assert seen(first, together).jumps < 0.5 * first.jumps
+    assert seen(first, apart).jumps > 0.9
+
+
+def test_a_find_raises_plants_beyond_its_neighbours_and_a_clean_day_lowers_them():
+    apart = np.zeros(N, np.bool_)
+    apart[23::37] = True
+    told = seen(TracedPairs.of(GRID, FLAT), apart)
+    one = told.learn(np.array([210], np.int32), np.array([True]), LEARNING)
+    within = [213, 250, 168]
+    pairs = PairApproximation(GRID, told.chance, told.pair_chance)
+    without = pairs.learn(np.array([210], np.int32), np.array([True]), LEARNING)
+    assert (one.chance[within] > 1.05 * without.chance[within]).all()
+
+
+def test_finds_beyond_what_was_told_raise_the_arrivals():
+    rng, belief = np.random.default_rng(5), TracedPairs.of(GRID, np.full(N, 1e-4))
+    for _ in range(8):
+        belief = belief.learn(EVERY, rng.random(N) < 0.02, LEARNING).overnight(Spread(0.0))
+    assert belief.counts.scale[[ANYWHERE, BY_EDGE]].max() > 2.0
+
+
+def test_known_finds_looked_at_again_tell_the_detection():
+    flagged, rng = Learning(detection=0.84, treated=False), np.random.default_rng(2)
+    plants = EVERY[:80]
+    belief = TracedPairs.of(GRID, FLAT).learn(plants, np.ones(80, np.bool_), flagged)
+    for _ in range(3):
+        belief = belief.learn(plants, rng.random(80) < 0.5, flagged)
+    assert belief.counts.detection(0.84).value == pytest.approx(0.5, abs=0.08)
+    assert belief.counts.scale[OVERLOOKED] > 2.0
+
+
+def test_a_treatment_leaves_its_share():
+    belief = TracedPairs.of(GRID, FLAT)
+    after = belief.treated(np.full(N, 0.25))
+    assert after.chance == pytest.approx(0.005)
+    assert after.pair_chance == pytest.approx(belief.pair_chance / 16.0)
+
+
+def test_a_plot_of_one_plant_is_believed_in_too():
+    belief = TracedPairs.of(rectangle(1, 1), np.array([0.1]))
+    after = belief.learn(np.array([0], np.int32), np.array([True]), LEARNING).overnight(QUIET)
+    assert 0.0 < after.chance[0] < 0.1

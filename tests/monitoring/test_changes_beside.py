@@ -1,0 +1,67 @@
+"""A season that QGIS has open is three files; what lies beside it is taken in only if it fits."""
+
+import shutil
+import sqlite3
+from contextlib import closing
+
+import pytest
+
+from fieldmon.errors import FileProblem
+from fieldmon.monitoring import Season
+from tests.monitoring.open_elsewhere import as_qgis, beside, left_by_a_crash
+from tests.monitoring.seasons import a_plot, a_season, state, three_results
+
+
+def test_what_another_program_left_beside_the_season_is_taken_in_and_the_file_is_one_again(
+    path, tmp_path
+):
+    crashed = left_by_a_crash(path, tmp_path / "crashed")
+    season = Season(crashed)
+    assert "from QGIS" in season.history.inspections.notes.tolist()
+    assert season.store.doubt is None
+    season.record(three_results(), "x")
+    assert beside(crashed) == ["season.gpkg"]
+    with closing(sqlite3.connect(crashed)) as db:
+        assert db.execute("PRAGMA journal_mode").fetchone() == ("delete",)
+
+
+def test_while_another_program_has_the_season_open_both_go_on(path):
+    with closing(as_qgis(path)) as qgis:
+        Season(path).record(three_results(), "x")
+        assert qgis.execute("SELECT count(*) FROM inspections").fetchone() == (15,)
+    Season(path).record(three_results(on=1), "y")
+    assert beside(path) == ["season.gpkg"]
+    assert state(path) == 18
+
+
+def test_a_season_whose_changes_lie_elsewhere_says_so_until_it_is_written_again(path, tmp_path):
+    crashed = left_by_a_crash(path, tmp_path / "crashed")
+    crashed.with_name("season.gpkg-wal").unlink()
+    season = Season(crashed)
+    (doubt,) = season.verify()
+    assert "what was done last may be missing" in doubt
+    assert len(season.history.inspections) == 12
+    season.record(three_results(), "x")
+    assert Season(crashed).verify() == ()
+
+
+@pytest.mark.parametrize("kind", ["of another season", "of an earlier day", "beside a closed file"])
+def test_changes_that_are_not_its_own_are_never_taken_in(path, tmp_path, kind):
+    before = shutil.copy(path, tmp_path / "before.gpkg")
+    if kind == "of another season":
+        before = a_season(tmp_path / "other.gpkg", a_plot(width=0.0012)).path
+    else:
+        for on in range(1, 8):  # the file went on; what lies beside it is of before
+            Season(path).record(three_results(on=on), "x")
+    wal = left_by_a_crash(before, tmp_path / "crashed").with_name(f"{before.name}-wal")
+    if kind != "beside a closed file":
+        with closing(as_qgis(path)):
+            open_file = shutil.copy(path, tmp_path / "open.gpkg")
+        shutil.copy(open_file, path)
+    shutil.copy(wal, path.with_name("season.gpkg-wal"))
+    data = path.read_bytes()
+    with pytest.raises(FileProblem, match="must belong together, but they do not"):
+        Season(path)
+    assert path.read_bytes() == data
+    path.with_name("season.gpkg-wal").unlink()
+    assert len(Season(path).history.inspections) >= 12

@@ -1,0 +1,188 @@
+"""Two copies of a season that went apart: all that is in either comes together, once each."""
+
+import os
+import random
+import shutil
+import sqlite3
+from contextlib import closing
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import FileProblem
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
+from fieldmon.monitoring import Season, batches, inspection_table, merging, schema
+from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.plot.grid import row_label
+from tests.monitoring.seasons import BEGINS, a_plot, a_season, state
+
+PAIRS = int(os.environ.get("FIELDMON_MERGES", "40"))
+GRID = a_plot().grid
+LABEL = row_label(GRID)
+SETTINGS = MonitoringSettings(BEGINS)
+
+
+def record(db, rng, who, clock):
+    """Record a few results, some of them twice, as a person does; sometimes take something back."""
+    n = rng.randrange(1, 5)
+    plant = np.array([rng.randrange(12) for _ in range(n)])
+    result = np.array([rng.choice((CLEAN, FOUND)) for _ in range(n)])
+    on = np.datetime64(BEGINS) + rng.randrange(3)
+    batch = batches.begin(db, "findings", f"file {clock}", who)
+    db.execute("UPDATE batches SET at = ? WHERE fid = ?", (f"2026-04-06T{clock:06d}", batch))
+    found = Inspections.of(plant, result, on)
+    rows = inspection_table.rows(found, GRID, LABEL, SETTINGS, (batch, who))
+    batches.end(db, batch, inspection_table.store(db, rows))
+    counting = [fid for (fid,) in db.execute("SELECT fid FROM inspections WHERE undone = 0")]
+    if counting and rng.random() < 0.3:
+        batches.undo_one(db, rng.choice(counting))
+
+
+def apart(seed):
+    """Return two copies of a season, in memory, in which different people went on."""
+    rng = random.Random(seed)
+    one, other = (sqlite3.connect(":memory:", isolation_level=None) for _ in range(2))
+    schema.lay_out(one)
+    clock = iter(range(10**6))
+    for _ in range(rng.randrange(4)):
+        record(one, rng, "Ann", next(clock))
+    one.backup(other)
+    for _ in range(rng.randrange(6)):
+        db, who = rng.choice(((one, "Ann"), (other, "Ben")))
+        record(db, rng, who, next(clock))
+    return one, other
+
+
+COLUMNS = "digest, plant, date, result, inspections.who, batches.at"
+
+
+def held(db, more=""):
+    """Return all rows, each with the batch it came with."""
+    joined = f"SELECT {COLUMNS}{more} FROM inspections JOIN batches ON batches.fid = batch"  # noqa: S608
+    return db.execute(joined).fetchall()
+
+
+def content(db):
+    """Return all that is in a file, in its order."""
+    return {table.name: db.execute(f"SELECT * FROM {table.name} ORDER BY fid").fetchall()  # noqa: S608
+            for table in merging.TAKEN}  # fmt: skip
+
+
+def copied(db):
+    """Return a copy to merge into."""
+    copy = sqlite3.connect(":memory:", isolation_level=None)
+    db.backup(copy)
+    return copy
+
+
+@pytest.mark.parametrize("first", range(0, PAIRS, 20))
+def test_merged_is_the_union_once_each_and_the_same_either_way(first):
+    """500 pairs with FIELDMON_MERGES=500."""
+    for seed in range(first, min(first + 20, PAIRS)):
+        one, other = apart(seed)
+        ours, theirs = copied(one), copied(other)
+        merging.merge(ours, other)
+        merging.merge(theirs, one)
+        assert content(ours) == content(theirs)
+        assert sorted(held(ours)) == sorted({*held(one), *held(other)})  # nothing lost, none twice
+        taken_back = {row[:-1] for db in (one, other) for row in held(db, ", inspections.undone")
+                      if row[-1]}  # fmt: skip
+        wanted = {row[0] for row in {*held(one), *held(other)} - taken_back}
+        counting = [row[0] for row in held(ours, ", inspections.undone") if not row[-1]]
+        assert sorted(counting) == sorted(wanted)
+        numbers = dict(ours.execute("SELECT fid, rows FROM batches").fetchall())
+        rows = "SELECT batch, count(*) FROM inspections GROUP BY batch"
+        assert numbers == dict(ours.execute(rows).fetchall())
+        again = copied(ours)
+        merging.merge(again, other)
+        assert content(again) == content(ours)
+        for db in (one, other, ours, theirs, again):
+            db.close()
+
+
+def test_every_table_of_a_season_is_merged_or_must_be_the_same_or_follows_from_them():
+    follows = {schema.META, schema.DAYS, schema.PLANT_STATE, schema.HOT_SPOTS}
+    assert {*merging.SAME, *merging.TAKEN} | follows == set(schema.TABLES)
+
+
+@pytest.fixture
+def other(path, tmp_path):
+    return shutil.copy(path, tmp_path / "other.gpkg")
+
+
+def result(plant, what, day=1, **columns):
+    on = np.datetime64(BEGINS) + day
+    return Inspections.of(np.array([plant]), np.array([what]), on, **columns)
+
+
+def test_two_people_who_worked_apart_find_both_days_in_one_season(path, other):
+    Season(path).record(result(3, FOUND), "taps", "Ann")
+    Season(other).record(result(9, FOUND), "taps", "Ben")
+    Season(other).treat(BEGINS, 0.5)
+    Season(other).plan(BEGINS)
+    before = other.read_bytes()
+    season = Season(path)
+    done = season.merge(Season(other))
+    assert (done.new, done.contradictions) == (1, ())
+    assert other.read_bytes() == before
+    assert state(path) == 14
+    assert len(season.history.treatments) == 1
+    assert [batch.who for batch in season.batches()] == ["", "Ben", "Ann", "Ann"]
+    again = Season(other)
+    again.merge(Season(path))
+    np.testing.assert_array_equal(season.evening(BEGINS), again.evening(BEGINS))
+    np.testing.assert_array_equal(season.kept_route(BEGINS), again.kept_route(BEGINS))
+
+
+def test_what_the_copies_tell_differently_is_listed_and_both_are_kept(path, other):
+    season, there = Season(path), Season(other)
+    season.record(result(3, FOUND), "taps")
+    there.record(result(3, CLEAN), "taps")
+    there.change(MonitoringSettings(**(vars(there.settings) | {"seed": 7})), there.settings)
+    done = season.merge(Season(other))
+    assert "recorded as found, now clean" in done.contradictions[0]
+    assert any("The setting season differs" in said for said in done.contradictions)
+    assert season.settings.seed == 7
+    assert sorted(season.history.on(1).result.tolist()) == [CLEAN, FOUND]
+
+
+@pytest.mark.parametrize("way", ["ours", "theirs"])
+def test_a_note_written_in_either_copy_is_kept(path, other, way):
+    noted, bare = (path, other) if way == "ours" else (other, path)
+    with closing(sqlite3.connect(noted)) as db:
+        db.execute("UPDATE inspections SET notes = 'webs' WHERE fid = 4")
+        db.commit()
+    season = Season(path)
+    season.merge(Season(other))
+    assert season.history.inspections.notes.tolist().count("webs") == 1
+    assert "webs" not in Season(bare).history.inspections.notes.tolist() or bare == path
+
+
+def test_routes_planned_in_both_copies_keep_their_order_and_the_last_one_counts(path, other):
+    for file, plants in ((path, [40, 41]), (other, [50])):
+        season = Season(file)
+        season.record(
+            Inspections.of(np.array(plants), np.zeros(len(plants), int), np.datetime64(BEGINS)),
+            "taps",
+        )
+        season.plan(BEGINS)
+    merged, again = Season(path), Season(other)
+    merged.merge(Season(other))
+    again.merge(Season(path))
+    with merged.store.reading() as db:
+        routes = db.execute("SELECT day, revision, fid, stops FROM routes ORDER BY fid").fetchall()
+        stops = dict(db.execute("SELECT route, count(*) FROM stops GROUP BY route").fetchall())
+    assert [row[1] for row in routes] == [1, 2, 3]  # one of before, one of each copy
+    assert all(stops[fid] == n for _, _, fid, n in routes)
+    np.testing.assert_array_equal(merged.kept_route(BEGINS), again.kept_route(BEGINS))
+
+
+def test_another_season_is_no_copy_of_this_one(path, tmp_path):
+    stranger = a_season(tmp_path / "stranger.gpkg", a_plot(width=0.0009))
+    before = path.read_bytes()
+    with pytest.raises(FileProblem, match="differ in the layer arrays"):
+        Season(path).merge(stranger)
+    with closing(sqlite3.connect(path)) as db:
+        assert db.execute("PRAGMA quick_check").fetchone() == ("ok",)
+    assert Season(path).batches() == Season(path).batches()
+    assert len(path.read_bytes()) == len(before)

@@ -1,0 +1,158 @@
+"""What other programs change of a season is refused by name or taken as a correction."""
+
+import sqlite3
+from contextlib import closing
+
+import pyogrio
+import pytest
+
+from fieldmon.errors import FileProblem
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring import Season, outside_changes
+from tests.monitoring.seasons import BEGINS, state
+
+
+def outside(path, *statements):
+    """Do what another program does, which knows nothing of us."""
+    with closing(sqlite3.connect(path)) as db:
+        for statement in statements:
+            db.execute(statement)
+        db.commit()
+
+
+def refused(path):
+    """Return what each way in says of a season, which must be the same."""
+    said = set()
+    for ask in (lambda s: s.status(BEGINS), lambda s: s.plan(BEGINS), lambda s: s.undo()):
+        with pytest.raises(FileProblem) as problem:
+            ask(Season(path))
+        said.add(str(problem.value))
+    (sentence,) = said
+    return sentence
+
+
+EDITS = {
+    "another result": "UPDATE inspections SET result = 'found' WHERE fid = 1",
+    "another day": "UPDATE inspections SET date = '2026-04-07' WHERE fid = 1",
+    "another plant": "UPDATE inspections SET plant = 300 WHERE fid = 1",
+    "another place": "UPDATE inspections SET geom = (SELECT geom FROM plants WHERE fid = 9) "
+    "WHERE fid = 1",
+    "another person": "UPDATE inspections SET who = 'Eve' WHERE fid = 1",
+    "taken back": "UPDATE inspections SET undone = 1 WHERE fid = 1",
+    "deleted": "DELETE FROM inspections WHERE fid = 1",
+}
+
+
+@pytest.mark.parametrize("edit", EDITS.values(), ids=EDITS)
+def test_a_changed_inspection_is_refused_by_name_until_it_is_taken_as_a_correction(path, edit):
+    outside(path, edit)
+    sentence = refused(path)
+    assert "row 1 of the layer inspections (clean at row" in sentence
+    assert "fieldmon correct" in sentence
+    season = Season(path)
+    assert season.correct("Ann") == 1
+    assert season.correct("Ann") == 0
+    last = season.batches()[0]
+    assert (last.kind, last.who, last.rows) == ("corrections", "Ann", 1)
+    assert season.status(BEGINS).day == 0
+    season.store.check()
+    assert season.verify() == ()
+
+
+def test_a_correction_counts_in_every_column_and_is_taken_back_as_a_whole(path):
+    outside(path, "UPDATE inspections SET plant = 301, result = 'found' WHERE fid = 1")
+    season = Season(path)
+    season.correct("Ann")
+    states = season.history.states(0)
+    assert states[301] == FOUND
+    with season.store.reading() as db:
+        line, number, batch, x, y = db.execute(
+            "SELECT i.line, i.number, i.batch, i.geom = p.geom, i.undone FROM inspections i "
+            "JOIN plants p ON p.plant = i.plant WHERE i.fid = 1"
+        ).fetchone()
+    assert (line, number) == (int(season.label.line[301]), int(season.label.number[301]))
+    assert (batch, x, y) == (season.batches()[0].number, 1, 0)
+    season.undo()
+    assert season.history.states(0)[301] == -1
+    assert len(season.history.inspections) == 11
+
+
+def test_a_correction_that_makes_no_sense_is_refused_and_nothing_is_taken(path):
+    for column, bad, says in (
+        ("result", "maybe", "maybe"),
+        ("plant", "99999", "from another plot"),
+        ("date", "soon", "soon"),
+        ("date", "2020-01-01", "began on"),
+    ):
+        outside(
+            path,
+            "UPDATE inspections SET plant = 0, date = '2026-04-06', result = 'clean' WHERE fid = 1",
+            f"UPDATE inspections SET {column} = '{bad}' WHERE fid = 1",  # noqa: S608 - written above
+        )
+        season = Season(path)
+        with pytest.raises(FileProblem, match=says):
+            season.correct("Ann")
+        assert len(season.batches()) == 1
+
+
+def test_a_correction_that_says_what_stands_there_already_is_refused_by_name(path):
+    outside(path, "UPDATE inspections SET plant = 1 + plant WHERE fid = 1")
+    with pytest.raises(FileProblem, match=r"row 1 of the layer .* says what row 2 says"):
+        Season(path).correct("Ann")
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        "UPDATE settings SET value = '1' WHERE name = 'season'",
+        "UPDATE plots SET name = 'mine'",
+        "DELETE FROM batches",
+        "DELETE FROM arrays WHERE name = 'stated'",
+        "INSERT INTO treatments (geom) SELECT geom FROM plots",
+        "UPDATE observations SET present = 1",
+        "DELETE FROM stops WHERE stop = 1",
+    ],
+)
+def test_what_is_no_inspection_is_refused_by_name_and_no_correction(path, edit):
+    layer = edit.split()[1 if edit.startswith("UPDATE") else 2]
+    season = Season(path)
+    outside(path, edit)
+    for ask in (lambda: season.status(BEGINS), lambda: season.correct("Ann")):
+        with pytest.raises(FileProblem, match=f"of the layer {layer}.*go back to a copy"):
+            ask()
+
+
+def test_what_was_added_and_taken_away_again_is_nothing(path):
+    outside(path, "INSERT INTO treatments (geom) SELECT geom FROM plots", "DELETE FROM treatments")
+    assert Season(path).status(BEGINS).found == 3
+
+
+def test_a_layer_a_style_and_a_draft_of_another_program_change_nothing(path):
+    """As QGIS does: a layer of one's own, another style, an inspection by hand; notes are free."""
+    before = Season(path).evening(BEGINS).tolist()
+    frame = pyogrio.read_dataframe(path, layer="plots")
+    pyogrio.write_dataframe(frame, path, layer="my_notes", append=True)
+    draft = pyogrio.read_dataframe(path, layer="inspections").head(1)
+    draft[["digest", "batch", "undone"]] = None
+    pyogrio.write_dataframe(draft, path, layer="inspections", append=True)
+    outside(
+        path,
+        "UPDATE layer_styles SET styleQML = '<qgis/>', owner = 'Ann'",
+        "UPDATE inspections SET notes = 'seen again' WHERE fid = 2",
+    )
+    season = Season(path)
+    assert season.evening(BEGINS).tolist() == before
+    assert "seen again" in season.history.inspections.notes.tolist()
+    season.store.check()
+
+
+def test_what_we_write_ourselves_is_no_outside_change(path):
+    season = Season(path)
+    season.plan(BEGINS)
+    season.treat(BEGINS, 0.5)
+    season.undo()
+    season.rebuild()
+    with season.store.reading() as db:
+        assert outside_changes.waiting(db) == ()
+        assert db.execute("SELECT count(*) FROM outside_changes").fetchone() == (0,)
+    assert state(path) == 12

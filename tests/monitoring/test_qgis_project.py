@@ -1,0 +1,153 @@
+"""The QGIS project in a season's file: what it shows, and that it names its own file."""
+
+import io
+import json
+import os
+import shutil
+import sqlite3
+import subprocess
+import sys
+import zipfile
+from contextlib import closing
+from datetime import timedelta
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.monitoring import Season
+from tests.monitoring.seasons import BEGINS, a_season
+
+INTERNAL = {"fieldmon", "settings", "import_findings", "arrays", "batches", "days", "plant_state"}
+
+
+def project_of(path):
+    with closing(sqlite3.connect(path)) as db:
+        ((name, metadata, content),) = db.execute("SELECT * FROM qgis_projects").fetchall()
+    assert name == "fieldmon"
+    assert "last_modified_time" in json.loads(metadata)
+    with zipfile.ZipFile(io.BytesIO(bytes.fromhex(content))) as archive:
+        (inner,) = archive.namelist()
+        assert inner == "fieldmon.qgs"
+        return ET.fromstring(archive.read(inner))  # noqa: S314 - our own
+
+
+@pytest.fixture(scope="module")
+def season(tmp_path_factory):
+    season = a_season(tmp_path_factory.mktemp("qgis") / "vines.gpkg")
+    for k in range(3):
+        season.plan(BEGINS + timedelta(days=k))
+    return season
+
+
+def layers(project):
+    return {one.find("layername").text: one for one in project.iter("maplayer")}
+
+
+def rows_shown(path, layer):
+    """Return the rows of a layer that its project's source chooses."""
+    source = layer.find("datasource").text
+    table = source.partition("layername=")[2].partition("|")[0]
+    only = source.partition("subset=")[2] or "1"
+    with closing(sqlite3.connect(path)) as db:
+        return db.execute(f"SELECT * FROM {table} WHERE {only}").fetchall()  # noqa: S608
+
+
+def test_only_todays_route_is_on_and_earlier_days_are_a_group(season):
+    project = project_of(season.path)
+    assert len(rows_shown(season.path, layers(project)["Route today"])) == 1
+    stops = rows_shown(season.path, layers(project)["Stops today"])
+    assert len(stops) == len(season.kept_route(BEGINS + timedelta(days=2)))
+    (group,) = [g for g in project.iter("layer-tree-group") if g.get("name") == "Earlier days"]
+    assert group.get("checked") == "Qt::Unchecked"
+    named = [one.get("name") for one in group]
+    assert named == [f"Route {BEGINS + timedelta(days=k)}" for k in (1, 0)]
+    for name in named:
+        assert len(rows_shown(season.path, layers(project)[name])) == 1
+
+
+def test_every_layer_of_the_tree_is_there_and_none_is_internal(season):
+    project = project_of(season.path)
+    ids = {one.find("id").text for one in project.iter("maplayer")}
+    assert ids == {one.get("id") for one in project.iter("layer-tree-layer")}
+    assert all(len(one) > 10 for one in ids)  # QGIS replaces shorter ones
+    sources = [one.find("datasource").text for one in project.iter("maplayer")]
+    assert not INTERNAL & {one.partition("layername=")[2].partition("|")[0] for one in sources}
+    preset = {one.get("id") for one in project.iter("visibility-preset") for one in one}
+    assert preset <= ids
+
+
+def test_only_findings_can_be_changed_with_a_list_of_results_and_todays_date(season):
+    found = {name: one for name, one in layers(project_of(season.path)).items()
+             if one.get("readOnly") == "0"}  # fmt: skip
+    assert list(found) == ["Findings"]
+    form = found["Findings"]
+    values = [
+        o.get("value") for o in form.iter("Option") if o.get("value") in RESULT_NAMES.values()
+    ]
+    assert sorted(values) == sorted(RESULT_NAMES.values())
+    defaults = {one.get("field"): one.get("expression") for one in form.iter("default")}
+    assert defaults["date"] == "to_date(now())"
+    assert defaults["undone"] == "0"
+
+
+def test_what_was_undone_is_not_shown(season):
+    findings = layers(project_of(season.path))["Findings"]
+    assert '"undone" = 0' in findings.find("datasource").text
+
+
+def test_a_copy_under_another_name_gets_a_project_of_its_own(season, tmp_path):
+    copy = tmp_path / "other name.gpkg"
+    shutil.copy(season.path, copy)
+    Season(copy).plan(BEGINS + timedelta(days=3))
+    sources = {one.find("datasource").text.partition("|")[0]
+               for one in project_of(copy).iter("maplayer")}  # fmt: skip
+    assert sources == {"./other name.gpkg"}
+    kept = {one.find("datasource").text.partition("|")[0]
+            for one in project_of(season.path).iter("maplayer")}  # fmt: skip
+    assert kept == {"./vines.gpkg"}
+
+
+_ASK_QGIS = """
+import sys
+from qgis.core import QgsApplication, QgsProject, QgsVectorLayerUtils, edit
+app = QgsApplication([], False); app.initQgis()
+project = QgsProject.instance()
+assert project.read(f"geopackage:{sys.argv[1]}?projectName=fieldmon")
+layers = {one.name(): one for one in project.mapLayers().values()}
+assert all(one.isValid() for one in layers.values()), layers
+assert [one["day"] for one in layers["Route today"].getFeatures()] == [2]
+assert layers["Plot"].readOnly() and not layers["Findings"].readOnly()
+findings, stop = layers["Findings"], next(layers["Stops today"].getFeatures())
+with edit(findings):
+    one = QgsVectorLayerUtils.createFeature(findings, stop.geometry(), {
+        findings.fields().indexOf("result"): "found"})
+    assert one["date"].toString("yyyy") > "2020", one["date"]
+    one["date"] = sys.argv[2]
+    assert findings.addFeature(one)
+print("ok", stop["plant"])
+app.exitQgis()
+"""
+
+
+@pytest.mark.skipif(not os.path.isdir("/usr/lib/python3/dist-packages/qgis"),  # noqa: PTH112
+                    reason="QGIS (Debian's python3-qgis) is not on this machine")  # fmt: skip
+def test_qgis_opens_the_project_edits_and_saves_and_the_season_records_it(season, tmp_path):
+    copy = tmp_path / "field.gpkg"
+    shutil.copy(season.path, copy)
+    Season(copy).rebuild()
+    done = subprocess.run(
+        ["/usr/bin/python3", "-c", _ASK_QGIS, str(copy), str(BEGINS)],
+        check=False, capture_output=True, text=True,
+        env={"QT_QPA_PLATFORM": "offscreen", "HOME": str(tmp_path), "PATH": os.environ["PATH"]},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    plant = int(done.stdout.split()[-1])
+    from fieldmon.io.readers.inspections import read_inspections
+    from fieldmon.monitoring import counting_copy
+
+    (tmp_path / "counting").mkdir()
+    counted = counting_copy(copy, tmp_path / "counting")
+    read = read_inspections(counted, season.plot.grid).value
+    assert read.plant.tolist() == [plant]
+    assert sys.version_info >= (3, 11)

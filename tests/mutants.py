@@ -1,0 +1,358 @@
+"""Do the tests bite? Small faults, one at a time, in a copy of the tree; who notices them?
+
+    python tests/mutants.py infestation monitoring --each 60 --output mutants.csv
+
+A mutant is one small change of a module: ``<`` made ``<=``, ``+`` made ``-``, a number another, a
+condition turned round, a call left out. The tests of the module are run on it, then those of its
+room. A mutant that no test notices survives: write what must hold, or say why it changes nothing.
+
+Ours, since both kept tools fail on compiled loops: mutmut leaves decorated functions alone, so all
+loops; cosmic-ray starts Python for every mutant and marks every file as changed, so that each
+time all loops compile again. Here a warm process forks for every mutant, only loops that the
+change reaches are compiled, and nothing of it is kept.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import copy
+import csv
+import importlib
+import os
+import random
+import shutil
+import signal
+import sys
+import tempfile
+import time
+import traceback
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+#: what each room's faults are looked for in, and tests of other rooms that hold promises about it
+ROOMS = {
+    "infestation": ("fieldmon/infestation", ("tests/infestation/test_enumerated.py",)),
+    "samplers": ("fieldmon/samplers", ("tests/samplers/test_promises.py",)),
+    "planning": ("fieldmon/planning", ()),
+    "travel": ("fieldmon/plot/travel.py", ()),
+    "monitoring": (
+        "fieldmon/monitoring",
+        ("tests/monitoring/test_season_file.py", "tests/monitoring/test_outside_changes.py"),
+    ),
+    "writers": ("fieldmon/io/writers", ()),
+    "simulation": ("fieldmon/simulation", ()),
+}
+_WARM = ("numpy", "numba", "scipy.sparse", "scipy.stats", "shapely", "pyproj", "pandas",
+         "geopandas", "pytest", "pyogrio", "jinja2")  # fmt: skip
+_SWAPPED = {
+    ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq,
+    ast.NotEq: ast.Eq, ast.In: ast.NotIn, ast.NotIn: ast.In, ast.Is: ast.IsNot, ast.IsNot: ast.Is,
+    ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult,
+    ast.FloorDiv: ast.Mult, ast.Mod: ast.Mult, ast.Pow: ast.Mult, ast.BitAnd: ast.BitOr,
+    ast.BitOr: ast.BitAnd, ast.BitXor: ast.BitOr, ast.LShift: ast.RShift, ast.RShift: ast.LShift,
+    ast.And: ast.Or, ast.Or: ast.And, ast.Break: ast.Continue, ast.Continue: ast.Break,
+}  # fmt: skip
+_NAMES = {"min": "max", "minimum": "maximum", "lesser": "greater", "all": "any", "argmin": "argmax"}
+_NAMES |= {other: name for name, other in _NAMES.items()}
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change of one module: the number of the place, and how it reads."""
+
+    path: Path
+    place: int
+    line: int
+    said: str
+
+
+class _Places(ast.NodeTransformer):
+    """Counts the places where a module can be changed; changes the one that is asked for."""
+
+    def __init__(self, wanted=None):
+        self.wanted, self.found, self.changed = wanted, [], None
+
+    def _at(self, node, change):
+        """Count a place; return what stands there afterwards."""
+        place = len(self.found)
+        self.found.append(node.lineno)
+        if place != self.wanted:
+            return node
+        before = ast.unparse(node)
+        after = change(copy.deepcopy(node))
+        ast.copy_location(after, node)
+        said = ast.unparse(ast.fix_missing_locations(after))
+        self.changed = f"{_short(before)}  ->  {_short(said)}"
+        return after
+
+    # what is said to people, checked by mypy or never run
+    def visit_Raise(self, node):
+        return node
+
+    def visit_AnnAssign(self, node):
+        if node.value is not None:
+            node.value = self.visit(node.value)
+        return node
+
+    def visit_FunctionDef(self, node):
+        node.body = [self.visit(one) for one in node.body]
+        node.args.defaults = [self.visit(one) for one in node.args.defaults]
+        node.args.kw_defaults = [one and self.visit(one) for one in node.args.kw_defaults]
+        return node
+
+    def visit_If(self, node):
+        if ast.unparse(node.test) == "TYPE_CHECKING":
+            return node
+        self.generic_visit(node)
+        return self._at(node, _turned_round)
+
+    def visit_IfExp(self, node):
+        self.generic_visit(node)
+        return self._at(node, _turned_round)
+
+    def visit_Expr(self, node):
+        if not isinstance(node.value, ast.Call):
+            return node
+        self.generic_visit(node)
+        return self._at(node, lambda _: ast.Pass())
+
+    def visit_AugAssign(self, node):
+        self.generic_visit(node)
+        return self._at(node, _other_operator)
+
+    def visit_BinOp(self, node):
+        self.generic_visit(node)
+        return node if _is_text(node.left) else self._at(node, _other_operator)
+
+    def visit_BoolOp(self, node):
+        self.generic_visit(node)
+        return self._at(node, _other_operator)
+
+    def visit_Compare(self, node):
+        self.generic_visit(node)
+        return self._at(node, _other_comparison)
+
+    def visit_UnaryOp(self, node):
+        if isinstance(node.operand, ast.Constant):
+            return node
+        self.generic_visit(node)
+        return self._at(node, lambda one: one.operand)
+
+    def visit_Break(self, node):
+        return self._at(node, lambda _: ast.Continue())
+
+    def visit_Continue(self, node):
+        return self._at(node, lambda _: ast.Break())
+
+    def visit_Constant(self, node):
+        if isinstance(node.value, (bool, int, float)):
+            return self._at(node, _other_number)
+        return node
+
+    def visit_JoinedStr(self, node):
+        return node
+
+    def visit_Name(self, node):
+        return self._at(node, _other_name) if node.id in _NAMES else node
+
+    def visit_Attribute(self, node):
+        self.generic_visit(node)
+        return self._at(node, _other_name) if node.attr in _NAMES else node
+
+
+def _short(text):
+    text = " ".join(text.split())
+    return text if len(text) <= 90 else f"{text[:87]}..."
+
+
+def _is_text(node):
+    return isinstance(node, ast.Constant) and isinstance(node.value, str)
+
+
+def _turned_round(node):
+    node.test = ast.UnaryOp(ast.Not(), node.test)
+    return node
+
+
+def _other_operator(node):
+    node.op = _SWAPPED.get(type(node.op), ast.Sub)()
+    return node
+
+
+def _other_comparison(node):
+    node.ops[0] = _SWAPPED[type(node.ops[0])]()
+    return node
+
+
+def _other_number(node):
+    value = node.value
+    if isinstance(value, bool):
+        node.value = not value
+    else:
+        node.value = value + 1 if isinstance(value, int) else (1.5 * value or 1.0)
+    return node
+
+
+def _other_name(node):
+    if isinstance(node, ast.Name):
+        node.id = _NAMES[node.id]
+    else:
+        node.attr = _NAMES[node.attr]
+    return node
+
+
+def mutated(source, place):
+    """Return a module's source with one place changed, and how the change reads."""
+    places = _Places(place)
+    tree = ast.fix_missing_locations(places.visit(ast.parse(source)))
+    return ast.unparse(tree), places.changed
+
+
+def mutants_of(path):
+    """Return all mutants of a module."""
+    source = path.read_text("utf-8")
+    places = _Places()
+    places.visit(ast.parse(source))
+    return [Mutant(path, k, line, "") for k, line in enumerate(places.found)]
+
+
+def own_tests(module):
+    """Return the test file of a module, or of the package it lies in."""
+    named = ROOT / "tests" / module.relative_to("fieldmon").with_name(f"test_{module.name}")
+    if named.is_file():
+        return named
+    folder = ROOT / "tests" / module.parent.relative_to("fieldmon")
+    beside = folder / f"test_{module.parent.name}.py"
+    return beside if beside.is_file() else folder
+
+
+def _tests_in(log, tests, copied):
+    """Run tests in this process, a child that ends with their exit code."""
+    os.setsid()
+    os.chdir(copied)
+    sys.path.insert(0, str(copied))
+    sys.dont_write_bytecode = True
+    quiet = os.open(log or os.devnull, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    for stream in (1, 2):
+        os.dup2(quiet, stream)
+    import pytest
+
+    loops = importlib.import_module("fieldmon.compute.jit")
+    loops._KeptLoops.save_overload = lambda *_: None  # what a fault compiles to is not kept
+    words = ["-x", "-q", "-p", "no:cacheprovider", "--timeout=0", "--assert=plain"]
+    os._exit(int(pytest.main([*words, *(str(copied / one.relative_to(ROOT)) for one in tests)])))
+
+
+def run(tests, copied, seconds, log=None):
+    """Return how tests ended in a process of their own: an exit code, or None if it took longer."""
+    child = os.fork()
+    if child == 0:
+        try:
+            _tests_in(log, tests, copied)
+        except Exception:  # noqa: BLE001 - whatever it is, this process ends
+            traceback.print_exc()
+        finally:
+            os._exit(70)
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        done, status = os.waitpid(child, os.WNOHANG)
+        if done:
+            return os.waitstatus_to_exitcode(status)
+        time.sleep(0.05)
+    os.killpg(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    return None
+
+
+class Trial:
+    """Tries mutants in a copy of the tree."""
+
+    def __init__(self, copied):
+        self.copied, self._takes = copied, {}
+
+    def takes_s(self, tests):
+        """Return how long tests take without a fault; None where they fail by themselves."""
+        if tests not in self._takes:
+            began = time.monotonic()
+            good = run(tests, self.copied, 600) == 0
+            self._takes[tests] = time.monotonic() - began if good else None
+        return self._takes[tests]
+
+    def outcome(self, mutant, lots):
+        """Return who noticed a mutant: "module", "room", "slow" or nobody: "survived"."""
+        path = self.copied / mutant.path.relative_to(ROOT)
+        stat, source = path.stat(), path.read_text("utf-8")
+        text, said = mutated(source, mutant.place)
+        for name, tests in lots.items():
+            usual_s = self.takes_s(tests)
+            if usual_s is None:
+                return "", said
+            path.write_text(text, "utf-8")
+            try:
+                code = run(tests, self.copied, 60 + 4 * usual_s)
+            finally:
+                path.write_text(source, "utf-8")
+                os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))  # or all loops compile
+            if code != 0:
+                return ("slow" if code is None else name), said
+        return "survived", said
+
+
+def chosen(room, each, seed):
+    """Return some mutants of a room, drawn evenly from all that there are."""
+    place = ROOT / ROOMS[room][0]
+    modules = sorted(place.rglob("*.py")) if place.is_dir() else [place]
+    every = [mutant for module in modules for mutant in mutants_of(module)]
+    random.Random(f"{seed} {room}").shuffle(every)
+    return every[:each], len(every)
+
+
+def main():
+    """Try mutants of the rooms named; write a line a mutant, and say the score of each room."""
+    asked = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    asked.add_argument("rooms", nargs="*", default=[*ROOMS], help=f"some of {', '.join(ROOMS)}")
+    asked.add_argument("--each", type=int, default=10**9, help="most mutants of a room; else all")
+    asked.add_argument("--seed", type=int, default=1)
+    asked.add_argument("--minutes", type=float, default=10**6, help="most minutes a room")
+    asked.add_argument("--room-tests", action="store_true", help="try survivors on all of the room")
+    asked.add_argument("--output", type=Path, default=Path("mutants.csv"))
+    told = asked.parse_args()
+    for name in _WARM:
+        importlib.import_module(name)
+    with tempfile.TemporaryDirectory(prefix="mutants-") as folder, told.output.open("a") as file:
+        copied = Path(folder) / "tree"
+        shutil.copytree(
+            ROOT, copied, ignore=shutil.ignore_patterns(".git", "node_modules", "_build")
+        )
+        (Path(folder) / "shared").symlink_to(ROOT.parent / "shared")
+        table, trial = csv.writer(file), Trial(copied)
+        for room in told.rooms:
+            until, counted = time.monotonic() + 60 * told.minutes, {}
+            mutants, n_all = chosen(room, told.each, told.seed)
+            for mutant in mutants:
+                if time.monotonic() > until:
+                    break
+                module = mutant.path.relative_to(ROOT)
+                lots = {"module": (own_tests(module),)}
+                if ROOMS[room][1]:
+                    lots["others"] = tuple(ROOT / one for one in ROOMS[room][1])
+                if told.room_tests:
+                    lots["room"] = (ROOT / "tests" / module.parent.relative_to("fieldmon"),)
+                outcome, said = trial.outcome(mutant, lots)
+                if not outcome:
+                    sys.stdout.write(f"the tests of {module} fail without a fault\n")
+                    continue
+                counted[outcome] = counted.get(outcome, 0) + 1
+                table.writerow((room, outcome, module, mutant.line, said))
+                file.flush()
+            n = sum(counted.values())
+            noticed = n - counted.get("survived", 0)
+            said = f"{room}: {noticed} of {n} noticed ({n_all} there are): {counted}"
+            sys.stdout.write(f"{said}\n")
+            sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,30 @@
+"""Who is in a team, and how they work together."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import SettingError
+from fieldmon.planning.members import TeamMember, Teamwork, must_differ, team_of
+
+
+def test_a_team_of_none_or_a_start_on_another_day_is_refused():
+    with pytest.raises(SettingError, match="1 member or more"):
+        team_of(0)
+    with pytest.raises(SettingError, match="must start within a day"):
+        TeamMember("late", starts_s=1e6)
+
+
+def test_two_of_a_name_are_refused_whatever_its_capitals():
+    must_differ([TeamMember("a"), TeamMember("b")])
+    for members in ([], [TeamMember("Ann"), TeamMember("ann")]):
+        with pytest.raises(SettingError, match="must have members of different names"):
+            must_differ(members)
+
+
+@pytest.mark.parametrize("name", ["contact_s", "least_gain"])
+def test_teamwork_must_be_possible(name):
+    for value in (-1.0, np.nan, np.inf):
+        with pytest.raises(SettingError, match=f"{name} must be 0 or more"):
+            replace(Teamwork(), **{name: value})

@@ -1,0 +1,184 @@
+"""A day of several as it goes: the clock, the aisles, and what finds change."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely import MultiPolygon, Polygon
+
+from fieldmon.errors import PlotError
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.planning.members import Teamwork
+from fieldmon.planning.route import route_of
+from fieldmon.planning.team_day import Posted, merged, team_day
+from fieldmon.planning.workday import work_day
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import GATE, Aisles, driven_s
+from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers.base import NEVER, Scene
+from tests.crooked import crooked_fields
+from tests.second_by_second import nobody_together
+
+EVEN = Aisles.of(rectangle(16, 16))
+AT_ONCE, SECTIONS = Teamwork(), Teamwork(together=False)
+
+
+class Day:
+    """A team's day on a plot, with insects drawn from a seed."""
+
+    def __init__(self, aisles=EVEN, n=2, robot=None, infested=0.05, seed=1):
+        self.aisles, self.robot = aisles, robot or Robot(hours=1.0, detection=1.0)
+        count = len(aisles.grid)
+        self.would_find = np.random.default_rng(seed).random(count) < infested
+        self.belief = PairApproximation.of(aisles.grid, np.full(count, 0.05))
+        self.starts_s = [0.0] * n
+
+    def scene(self):
+        return Scene(
+            self.aisles, self.robot, self.belief.chance,
+            np.full(len(self.aisles.grid), NEVER, np.int32),
+            seconds_left=self.robot.day_s, pair_chance=self.belief.pair_chance,
+        )  # fmt: skip
+
+    def learn(self, plants, found, detects):
+        return self.belief.learn(plants, found, Learning(detects))
+
+    def work(self, teamwork=AT_ONCE, name="adaptive", would_find=None):
+        finds = self.would_find if would_find is None else would_find
+        team = [Posted(self.scene(), start_s, finds) for start_s in self.starts_s]
+        return team_day(team, sampler(name), teamwork, self.learn)
+
+    def check(self, works):
+        """No plant twice, nobody together in an aisle, hours kept, every second accounted for."""
+        stops = np.concatenate([work.plant for work in works])
+        assert len(np.unique(stops)) == len(stops)
+        routes = [route_of(self.scene(), work) for work in works]
+        assert nobody_together(routes, self.starts_s)
+        for work in works:
+            if not len(work):
+                continue
+            assert (work.found == (self.would_find[work.plant] > 0)).all()
+            leaves_s = np.append(0.0, work.arrive_s + work.stop_s)
+            places = np.array([GATE, *work.plant], np.int64)
+            travel, clock = self.aisles.travel, self.scene().clock
+            way_s = [driven_s(travel, clock, places[k : k + 2]) for k in range(len(work))]
+            assert work.arrive_s == pytest.approx(leaves_s[:-1] + way_s + work.wait_s[:-1])
+            back = np.array([work.plant[-1], GATE], np.int64)
+            home_s = driven_s(travel, clock, back) if self.robot.returns else 0.0
+            assert work.end_s == pytest.approx(leaves_s[-1] + home_s + work.wait_s[-1])
+            assert work.end_s - work.wait_s[-1] <= self.robot.day_s + 1e-6
+
+
+@pytest.mark.parametrize("name", sorted(set(SAMPLERS) - {"adaptive-looks"}))
+@pytest.mark.parametrize("teamwork", [AT_ONCE, SECTIONS, Teamwork(contact_s=600.0)])
+def test_a_team_shares_a_plot_and_nobody_meets(name, teamwork):
+    day = Day(n=3)
+    day.check(day.work(teamwork, name))
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    crooked_fields(max_radius_m=60.0), st.integers(2, 4), st.booleans(), st.floats(0.1, 1.5),
+    st.sampled_from(["adaptive", "naive"]), st.floats(0.0, 1.0),
+)  # fmt: skip
+def test_on_crooked_plots_nobody_meets_either(field, n, returns, hours, name, gain):
+    try:
+        plot = Plot.of(field)
+    except PlotError:
+        return
+    robot = Robot(hours=hours, returns=returns, detection=1.0)
+    day = Day(plot.aisles, n, robot, infested=0.2)
+    day.check(day.work(Teamwork(least_gain=gain), name))
+
+
+@pytest.mark.parametrize("name", ["adaptive", "naive", "random"])
+def test_a_team_of_one_works_as_one_alone(name):
+    day = Day(n=1)
+    (work,) = day.work(name=name)
+    alone = work_day(day.scene(), sampler(name), day.would_find)
+    assert (work.plant == alone.plant).all()
+    assert (work.arrive_s == alone.arrive_s).all()
+
+
+def test_the_same_day_comes_out_the_same():
+    one, other = (Day(n=3).work() for _ in range(2))
+    assert all((a.plant == b.plant).all() for a, b in zip(one, other, strict=True))
+
+
+@pytest.mark.parametrize("teamwork", [AT_ONCE, Teamwork(contact_s=900.0)])
+def test_what_is_found_later_changes_nothing_before(teamwork):
+    """Nobody reads what an inspection would find before it is made, nor hears of it earlier."""
+    day = Day(n=3)
+    works = day.work(teamwork)
+    until_s = 1500.0
+    seen = np.concatenate([w.plant[w.arrive_s + w.stop_s <= until_s] for w in works])
+    other = ~day.would_find
+    other[seen] = day.would_find[seen]
+    for one, changed in zip(works, day.work(teamwork, would_find=other), strict=True):
+        # whoever had set out by then arrives as before
+        k = int(np.count_nonzero(one.arrive_s + one.stop_s <= until_s)) + 1
+        assert (one.plant[:k] == changed.plant[:k]).all()
+
+
+def hot_spot():
+    """Return a day on which many insects stand together in the second one's part, unexpectedly.
+
+    There is no time to inspect them all alone.
+    """
+    day = Day(Aisles.of(rectangle(24, 16)), robot=Robot(hours=1.2, detection=1.0), infested=0.0)
+    grid = day.aisles.grid
+    day.would_find = grid.row >= 13
+    return day
+
+
+def finds(works):
+    return sum(int(work.found.sum()) for work in works)
+
+
+def test_a_find_by_one_brings_the_others():
+    together, apart = hot_spot().work(), hot_spot().work(SECTIONS)
+    hot_spot().check(together)
+    assert not apart[0].found.any()
+    assert together[0].found.any()
+    assert finds(together) > 1.2 * finds(apart)
+
+
+def test_nobody_is_sent_elsewhere_for_less_than_the_stated_gain():
+    stayed = hot_spot().work(Teamwork(least_gain=1e9))
+    assert not stayed[0].found.any()
+
+
+def test_before_the_next_contact_nobody_hears_of_a_find():
+    at_once, later, never = (
+        hot_spot().work(Teamwork(contact_s=every_s)) for every_s in (0.0, 3600.0, 80_000.0)
+    )
+    assert not never[0].found.any()
+    k = np.count_nonzero(later[0].arrive_s + later[0].stop_s < 3600.0)
+    assert (later[0].plant[:k] == never[0].plant[:k]).all()
+    assert (at_once[0].plant[:k] != never[0].plant[:k]).any()
+
+
+def test_who_passes_through_an_aisle_waits_until_it_is_free():
+    """Beyond a notch from above, parts of rows are reached through whole ones below it."""
+    m = 1.0 / 111_320.0
+    corners = [(-24, -12), (24, -12), (24, 16), (8, 16), (8, 0), (-8, 0), (-8, 16), (-24, 16)]
+    notched = Field("notched", MultiPolygon([Polygon([(x * m, y * m) for x, y in corners])]))
+    day = Day(Plot.of(notched, Planting(row_bearing_deg=90.0)).aisles, 3)
+    works = day.work(SECTIONS, "naive")
+    day.check(works)
+    assert sum(work.wait_s.sum() for work in works) > 60.0
+
+
+def test_days_of_a_team_are_one_in_order_of_the_clock():
+    day = Day(n=3)
+    day.starts_s = [0.0, 300.0, 60.0]
+    works = day.work()
+    whole = merged(works, day.starts_s)
+    assert (np.diff(whole.arrive_s + whole.stop_s) >= 0).all()
+    assert sorted(whole.plant) == sorted(np.concatenate([work.plant for work in works]))
+    assert whole.found.sum() == finds(works)
+    assert whole.end_s == max(w.end_s + s for w, s in zip(works, day.starts_s, strict=True))

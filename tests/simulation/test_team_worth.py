@@ -1,0 +1,51 @@
+"""What each further robot saves."""
+
+import numpy as np
+import pytest
+
+from fieldmon.simulation.team_worth import marginal_gains, told
+
+
+def losses(**changes):
+    rng = np.random.default_rng(1)
+    insects = rng.normal(0.0, 50.0, 40)  # what differs from season to season, for all alike
+    base = {1: 200.0, 2: 140.0, 3: 136.0} | changes
+    return {k: value + insects + rng.normal(0.0, 3.0, 40) for k, value in base.items()}
+
+
+def test_gains_are_taken_seed_by_seed():
+    """The interval knows that all meet the same insects: it is that of the differences."""
+    made = losses()
+    second, third = marginal_gains(made)
+    assert second.saved.mean == pytest.approx((made[1] - made[2]).mean())
+    assert second.saved.high - second.saved.low < 4.0
+    assert (second.fewer, second.robots, third.robots) == (1, 2, 3)
+    assert second.known
+
+
+def test_each_further_robot_is_told_with_its_interval():
+    said = told(marginal_gains(losses()))
+    assert said.startswith("A second robot would save 60 (5")
+    assert said.endswith(").")
+    assert "; a third 4." in said
+    assert said.count("infested plant-days") == 1
+
+
+def test_numbers_that_do_not_follow_each_other_are_compared_as_they_are():
+    made = losses()
+    assert told(marginal_gains({1: made[1], 3: made[3]})).startswith(
+        "3 robots instead of 1 would save 6"
+    )
+
+
+def test_what_saves_nothing_is_not_known_to_save():
+    made = losses()
+    (gain,) = marginal_gains({1: made[1], 2: made[1].copy()})
+    assert not gain.known
+    assert told([gain]) == "A second robot would save 0.0 (0.0 to 0.0) infested plant-days."
+
+
+def test_of_one_season_there_is_no_interval_and_of_one_team_nothing_to_say():
+    (gain,) = marginal_gains({1: np.array([10.0]), 2: np.array([4.0])})
+    assert told([gain]) == "A second robot would save 6.0 infested plant-days."
+    assert told(marginal_gains({1: np.array([10.0])})) == ""

@@ -251,7 +251,8 @@ class RowOptions:
 
         faces = 2 if self.both_faces else None
         spacings = self.row_spacing, self.plant_spacing, self.headland
-        return PlantingChoices(self.bearing, *spacings, faces, self.half_canopy, not self.no_rows)
+        in_rows = not self.no_rows
+        return PlantingChoices(self.bearing, *spacings, faces, self.half_canopy, in_rows)
 
 
 @dataclass(frozen=True)

@@ -124,7 +124,7 @@ def _through_headlands(
     if i >= 0:
         along = (travel.x_m[i], travel.end_x_m[first // 2, first % 2])
         line, size = _with_lane(lanes, first // 2, along, line, size)
-    nodes = way_nodes(roads, lanes.end_node[first], lanes.end_node[last])
+    nodes = shortest_nodes(roads, lanes.end_node[first], lanes.end_node[last])
     for k in range(nodes.size):
         if k > 0:
             a, b = nodes[k - 1], nodes[k]
@@ -156,7 +156,7 @@ def _ends(travel: TravelTable, i: int, j: int) -> tuple[int, int]:
 
 
 @routine
-def way_nodes(roads: RoadNetwork, a: int, b: int) -> Int:
+def shortest_nodes(roads: RoadNetwork, a: int, b: int) -> Int:
     """Return the nodes on the shortest way from node a to node b (Dijkstra's, from b)."""
     near = np.full(roads.xy_m.shape[0], np.inf)
     onward = np.full(near.size, -1)

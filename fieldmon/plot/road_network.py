@@ -275,9 +275,9 @@ def find_roads(
     Raise `PlotError` if some row cannot be reached.
     """
     obstacles = Obstacles.of(grid, MultiPolygon() if no_go_m is None else no_go_m, clearance)
-    narrow = _Narrow.of(grid, clearance)
     if not grid.in_rows:
         return _find_from_tree_to_tree(grid, gate_xy_m, obstacles)
+    narrow = _Narrow.of(grid, clearance)
     if grid.aisles_m is not None:
         return _find_bent(grid, gate_xy_m, obstacles, narrow)
     xy_m, place = _merged(_row_end_places(grid))
@@ -295,6 +295,25 @@ def find_roads(
     needed = np.append(beside[~narrow.shut].ravel(), gate)
     net = _joined_outside(_chained(_joined_inside(net, needed, obstacles)), needed, obstacles)
     return _sorted(net, beside, gate)
+
+
+def _find_from_tree_to_tree(
+    grid: PlantGrid, gate_xy_m: tuple[float, float] | None, obstacles: Obstacles
+) -> RoadNetwork:
+    """Return straight ways from each tree to those about it: no row is in the way."""
+    xy_m = grid.stop_m
+    nobody = np.full((1, 4), np.inf)
+    obstacles = replace(obstacles, row_box_m=nobody)
+    n = len(xy_m)
+    tried = _each_once(np.concatenate([_nearest(xy_m), delaunay_sides(xy_m)]))
+    good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]])
+    net, gate = _Net(xy_m, tried[good]), 0
+    if gate_xy_m is not None:
+        gate = n
+        net = _with_gate(net, np.array([gate_xy_m]), obstacles, grid)
+    needed = np.append(np.repeat(np.arange(n), 2), gate)
+    net = _joined_outside(_joined_inside(net, needed, obstacles), needed, obstacles)
+    return _sorted(net, np.repeat(np.arange(n), 2).reshape(-1, 2), gate)
 
 
 class _Narrow(NamedTuple):
@@ -316,25 +335,6 @@ class _Narrow(NamedTuple):
         beyond_m = np.abs(grid.lane_x_m - grid.along_m[_end_plants(grid)])
         tight = clearance.tight_ends(grid)
         return cls(clearance.shut(grid), tight, (beyond_m >= clearance.way_m) & ~tight)
-
-
-def _find_from_tree_to_tree(
-    grid: PlantGrid, gate_xy_m: tuple[float, float] | None, obstacles: Obstacles
-) -> RoadNetwork:
-    """Return straight ways from each tree to those about it: no row is in the way."""
-    xy_m = grid.stop_m
-    nobody = np.full((1, 4), np.inf)
-    obstacles = replace(obstacles, row_box_m=nobody)
-    n = len(xy_m)
-    tried = _each_once(np.concatenate([_nearest(xy_m), delaunay_sides(xy_m)]))
-    good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]])
-    net, gate = _Net(xy_m, tried[good]), 0
-    if gate_xy_m is not None:
-        gate = n
-        net = _with_gate(net, np.array([gate_xy_m]), obstacles, grid)
-    needed = np.append(np.repeat(np.arange(n), 2), gate)
-    net = _joined_outside(_joined_inside(net, needed, obstacles), needed, obstacles)
-    return _sorted(net, np.repeat(np.arange(n), 2).reshape(-1, 2), gate)
 
 
 def _find_bent(

@@ -13,7 +13,7 @@ from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.wording import counted
 from fieldmon.plot.clearance import Clearance, told_shut
-from fieldmon.plot.driven_line import Lanes, driven_line, way_nodes
+from fieldmon.plot.driven_line import Lanes, driven_line, shortest_nodes
 from fieldmon.plot.road_network import RoadNetwork, find_roads, row_lines
 
 if TYPE_CHECKING:
@@ -223,7 +223,7 @@ class Aisles:
 def trace(aisles: Aisles, a: int, b: int) -> list[int]:
     """Return the nodes of the network on the way between two lane ends, as in `TravelTable`."""
     stops = np.append(aisles.roads.end.ravel(), aisles.roads.gate)
-    nodes: list[int] = way_nodes(aisles.roads, stops[a], stops[b]).tolist()
+    nodes: list[int] = shortest_nodes(aisles.roads, stops[a], stops[b]).tolist()
     return nodes
 
 

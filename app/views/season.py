@@ -9,7 +9,7 @@ import numpy as np
 import streamlit as st
 
 from ..actions import assuming, beginning
-from ..show import charts, map_layers, plant_history
+from ..show import charts, learnt, map_layers, plant_history
 from ..state import assumptions, chosen_day
 from ..words import texts
 from ..words.language import number
@@ -33,7 +33,7 @@ def show(choices: Choices) -> None:
     _again(progress)
     assuming.show(choices)
     _charts(choices, days, progress)
-    _learnt(choices)
+    learnt.show(choices)
 
 
 def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
@@ -59,18 +59,6 @@ def _again(progress: Progress) -> None:
         again = progress.finds - progress.found
         said = texts.FOUND_AGAIN.format(finds=progress.finds, plants=progress.found, again=again)
         st.caption(said)
-
-
-def _learnt(choices: Choices) -> None:
-    """Say what the inspections tell of the insects."""
-    st.markdown(f"**{texts.LEARNT_TITLE}**")
-    learnt = chosen_day.learnt(choices)
-    if not learnt:
-        st.caption(texts.NOT_LEARNT)
-    for one in learnt:
-        form = ".0%" if one.is_share else ".1f"
-        figures = {name: number(getattr(one, name), form) for name in ("value", "low", "high")}
-        st.markdown(f"- {texts.LEARNT[one.name].format(**figures)}")
 
 
 def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> None:

@@ -91,6 +91,9 @@ def keep(db: sqlite3.Connection, file: str) -> None:
     box = db.execute(
         "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'plots'"
     ).fetchone()
+    if box is None or None in box:
+        # of a damaged file: there is no plot to look at
+        return
     shapes = dict(db.execute("SELECT table_name, geometry_type_name FROM gpkg_geometry_columns"))
     content = _packed(_project(file, earlier, shapes, box))
     db.execute(_TABLE)

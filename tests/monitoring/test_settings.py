@@ -39,7 +39,7 @@ def test_settings_come_back_from_json_as_they_were(sampler, seed, starts, hours,
 
 def test_a_season_file_keeps_settings_under_the_names_that_it_always_had():
     assert sorted(as_json(MonitoringSettings(BEGINS))) == [
-        *("beliefs", "prior", "robot", "sampler", "season"),
+        *("beliefs", "prior", "robot", "sampler", "season", "team"),
     ]
 
 

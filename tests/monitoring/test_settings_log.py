@@ -18,11 +18,11 @@ def rows(db):
 
 def test_what_was_written_last_counts_and_only_what_differs_is_written(db):
     settings_log.write(db, FIRST)
-    assert (settings_log.now(db), rows(db)) == (FIRST, 5)
+    assert (settings_log.now(db), rows(db)) == (FIRST, 6)
     settings_log.write(db, FIRST)
-    assert rows(db) == 5
+    assert rows(db) == 6
     settings_log.write(db, OTHER)
-    assert (settings_log.now(db), rows(db)) == (OTHER, 7)
+    assert (settings_log.now(db), rows(db)) == (OTHER, 8)
 
 
 def test_a_change_of_two_parts_is_taken_back_as_one(db):

@@ -1,0 +1,26 @@
+"""What the inspections of a season tell of the insects: how far they jump, how many arrive."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from ..state import chosen_day
+from ..words import texts
+from ..words.language import number
+
+if TYPE_CHECKING:
+    from ..state.choices import Choices
+
+
+def show(choices: Choices) -> None:
+    """Show each estimate with its interval, or that finds are traced to neighbours only."""
+    st.markdown(f"**{texts.LEARNT_TITLE}**")
+    estimates = chosen_day.learnt(choices)
+    if not estimates:
+        st.caption(texts.NOT_LEARNT)
+    for one in estimates:
+        form = ".0%" if one.is_share else ".1f"
+        figures = {name: number(getattr(one, name), form) for name in ("value", "low", "high")}
+        st.markdown(f"- {texts.LEARNT[one.name].format(**figures)}")

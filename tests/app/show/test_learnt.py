@@ -1,0 +1,36 @@
+"""What inspections tell of the insects, in words with intervals."""
+
+import pytest
+import streamlit as st
+
+from app.show import learnt
+from app.words import texts
+from fieldmon.infestation.learnt import Learnt
+
+
+@pytest.fixture
+def shown(monkeypatch):
+    """Return what is shown of given estimates."""
+
+    def show(*estimates):
+        lines = []
+        monkeypatch.setattr(st, "markdown", lines.append)
+        monkeypatch.setattr(st, "caption", lines.append)
+        monkeypatch.setattr(learnt.chosen_day, "learnt", lambda _: estimates)
+        learnt.show(None)
+        return lines[1:]
+
+    return show
+
+
+def test_shares_are_in_percent_and_plants_are_numbers(shown):
+    assert shown(
+        Learnt("detection", 0.84, 0.71, 0.94), Learnt("arrivals a night", 1.24, 0.3, 4.0)
+    ) == [
+        "- An inspection finds 84% of what is there (71% to 94%).",
+        "- 1.2 plants a night are infested from outside (0.3 to 4.0).",
+    ]
+
+
+def test_a_season_that_traces_to_neighbours_only_says_so(shown):
+    assert shown() == [texts.NOT_LEARNT]

@@ -28,7 +28,8 @@ def row_of(traced):
 @given(
     size=st.tuples(st.integers(5, 15), st.integers(15, 40)),
     row_spacing_m=st.floats(2.0, 5.0),
-    closer=st.floats(0.25, 0.7),
+    # nearly square ones, bent, fit another direction as well: docs/limits
+    closer=st.floats(0.25, 0.65),
     bend=st.floats(0.02, 0.9),
     turn_deg=st.floats(0.0, 180.0),
     seed=st.integers(0, 2**32),

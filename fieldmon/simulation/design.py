@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 _CHUNK_S = 4.0
 _S_PER_DAY = 3e-4
 # changes when seasons come out differently, so that old chunks are not taken for new ones
-_VERSION, _DIGITS = "2", 20
+_VERSION, _DIGITS = "3", 20
+# settings that later versions added: unsaid, they leave a plot what it was
+_LATER = ("half_canopy_m", "in_rows")
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,4 +175,5 @@ def _seasons(sampler: str, n_plants: int, n_days: int) -> int:
 
 def _as_written(settings: object) -> bytes:
     """Return what stands for settings in digests: names and values in the order of the class."""
-    return repr(vars(settings)).encode()
+    written = {name: value for name, value in vars(settings).items() if name not in _LATER or value}
+    return repr(written).encode()

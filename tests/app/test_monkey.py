@@ -55,6 +55,8 @@ FILES = {
     "plot_file": [("a.zip", b"no"), ("a.geojson", b"{}"), ("a.kml", b"<kml/>")],
     "record_file": [("a.csv", b"lon,lat,date\n35.15,30.36,2026-01-01\n"), ("a.csv", b"\xff\xfe")],
     "plant_file": [("a.csv", b"lon,lat\n35.15,30.36\n35.1501,30.36\n"), ("a.csv", b"")],
+    "rows_file": [("r.geojson", b"{}"), ("r.csv", b"\xff")],
+    "blocks_file": [("b.geojson", b"[]"), ("b.kml", b"<kml/>")],
     "findings_file": [("f.csv", b"row,plant,found\n1,1,yes\n"), ("f.geojson", b"[1]")],
     **{name: [("r.tif", raster(v)), ("r.tif", b"II*\0no")] for name, v in RASTERS.items()},
 }

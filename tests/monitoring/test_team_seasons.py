@@ -110,7 +110,8 @@ def test_each_is_believed_by_its_own_eyes(tmp_path):
         season.record(results, who)
         left.append((season.evening(BEGINS)[results.plant] / before[results.plant]).max())
     assert left[0] > 0.8
-    assert left[1] < 0.01
+    # a find of a sure eye leaves what may have come in the night before
+    assert left[1] < 0.02
 
 
 def test_a_team_is_kept_as_it_was_chosen(tmp_path):

@@ -84,7 +84,9 @@ def test_over_straight_aisles_stand_the_same_plants_as_across_the_rows(plants):
     y = np.array([xy_m[line == number][0, 1] for number in range(line[-1] + 1)])
     gap = np.concatenate([[ROW_M], np.diff(y), [ROW_M]])
     aisle = np.stack([line, line + 1], axis=1)
-    found = across_aisles(aisle, np.stack([xy_m[:, 0]] * 2, axis=1), gap[aisle] / 2, ROW_M, PLANT_M)
+    spacings = np.full(len(line), ROW_M), np.full(len(line), PLANT_M)
+    place_m = np.stack([xy_m[:, 0]] * 2, axis=1)
+    found = across_aisles(aisle, place_m, gap[aisle] / 2, *spacings)
     for told, wanted in zip(found, across(xy_m, line, ROW_M, PLANT_M), strict=True):
         np.testing.assert_array_equal(told, wanted)
 

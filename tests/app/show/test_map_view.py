@@ -60,7 +60,13 @@ def test_what_can_be_done_is_what_somebody_hears_of(sent):
 
 def test_what_is_drawn_has_its_kind_its_hint_and_where_it_snaps(sent):
     draw = sent(content(draw=Drawable("line", "path", "Click.", ((1.0, 2.0),))))["draw"]
-    assert draw == {"id": "path", "kind": "line", "hint": "Click.", "snap": [[1.0, 2.0]]}
+    assert draw == {
+        "id": "path",
+        "kind": "line",
+        "hint": "Click.",
+        "snap": [[1.0, 2.0]],
+        "points": [],
+    }
 
 
 def test_scale_bars_are_in_the_person_s_unit(sent, session):

@@ -36,7 +36,7 @@ def reloaded(app):
 def brought(app, tmp_path):
     data = zipped(tmp_path, square(name="mine").to_crs(2039), without=".prj")
     upload(app, plot=("plot.zip", data), record=("mites.csv", MITES))
-    ask = next(box for box in app.selectbox if box.label.endswith("crs"))
+    ask = next(box for box in app.selectbox if box.key.startswith("ask "))
     ask.set_value("EPSG:2039").run()
     press(app, "Use this")
     assert plot_name(app).startswith("mine")

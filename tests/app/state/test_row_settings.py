@@ -51,7 +51,8 @@ def test_lengths_in_feet_are_metres_and_empty_boxes_say_nothing():
     assert said["row_bearing_deg"] == 158.0
     assert said["plant_spacing_m"] is None
     assert said["faces"] is None
-    assert set(row_settings.row_settings("b").values()) == {None}
+    assert row_settings.is_said("a")
+    assert not row_settings.is_said("b")
 
 
 @pytest.mark.usefixtures("session")

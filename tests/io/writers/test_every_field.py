@@ -85,7 +85,8 @@ def from_kml(data, _):
 
 
 def from_waypoints(data, _):
-    rows = yaml.safe_load(data)["waypoints"]
+    waypoints = yaml.safe_load(data)["waypoints"]
+    rows = [waypoints[f"waypoint{k}"] for k in range(len(waypoints))]
     told = {name: [row[name] for row in rows] for name in ("stop", "plant", "row", "number")}
     return told | {"arrive_s": [row["arrive_s"] for row in rows],
                    "inspect_s": [row["pause_s"] for row in rows]}  # fmt: skip
@@ -131,8 +132,10 @@ def test_waypoints_of_gpx_say_plant_arrival_pause_and_chance_in_words(tmp_path, 
     assert len(points) == len(plan.route)
     for k, point in enumerate(points):
         assert point.findtext(f"{GPX}name").startswith(f"{told['stop'][k]:03d} R{told['row'][k]}/")
-        assert point.findtext(f"{GPX}cmt") == f"plant {told['plant'][k]}"
-        arrive, pause, chance = point.findtext(f"{GPX}desc").split("; ")
+        said = point.findtext(f"{GPX}desc")
+        assert point.findtext(f"{GPX}cmt") == said, "gpsbabel keeps one of the two"
+        plant, arrive, pause, chance = said.split("; ")
+        assert plant == f"plant {told['plant'][k]}"
         assert arrive == f"arrive {told['arrive'][k]}"
         assert float(pause.split()[1]) == pytest.approx(told["inspect_s"][k])
         assert float(chance.split()[1].rstrip("%")) == pytest.approx(

@@ -40,11 +40,12 @@ def test_every_mean_stands_under_its_measure_scenario_and_sampler(made):
             assert shown == [f"{scenarios[name][who]:.1f}" for who in NAMES]
 
 
-def test_what_was_found_is_said_in_sentences_over_two_charts(made):
+def test_what_was_found_is_said_in_sentences_over_a_chart_a_rival(made):
     page = Page(report_html(made))
     assert page.items == sentences(made)
-    assert len(page.all("svg")) == 2
-    assert len(page.all("circle")) == 4  # a dot a scenario and chart
+    rivals = len(page.all("svg"))
+    assert rivals == 4
+    assert len(page.all("circle")) == 2 * rivals  # a dot a scenario and chart
     assert "3 seasons of 25 days a scenario" in page.text
     assert page.headings[0] == "Samplers compared"
     assert page.runs == page.asks_for == []
@@ -68,7 +69,7 @@ def a_calibration(seed):
     rng = np.random.default_rng(seed)
     said, was, count = rng.random(9), rng.random(9), rng.integers(10, 90, 9)
     clean = (rng.random(6), rng.random(6), np.array([0, 3, 0, 1, 2, 0]))
-    return Calibration(said, was, count, *rng.random(4).tolist(), *clean, 0.0123)
+    return Calibration(said, was, count, *rng.random(6).tolist(), *clean, 0.0123)
 
 
 def test_every_score_of_a_belief_stands_in_its_row():

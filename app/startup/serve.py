@@ -47,10 +47,12 @@ _WHERE = b"""<head>
 <script>window.__streamlit = {BACKEND_BASE_URL: new URL(".", location.href).href}</script>"""
 _FOR_GOOD, _ASK = b"public, immutable, max-age=31536000", b"no-cache"
 _OWN_FOR_GOOD = b"private, immutable, max-age=86400"
-# Streamlit's page writes scripts and styles into itself, and charts are made of compiled text
+# Streamlit's page writes scripts and styles into itself, and charts are made of compiled text;
+# a map of the world is fetched from where somebody agreed to, which is not known beforehand
 _POLICY = (
     b"default-src 'self' data: blob:; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
-    b"style-src 'self' 'unsafe-inline'; connect-src 'self' data: blob: ws://HOST wss://HOST; "
+    b"style-src 'self' 'unsafe-inline'; connect-src 'self' data: blob: ws://HOST wss://HOST "
+    b"https: http://127.0.0.1:*; "
     b"frame-ancestors 'self'; form-action 'self'; base-uri 'self'; object-src 'none'"
 )
 # one thread must not keep the others waiting while libraries load (Python's default is 5 ms)

@@ -423,7 +423,8 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     page.get_by_role("button", name="Use this").click()
     page.get_by_role("img", name="Map of plot מטע הדרים").wait_for(timeout=60_000)
     west, _, east, _ = own.to_crs(4326).total_bounds
-    assert view(page)["longitude"] == pytest.approx((west + east) / 2, abs=2 * (east - west))
+    middle = pytest.approx((west + east) / 2, abs=2 * (east - west))
+    until(lambda: view(page)["longitude"] == middle)
     box = {"name": "mites.csv", "mimeType": "", "buffer": mites.encode()}
     boxes.nth(1).set_input_files([box])
     page.get_by_text("1 of 1 records shown").wait_for(timeout=60_000)
@@ -451,13 +452,15 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     open_part(page, texts.PARTS["today"])
     page.get_by_text("8 plants inspected today so far").wait_for(timeout=60_000)
     remaining = stops(page)
-    assert len(first) - 20 < len(remaining) < len(first)
+    # planned anew, the rest may be a stop or two more than it was
+    assert len(first) - 20 < len(remaining) <= len(first)
     assert not set(remaining) & set(first[:8])
 
 
 def record_eight(page):
     """Record the first eight stops of the route as clean."""
     open_part(page, texts.PARTS["record"])
+    page.get_by_role("tab", name=texts.RECORD_ROUTE).click()
     box = page.get_by_role("spinbutton", name=texts.RECORD_STOPS)
     box.wait_for(timeout=60_000)
     box.fill("8")
@@ -578,7 +581,7 @@ def test_three_samplers_are_compared_while_the_page_stays_usable(page, address):
     seeds.press("Enter")
     page.get_by_role("button", name="Compare", exact=True).click()
     page.get_by_text("seasons simulated").wait_for(timeout=60_000)
-    page.get_by_text(re.compile("is best|comes out best")).wait_for(timeout=60_000)
+    page.get_by_text(re.compile("is best|comes out best")).wait_for(timeout=240_000)
     page.get_by_role("button", name="Stop").click()
     page.get_by_role("button", name="Go on").wait_for(timeout=60_000)
     done = page.get_by_text("of 180 seasons simulated").inner_text()

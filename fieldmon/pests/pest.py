@@ -146,6 +146,8 @@ class Movement:
         None: at any.
     by_hour
         Whether it is simulated by the hour rather than by the night.
+    least_rain_mm
+        It moves only in hours or days with so much rain or more; 0: whatever the weather.
     """
 
     kernel: KernelName = "adjacent"
@@ -157,6 +159,7 @@ class Movement:
     hours: tuple[float, float] = (0.0, 24.0)
     at_c: float | None = None
     by_hour: bool = False
+    least_rain_mm: float = 0.0
 
     def __post_init__(self) -> None:
         if self.kernel not in get_args(KernelName):
@@ -176,6 +179,7 @@ class Movement:
             _must("movement", "reach_m", self.reach_m, "above 0", self.reach_m > 0)
         share = self.share_of_long_jumps
         _must("movement", "share_of_long_jumps", share, "in 0..1", 0 <= share <= 1)
+        _must("movement", "least_rain_mm", self.least_rain_mm, "0 or more", self.least_rain_mm >= 0)
         ratio = self.along_over_across
         _must("movement", "along_over_across", ratio, "0.01 to 100", 0.01 <= ratio <= 100)
         for hour in self.hours:

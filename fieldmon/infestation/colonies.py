@@ -95,7 +95,7 @@ class Colonies:
         """
         landed = self._landed(spell)
         landed[self.protected_days > 0.0] = 0.0
-        return self._older(spell).settled(landed, key, turn)._outlived(spell.days, key, turn)
+        return self.older(spell).settled(landed, key, turn)._outlived(spell.days, key, turn)
 
     def settled(self, landed: Floats, key: np.uint64, turn: int = 0) -> Colonies:
         """Return the colonies after so much has landed on each plant ``(n,)``."""
@@ -127,6 +127,23 @@ class Colonies:
         )
         return replace(self, infested=self.infested & ~works, protected_days=protected)
 
+    def older(self, spell: Spell) -> Colonies:
+        """Return the same insects, so many hours further in their stages."""
+        stage, progress = self.stage.copy(), self.progress.copy()
+        for k, (of, warmth) in enumerate(zip(self.pest.stages, spell.warmth, strict=True)):
+            at = np.flatnonzero(self.infested & (self.stage == k))
+            progress[at] += warmth
+            done = at[progress[at] >= of.degree_days]
+            stage[done] += 1
+            progress[done] = 0.0
+        return replace(
+            self,
+            stage=stage,
+            progress=progress,
+            age_days=self.age_days + spell.days,
+            protected_days=np.maximum(self.protected_days - spell.days, 0.0),
+        )
+
     def _landed(self, spell: Spell) -> Floats:
         """Return what lands on each plant in some hours, ``(n,)``."""
         entry = _entering(self.grid, self.pest.entry) * spell.days
@@ -142,23 +159,6 @@ class Colonies:
         else:
             by = dispersal_of(self.grid, kernel_of(movement), spell.wind_m_s)
         return by.landed(sent) + entry
-
-    def _older(self, spell: Spell) -> Colonies:
-        """Return the same insects, so much further in their stages."""
-        stage, progress = self.stage.copy(), self.progress.copy()
-        for k, (of, warmth) in enumerate(zip(self.pest.stages, spell.warmth, strict=True)):
-            at = np.flatnonzero(self.infested & (self.stage == k))
-            progress[at] += warmth
-            done = at[progress[at] >= of.degree_days]
-            stage[done] += 1
-            progress[done] = 0.0
-        return replace(
-            self,
-            stage=stage,
-            progress=progress,
-            age_days=self.age_days + spell.days,
-            protected_days=np.maximum(self.protected_days - spell.days, 0.0),
-        )
 
     def _begun(self, new: NDArray[np.bool_], infested: NDArray[np.bool_]) -> Colonies:
         """Return the same with new colonies, in their first stage."""

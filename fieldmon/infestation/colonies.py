@@ -61,9 +61,7 @@ class Colonies:
         """Return the colonies of a first morning: in all stages, where plants are infested."""
         n = len(grid)
         stage = np.full(n, len(pest.stages), np.int8)
-        return cls(
-            grid, pest, infested.copy(), stage, np.zeros(n), np.full(n, np.inf), np.zeros(n)
-        )
+        return cls(grid, pest, infested.copy(), stage, np.zeros(n), np.full(n, np.inf), np.zeros(n))
 
     @cached_property
     def mobile(self) -> NDArray[np.bool_]:
@@ -177,9 +175,9 @@ class Colonies:
         dies = self.pest.mortality_per_day
         if dies == 0.0:
             return self
-        gone = coin_table(key ^ _DEATHS ^ np.uint64(turn), len(self.grid)) < 1.0 - (
-            1.0 - dies
-        ) ** days
+        gone = (
+            coin_table(key ^ _DEATHS ^ np.uint64(turn), len(self.grid)) < 1.0 - (1.0 - dies) ** days
+        )
         return replace(self, infested=self.infested & ~gone)
 
 

@@ -210,11 +210,12 @@ def hours_of_movement(movement: Movement) -> Floats:
     first, end = movement.hours
     length = (end - first) % _HOURS or _HOURS
     hour = np.arange(_HOURS)
-    share = np.zeros(_HOURS)
+    share: Floats = np.zeros(_HOURS)
     for turn in (0, _HOURS):  # past midnight
         low = np.maximum(hour + turn, first)
         share += np.clip(np.minimum(hour + turn + 1, first + length) - low, 0.0, 1.0)
-    return share / share.sum()
+    part: Floats = share / share.sum()
+    return part
 
 
 def warmth(pest: Pest, temperature_c: Floats) -> tuple[float, ...]:

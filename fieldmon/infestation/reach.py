@@ -193,9 +193,7 @@ def pest_reach_of(
     )
 
 
-def _transformed(
-    cells: Cells, made: Floats
-) -> tuple[NDArray[np.complex128], tuple[int, int]]:
+def _transformed(cells: Cells, made: Floats) -> tuple[NDArray[np.complex128], tuple[int, int]]:
     """Return the transforms of kernels ``(6, d, d)``, and the cells with room about them."""
     d = made.shape[1]
     across, along = (fft.next_fast_len(int(side) + d - 1, real=True) for side in cells.shape)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.pest_in_weather import PestInWeather, Spell
     from fieldmon.plot.grid import PlantGrid
 
     Night = Callable[[PlantGrid, NDArray[np.bool_], np.uint64], NDArray[np.bool_]]
@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 class Insects(Protocol):
     """What lives on a plot, from morning to morning."""
 
-    infested: NDArray[np.bool_]
+    @property
+    def infested(self) -> NDArray[np.bool_]:
+        """Who is infested now, ``(n,)``."""
+        ...
 
     def showing(self, number: int) -> NDArray[np.bool_]:
         """Return where an inspection may find something on a day, ``(n,)``."""
@@ -65,11 +68,17 @@ class PestInsects:
         self.living = living
         self.colonies = Colonies.grown(grid, living.pest, infested)
         self._hour = 0
+        self._hours_of: tuple[int, list[Spell]] = (-1, [])
 
     @property
     def infested(self) -> NDArray[np.bool_]:
         """Who is infested now, ``(n,)``."""
         return self.colonies.infested
+
+    @property
+    def by_hour(self) -> bool:
+        """Tell whether the pest is simulated hour by hour."""
+        return self.living.pest.movement.by_hour
 
     def showing(self, number: int) -> NDArray[np.bool_]:  # noqa: ARG002 - as the others
         """Return where an inspection may find something now, ``(n,)``."""
@@ -80,7 +89,7 @@ class PestInsects:
 
         Hours that passed so are not passed again at night.
         """
-        hours = self.living.hours(number, self.colonies.grid.frame)
+        hours = self._hours(number)
         before = self.colonies.without(found)
         self.colonies = before.after(hours[self._hour], key, self._hour)
         self._hour += 1
@@ -91,8 +100,8 @@ class PestInsects:
         frame = self.colonies.grid.frame
         self.colonies = self.colonies.without(found)
         spells = [self.living.night(number, frame)]
-        if self.living.pest.movement.by_hour:
-            spells = self.living.hours(number, frame)[self._hour :]
+        if self.by_hour:
+            spells = self._hours(number)[self._hour :]
         new, turn = 0, self._hour
         for spell in spells:
             before = self.colonies
@@ -101,6 +110,12 @@ class PestInsects:
             turn += 1
         self._hour = 0
         return new
+
+    def _hours(self, number: int) -> list[Spell]:
+        """Return the hours of a day, made once."""
+        if self._hours_of[0] != number:
+            self._hours_of = number, self.living.hours(number, self.colonies.grid.frame)
+        return self._hours_of[1]
 
 
 def _new(before: Colonies, after: Colonies) -> int:

@@ -273,8 +273,7 @@ class SeasonOnItsWay:
     @property
     def moves_by_day(self) -> bool:
         """Tell whether insects move while the robot works."""
-        pest = self.settings.pest
-        return pest is not None and pest.pest.movement.by_hour
+        return isinstance(self.insects, PestInsects) and self.insects.by_hour
 
     def work(self, number: int, own_key: np.uint64, inspect_key: np.uint64) -> SimulatedDay:
         """Work for a day; return what came of it."""
@@ -288,6 +287,8 @@ class SeasonOnItsWay:
 
         A plant is as it is in the hour in which it is inspected.
         """
+        if not isinstance(self.insects, PestInsects):
+            return self.work(number, own_key, inspect_key)
         morning, scene = self.infested, self.scene(number, own_key)
         would_find = draw_detections(self.showing(number), self.detects, inspect_key)
         work, done, gone_s = work_day(scene, self.sampler, would_find), 0, 0.0

@@ -68,9 +68,7 @@ def test_wind_turns_and_stretches_a_kernel():
 
 def test_rows_can_be_followed():
     x, y = np.meshgrid(np.arange(-30, 31), np.arange(-30, 31))
-    along = DistanceKernel("exponential", 6.0, across=0.25).on_cells(
-        np.array([3.0, 3.0]), (30, 30)
-    )
+    along = DistanceKernel("exponential", 6.0, across=0.25).on_cells(np.array([3.0, 3.0]), (30, 30))
     assert (along * np.abs(x)).sum() > 2.5 * (along * np.abs(y)).sum()
 
 

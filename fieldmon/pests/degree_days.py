@@ -119,9 +119,11 @@ def _between(low: Floats, high: Floats, thresholds: Thresholds, curve: _Curve) -
     over, share = curve(low, high, thresholds.upper_c)
     if thresholds.cutoff == "horizontal":
         return above - over
-    if thresholds.cutoff == "intermediate":
-        return np.maximum(above - 2 * over, 0.0)
-    return np.maximum(above - over - share * (thresholds.upper_c - thresholds.lower_c), 0.0)
+    stopped = np.maximum(above - over - share * (thresholds.upper_c - thresholds.lower_c), 0.0)
+    if thresholds.cutoff == "vertical":
+        return stopped
+    # slower, but never slower than if it stopped
+    return np.maximum(above - 2 * over, stopped)
 
 
 def _sine(low: Floats, high: Floats, above_c: float) -> tuple[Floats, Floats]:

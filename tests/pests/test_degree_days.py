@@ -1,5 +1,7 @@
 """Degree-days are the area of a day's curve between thresholds, as published."""
 
+from io import StringIO
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,8 +14,8 @@ from fieldmon.pests.degree_days import Thresholds, degree_days, degree_days_of_h
 #: 50 and 70 that the University of California's IPM site gives for them: single and double sine,
 #: single and double triangle, each with the horizontal, vertical and intermediate cutoff
 #: (Degree Days Validation Challenge, UCANR-IGIS 2021, ucanr-igis.github.io/degree-day-challenge)
-PUBLISHED = np.array(
-    """
+PUBLISHED = np.loadtxt(
+    StringIO("""
     48 62 5.33 5.33 5.33 6.16 6.16 6.16 5.14 5.14 5.14 6.07 6.07 6.07
     52 73 12.01 7.08 11.52 10.64 6.09 10.19 12.29 9.43 12.07 10.63 8.16 10.44
     44 76 10 4.3 8.88 9.26 3.91 8.2 10 6.25 9.44 8.9 5.56 8.4
@@ -31,9 +33,8 @@ PUBLISHED = np.array(
     68 107 19.81 2.72 2.72 18.9 3.41 3.41 19.95 0.97 2.4 19.44 2.08 3.38
     29 63 3.56 3.56 3.56 4.36 4.36 4.36 2.49 2.49 2.49 3.59 3.59 3.59
     45 67 7.04 7.04 7.04 6.06 6.06 6.06 6.57 6.57 6.57 5.19 5.19 5.19
-    """.split(),
-    float,
-).reshape(-1, 14)
+    """)
+)
 #: those whose next day is in the table too
 FOLLOWED = [0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 15]
 CURVES = ("single sine", "double sine", "single triangle", "double triangle")
@@ -60,8 +61,8 @@ def developing(temperature, thresholds):
     return stopped if thresholds.cutoff == "vertical" else max((above - 2 * over).mean(), stopped)
 
 
-@pytest.mark.parametrize(("number", "method"), enumerate(CURVES))
-@pytest.mark.parametrize(("column", "cutoff"), enumerate(CUTOFFS, 2))
+@pytest.mark.parametrize(("number", "method"), list(enumerate(CURVES)))
+@pytest.mark.parametrize(("column", "cutoff"), list(enumerate(CUTOFFS, 2)))
 def test_degree_days_are_those_that_the_university_of_california_publishes(
     number, method, column, cutoff
 ):

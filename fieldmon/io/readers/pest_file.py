@@ -286,7 +286,8 @@ class _PestText:
             value = given.get(key)
             hot = isinstance(value, float) and key.endswith("_c") and value > _HOTTEST_C
             hint = " Is it in Fahrenheit?" if hot else ""
-            where = at._replace(key=key) if at._replace(key=key) in self.lines else at
+            closer = at._replace(key=at.key or key)
+            where = closer if closer in self.lines else at
             self._refuse(where, f"{sentence}{hint}", error)
 
     def _refuse(self, at: _At, sentence: str, cause: Exception | None = None) -> NoReturn:

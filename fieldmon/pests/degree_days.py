@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+# a day that swings less is flat
+_FLAT_C = 1e-9
 #: how a day goes between its low and its high
 DegreeDayMethod = Literal[
     "single sine", "double sine", "single triangle", "double triangle", "average", "clipped average"
@@ -119,16 +121,19 @@ def _between(low: Floats, high: Floats, thresholds: Thresholds, curve: _Curve) -
     over, share = curve(low, high, thresholds.upper_c)
     if thresholds.cutoff == "horizontal":
         return above - over
-    if thresholds.cutoff == "intermediate":
-        return np.maximum(above - 2 * over, 0.0)
-    return np.maximum(above - over - share * (thresholds.upper_c - thresholds.lower_c), 0.0)
+    stopped = np.maximum(above - over - share * (thresholds.upper_c - thresholds.lower_c), 0.0)
+    if thresholds.cutoff == "vertical":
+        return stopped
+    # slower, but never slower than if it stopped
+    return np.maximum(above - 2 * over, stopped)
 
 
 def _sine(low: Floats, high: Floats, above_c: float) -> tuple[Floats, Floats]:
     """Return the area of a sine above a temperature, and the share of the day it is above it."""
     mean, swing = (low + high) / 2, (high - low) / 2
-    height = np.clip((above_c - mean) / np.where(swing > 0, swing, 1.0), -1.0, 1.0)
-    height = np.where(swing > 0, height, np.where(above_c < mean, -1.0, 1.0))
+    swings = swing > _FLAT_C
+    height = np.clip((above_c - mean) / np.where(swings, swing, 1.0), -1.0, 1.0)
+    height = np.where(swings, height, np.where(above_c < mean, -1.0, 1.0))
     angle = np.arcsin(height)
     share = 0.5 - angle / np.pi
     area = (mean - above_c) * share + swing * np.cos(angle) / np.pi
@@ -138,8 +143,9 @@ def _sine(low: Floats, high: Floats, above_c: float) -> tuple[Floats, Floats]:
 def _triangle(low: Floats, high: Floats, above_c: float) -> tuple[Floats, Floats]:
     """Return the same of a triangle."""
     swing = high - low
-    share = np.clip((high - above_c) / np.where(swing > 0, swing, 1.0), 0.0, 1.0)
-    share = np.where(swing > 0, share, np.where(above_c < low, 1.0, 0.0))
+    swings = swing > _FLAT_C
+    share = np.clip((high - above_c) / np.where(swings, swing, 1.0), 0.0, 1.0)
+    share = np.where(swings, share, np.where(above_c < low, 1.0, 0.0))
     area = share * (high - above_c) / 2
     return np.where(low >= above_c, (low + high) / 2 - above_c, np.maximum(area, 0.0)), share
 

@@ -244,6 +244,10 @@ class Pest:
         Chance that a plant's infestation ends of itself.
     count_means
         What one that is counted is: ``"mites on a leaf"``.
+    generation
+        A whole generation in one, where that was published beside its stages; None: their sum.
+    not_found
+        What was looked for and not found, in words.
     citations
         Where each part comes from.
     """
@@ -262,6 +266,8 @@ class Pest:
     hidden_days: float = 0.0
     mortality_per_day: float = 0.0
     count_means: str = ""
+    generation: Stage | None = None
+    not_found: str = ""
     citations: tuple[Citation, ...] = ()
 
     def __post_init__(self) -> None:

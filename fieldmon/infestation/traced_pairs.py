@@ -24,7 +24,6 @@ from fieldmon.infestation.clustering import (
     learn_clustering,
     no_evidence,
 )
-from fieldmon.infestation.cohorts import Cohorts
 from fieldmon.infestation.origins import (
     ANYWHERE,
     AT_START,
@@ -35,6 +34,7 @@ from fieldmon.infestation.origins import (
     OVERLOOKED,
     OriginCounts,
 )
+from fieldmon.infestation.cohorts import Cohorts
 from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of

@@ -62,7 +62,7 @@ def test_a_season_begun_with_a_pest_says_when_its_next_generation_is_due(app):
     assert "Next generation around 2026-11-30." in said
     assert "Those of that day: egg." in said
     go(app, "plot")
-    assert "This season looks for: Two-spotted spider mite, by degree-days." in texts_of(app)
+    assert "Pest of this season: Two-spotted spider mite, by degree-days." in texts_of(app)
 
 
 def test_a_season_takes_a_pest_later_and_weather_alone_is_refused(season_app, season):

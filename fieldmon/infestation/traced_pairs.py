@@ -24,6 +24,7 @@ from fieldmon.infestation.clustering import (
     learn_clustering,
     no_evidence,
 )
+from fieldmon.infestation.cohorts import Cohorts
 from fieldmon.infestation.origins import (
     ANYWHERE,
     AT_START,
@@ -34,7 +35,6 @@ from fieldmon.infestation.origins import (
     OVERLOOKED,
     OriginCounts,
 )
-from fieldmon.infestation.cohorts import Cohorts
 from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
@@ -200,13 +200,13 @@ class TracedPairs:
         after = replace(
             self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
             unseen=traces.unseen, evidence=evidence,
-            cohorts=None if self.cohorts is None else self.cohorts.inspected(plants, found, told),
+            cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
         )  # fmt: skip
         lowered = after.times(self._lowered(after, day, jumps * self.beyond))
         return lowered.counting(self, day)
 
     def _shown(self, plants: NDArray[np.int32], detects: Floats) -> Floats:
-        """Return the chance that inspections find what is there, be it seen yet or not, ``(k,)``."""
+        """Return the chance that inspections find what is there, seen yet or not, ``(k,)``."""
         if self.cohorts is None or not self.cohorts.ages:
             return detects
         return detects * (1.0 - self.cohorts.hidden[plants])

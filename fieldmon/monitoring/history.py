@@ -12,6 +12,7 @@ import numpy as np
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.observations import PRESENT
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.learnt import Learnt
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
@@ -141,6 +143,9 @@ class History:
         None: there are none.
     detection_of
         The same chance for those of a team, by their names without capitals.
+    living
+        The pest, in the weather of the season's days; None: nobody named it, and nights are as
+        `belief` says.
     """
 
     grid: PlantGrid
@@ -152,6 +157,7 @@ class History:
     detection: float = 0.84
     recorded: NDArray[np.int8] | None = None
     detection_of: Mapping[str, float] = field(default_factory=dict)
+    living: PestInWeather | None = None
 
     def __post_init__(self) -> None:
         if (np.diff(self.days) < 0).any():
@@ -177,7 +183,25 @@ class History:
 
     def night_after(self, morning: Belief, day: int) -> Belief:
         """Return what is believed the next morning, from what was on the morning of a day."""
-        return self.belief.overnight(self.evening(morning, day))
+        return self.evening(morning, day).overnight(self.night(day))
+
+    def night(self, day: int) -> Spread:
+        """Return what the insects are taken to do in the night after a day."""
+        if self.living is None:
+            return self.belief.spread
+        return self.living.spread(day, self.grid.frame)
+
+    def forecast(self, morning: Belief, day: int, nights: int = NIGHTS) -> Forecast:
+        """Return how many plants are infested on the next mornings, nobody inspecting any more.
+
+        By the weather forecast, where there is one, and by the usual of the date after it.
+        """
+        ahead = range(day, day + nights)
+        known = None
+        if self.living is not None and self.living.weather is not None:
+            known = sum(self.living.known(number) for number in ahead)
+        evening, spreads = self.evening(morning, day), [self.night(number) for number in ahead]
+        return forecast(evening, self.grid, spreads, known)
 
     def evening(self, morning: Belief, day: int) -> Belief:
         """Return what is believed after what was found and treated on a day."""

@@ -159,6 +159,16 @@ class TracedPairs:
         return beyond
 
     @property
+    def in_sight(self) -> TracedPairs:
+        """The same of what an inspection can see: a day is planned by it."""
+        if self.cohorts is None or not self.cohorts.ages:
+            return self
+        start, other = self.grid.adjacent
+        seen = 1.0 - self.cohorts.hidden
+        both = self.pair_chance * np.repeat(seen, np.diff(start)) * seen[other]
+        return replace(self, chance=np.maximum(self.chance * seen, LEAST_CHANCE), pair_chance=both)
+
+    @property
     def doubt(self) -> float:
         """How far the expected number may be off, see `Belief`.
 

@@ -276,7 +276,7 @@ class History:
             Whose scene it is, of a team; None: all inspections were made by the one who works.
         """
         aisles, robot = shift.aisles, shift.robot
-        today, believed = self.on(day), self.evening(morning, day)
+        today, believed = self.on(day), in_sight(self.evening(morning, day))
         last = self.last_inspected(day)
         last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
         trail = self._trail(day, who)
@@ -302,6 +302,11 @@ class History:
         if not len(earlier):
             return earlier.plant
         return earlier.take(earlier.date == earlier.date[-1]).plant
+
+
+def in_sight(belief: Belief) -> Belief:
+    """Return what is believed of what inspections can see: a day is planned by it."""
+    return belief.in_sight if isinstance(belief, TracedPairs) else belief
 
 
 def made_by(inspections: Inspections, who: str | None) -> Inspections:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.monitoring import DayFigures
     from fieldmon.pests.development import Development
     from fieldmon.simulation.metrics import SeasonMetrics
@@ -260,6 +261,28 @@ def development(
     today = pd.DataFrame({"day": [str(there.on)[5:]]})
     now = alt.Chart(today).mark_rule(color=_GREY).encode(x=alt.X("day:O", sort=None))
     return alt.layer(*lines, rules, words, now).properties(height=260)
+
+
+@_in_language
+def ahead(day: str, forecast: Forecast, axes: tuple[str, str]) -> alt.LayerChart:
+    """Return the infested plants expected on the mornings after a day, with their interval."""
+    dates = [str(at.date())[5:] for at in pd.date_range(day, periods=len(forecast.expected))]
+    table = pd.DataFrame(
+        {"day": dates, "expected": forecast.expected, "low": forecast.low, "high": forecast.high}
+    )
+    base = alt.Chart(table).encode(
+        x=alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True)),
+        tooltip=[
+            alt.Tooltip("day", title=axes[0]),
+            alt.Tooltip("expected:Q", title=axes[1], format=".0f"),
+            alt.Tooltip("low", title=texts.LEAST), alt.Tooltip("high", title=texts.MOST),
+        ],
+    )  # fmt: skip
+    band = base.mark_area(opacity=0.25, color=_COLOURS[1]).encode(y="low:Q", y2="high:Q")
+    line = base.mark_line(color=_COLOURS[1], strokeWidth=2.5).encode(
+        y=alt.Y("expected:Q", title=axes[1])
+    )
+    return alt.layer(band, line).properties(height=220)
 
 
 @_in_language

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from shapely import MultiLineString
 
     from fieldmon.compute.units import Units
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.import_report import Imported
@@ -302,6 +303,12 @@ def progress(path: str, revision: str, day: str, _season: Season) -> Progress:  
 def learnt(path: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:  # noqa: ARG001
     """Return what the inspections up to a day of a season tell of the insects."""
     return _season.learnt(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def forecast(path: str, revision: str, day: str, _season: Season) -> Forecast:  # noqa: ARG001
+    """Return how many plants are infested on the mornings after a day of a season."""
+    return _season.forecast(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)

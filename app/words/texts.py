@@ -587,6 +587,17 @@ LEARNT = {
     ),
     "length of jumps": "If so, jumps go {value} plants on average ({low} to {high}).",
 }
+AHEAD_TITLE, AHEAD_AXIS = "If nobody inspects from now on", "infested (expected)"
+AHEAD = (
+    "About {last} plants are infested after {nights} nights without inspections ({low} to {high} "
+    "with a chance of 90%); now it is about {now}."
+)
+AHEAD_BASIS = {
+    "none": "No weather is known of: every night is taken as the season's settings say.",
+    "forecast": "By the weather forecast.",
+    "partly": "By the weather forecast for {n} of the nights, and the usual of the date after it.",
+    "usual": "By the usual weather of the date: there is no forecast.",
+}
 NOT_LEARNT = "This season traces finds to the plants next to them only, as it did when it began."
 
 # -- scouting

@@ -37,6 +37,7 @@ def status(
     kept = Season(season)
     now = kept.status(day(on) or kept.last_date())
     typer.echo("\n".join(lines(kept, now)))
+    typer.echo(f"  in days to come        {kept.forecast(now.on).sentence()}")
     if rows:
         _show_rows(kept, now)
     if batches:

@@ -93,7 +93,8 @@ class Colonies:
         """
         landed = self._landed(spell)
         landed[self.protected_days > 0.0] = 0.0
-        return self.older(spell).settled(landed, key, turn)._outlived(spell.days, key, turn)
+        after = self.older(spell).settled(landed, key, turn)
+        return after.outlived(spell.days, key, turn)
 
     def settled(self, landed: Floats, key: np.uint64, turn: int = 0) -> Colonies:
         """Return the colonies after so much has landed on each plant ``(n,)``."""
@@ -170,7 +171,7 @@ class Colonies:
             age_days=np.where(new, 0.0, self.age_days),
         )
 
-    def _outlived(self, days: float, key: np.uint64, turn: int) -> Colonies:
+    def outlived(self, days: float, key: np.uint64, turn: int) -> Colonies:
         """Return those that predators and the like have left."""
         dies = self.pest.mortality_per_day
         if dies == 0.0:

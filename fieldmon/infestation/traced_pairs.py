@@ -24,6 +24,7 @@ from fieldmon.infestation.clustering import (
     learn_clustering,
     no_evidence,
 )
+from fieldmon.infestation.cohorts import Cohorts
 from fieldmon.infestation.origins import (
     ANYWHERE,
     AT_START,
@@ -34,7 +35,6 @@ from fieldmon.infestation.origins import (
     OVERLOOKED,
     OriginCounts,
 )
-from fieldmon.infestation.cohorts import Cohorts
 from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
@@ -159,22 +159,32 @@ class TracedPairs:
         return beyond
 
     @property
+    def in_sight(self) -> TracedPairs:
+        """The same of what an inspection can see: a day is planned by it."""
+        if self.cohorts is None or not self.cohorts.ages:
+            return self
+        start, other = self.grid.adjacent
+        seen = 1.0 - self.cohorts.hidden
+        both = self.pair_chance * np.repeat(seen, np.diff(start)) * seen[other]
+        return replace(self, chance=np.maximum(self.chance * seen, LEAST_CHANCE), pair_chance=both)
+
+    @property
     def doubt(self) -> float:
         """How far the expected number may be off, see `Belief`.
 
         As far as what each origin brings is known, and as infestations that jumped come in groups.
         """
-        brought = self.chance @ self.shares.astype(np.float64)
+        brought = np.einsum("i,ik->k", self.chance, self.shares, dtype=np.float64)
         expected = float(brought.sum())
         origins = float(((brought * self.counts.doubt) ** 2).sum()) / expected**2
-        sent = float(self.unseen @ self.chance) / expected
+        sent = float((self.unseen * self.chance).sum()) / expected
         relatives = 2.0 * self.jumps * float(self.beyond.sum()) * sent
         return float(np.sqrt(origins + relatives / expected))
 
     @cached_property
     def traces(self) -> Traces:
         """What a day needs to trace a find."""
-        kernel = np.tensordot(self.beyond, self.reach.kernels, 1)
+        kernel = np.einsum("k,kij->ij", self.beyond, self.reach.kernels)
         afar = self.shares[:, JUMPED:].sum(axis=1, dtype=np.float64)
         return Traces(self.reach.cells, kernel, self.unseen, afar, self.evidence)
 
@@ -200,13 +210,13 @@ class TracedPairs:
         after = replace(
             self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
             unseen=traces.unseen, evidence=evidence,
-            cohorts=None if self.cohorts is None else self.cohorts.inspected(plants, found, told),
+            cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
         )  # fmt: skip
         lowered = after.times(self._lowered(after, day, jumps * self.beyond))
         return lowered.counting(self, day)
 
     def _shown(self, plants: NDArray[np.int32], detects: Floats) -> Floats:
-        """Return the chance that inspections find what is there, be it seen yet or not, ``(k,)``."""
+        """Return the chance that inspections find what is there, seen yet or not, ``(k,)``."""
         if self.cohorts is None or not self.cohorts.ages:
             return detects
         return detects * (1.0 - self.cohorts.hidden[plants])

@@ -12,6 +12,7 @@ import numpy as np
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.observations import PRESENT
@@ -152,7 +153,8 @@ class History:
     detection_of
         The same chance for those of a team, by their names without capitals.
     living
-        The pest in its weather, by which nights are believed; None: as `belief` has them.
+        The pest, in the weather of the season's days; None: nobody named it, and nights are as
+        `belief` says.
     """
 
     grid: PlantGrid
@@ -190,10 +192,25 @@ class History:
 
     def night_after(self, morning: Belief, day: int) -> Belief:
         """Return what is believed the next morning, from what was on the morning of a day."""
-        evening = self.evening(morning, day)
+        return self.evening(morning, day).overnight(self.night(day))
+
+    def night(self, day: int) -> Spread:
+        """Return what the insects are taken to do in the night after a day."""
         if self.living is None:
-            return self.belief.overnight(evening)
-        return evening.overnight(self.living.spread(day, self.grid.frame))
+            return self.belief.spread
+        return self.living.spread(day, self.grid.frame)
+
+    def forecast(self, morning: Belief, day: int, nights: int = NIGHTS) -> Forecast:
+        """Return how many plants are infested on the next mornings, nobody inspecting any more.
+
+        By the weather forecast, where there is one, and by the usual of the date after it.
+        """
+        ahead = range(day, day + nights)
+        known = None
+        if self.living is not None and self.living.weather is not None:
+            known = sum(self.living.known(number) for number in ahead)
+        evening, spreads = self.evening(morning, day), [self.night(number) for number in ahead]
+        return forecast(evening, self.grid, spreads, known)
 
     def evening(self, morning: Belief, day: int) -> Belief:
         """Return what is believed after what was found and treated on a day."""
@@ -274,7 +291,7 @@ class History:
             Whose scene it is, of a team; None: all inspections were made by the one who works.
         """
         aisles, robot = shift.aisles, shift.robot
-        today, believed = self.on(day), self.evening(morning, day)
+        today, believed = self.on(day), in_sight(self.evening(morning, day))
         last = self.last_inspected(day)
         last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
         trail = self._trail(day, who)
@@ -300,6 +317,11 @@ class History:
         if not len(earlier):
             return earlier.plant
         return earlier.take(earlier.date == earlier.date[-1]).plant
+
+
+def in_sight(belief: Belief) -> Belief:
+    """Return what is believed of what inspections can see: a day is planned by it."""
+    return belief.in_sight if isinstance(belief, TracedPairs) else belief
 
 
 def made_by(inspections: Inspections, who: str | None) -> Inspections:

@@ -65,6 +65,7 @@ if TYPE_CHECKING:
 
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.monitoring.batches import Batch
@@ -574,6 +575,13 @@ class Season:
         if pest is None or weather is None:
             return None
         return development(pest, weather, now.history.first_find(on) or now.settings.begins, on)
+
+    def forecast(self, on: date) -> Forecast:
+        """Return how many plants are infested on the mornings after a day, nobody inspecting."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.forecast(contents.morning(day), day)
 
     def learnt(self, on: date) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of a day tell of the insects."""

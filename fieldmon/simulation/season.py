@@ -344,6 +344,8 @@ class SeasonOnItsWay:
     def scene(self, number: int, key: np.uint64) -> Scene:
         """Return the scene of a morning."""
         belief = self.mornings.on(number) if self.sampler.reads_chance else None
+        if isinstance(belief, TracedPairs):
+            belief = belief.in_sight
         return Scene(
             aisles=self.aisles,
             robot=self.robot,

@@ -72,7 +72,8 @@ def test_deterministic_kernels_give_the_published_matrix(shape, scale_m):
     shares = DistanceKernel(shape, scale_m).on_cells(SIZE_M, (1, 1), own=True)
     after, outside = spread_exactly(infected, shares, 2)
     # the susceptible hosts of the last cell are used up by two of its four
-    after = np.minimum(after, infected + [[10, 20, 9], [14, 15, 0], [3, 0, 2]])
+    hosts = infected + np.array([[10, 20, 9], [14, 15, 0], [3, 0, 2]])
+    after = np.minimum(after, hosts)
     assert after.tolist() == [[15, 0, 0], [0, 15, 0], [0, 0, 4]]
     assert outside == 0
 
@@ -117,8 +118,8 @@ def test_exposed_hosts_become_infectious_after_the_published_latency():
                 assert counted(cells, colonies.mobile).tolist() == [[5, 0], [0, 0]]
                 exposes.append(counted(cells, exposed))
         spreads.append(counted(cells, colonies.mobile))
-    for made, expected in ((exposes, [[0, 30], [0, 0]]), (spreads, [[5, 10], [0, 0]])):
-        made = np.array(made)
+    for runs, expected in ((exposes, [[0, 30], [0, 0]]), (spreads, [[5, 10], [0, 0]])):
+        made = np.array(runs)
         error = made.std(axis=0, ddof=1) / np.sqrt(len(made))
         # hosts infected already are found again: less than one in sixty
         assert (np.abs(made.mean(axis=0) - expected) <= 3.0 * error + 0.5).all()

@@ -500,6 +500,7 @@ BATCHES_SAID = {
         "{day} {time} · {source} · {n} plant", "{day} {time} · {source} · {n} plants"
     ),
     "treatment": "{day} {time} · treatment of the plot {source}",
+    "corrections": "{day} {time} · corrections: {source}",
 }
 TYPED_IN, ROUTE_TABLE = "typed in", "route table"
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
@@ -631,7 +632,14 @@ GAIN_MORE = {
 GAIN_NONE = "Of one season no interval is known: simulate more to see what a robot would save."
 
 # -- the report
-REPORT_ABOUT, REPORT_KINDS = "About", {"day": "the day", "season": "the season"}
+REPORT_ABOUT, REPORT_KINDS = (
+    "About",
+    {
+        "day": "the day",
+        "season": "the season",
+        "certification": "the record for a certifier",
+    },
+)
 REPORT_PAPER, REPORT_PAPERS = "Paper", {"a4": "A4", "letter": "Letter"}
 REPORT_WAS = "result"
 REPORT_PDF, REPORT_HTML, REPORT_PREVIEW = "Download as PDF", "Download as HTML", "Preview"

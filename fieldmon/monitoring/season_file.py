@@ -661,7 +661,18 @@ class Season:
     def held_to_log(self) -> tuple[str, ...]:
         """Return a sentence for each thing that the file says otherwise than its log."""
         with self.store.reading() as db:
-            return season_log.differing(db)
+            wrong = {
+                "inspections": inspection_table.not_what_they_say(db),
+                "treatments": treatments.not_what_they_say(db),
+            }
+            return (
+                *season_log.differing(db),
+                *(
+                    f"Row {row} of the layer {layer} is not what was recorded."
+                    for layer, rows in wrong.items()
+                    for row in rows
+                ),
+            )
 
     def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
         """Take a batch back (None: the last one), or one inspection; nothing is deleted.

@@ -127,6 +127,14 @@ class TreatmentEffect:
                     before=before.sentence(), after=after.sentence(),
                 )
             )  # fmt: skip
+        if not self.cured_of:
+            said.append(
+                worded(
+                    "None of those found infested before was inspected again: how well it works "
+                    "is not known yet."
+                )
+            )
+            return joined(" ", said)
         said.append(
             worded(
                 "It cleans {efficacy} of infested plants ({low} to {high}), told by {plants}; "

@@ -137,10 +137,10 @@ def _row(
         "plants": int(np.count_nonzero(place.plants)),
         "dose": None if dose is None else float(dose.value),
         "unit": None if dose is None else dose.unit,
-        "water_l_ha": application.water_l_ha,
+        "water_l_ha": _real(application.water_l_ha),
         "area_ha": None if place.area_ha is None else round(place.area_ha, 4),
         "waiting_days": application.waiting_days,
-        "reentry_hours": application.reentry_hours,
+        "reentry_hours": _real(application.reentry_hours),
         "irac_groups": "+".join(application.irac_groups) or None,
         "began": None if began is None else _moment(clock, on, began),
         "ended": None if ended is None else _moment(clock, over, ended),
@@ -148,6 +148,11 @@ def _row(
         **{name: getattr(application, name) or None for name in _TEXTS},
         "of_plants": zlib.compress(np.packbits(place.plants).tobytes()) if place.by_plant else None,
     }
+
+
+def _real(value: float | None) -> float | None:
+    """Return a number as it comes out of the file again."""
+    return None if value is None else float(value)
 
 
 def _moment(clock: LocalClock, on: date, at: time) -> str:

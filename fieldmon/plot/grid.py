@@ -286,12 +286,10 @@ def row_corners(grid: PlantGrid) -> list[NDArray[np.float64]]:
     ends = zip(grid.row_start[:-1].tolist(), (grid.row_start[1:] - 1).tolist(), strict=True)
     if grid.aisles_m is None:
         return [grid.xy_m[[a, b]] for a, b in ends]
-    return [
-        shapely.get_coordinates(shapely.simplify(shapely.linestrings(grid.xy_m[a : b + 1]), 0.05))
-        if b > a
-        else grid.xy_m[[a, a]]
-        for a, b in ends
-    ]
+    from fieldmon.plot.row_course import row_courses  # noqa: PLC0415 - it compiles
+
+    thin = shapely.simplify(row_courses(grid), 0.05, preserve_topology=False)
+    return [shapely.get_coordinates(line) for line in thin]
 
 
 def before_rows(

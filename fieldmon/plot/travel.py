@@ -230,7 +230,7 @@ def trace(aisles: Aisles, a: int, b: int) -> list[int]:
 def crosses_rows(grid: PlantGrid, line_xy_m: Float) -> bool:
     """Tell whether a line ``(k, 2)`` comes within a centimetre of a row.
 
-    A row is the line through its plants, from the first to the last.
+    A row is the line through its plants, from the first to the last; see `row_lines`.
     """
     # not by distance: to lines of no length, as a row of one plant is, GEOS finds none
     rows = shapely.STRtree(shapely.buffer(row_lines(grid), _TOUCH_M))

@@ -7,8 +7,8 @@ Decisions
   number in it, ``plant`` is read as that number.
 - What was not filled in stays unknown: blank records are no inspections. "Could not inspect" is
   one, and is kept with its note.
-- Where a plot has several blocks and a file names them, rows may be counted from 1 in each; how they
-  were counted is said.
+- Where a plot has several blocks and a file names them, rows may be counted from 1 in each. How
+  they were counted is said.
 - A position is snapped to the nearest plant. It is doubtful where, within its accuracy, another
   plant could be the nearest, or where it lies further than half the spacing from the nearest,
   along the row or across. Doubtful records are listed and left out unless one asks for them.

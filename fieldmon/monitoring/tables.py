@@ -257,7 +257,8 @@ def _field(db: sqlite3.Connection, arrays: dict[str, NDArray[Any]]) -> Field:
         row_lines=places.get("row line", MultiLineString()),
         blocks=_blocks(arrays),
         in_rows=f"grid.{_IN_ROWS}" not in arrays,
-        **{name: arrays.get(name) for name in _NAMES},
+        plant_rows=arrays.get("plant_rows"),
+        plant_blocks=arrays.get("plant_blocks"),
         **stated,
     )
 

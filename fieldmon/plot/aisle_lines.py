@@ -144,7 +144,8 @@ def _straight_on(line: Float, by_m: float) -> Float:
     if len(line) < 2:
         return np.empty((0, 2))
     way = line[-1] - line[-2]
-    return line[-1:] + by_m * way / max(float(np.hypot(*way)), 1e-12)
+    onward: Float = line[-1:] + by_m * way / max(float(np.hypot(*way)), 1e-12)
+    return onward
 
 
 def _beside(line: Float, left_m: Float | float) -> Float:

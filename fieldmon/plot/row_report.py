@@ -35,6 +35,9 @@ _CLOSE, _PAIRED, _FEW = 0.6, 0.4, 6
 _EVEN, _BY_TURNS, _LEAST_M, _MANY = 0.55, 0.65, 0.05, 20
 # rows are double rows where gaps between them are of two kinds, one so much narrower
 _NARROW, _RARE = 0.5, 0.25
+# rows that bend may be traced along another direction where plants stand nearly as far apart in
+# them as the rows are
+_SQUARE, _SQUARE_STRAIGHT = 0.62, 0.8
 # so many plants are asked for the nearest one of another row, among so many about them
 _ASKED, _NEAR = 5000, 6
 
@@ -68,6 +71,9 @@ class RowReport:
         rows, and how many of them; 0 where they do not.
     gaps_m
         How far apart rows are by turns, as in double rows; None where they are not.
+    nearly_square_m
+        How far apart rows are, and plants in them, where that is nearly as far, and rows that bend
+        could run another way; else None.
     """
 
     how: str
@@ -82,6 +88,7 @@ class RowReport:
     zigzag_m: float = 0.0
     zigzag_share: float = 0.0
     gaps_m: tuple[float, float] | None = None
+    nearly_square_m: tuple[float, float] | None = None
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -117,6 +124,12 @@ class RowReport:
                 "The blocks that the file names change within rows without a gap, as those of a "
                 "trial do; they were left aside. Part the plot by areas or lines if they are not."
             )
+        if self.nearly_square_m is not None and self.in_rows:
+            said.append(
+                f"Rows are {self.nearly_square_m[0]:.2f} m apart, and plants in them "
+                f"{self.nearly_square_m[1]:.2f} m, nearly as far: they may run, or bend, another "
+                "way. Look at them, and draw one row or name each plant's row if they do."
+            )
         if self.others_deg:
             ways = " and ".join(f"{way:.0f}" for way in self.others_deg)
             said.append(
@@ -124,7 +137,6 @@ class RowReport:
                 "longest rows was taken. Give the row bearing if it is another."
             )
         return tuple(said)
-
 
     def _double_rows(self) -> list[str]:
         """Return what to say of double rows, taken as one row or as two."""
@@ -178,6 +190,7 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
         _paired_share(xy_m),
         *_zigzag(left_m, row),
         _two_gaps(grid),
+        _nearly_square(grid, found, said),
     )
 
 
@@ -216,6 +229,18 @@ def _two_gaps(grid: PlantGrid) -> tuple[float, float] | None:
     # the two lines of a double row may have been taken into different blocks
     nearest_m = _nearest_row_m(grid) if grid.n_blocks > 1 else wide_m
     return (nearest_m, float(np.median(gap_m))) if nearest_m < _NARROW * wide_m else None
+
+
+def _nearly_square(grid: PlantGrid, found: Rows, said: SaidRows) -> tuple[float, float] | None:
+    """Return how far apart rows and their plants are, if rows that bend could run another way."""
+    apart_m = grid.row_spacing_m, grid.plant_spacing_m
+    bent = grid.aisles_m is not None
+    # straight rows that cross others are told of as such
+    sure = said.label is not None or (not bent and (said.bearing or bool(found.others_deg)))
+    least = _SQUARE if bent else _SQUARE_STRAIGHT
+    if sure or not least < apart_m[1] / apart_m[0] < 1 / least:
+        return None
+    return apart_m
 
 
 def _gaps_m(grid: PlantGrid) -> Float:

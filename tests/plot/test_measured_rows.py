@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from shapely import MultiPolygon
 
 from fieldmon.plot.block import Block
@@ -242,6 +244,25 @@ def test_double_rows_taken_as_two_are_said_with_both_distances():
     assert right_share(rows_of(plot.grid, xy_m), line) >= 0.99
     assert plot.rows.gaps_m == pytest.approx((0.5, 2.5), abs=0.05)
     assert any("0.50 and 2.50 m apart by turns" in said for said in plot.rows.doubts)
+
+
+@settings(max_examples=10)
+@given(
+    size=st.tuples(st.integers(5, 12), st.integers(15, 30)),
+    closer=st.floats(0.6, 1.1),
+    bend=st.floats(0.1, 0.9),
+    seed=st.integers(0, 2**32),
+)
+def test_rows_that_bend_and_are_nearly_square_are_right_or_doubted(size, closer, bend, seed):
+    k, j = np.divmod(np.arange(size[0] * size[1]), size[1])
+    at = max(size[1] * 3.0 * closer / bend, 45.0) + 3.0 * k
+    turn = (j - size[1] / 2) * 3.0 * closer / at
+    xy_m = np.stack([at * np.sin(turn), at * np.cos(turn) - at[0]], axis=1)
+    rng = np.random.default_rng(seed)
+    kept = rng.permutation(np.flatnonzero(rng.random(len(k)) > 0.1))
+    xy_m = xy_m[kept] + rng.normal(0.0, 0.1, (len(kept), 2))
+    plot = Plot.around("square", FRAME.lonlat(xy_m))
+    assert right_share(rows_of(plot.grid, xy_m), k[kept]) >= 0.99 or plot.rows.doubts
 
 
 @pytest.mark.parametrize("radius_m", [None, 80.0])

@@ -175,6 +175,7 @@ def by_plant(
     Raise `ObservationError` where rows of several blocks have the names they give, and they name
     no block.
     """
+    parts: list[tuple[NDArray[np.str_], ...]]
     if row is None:
         wanted, parts = _names(plant), [(plants.plant,)]
     elif plants.block is None or block is None:

@@ -11,7 +11,7 @@ import shapely
 from shapely import LineString, MultiLineString, MultiPolygon
 
 from fieldmon.compute.wording import worded
-from fieldmon.errors import PlotError, SettingError
+from fieldmon.errors import FileProblem, PlotError, SettingError
 from fieldmon.io.import_report import Imported, doubtful, dropped, guessed, seen
 from fieldmon.io.read import read_blocks, read_rows
 from fieldmon.plot.block import blocks_from_outline, cut_blocks
@@ -67,10 +67,7 @@ def with_rows(
             fields = (replace(fields[0], row_lines=rows),)
     fields = _with_blocks(fields, sources, hearing)
     if (raster := sources.contours) is not None:
-        contour = partial(_with_contour, sources=sources, choices=choices, many=many)
-        fields = tuple(
-            hearing.read("contours", raster, partial(contour, field)) for field in fields
-        )
+        fields = _with_contours(fields, raster, (sources, choices), hearing)
     return fields
 
 
@@ -96,6 +93,20 @@ def rows_of_each(fields: Fields, rows: MultiLineString) -> Imported[Fields]:
     return Imported(found, tuple(messages))
 
 
+def _with_contours(
+    fields: Fields, raster: Source, told: tuple[PlotSources, PlantingChoices], hearing: Hearing
+) -> Fields:
+    """Return plots with the contours along which their rows run."""
+    contour = partial(_with_contour, sources=told[0], choices=told[1])
+    many = len(fields) > 1
+    found = [
+        hearing.read("contours", raster, partial(contour, field, many=many)) for field in fields
+    ]
+    if all(field.row_lines.is_empty for field in found):  # no plot has one: say why
+        hearing.read("contours", raster, partial(contour, fields[0], many=False))
+    return tuple(found)
+
+
 def _with_contour(
     field: Field, sources: PlotSources, choices: PlantingChoices, *, many: bool
 ) -> Imported[Field]:
@@ -110,8 +121,8 @@ def _with_contour(
         spacing_m = planting_of(part, **choices.given()).row_spacing_m
         try:
             read = contour_of(part, source, spacing_m, options)
-        except PlotError as problem:
-            if not many and not field.blocks:
+        except (PlotError, FileProblem) as problem:
+            if not many and (not field.blocks or isinstance(problem, FileProblem)):
                 raise
             several = "{n} plots or blocks have no contour, and straight rows are laid"
             said = doubtful(f"{problem} Straight rows are laid.", part.name, many=several)

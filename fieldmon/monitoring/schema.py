@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 6
+VERSION = 7
 #: the first fieldmon that reads files of this version
 NEEDS = "0.2"
 #: what the settings say of a team where there is none
@@ -276,6 +276,7 @@ def lay_out(db: sqlite3.Connection) -> None:
     watch(db)
     add_styles(db)
     _phones_come(db)
+    _photos_are_asked_for(db)
 
 
 def watch(db: sqlite3.Connection) -> None:
@@ -340,6 +341,11 @@ def _phones_come(db: sqlite3.Connection) -> None:
     add_photo_styles(db)
 
 
+def _photos_are_asked_for(db: sqlite3.Connection) -> None:
+    """Version 6 did not say of which plants somebody wants a photo."""
+    create(db, phone_tables.PHOTOS_ASKED)
+
+
 #: what makes a file of version k one of version k + 1; `watch` follows the last
 MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     1: _treatments_come,
@@ -347,4 +353,5 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     3: _teams_come,
     4: _estimates_come,
     5: _phones_come,
+    6: _photos_are_asked_for,
 }

@@ -210,7 +210,7 @@ export class Page {
     );
     for (const one of field.asked(plant)) {
       const taken = field.draft.photos > 0;
-      place.append(h("p", { class: "asked", "data-taken": taken }, `${taken ? "✓" : "▣"} ${one.note ? say("photo_asked_of", { note: one.note }) : say("photo_asked")}`));
+      place.append(h("p", { class: "asked", "data-taken": String(taken) }, `${taken ? "✓" : "▣"} ${one.note ? say("photo_asked_of", { note: one.note }) : say("photo_asked")}`));
     }
     const contradicting = (field.day.contradicting ?? []).filter((one) => one.plant === plant);
     if (contradicting.length) place.append(h("p", { class: "bad" }, contradicting.map((one) => say("who_says", { who: one.who, result: say(one.result) })).join(", ")));

@@ -66,7 +66,9 @@ def tapped(choices: Choices) -> tuple[int, ...]:
 
 def layers(choices: Choices) -> list:
     """Return the ring round the plant whose history is shown, if there is such a plant."""
-    return [ring for plant in tapped(choices) for ring in plant_layers.chosen(choices.plot.grid, plant)]
+    return [
+        ring for plant in tapped(choices) for ring in plant_layers.chosen(choices.plot.grid, plant)
+    ]
 
 
 def show_chosen(choices: Choices) -> None:

@@ -27,7 +27,7 @@ _COMES = (
     "JOIN inspections i ON i.fid = t.inspection "
     "WHERE i.undone = 0 AND i.plant = a.plant AND p.received >= a.at)"
 )
-_OPEN = f"FROM photos_asked a WHERE a.ended IS NULL AND NOT {_COMES}"  # noqa: S608 - ours
+_OPEN = f"FROM photos_asked a WHERE a.ended IS NULL AND NOT {_COMES}"
 
 
 class AskedPhoto(NamedTuple):

@@ -209,7 +209,7 @@ def _brings_a_photo_asked_for(page, season):
     assert page.locator("#asked").count() == 0
     page.locator(SENT).wait_for(timeout=60_000)
     assert photos_asked(Season(season.path)) == ()
-    assert [one.plant for one in photos.photos_of(Season(season.path))][0] == plant
+    assert photos.photos_of(Season(season.path))[0].plant == plant
 
 
 def _neighbours(plot, plant):

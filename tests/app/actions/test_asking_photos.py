@@ -31,7 +31,11 @@ def test_a_photo_of_a_picked_plant_is_asked_for_and_taken_back(season_app, seaso
 
 def test_a_photo_that_has_come_is_shown_with_its_plant(season_app, season, monkeypatch):
     monkeypatch.setattr("streamlit.image", lambda data, said: shown.append((data, said)))
-    shown, key, one = [], scouts.let_in(season(), "Ann"), a_telling(PLANT, on=season().settings.begins)
+    shown, key, one = (
+        [],
+        scouts.let_in(season(), "Ann"),
+        a_telling(PLANT, on=season().settings.begins),
+    )
     tellings.take(season(), key, [one], NOW)
     photos.keep(season(), key, photos.Photo("one", one.id, JPEG, NOW))
     season_app.session_state["history row"], season_app.session_state["history plant"] = 40, 1

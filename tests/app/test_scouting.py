@@ -14,13 +14,14 @@ from fieldmon.monitoring import Season, photos, scouts
 from fieldmon.monitoring.day_ahead import route_ahead
 from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
 from fieldmon.plot.grid import row_label
-from tests.app.scouting import Line, PhoneBrowser, a_picture, kept
+from tests.app.scouting import BrokenLine, Line, PhoneBrowser, a_picture, kept
 from tests.monitoring.rules import keeps_the_rules
 from tests.monitoring.seasons import BEGINS, a_season
 from tests.monitoring.telling import told
 
 PLANTS = int(os.environ.get("FIELDMON_DAY", "12"))
 PHOTOS = int(os.environ.get("FIELDMON_PHOTOS", "3"))
+CUTS = int(os.environ.get("FIELDMON_CUTS", "12"))
 KILLS = int(os.environ.get("FIELDMON_KILLS", "2"))
 SENT = "#sync[data-state=sent][data-left='0']"
 
@@ -133,6 +134,60 @@ def test_killed_in_the_moment_of_a_tap_it_is_whole_or_asked_for_again(season, li
         else:
             assert plant_of(phone.page) == before, "what was not kept is asked for again"
         assert sorted(records) == sorted(said)
+
+
+# a network comes, so often; each time until the page says how it went
+_SENT_AGAIN = """async (times) => {
+  for (let k = 0; k < times; k++) {
+    let began = false;
+    const over = new Promise((done) => {
+      const look = () => {
+        const { state } = document.querySelector("#sync").dataset;
+        if (state === "sending") began = true;
+        else if (began) { watching.disconnect(); done(); }
+      };
+      const watching = new MutationObserver(look);
+      watching.observe(document.body, { subtree: true, childList: true });
+    });
+    dispatchEvent(new Event("online"));
+    await over;
+  }
+}"""
+
+
+@pytest.mark.timeout(3600)
+def test_a_line_that_breaks_at_any_byte_loses_and_doubles_nothing(season, line, phone):
+    broken, said = BrokenLine(line.port, seed=5), []
+    line.address = broken.address
+    invited(phone, line, season, "Eve")
+    page, rng = phone.page, random.Random(6)
+    broken.is_broken, photos_taken = True, 0
+    while broken.cuts < CUTS:
+        if page.locator("#sync[data-left='0']").count() or rng.random() < CUTS / 4000:
+            if rng.random() < 0.3:
+                page.locator("#camera").set_input_files(a_picture(len(said)))
+                page.locator("#photos").wait_for()
+                photos_taken += 1
+            said.append(told_now(page, "clean"))
+        if rng.random() < 0.05:  # and the server is stopped and comes again
+            line.go()
+            line.come()
+        page.evaluate(_SENT_AGAIN, min(10, CUTS // 4))
+    there = kept(page)
+    broken.is_broken = False
+    page.evaluate("() => { dispatchEvent(new Event('online')); }")
+    page.locator(SENT).wait_for(timeout=120_000)
+    ids, rows = told(Season(season.path))
+    mine = {one["id"] for one in there.records}
+    assert len(ids) == len(set(ids))
+    assert mine <= set(ids)
+    assert sorted((plant, result) for one, plant, result in rows if one in mine) == sorted(said)
+    for name, (_, _, digest) in there.photos.items():
+        assert hashlib.sha256(photos.picture(season, name)[1]).hexdigest() == digest
+    assert kept(page).photos == {}
+    own = [one for one in photos.photos_of(Season(season.path)) if one.scout == "Eve"]
+    assert len(own) == photos_taken
+    broken.close()
 
 
 def holds(season, there, said):

@@ -6,6 +6,7 @@
 import hashlib
 import os
 import random
+import shutil
 
 import pytest
 
@@ -27,10 +28,18 @@ SENT = "#sync[data-state=sent][data-left='0']"
 
 
 @pytest.fixture(scope="module")
-def season(tmp_path_factory):
-    season = a_season(tmp_path_factory.mktemp("scouted") / "Gate 2026.gpkg")
+def planned_file(tmp_path_factory):
+    season = a_season(tmp_path_factory.mktemp("planned") / "Gate 2026.gpkg")
     season.plan(BEGINS)
-    return season
+    return season.path
+
+
+@pytest.fixture
+def season(planned_file, tmp_path):
+    """Return a season of its own: a whole day of tapping leaves nothing to the next test."""
+    folder = tmp_path / "seasons"
+    folder.mkdir()
+    return Season(shutil.copy(planned_file, folder))
 
 
 @pytest.fixture

@@ -18,7 +18,7 @@ from fieldmon.cli.options import (
     WorkerOptions,
 )
 from fieldmon.cli.team_files import members_of
-from fieldmon.cli.times import clock
+from fieldmon.cli.times import clock, day
 from fieldmon.errors import SettingError
 from fieldmon.samplers import kind_of
 from fieldmon.samplers.registry import SAMPLERS
@@ -52,6 +52,12 @@ class ChangeOptions:
         ),
     ] = None
 
+    harvest: Annotated[
+        str | None,
+        typer.Option(help="First day of harvest, YYYY-MM-DD, which treatments wait for; or none."),
+    ] = None
+    who: Annotated[str, typer.Option(help="Who chooses so.")] = ""
+
     def changed(self, settings: MonitoringSettings) -> MonitoringSettings:
         """Return a season's settings as they are to be."""
         from dataclasses import replace  # noqa: PLC0415
@@ -74,6 +80,9 @@ class ChangeOptions:
             new = replace(new, belief=replace(new.belief, spread=rate))
         if self.trace is not None:
             new = replace(new, belief=replace(new.belief, traces=self.trace))
+        if self.harvest is not None:
+            none = self.harvest.casefold() == "none"
+            new = replace(new, harvest=None if none else day(self.harvest, "--harvest"))
         return new
 
     def _of_several(self, settings: MonitoringSettings) -> MonitoringSettings:
@@ -115,5 +124,5 @@ def change(options: ChangeOptions) -> None:
     if new == seen:
         typer.echo("Nothing was changed.")
         return
-    season.change(new, seen)
+    season.change(new, seen, options.who)
     typer.echo("Changed; fieldmon plan uses it from now on.")

@@ -50,6 +50,8 @@ class MonitoringSettings:
         `robot`.
     teamwork
         How they work together.
+    harvest
+        The first day of harvest, which treatments have to wait for; None: not known.
     """
 
     begins: date
@@ -62,8 +64,17 @@ class MonitoringSettings:
     seed: int = 1
     team: tuple[TeamMember, ...] = ()
     teamwork: Teamwork = field(default_factory=Teamwork)
+    harvest: date | None = None
 
     def __post_init__(self) -> None:
+        if self.harvest is not None and self.harvest < self.begins:
+            raise SettingError(
+                worded(
+                    "Harvest must not be before the season begins on {begins}, but it is {on}.",
+                    begins=self.begins,
+                    on=self.harvest,
+                )
+            )
         if self.team:
             must_differ(self.team)
         if len(self.decides().inspection_times(self.robot).detects) > 1:
@@ -138,6 +149,8 @@ def as_json(settings: MonitoringSettings) -> dict[str, str]:
         "starts": settings.starts.isoformat(),
         "seed": settings.seed,
     }
+    if settings.harvest is not None:
+        plain["season"]["harvest"] = settings.harvest.isoformat()
     members = [asdict(member) for member in settings.team]
     together = {"teamwork": asdict(settings.teamwork)} if members else {}
     plain["team"] = {"members": members, **together}
@@ -164,6 +177,7 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
             seed=season["seed"],
             team=tuple(_member(one) for one in team["members"]),
             teamwork=Teamwork(**team.get("teamwork", {})),
+            harvest=date.fromisoformat(season["harvest"]) if "harvest" in season else None,
         )
     except (KeyError, TypeError, ValueError, FieldmonError) as error:
         raise FileProblem(

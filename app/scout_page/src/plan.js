@@ -44,7 +44,8 @@ export function withAsked(plot, day, at, ahead, asked, left) {
     all.splice(place, 0, plant);
   }
   if (all.length === ahead.length) return all;
-  while (secondsAhead(plot, day, at, all) > left) {
+  const most = Math.max(left, secondsAhead(plot, day, at, ahead));
+  while (secondsAhead(plot, day, at, all) > most) {
     const out = all.findLastIndex((plant) => !wanted.has(plant));
     if (out < 0) break;
     all.splice(out, 1);

@@ -68,6 +68,7 @@ test("a plant with a photo asked for comes where it is the least way round, and 
   assert.deepEqual(withAsked(plot, day, -1, [0, 1, 4], [3], 1e5), [0, 1, 3, 4]);
   assert.deepEqual(withAsked(plot, day, 0, [1, 4], [3, 1], 1e5), [1, 3, 4]);
   assert.deepEqual(withAsked(plot, day, 0, [1, 4], [3], 80), [1, 3]);
-  assert.deepEqual(withAsked(plot, day, 0, [1, 4], [3], 0), [3], "what is asked for is not left out");
+  assert.deepEqual(withAsked(plot, day, 0, [1, 4], [3], 0), [1, 3], "it takes no more room than it needs");
+  assert.deepEqual(withAsked(plot, day, 0, [4], [3], 0), [3], "what is asked for is not left out");
   assert.deepEqual(withAsked(plot, day, 0, [1, 4], [], 0), [1, 4], "and without it nothing changes");
 });

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 7
+VERSION = 8
 #: files of this version and later have a log
 LOGS_SINCE = 7
 #: the first fieldmon that reads files of this version
@@ -337,6 +337,7 @@ def lay_out(db: sqlite3.Connection) -> None:
     watch(db)
     add_styles(db)
     _phones_come(db)
+    _photos_are_asked_for(db)
 
 
 def watch(db: sqlite3.Connection) -> None:
@@ -401,6 +402,11 @@ def _phones_come(db: sqlite3.Connection) -> None:
     add_photo_styles(db)
 
 
+def _photos_are_asked_for(db: sqlite3.Connection) -> None:
+    """Version 7 did not say of which plants somebody wants a photo."""
+    create(db, phone_tables.PHOTOS_ASKED)
+
+
 def _records_come(db: sqlite3.Connection) -> None:
     """Version 6 knew of treatments only where, when, how well and the product; it had no log."""
     there = {row[1] for row in db.execute("PRAGMA table_info(treatments)")}
@@ -421,4 +427,5 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     4: _estimates_come,
     5: _phones_come,
     6: _records_come,
+    7: _photos_are_asked_for,
 }

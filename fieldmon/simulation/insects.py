@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     Night = Callable[[PlantGrid, NDArray[np.bool_], np.uint64], NDArray[np.bool_]]
 
 
-class Insects(Protocol):
+class PlotInsects(Protocol):
     """What lives on a plot, from morning to morning."""
 
     @property
@@ -37,7 +37,7 @@ class Insects(Protocol):
 
 
 class NightInsects:
-    """Insects that do at night what a rule says, and nothing by day."""
+    """PlotInsects that do at night what a rule says, and nothing by day."""
 
     def __init__(
         self, grid: PlantGrid, infested: NDArray[np.bool_], night: Night, hidden_nights: int = 0
@@ -62,7 +62,7 @@ class NightInsects:
 
 
 class PestInsects:
-    """Insects of a pest in its weather: by the night, or hour by hour."""
+    """PlotInsects of a pest in its weather: by the night, or hour by hour."""
 
     def __init__(self, grid: PlantGrid, infested: NDArray[np.bool_], living: PestInWeather) -> None:
         self.living = living

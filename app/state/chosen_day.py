@@ -15,8 +15,8 @@ from fieldmon.monitoring import day_was_worked
 from . import cached
 
 if TYPE_CHECKING:
-    from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.infestation.forecast import Forecast
+    from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.observations import Observations
     from fieldmon.monitoring import DayFigures, Progress

@@ -9,7 +9,7 @@ import numpy as np
 import streamlit as st
 
 from ..actions import assuming, beginning
-from ..show import charts, forecast, learnt, map_layers, plant_history
+from ..show import charts, development, forecast, learnt, map_layers, plant_history
 from ..state import assumptions, chosen_day
 from ..words import texts
 from ..words.language import number
@@ -32,6 +32,7 @@ def show(choices: Choices) -> None:
     _figures(choices, days[-1], progress)
     _again(progress)
     assuming.show(choices)
+    development.show(choices)
     _charts(choices, days, progress)
     forecast.show(choices)
     learnt.show(choices)

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.plot_estimate import PlotEstimate
+    from fieldmon.pests.pest import Pest
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
@@ -63,9 +64,17 @@ class BeliefSettings:
     treated: bool = True
     traces: bool = True
 
-    def first_morning(self, grid: PlantGrid, chance: NDArray[np.float64]) -> Belief:
-        """Return what is believed at first, from a chance map ``(n,)``."""
-        return (TracedPairs if self.traces else PairApproximation).of(grid, chance)
+    def first_morning(
+        self, grid: PlantGrid, chance: NDArray[np.float64], pest: Pest | None = None
+    ) -> Belief:
+        """Return what is believed at first, from a chance map ``(n,)``, of a pest if one is named.
+
+        Only where finds are traced is anything made of the pest.
+        """
+        if not self.traces:
+            return PairApproximation.of(grid, chance)
+        traced = TracedPairs.of(grid, chance)
+        return traced if pest is None else traced.of_pest(pest)
 
     def evening(
         self,
@@ -229,6 +238,12 @@ class History:
     def learnt(self, morning: Belief, day: int) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of a day tell of the insects."""
         return learnt_from(self.evening(morning, day), self.detection)
+
+    def first_find(self, on: date) -> date | None:
+        """Return the day of the first find up to a date; None: there is none yet."""
+        found = self.inspections.date[self.inspections.result == FOUND]
+        found = found[found <= np.datetime64(on, "D")]
+        return found.min().astype(object) if len(found) else None
 
     def last_inspected(self, day: int) -> NDArray[np.int32]:
         """Return ``(n,)`` the day of each plant's last inspection up to `day`, or `NEVER`."""

@@ -46,6 +46,7 @@ from fieldmon.monitoring.recorded_before import (
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
+from fieldmon.pests.development import development
 from fieldmon.planning.assumptions import assumed_by
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
@@ -64,11 +65,12 @@ if TYPE_CHECKING:
 
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
-    from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.forecast import Forecast
+    from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.tables import KeptMessage
+    from fieldmon.pests.development import Development
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
@@ -208,7 +210,7 @@ class Season:
         settings = self.settings
         made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
         rate = settings.belief.spread.rate_per_day
-        if rate != BeliefSettings().spread.rate_per_day:
+        if settings.pest is not None or rate != BeliefSettings().spread.rate_per_day:
             return made
         return (*made, Assumed("rate_per_day", rate))
 
@@ -559,7 +561,20 @@ class Season:
         with self._lock:
             contents = self._now()
             day = contents.settings.day(on)
-            return Status.of(contents.history, contents.morning(day), day)
+            now = Status.of(contents.history, contents.morning(day), day)
+        return replace(now, development=self.development(on))
+
+    def development(self, on: date) -> Development | None:
+        """Return how far the pest has come on a day, counted from its first find.
+
+        Until there is one, from the season's first day. None: no pest or weather was given, or
+        its development is not known.
+        """
+        now = self._now()
+        pest, weather = now.settings.pest, now.settings.weather
+        if pest is None or weather is None:
+            return None
+        return development(pest, weather, now.history.first_find(on) or now.settings.begins, on)
 
     def forecast(self, on: date) -> Forecast:
         """Return how many plants are infested on the mornings after a day, nobody inspecting."""
@@ -679,7 +694,7 @@ class Season:
 def _nothing_yet(
     plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
 ) -> History:
-    belief = settings.belief.first_morning(plot.grid, prior)
+    belief = settings.belief.first_morning(plot.grid, prior, settings.pest)
     known = usable(records, np.datetime64(settings.begins, "D")).observations
     return History(
         plot.grid,
@@ -689,6 +704,7 @@ def _nothing_yet(
         detection=settings.robot.detects,
         recorded=record_states(plot.grid, known) if len(known) else None,
         detection_of={one.name.casefold(): one.robot.detects for one in settings.team},
+        living=settings.living(),
     )
 
 

@@ -37,7 +37,7 @@ class PlotInsects(Protocol):
 
 
 class NightInsects:
-    """PlotInsects that do at night what a rule says, and nothing by day."""
+    """Insects that do at night what a rule says, and nothing by day."""
 
     def __init__(
         self, grid: PlantGrid, infested: NDArray[np.bool_], night: Night, hidden_nights: int = 0
@@ -62,7 +62,7 @@ class NightInsects:
 
 
 class PestInsects:
-    """PlotInsects of a pest in its weather: by the night, or hour by hour."""
+    """Insects of a pest in its weather: by the night, or hour by hour."""
 
     def __init__(self, grid: PlantGrid, infested: NDArray[np.bool_], living: PestInWeather) -> None:
         self.living = living

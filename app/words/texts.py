@@ -562,12 +562,40 @@ BATCHES_SAID = {
         "{day} {time} · {source} · {n} plant", "{day} {time} · {source} · {n} plants"
     ),
     "treatment": "{day} {time} · treatment of the plot {source}",
+    "corrections": "{day} {time} · corrections: {source}",
 }
 TYPED_IN, ROUTE_TABLE = "typed in", "route table"
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
 TREAT_UNSAID = (
     "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
     "it kills, as on the label or by experience."
+)
+TREAT_RECORD = "What a certifier asks: dose, waiting period, who and why"
+TREAT_DOSE, TREAT_UNIT, TREAT_WATER = "Dose of the product", "Unit of the dose", "Water, l/ha"
+TREAT_GROUP, TREAT_GROUP_HELP = "Mode-of-action group (IRAC)", "Such as 6, or 4A+28."
+TREAT_WAIT, TREAT_ENTRY = "Waiting days until harvest", "Hours until re-entry"
+TREAT_BY_LABEL = "Empty: as the season's label table says, where it does."
+TREAT_BEGAN, TREAT_ENDED = "Began at", "Ended at"
+TREAT_ENDED_HELP = "Empty: waiting periods count from the end of the day."
+TREAT_TEXTS = {
+    "operator": "Operator",
+    "reason": "Reason",
+    "machinery": "Machinery",
+    "crop": "Crop",
+    "pest": "Pest",
+    "authorised_by": "Authorised by",
+}
+TREAT_DOSE_UNSAID = (
+    "A dose must have a number and a unit, but one of them is empty. Write both, such as 0.5 and "
+    "l/ha, or none."
+)
+HARVEST, HARVEST_KEPT = "First day of harvest", "The first day of harvest was changed."
+HARVEST_HELP = "Treatments whose waiting period is not over by then are warned of."
+HARVEST_FROM = "After the treatments so far, harvest is allowed from **{day}** on."
+EFFECTS = "Whether treatments worked"
+EFFECTS_TREATED = (
+    "Plants found infested are taken as treated at once in this season: what that did is in these "
+    "figures too."
 )
 TREAT_BUTTON, TREATED = "Note the treatment", "Treatment noted."
 TREATED_BEFORE = "This treatment was noted already; nothing changed."
@@ -677,7 +705,14 @@ GAIN_MORE = {
 GAIN_NONE = "Of one season no interval is known: simulate more to see what a robot would save."
 
 # -- the report
-REPORT_ABOUT, REPORT_KINDS = "About", {"day": "the day", "season": "the season"}
+REPORT_ABOUT, REPORT_KINDS = (
+    "About",
+    {
+        "day": "the day",
+        "season": "the season",
+        "certification": "the record for a certifier",
+    },
+)
 REPORT_PAPER, REPORT_PAPERS = "Paper", {"a4": "A4", "letter": "Letter"}
 REPORT_WAS = "result"
 REPORT_PDF, REPORT_HTML, REPORT_PREVIEW = "Download as PDF", "Download as HTML", "Preview"

@@ -19,7 +19,7 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions, tell_pest
 from fieldmon.cli.team_files import members_of
-from fieldmon.cli.times import clock
+from fieldmon.cli.times import clock, day
 from fieldmon.errors import SettingError
 from fieldmon.samplers import kind_of
 from fieldmon.samplers.registry import SAMPLERS
@@ -53,6 +53,11 @@ class ChangeOptions:
             help="Trace finds beyond the plants next to them, and learn how far insects jump.",
         ),
     ] = None
+    harvest: Annotated[
+        str | None,
+        typer.Option(help="First day of harvest, YYYY-MM-DD, which treatments wait for; or none."),
+    ] = None
+    who: Annotated[str, typer.Option(help="Who chooses so.")] = ""
     living: PestOptions = field(default_factory=PestOptions)
 
     def changed(self, settings: MonitoringSettings, plot: Field) -> MonitoringSettings:
@@ -77,6 +82,9 @@ class ChangeOptions:
             new = replace(new, belief=replace(new.belief, spread=rate))
         if self.trace is not None:
             new = replace(new, belief=replace(new.belief, traces=self.trace))
+        if self.harvest is not None:
+            none = self.harvest.casefold() == "none"
+            new = replace(new, harvest=None if none else day(self.harvest, "--harvest"))
         return self._of_pest(new, plot)
 
     def _of_pest(self, settings: MonitoringSettings, plot: Field) -> MonitoringSettings:
@@ -142,5 +150,5 @@ def change(options: ChangeOptions) -> None:
     if new == seen:
         typer.echo("Nothing was changed.")
         return
-    season.change(new, seen)
+    season.change(new, seen, options.who)
     typer.echo("Changed; fieldmon plan uses it from now on.")

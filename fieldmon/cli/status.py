@@ -38,6 +38,8 @@ def status(
     now = kept.status(day(on) or kept.last_date())
     typer.echo("\n".join(lines(kept, now)))
     typer.echo(f"  in days to come        {kept.forecast(now.on).sentence()}")
+    for line in of_treatments(kept, now):
+        typer.echo(line)
     if rows:
         _show_rows(kept, now)
     if batches:
@@ -84,6 +86,17 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"; {spots.found[h]} finds where {spots.expected[h]:.1f} were expected"
         for h in range(min(len(spots), 3))
     )
+
+
+def of_treatments(season: Season, now: Status) -> Iterator[str]:
+    """Yield what treatments ask for, and whether they worked, line by line."""
+    first = season.harvest_from(now.on)
+    if first is not None:
+        yield f"  harvest                from {first[0]} on, after the treatment of {first[1].on}"
+    for number, effect in enumerate(one for one in season.effects(now.on) if one.before.inspected):
+        yield f"  {'' if number else 'as treatments worked':22} {effect.sentence()}"
+    for caution in dict.fromkeys(one.sentence for one in season.cautions(now.on)):
+        yield f"  beware                 {caution}"
 
 
 def _show_rows(season: Season, now: Status) -> None:

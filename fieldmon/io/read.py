@@ -18,7 +18,7 @@ from fieldmon.io.readers.nearby import of_plot
 from fieldmon.io.sandbox import process
 
 if TYPE_CHECKING:
-    from shapely import MultiLineString
+    from shapely import MultiLineString, MultiPolygon
 
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.formats.layer import LayerInfo
@@ -62,6 +62,12 @@ def read_crews(
         "crews", source, options or PlotOptions()
     )
     return read
+
+
+def read_treated(source: Source, options: PlotOptions | None = None) -> Imported[MultiPolygon]:
+    """Return the area that a file says was treated, as the zones of a decision, degrees WGS84."""
+    area: Imported[MultiPolygon] = _read("treated", source, options or PlotOptions())
+    return area
 
 
 def read_records(

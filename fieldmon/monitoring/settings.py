@@ -58,6 +58,8 @@ class MonitoringSettings:
         What is looked for; None: nobody said, and nights are as `belief` has them.
     weather
         What the pest met and is forecast to meet; None: it is as the pest's figures hold.
+    harvest
+        The first day of harvest, which treatments have to wait for; None: not known.
     """
 
     begins: date
@@ -72,8 +74,17 @@ class MonitoringSettings:
     teamwork: Teamwork = field(default_factory=Teamwork)
     pest: Pest | None = None
     weather: Weather | None = None
+    harvest: date | None = None
 
     def __post_init__(self) -> None:
+        if self.harvest is not None and self.harvest < self.begins:
+            raise SettingError(
+                worded(
+                    "Harvest must not be before the season begins on {begins}, but it is {on}.",
+                    begins=self.begins,
+                    on=self.harvest,
+                )
+            )
         if self.team:
             must_differ(self.team)
         if self.pest is not None and not self.belief.traces:
@@ -161,6 +172,8 @@ def as_json(settings: MonitoringSettings) -> dict[str, str]:
         "starts": settings.starts.isoformat(),
         "seed": settings.seed,
     }
+    if settings.harvest is not None:
+        plain["season"]["harvest"] = settings.harvest.isoformat()
     members = [asdict(member) for member in settings.team]
     together = {"teamwork": asdict(settings.teamwork)} if members else {}
     plain["team"] = {"members": members, **together}
@@ -193,6 +206,7 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
             teamwork=Teamwork(**team.get("teamwork", {})),
             pest=pest_of_json(plain.get("pest")),
             weather=kept_weather(parts.get("weather", "null")),
+            harvest=date.fromisoformat(season["harvest"]) if "harvest" in season else None,
         )
     except (KeyError, TypeError, ValueError, FieldmonError) as error:
         raise FileProblem(

@@ -127,18 +127,18 @@ def _intervals(of: PlantMap) -> list[Interval]:
 
 def scores(of: Interval) -> MapScores:
     """Return how well each way of spreading foretells an interval."""
-    ways = {
-        "no_change": lambda _: [_nothing],
-        "evenly": lambda _: [_evenly],
-        "thesis": lambda interval: [_beside(interval)],
-        "kernel": _kernels,
+    ways: dict[str, list[Callable[[Floats], Floats]]] = {
+        "no_change": [_nothing],
+        "evenly": [_evenly],
+        "thesis": [_beside(of)],
+        "kernel": _kernels(of),
     }
     scored, reaches = {}, []
     for name, candidates in ways.items():
         total = 0.0
         for half in (False, True):
             told, asked = (~of.before & (of.half == side) for side in (half, not half))
-            chance, which = _fitted(candidates(of), of, told)
+            chance, which = _fitted(candidates, of, told)
             total += _minus_log(chance[asked], of.after[asked]).sum()
             if name == "kernel":
                 reaches.append(_REACHES[which // len(_ALONG)])
@@ -149,11 +149,13 @@ def scores(of: Interval) -> MapScores:
 
 
 def _nothing(_: Floats) -> Floats:
-    return np.zeros(1)
+    none: Floats = np.zeros(1)
+    return none
 
 
 def _evenly(numbers: Floats) -> Floats:
-    return np.exp(numbers[:1])
+    rate: Floats = np.exp(numbers[:1])
+    return rate
 
 
 def _beside(of: Interval) -> Callable[[Floats], Floats]:

@@ -50,9 +50,7 @@ CARRIED = Pest(
         Stage("young", 12.5, 83.0, mobile=False),
     ),
     increase=Increase((12.5, 15.0, 30.0), (0.0, 0.08, 0.321)),
-    movement=Movement(
-        "exponential", 0.3, reach_m=6.0, wind="with", hours=(9.0, 18.0), at_c=21.0
-    ),
+    movement=Movement("exponential", 0.3, reach_m=6.0, wind="with", hours=(9.0, 18.0), at_c=21.0),
 )
 # the place: mean low and high, how much a day differs from the one before, and how much of that
 # stays for the next (our choice)

@@ -38,7 +38,8 @@ def small(monkeypatch):
     weather_known._aisles.cache_clear()
 
 
-def test_seasons_are_paired_and_the_same_again(small):
+@pytest.mark.usefixtures("small")
+def test_seasons_are_paired_and_the_same_again():
     one, again = (paired_seasons(CARRIED, SHAPES["heat wave"], 3, 4) for _ in range(2))
     assert (one.knows, one.averages) == (again.knows, again.averages)
     assert len(one.held) == len(one.held_by_averages) == 4
@@ -46,7 +47,8 @@ def test_seasons_are_paired_and_the_same_again(small):
     assert one.held[0] == one.held_by_averages[0]
 
 
-def test_what_it_brings_is_said_with_an_interval(small):
+@pytest.mark.usefixtures("small")
+def test_what_it_brings_is_said_with_an_interval():
     (worth,) = worth_of_weather(range(3), ["steady wind"], n_days=3)
     assert worth.ratio.low <= worth.ratio.mean <= worth.ratio.high
     assert worth.sentence().startswith("steady wind ")

@@ -238,15 +238,15 @@ def refuse_changed(
     for fid, content, mark in rows:
         number += 1
         if fid != number:
-            raise _changed(number, "is missing, or stands elsewhere")
+            raise _changed(number, worded("is missing, or stands elsewhere"))
         if mark != _chained(before, str(content)) or not _is_entry(content, number):
-            raise _changed(number, "is not what was written")
+            raise _changed(number, worded("is not what was written"))
         before = mark
     head = _head(db)
     if head[0] > number:
-        raise _changed(number + 1, "is missing, and whatever came after it")
+        raise _changed(number + 1, worded("is missing, and whatever came after it"))
     if head != (number, before):
-        raise _changed(number, "is not the last that was written")
+        raise _changed(number, worded("is not the last that was written"))
     return number, before
 
 

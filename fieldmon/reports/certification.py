@@ -38,8 +38,8 @@ if TYPE_CHECKING:
 
 # as many letters as a value beside its name may have, and a line of sentences; millimetres that
 # lines, titles and a page take up, a little more than they do
-_SHORT, _LINE_LETTERS = 30, 88
-_ROW_MM, _LINE_MM, _TITLE_MM, _PAGE_MM = 4.1, 4.6, 9.0, 236.0
+_SHORT, _LINE_LETTERS = 30, 100
+_ROW_MM, _LINE_MM, _TITLE_MM, _PAGE_MM = 4.1, 3.8, 9.0, 240.0
 _DAYS_A_PAGE = 92
 
 
@@ -63,7 +63,7 @@ class _PlotRecord:
 
     @property
     def name(self) -> str:
-        return words.isolated(self.season.plot.field.name)
+        return self.season.plot.field.name
 
     def inspected(self) -> tuple[int, int]:
         """Return how many inspections there were, and finds among them."""
@@ -210,11 +210,12 @@ def _parts(table: Table, most: int) -> Iterator[Table]:
 
 
 def _cautions(records: list[_PlotRecord]) -> list[str]:
-    return [
-        worded("{plot}: {said}", plot=one.name, said=caution.sentence)
-        for one in records
-        for caution in one.cautions
-    ]
+    return [_of_plot(one, caution.sentence, records) for one in records for caution in one.cautions]
+
+
+def _of_plot(one: _PlotRecord, said: str, records: list[_PlotRecord]) -> str:
+    """Return a sentence with its plot before it, where there are several."""
+    return worded(words.CERT_ON_PLOT, plot=one.name, said=said) if len(records) > 1 else said
 
 
 def _unsaid(records: list[_PlotRecord]) -> list[str]:
@@ -241,9 +242,9 @@ def _log(one: _PlotRecord) -> str:
     try:
         log, wrong = one.season.log(), one.season.held_to_log()
     except FieldmonError as changed:
-        return worded("{plot}: {said}", plot=one.name, said=str(changed))
+        return worded(words.CERT_ON_PLOT, plot=one.name, said=str(changed))
     if wrong:
-        return worded("{plot}: {said}", plot=one.name, said=" ".join(wrong))
+        return worded(words.CERT_ON_PLOT, plot=one.name, said=" ".join(wrong))
     return worded(
         words.CERT_LOG_HOLDS, plot=one.name, n=figure(len(log)),
         since=one.units.day(log[0].at[:10]), digest=log[-1].digest,
@@ -284,7 +285,7 @@ def _card(number: int, one: _PlotRecord, treatment: KeptTreatment) -> tuple[Bloc
     more = [caution.sentence for caution in one.cautions if caution.batch == treatment.batch]
     more += [effect.sentence() for effect in one.effects if effect.batch == treatment.batch]
     title = worded(
-        "{number}. {plot}, {day}", number=number, plot=one.name, day=one.units.day(treatment.on)
+        words.CERT_TITLE_OF, number=number, plot=one.name, day=one.units.day(treatment.on)
     )
     table = Table(title, words.CERT_COLUMNS, short, (0.4, 0.6), flow=2, left=(0, 1), whole=True)
     below = (*long, *more)

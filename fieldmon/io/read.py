@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.places import NamedPlaces, Plants
     from fieldmon.io.readers.points_and_lines import DrawnBlocks
+    from fieldmon.io.readers.weather_options import WeatherOptions
+    from fieldmon.pests.weather import Weather
     from fieldmon.plot.field import Field
 
 
@@ -154,3 +156,9 @@ def read_inspection_rows(source: Source, options: InspectionOptions) -> Imported
     """Return what a file says of plants that were inspected, before they are looked up."""
     rows: Imported[InspectionRows] = _read("inspection_rows", source, options)
     return rows
+
+
+def read_weather(source: Source, options: WeatherOptions) -> Imported[Weather]:
+    """Return the weather of a source, by the hour or by the day."""
+    weather: Imported[Weather] = _read("weather", source, options)
+    return weather

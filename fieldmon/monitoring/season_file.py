@@ -54,6 +54,7 @@ from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json,
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
 from fieldmon.monitoring.treatments import TreatedPlace
+from fieldmon.pests.development import development
 from fieldmon.planning.assumptions import assumed_by
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
@@ -64,7 +65,7 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
     from datetime import date, time
 
     from numpy.typing import NDArray
@@ -74,6 +75,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.monitoring.batches import Batch
@@ -82,6 +84,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.tables import KeptMessage
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
     from fieldmon.monitoring.treatments import KeptTreatment
+    from fieldmon.pests.development import Development
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
@@ -222,7 +225,7 @@ class Season:
         settings = self.settings
         made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
         rate = settings.belief.spread.rate_per_day
-        if rate != BeliefSettings().spread.rate_per_day:
+        if settings.pest is not None or rate != BeliefSettings().spread.rate_per_day:
             return made
         return (*made, Assumed("rate_per_day", rate))
 
@@ -458,7 +461,8 @@ class Season:
             If a date is not of this season.
         """
         with self._lock, self.store.writing() as db:
-            held = self._read(db).history.inspections
+            before = self._read(db)
+            held = before.history.inspections
             if not confirmed:
                 contradictions(inspections, held).refuse(self.label)
             news = inspections.take(~said_before(inspections, held))
@@ -472,7 +476,8 @@ class Season:
             batches.end(db, batch, new, grows=into is not None)
             if new:
                 self._log_seen(db, news, (batch, source, who))
-                self._refresh(db, _settings(db).day(inspections.date.min().item()))
+                first = _settings(db).day(inspections.date.min().item())
+                self._refresh(db, first, before.mornings[: first + 1])
         return Recorded(batch if new else None, new, len(inspections) - new)
 
     def _log_seen(
@@ -759,7 +764,27 @@ class Season:
         with self._lock:
             contents = self._now()
             day = contents.settings.day(on)
-            return Status.of(contents.history, contents.morning(day), day)
+            now = Status.of(contents.history, contents.morning(day), day)
+        return replace(now, development=self.development(on))
+
+    def development(self, on: date) -> Development | None:
+        """Return how far the pest has come on a day, counted from its first find.
+
+        Until there is one, from the season's first day. None: no pest or weather was given, or
+        its development is not known.
+        """
+        now = self._now()
+        pest, weather = now.settings.pest, now.settings.weather
+        if pest is None or weather is None:
+            return None
+        return development(pest, weather, now.history.first_find(on) or now.settings.begins, on)
+
+    def forecast(self, on: date) -> Forecast:
+        """Return how many plants are infested on the mornings after a day, nobody inspecting."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.forecast(contents.morning(day), day)
 
     def learnt(self, on: date) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of a day tell of the insects."""
@@ -864,10 +889,16 @@ class Season:
         inside: NDArray[np.bool_] = shapely.intersects_xy(ground, self.plot.grid.xy_m)
         return inside
 
-    def _refresh(self, db: sqlite3.Connection, since: int = 0) -> None:
-        """Write what follows from the causes, within the transaction that changes them."""
+    def _refresh(
+        self, db: sqlite3.Connection, since: int = 0, mornings: Sequence[Belief] = ()
+    ) -> None:
+        """Write what follows from the causes, within the transaction that changes them.
+
+        Mornings up to `since` that are still believed need not be made again.
+        """
         self._last = None
         now = self._read(db)
+        now.mornings.extend(mornings[1:])
         derived_layers.refresh(db, self.plot, now.history, now.morning, since)
         qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
@@ -876,7 +907,7 @@ class Season:
 def _nothing_yet(
     plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
 ) -> History:
-    belief = settings.belief.first_morning(plot.grid, prior)
+    belief = settings.belief.first_morning(plot.grid, prior, settings.pest)
     known = usable(records, np.datetime64(settings.begins, "D")).observations
     return History(
         plot.grid,
@@ -886,6 +917,7 @@ def _nothing_yet(
         detection=settings.robot.detects,
         recorded=record_states(plot.grid, known) if len(known) else None,
         detection_of={one.name.casefold(): one.robot.detects for one in settings.team},
+        living=settings.living(),
     )
 
 

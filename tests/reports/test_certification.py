@@ -17,7 +17,7 @@ from fieldmon.reports.html import html_text
 from fieldmon.reports.pdf import pdf_bytes
 from tests.monitoring.seasons import BEGINS, a_season, some_results
 from tests.monitoring.test_season_log import by_hand
-from tests.reports.reading import pages_of
+from tests.reports.reading import texts
 
 REASON = "Spider mites on 6 % of the plants, above the threshold of 5 %; no predators on 30 leaves"
 FULL = Application(
@@ -79,9 +79,9 @@ def test_it_says_what_to_beware_of_what_is_missing_and_the_last_digest(made, sea
 
 
 def test_paper_holds_every_application_and_no_page_runs_over(made, season):
-    pages = pages_of(pdf_bytes(made))
+    pages = texts(pdf_bytes(made))
     assert len(pages) == len(made.sheets)
-    text = " ".join(" ".join(page.split()) for page in pages)
+    text = " ".join(pages)
     for number in range(1, 7):
         assert f"{number}. Treatment of" in text
     assert "more rows" not in text

@@ -17,6 +17,7 @@ from fieldmon.io.readers.points_and_lines import (
 )
 from fieldmon.io.readers.records import records_by_plot, records_of
 from fieldmon.io.readers.treated import treated_of
+from fieldmon.io.readers.weather import weather_in
 from fieldmon.io.sandbox.unpack import Workroom
 
 if TYPE_CHECKING:
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.places import NamedPlaces, Plants
     from fieldmon.io.readers.points_and_lines import DrawnBlocks
+    from fieldmon.io.readers.weather_options import WeatherOptions
+    from fieldmon.pests.weather import Weather
     from fieldmon.plot.field import Field
 
 
@@ -96,3 +99,8 @@ def inspection_rows(
 ) -> Imported[InspectionRows]:
     """Return what a file says of plants that were inspected."""
     return rows_of(source, options, Workroom(Path(folder)))
+
+
+def weather(folder: str, source: Source, options: WeatherOptions) -> Imported[Weather]:
+    """Return the weather of a source."""
+    return weather_in(source, options, Workroom(Path(folder)))

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.compute.units import Units
-    from fieldmon.monitoring import Caution, KeptTreatment, Season
+    from fieldmon.monitoring import Caution, KeptTreatment, LogEntry, Season
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
 
 # as many letters as a value beside its name may have, and a line of sentences; millimetres that
@@ -53,13 +53,20 @@ class _PlotRecord:
     treatments: tuple[KeptTreatment, ...]
     cautions: tuple[Caution, ...]
     effects: tuple[TreatmentEffect, ...]
+    log: tuple[LogEntry, ...]
+    wrong: str
 
     @classmethod
     def of(cls, season: Season, until: date | None, units: Units) -> _PlotRecord:
         last = season.last_date()
         on = last if until is None else until
         done = tuple(one for one in season.treatments() if one.on <= on)
-        return cls(season, on, units, done, season.cautions(on, units), season.effects(on, units))
+        beware, told = season.cautions(on, units), season.effects(on, units)
+        try:
+            log, wrong = season.log(), " ".join(season.held_to_log())
+        except FieldmonError as changed:
+            log, wrong = (), str(changed)
+        return cls(season, on, units, done, beware, told, log, wrong)
 
     @property
     def name(self) -> str:
@@ -74,7 +81,7 @@ class _PlotRecord:
         """Return what was advised last, up to a treatment's day; empty: nothing."""
         said = [
             entry.what
-            for entry in self.season.log()
+            for entry in self.log
             if entry.kind == "advised" and entry.what["date"] <= str(one.on)
         ]
         return f"{said[-1]['said']} ({said[-1]['date']})" if said else ""
@@ -239,15 +246,12 @@ def _unsaid(records: list[_PlotRecord]) -> list[str]:
 
 
 def _log(one: _PlotRecord) -> str:
-    try:
-        log, wrong = one.season.log(), one.season.held_to_log()
-    except FieldmonError as changed:
-        return worded(words.CERT_ON_PLOT, plot=one.name, said=str(changed))
-    if wrong:
-        return worded(words.CERT_ON_PLOT, plot=one.name, said=" ".join(wrong))
+    """Return whether the past is what was written, and the digest to keep."""
+    if one.wrong:
+        return worded(words.CERT_ON_PLOT, plot=one.name, said=one.wrong)
     return worded(
-        words.CERT_LOG_HOLDS, plot=one.name, n=figure(len(log)),
-        since=one.units.day(log[0].at[:10]), digest=log[-1].digest,
+        words.CERT_LOG_HOLDS, plot=one.name, n=figure(len(one.log)),
+        since=one.units.day(one.log[0].at[:10]), digest=one.log[-1].digest,
     )  # fmt: skip
 
 

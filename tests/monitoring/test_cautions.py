@@ -98,11 +98,12 @@ def test_a_mixture_of_a_tank_is_one_use_of_each_of_its_groups():
     [
         (Dose(0.5, "l/ha"), None, None), (Dose(0.51, "l/ha"), None, "more than its label"),
         (Dose(60, "ml/dunam"), None, "more than its label"), (Dose(0.1, "%"), 400.0, None),
-        (Dose(0.1, "%"), None, "cannot be compared"), (Dose(1, "kg/ha"), None, "cannot be compared"),
+        (Dose(0.1, "%"), None, "cannot be compared"),
+        (Dose(1, "kg/ha"), None, "cannot be compared"),
     ],
 )  # fmt: skip
 def test_a_dose_above_the_label_is_warned_of(dose, water, said):
-    told = [one for one in found([treated(0, dose=dose, water_l_ha=water)], [LABEL])]
+    told = found([treated(0, dose=dose, water_l_ha=water)], [LABEL])
     assert [one.kind for one in told] == ([] if said is None else ["dose"])
     assert all(said in one.sentence for one in told)
 

@@ -104,9 +104,14 @@ def test_a_file_that_does_not_hold_to_its_log_says_so_in_the_record(season, tmp_
     path = shutil.copy(season.path, tmp_path / "changed.gpkg")
     by_hand(path, "UPDATE treatments SET product = 'water' WHERE fid = 1")
     report = certification_report([Season(path)], Units())
-    logs = [b for s in report.sheets for b in s.blocks if isinstance(b, Listing) and b.title == "Log"]
+    logs = [
+        b for s in report.sheets for b in s.blocks if isinstance(b, Listing) and b.title == "Log"
+    ]
     assert "Row 1 of the layer treatments is not what was recorded." in logs[0].sentences[0]
     assert "the chain holds" not in " ".join(report.words())
+    by_hand(path, "UPDATE log SET entry = '{}' WHERE fid = 3")
+    changed = " ".join(certification_report([Season(path)], Units()).words())
+    assert "entry 3 is not what was written" in changed
 
 
 def test_a_record_is_of_a_season_or_more():

@@ -83,7 +83,7 @@ PLOTS = GeoPackageTable(
     "Boundary of the plot.",
 )
 PLACES = GeoPackageTable(
-    "places", ("kind TEXT NOT NULL",), "GEOMETRY", "Gate, paths and no-go areas."
+    "places", ("kind TEXT NOT NULL",), "GEOMETRY", "Gate, paths, no-go areas and blocks."
 )
 ROWS = GeoPackageTable("rows", ("line INTEGER", "plants INTEGER"), "LINESTRING", "Rows of plants.")
 PLANTS = GeoPackageTable(

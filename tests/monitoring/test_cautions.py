@@ -68,7 +68,7 @@ def test_the_third_use_of_a_group_in_a_row_is_warned_of_and_not_the_second():
     three = [treated(day, irac_groups=("6",)) for day in (0, 3, 6)]
     assert kinds(three[:2]) == []
     assert kinds(three) == [("group", 7)]
-    assert "use 3 of mode-of-action group 6 in a row on 20 plants" in found(three)[0].sentence
+    assert "Use 3 of mode-of-action group 6 in a row on 20 plants" in found(three)[0].sentence
 
 
 @pytest.mark.parametrize(
@@ -114,7 +114,10 @@ def test_more_uses_than_the_label_allows_are_warned_of_where_they_overlap():
     uses += [treated(3, EAST), treated(5, WEST)]
     (one,) = found(uses, [LABEL])
     assert (one.kind, one.batch) == ("uses", 6)
-    assert "use 3 in this season on 4 plants, but its label allows 2" in one.sentence
+    assert (
+        "Use 3 in this season on 4 plants: Acarol on 2026-04-11. Its label allows 2."
+        in one.sentence
+    )
 
 
 def test_a_wait_shorter_than_the_labels_is_said_and_the_labels_counts():

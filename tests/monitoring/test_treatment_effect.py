@@ -123,6 +123,6 @@ def test_the_interval_of_a_share_is_the_exact_one(found, n, low, high):
 def test_it_is_said_in_words():
     past = history((1, [0, 1, 60], [FOUND] * 3), (5, [0, 1, 60], [CLEAN, FOUND, FOUND]))
     said = effect(past, [treated(3)])[0].sentence()
-    assert said.startswith("soap on 2026-04-09: of 2 plants inspected before and after, 100% (2 of")
+    assert said.startswith("After soap on 2026-04-09: of 2 plants inspected before and after, 100%")
     assert "Elsewhere 100% (1 of 1" in said
     assert date(2026, 4, 9) == BEGINS + timedelta(3)

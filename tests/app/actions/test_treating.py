@@ -3,7 +3,7 @@
 from datetime import date
 
 from fieldmon.decisions.labels import ProductLabel
-from tests.app.driving import go, texts_of
+from tests.app.driving import go, press, texts_of
 
 
 def noted(app, **said):
@@ -18,9 +18,14 @@ def noted(app, **said):
 
 
 def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, season):
-    season().keep_labels([ProductLabel("Acarol", waiting_days=7, reentry_hours=12.0)])
     begins = season().settings.begins
     go(season_app, "record")
+    table = b"product,waiting days,re-entry hours\nAcarol,7,12\n"
+    season_app.file_uploader(key="labels_file").upload("labels.csv", table, "text/csv")
+    season_app.run()
+    press(season_app, "Take these labels")
+    assert "1 label is kept" in season_app.success[0].value
+    assert season().labels() == (ProductLabel("Acarol", waiting_days=7, reentry_hours=12.0),)
     season_app.date_input(key="harvest None").set_value(begins)
     season_app.run()
     assert season().settings.harvest == begins

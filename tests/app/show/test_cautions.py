@@ -33,6 +33,7 @@ def choices(season):
 
 def test_nothing_is_shown_without_a_season_or_treatments(shown, tmp_path):
     cautions.show(choices(None))
+    cautions.show_today(choices(None))
     season = a_season(tmp_path / "season.gpkg")
     cautions.show(choices(season))
     cautions.show_treatments(choices(season))

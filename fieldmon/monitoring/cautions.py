@@ -203,8 +203,8 @@ def _groups_in_a_row(said: list[_Said], units: Units) -> Iterator[Caution]:
                 if (uses := int(plants.max(initial=0))) > MOST_IN_A_ROW:
                     n = int(np.count_nonzero(plants > MOST_IN_A_ROW))
                     sentence = worded(
-                        "Use {n} of mode-of-action group {group} in a row on {plants}: {product} on "
-                        "{day}. Take another group, or mites become resistant.",
+                        "Use {n} of mode-of-action group {group} in a row on {plants}: {product} "
+                        "on {day}. Take another group, or mites become resistant.",
                         n=uses, group=group, plants=counted(n, "plant"), **_named(one, units),
                     )  # fmt: skip
                     yield Caution("group", sentence, one.batch)

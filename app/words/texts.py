@@ -196,6 +196,12 @@ PEST_MOVES = {
     "cauchy": "A plant sends out {per_day} a day, half of them farther than {reach} m.",
 }
 PEST_WITH_WIND, PEST_IN_RAIN = "It goes with the wind.", "It moves only in rain of {rain} mm on."
+PEST_ENTERS = (
+    "It comes in with a chance of {edge} a day at the edge, {paths} beside a path, {anywhere} "
+    "anywhere."
+)
+PEST_COURSE = "A plant shows it after {hidden} days and infects others after {latency}."
+PEST_COUNT = "What is counted: {what}."
 DEGREE_DAYS = "Degree-days"
 NEXT_GENERATION = "Next generation around {when}."
 GATHERED = "{degree_days} degree-days above {threshold} °C since {since}, of {needed} a generation."

@@ -11,7 +11,7 @@ from fieldmon.compute.arrays import read_only
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import pair_chances
-from fieldmon.infestation.plot_estimate import draw_fields
+from fieldmon.infestation.plot_estimate import doubted, draw_fields
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -76,6 +76,7 @@ def map_verdict(  # noqa: PLR0913 - two of them have to be named
     plants: NDArray[np.bool_] | None = None,
     sure: float = 0.9,
     key: np.uint64 = np.uint64(0),  # noqa: B008 - a number, not a call with effects
+    doubt: float = 0.0,
 ) -> MapVerdict:
     """Return whether a plot, or a part of it, has to be treated.
 
@@ -98,6 +99,8 @@ def map_verdict(  # noqa: PLR0913 - two of them have to be named
         A verdict needs this chance of being right, between 0.5 and 1.
     key
         Which fields are drawn: the same key, the same answer.
+    doubt
+        How far the expected share may be off beyond that, as a share of it (`Belief.doubt`).
 
     Raises
     ------
@@ -127,6 +130,8 @@ def map_verdict(  # noqa: PLR0913 - two of them have to be named
         raise SettingError("A verdict must be about a plant or more, but the area holds none.")
     pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
     shares = _drawn_shares(grid, (chance, pairs), asked, key)
+    if doubt > 0.0:
+        shares = np.minimum(shares * doubted(doubt), 1.0)
     above = float(np.mean(shares >= level))
     verdict: Verdict = TREAT if above >= sure else LEAVE if above <= 1 - sure else LOOK_ON
     low, high = np.quantile(shares, [0.5 - sure / 2, 0.5 + sure / 2])

@@ -540,18 +540,22 @@ class Season:
             day = contents.settings.day(on)
             return contents.history.evening(contents.morning(day), day).chance
 
-    def verdict(self, on: date, level: float, sure: float = 0.9) -> MapVerdict:
+    def verdict(
+        self, on: date, level: float, sure: float = 0.9, plants: NDArray[np.bool_] | None = None
+    ) -> MapVerdict:
         """Return whether treating pays after a day's work; see `fieldmon.decisions`.
 
-        Plants that were found and not treated count: they are infested.
+        Plants that were found and not treated count: they are infested. `plants` ``(n,)`` is the
+        part of the plot that is asked about; None: all.
         """
         with self._lock:
             contents = self._now()
             day = contents.settings.day(on)
             evening = contents.history.evening(contents.morning(day), day)
         return map_verdict(
-            contents.history.grid, evening.chance, level, evening.pair_chance, sure=sure
-        )
+            contents.history.grid, evening.chance, level, evening.pair_chance,
+            plants=plants, sure=sure, doubt=evening.doubt,
+        )  # fmt: skip
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from fieldmon.compute.arrays import read_only
-from fieldmon.compute.wording import counted
-from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
+from fieldmon.compute.wording import counted, worded
+from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT, Verdict
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import pair_chances
 from fieldmon.infestation.plot_estimate import doubted, draw_fields
@@ -18,7 +18,6 @@ from fieldmon.infestation.plot_estimate import doubted, draw_fields
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.decisions.sequential import Verdict
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]
@@ -61,17 +60,22 @@ class MapVerdict:
 
     def sentence(self) -> str:
         """Return it as an answer to "do I have to spray?"."""
-        believed = (
-            f"{self.share:.1%} of the plants are believed infested ({self.low:.1%} to "
-            f"{self.high:.1%}), treating pays from {self.level:.1%} on"
-        )
-        chance = f"the chance that it is so much is {self.chance_above:.0%}"
-        answer = {
-            TREAT: "Treat",
-            LEAVE: "Do not treat",
-            LOOK_ON: "Look on before you decide",
-        }[self.verdict]
-        return f"{answer}: {believed}; {chance}."
+        return worded(
+            _ANSWERS[self.verdict],
+            share=self.share, low=self.low, high=self.high, level=self.level,
+            chance=self.chance_above,
+        )  # fmt: skip
+
+
+_BELIEVED = (
+    "{share:.1%} of the plants are believed infested ({low:.1%} to {high:.1%}), treating pays from "
+    "{level:.1%} on; the chance that it is so much is {chance:.0%}."
+)
+_ANSWERS: dict[Verdict, str] = {
+    TREAT: f"Treat: {_BELIEVED}",
+    LEAVE: f"Do not treat: {_BELIEVED}",
+    LOOK_ON: f"Look on before you decide: {_BELIEVED}",
+}
 
 
 def map_verdict(  # noqa: PLR0913 - two of them have to be named

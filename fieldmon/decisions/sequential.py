@@ -433,7 +433,9 @@ def tried(plan: Plan, counts: NDArray[Any]) -> Trials:
 
 
 def simulated_curve(
-    plan: Plan, means: Any, draw: Callable[[float], NDArray[Any]]  # noqa: ANN401 - a list of them
+    plan: Plan,
+    means: Any,
+    draw: Callable[[float], NDArray[Any]],  # noqa: ANN401 - a list of them
 ) -> OperatingCurve:
     """Return what a plan does at true means ``(k,)`` on looks that are drawn, clustered or not.
 

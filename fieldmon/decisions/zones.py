@@ -20,7 +20,7 @@ from scipy.sparse.csgraph import connected_components
 
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import routine
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -67,7 +67,6 @@ class Sprayer:
                 raise SettingError(
                     f"A sprayer's {name.replace('_', ' ')} must be 0 or more, but it is {value:g}."
                 )
-
 
     @classmethod
     def of_boom(
@@ -195,16 +194,18 @@ class Zones:
     def sentence(self) -> str:
         """Return it in words, beside treating the whole plot."""
         if not len(self):
-            return (
-                f"Treat nowhere: {self.outside:.1f} infested plants are expected, and nowhere "
-                "would spraying save more than it costs."
+            return worded(
+                "Treat nowhere: {outside:.1f} infested plants are expected, and nowhere would "
+                "spraying save more than it costs.",
+                outside=self.outside,
             )
-        share = self.m2 / self.plot_m2
-        return (
-            f"Treat {self.m2 / 10_000:.2f} ha in {counted(len(self), 'zone')}, "
-            f"{share:.0%} of the plot: {self.inside:.1f} infested plants are expected there and "
-            f"{self.outside:.1f} elsewhere. It costs {self.cost:.2f} and saves {self.saved:.2f}."
-        )
+        return worded(
+            "Treat {area:.2f} ha in {zones}, {share:.0%} of the plot: {inside:.1f} infested plants "
+            "are expected there and {outside:.1f} elsewhere. It costs {cost:.2f} and saves "
+            "{saved:.2f}.",
+            area=self.m2 / 10_000, zones=counted(len(self), "zone"), share=self.m2 / self.plot_m2,
+            inside=self.inside, outside=self.outside, cost=self.cost, saved=self.saved,
+        )  # fmt: skip
 
 
 def best_zones(

@@ -33,6 +33,7 @@ from fieldmon.monitoring import (
     tables,
     treatments,
 )
+from fieldmon.monitoring.advice import AdviceSettings, advice
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
@@ -66,6 +67,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.learnt import Learnt
+    from fieldmon.monitoring.advice import Advice
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.tables import KeptMessage
     from fieldmon.planning.members import TeamMember
@@ -556,6 +558,23 @@ class Season:
             contents.history.grid, evening.chance, level, evening.pair_chance,
             plants=plants, sure=sure, doubt=evening.doubt,
         )  # fmt: skip
+
+    def advice(self, on: date, asked: AdviceSettings | None = None) -> Advice:
+        """Return whether to treat after a day's work, where, and how many looks decide.
+
+        Parameters
+        ----------
+        on
+            The day.
+        asked
+            The threshold, the sprayer and the costs; None: the defaults.
+        """
+        scene = self.scene(on)
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            evening = contents.history.evening(contents.morning(day), day)
+        return advice(contents.history.grid, evening, asked or AdviceSettings(), scene)
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""

@@ -1,8 +1,8 @@
 """Decide: the looks that tell soonest whether so much of the plot is infested that treating pays.
 
-Which share is infested is told best by looks that are spread over the whole plot, and denser where
-a look is less foreseen (Neyman's allocation, J. R. Stat. Soc. 97 (1934) 558). A find tells where its
-neighbours stand, not how much is infested elsewhere: it draws no more looks to it.
+Which share is infested is told best by looks that are spread over the whole plot, and denser
+where a look is less foreseen (Neyman's allocation, J. R. Stat. Soc. 97 (1934) 558). A find tells
+where its neighbours stand, not how much is infested elsewhere: it draws no more looks to it.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class _Believed(NamedTuple):
 
 
 class _Pass(NamedTuple):
-    """Room for a pass: what each plant weighs ``(n,)``, the chosen ``(n,)``, who is seen ``(n,)``."""
+    """Room for a pass, ``(n,)`` each: what plants weigh, the chosen, and who is seen."""
 
     weight: Floats
     chosen: NDArray[np.int64]
@@ -84,8 +84,10 @@ class Decide(Sampler):
         return scene.walked(
             _walk,
             (grid.linked, grid.snake, would_find.view(np.uint8)),
-            _Believed(chance, pairs, chance.copy(), Neighbourhood.of(n)),
-            _Pass(np.empty(n), np.empty(n, np.int64), scene.last_inspected == scene.day),
+            (
+                _Believed(chance, pairs, chance.copy(), Neighbourhood.of(n)),
+                _Pass(np.empty(n), np.empty(n, np.int64), scene.last_inspected == scene.day),
+            ),
             (scene.at, self.looks_a_pass, scene.robot.detects, scene.key),
         )
 
@@ -95,11 +97,11 @@ def _walk(
     travel: TravelTable,
     clock: Clock,
     plants: tuple[Linked, NDArray[np.int32], NDArray[np.uint8]],
-    believed: _Believed,
-    room: _Pass,
+    work: tuple[_Believed, _Pass],
     start: tuple[int, int, float, np.uint64],
     stops: Stops,
 ) -> int:
+    believed, room = work
     at, looks, detects, key = start
     linked, snake, would_find = plants
     now_s, k, tries, number = 0.0, 0, 0, 0

@@ -82,7 +82,7 @@ class Question:
 
 @dataclass(frozen=True)
 class VerdictOutcome:
-    """How a contender answered: after how many looks and seconds, and was it right?
+    """How a contender answered, after how many looks, and whether that was right.
 
     `share` is the truth in thresholds: from 1 on treating pays.
     """

@@ -47,7 +47,7 @@ def test_a_plot_that_is_all_zone_has_no_rest(tmp_path):
 
 
 def test_what_cannot_be_written_is_refused(tmp_path):
-    with pytest.raises(SettingError, match=r"must be called \*\.v3\.xml\.zip"):
+    with pytest.raises(SettingError, match=r"must be called \*\.v3\.grid1\.xml\.zip"):
         write_treatment_map(MAP, tmp_path / "t.pdf")
     with pytest.raises(SettingError, match="pays nowhere"):
         TreatmentMap("a", PLOT, [], 1.0)

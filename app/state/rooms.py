@@ -19,7 +19,7 @@ class Room:
 ROOMS = {
     "plots": Room("grid_view", ("plots",)),
     "today": Room("route", ("today", "scout", "record")),
-    "season": Room("calendar_month", ("season", "field", "report")),
+    "season": Room("calendar_month", ("season", "decide", "field", "report")),
     "ahead": Room("balance", ("compare", "simulate")),
     "plot": Room("polyline", ("plot",)),
 }

@@ -84,6 +84,7 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
 
     Example: fieldmon decide season.gpkg --threshold 5% --per-ha 120 -o zones.xml.zip
     """
+    from fieldmon.decisions.leaves import of_leaves  # noqa: PLC0415
     from fieldmon.decisions.thresholds import threshold_of  # noqa: PLC0415
     from fieldmon.decisions.zones import Sprayer, TreatmentCosts  # noqa: PLC0415
     from fieldmon.monitoring import Season  # noqa: PLC0415
@@ -109,7 +110,7 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
     if level:
         typer.echo("\n".join(advice.said_of_plot()))
     else:
-        typer.echo(_of_leaves(asked, _Leaves(leaves, counted, presence)))
+        typer.echo(of_leaves(asked, leaves, counted, presence=presence))
     typer.echo("\n".join(advice.said_of_zones(above=bool(level))))
     if output:
         _write(_Asked(kept, when, advice, product), output)
@@ -119,50 +120,6 @@ def _own(path: Path | None) -> tuple[Threshold, ...] | None:
     from fieldmon.decisions.thresholds import published, read_thresholds  # noqa: PLC0415
 
     return None if path is None else (*published(), *read_thresholds(path))
-
-
-@dataclass(frozen=True)
-class _Leaves:
-    looked_at: int
-    counted: float
-    presence: bool
-
-
-def _of_leaves(asked: Threshold, leaves: _Leaves) -> str:
-    """Return what leaves say, which the season knows nothing of."""
-    from fieldmon.decisions.sequential import IwaoPlan, after, least_more  # noqa: PLC0415
-    from fieldmon.decisions.taylor import TaylorLaw  # noqa: PLC0415
-
-    plan = IwaoPlan(asked.level, None if asked.is_share else TaylorLaw())
-    if not leaves.looked_at:
-        return (
-            f"The season holds plants, and this threshold is of leaves: look at "
-            f"{least_more(plan, 0, 0)} leaves or more, and say --leaves and --counted."
-        )
-    if leaves.presence and not asked.is_share:
-        return _by_presence(asked, leaves)
-    verdict = after(plan, leaves.looked_at, leaves.counted)
-    said = f"{leaves.looked_at} leaves, {leaves.counted:g} counted: {verdict}"
-    if verdict == "look on":
-        more = least_more(plan, leaves.looked_at, leaves.counted)
-        said += f"; after {more} more you can decide at the earliest"
-    return f"{said} (Iwao's plan, 90 % sure)."
-
-
-def _by_presence(asked: Threshold, leaves: _Leaves) -> str:
-    """Return what the share of leaves infested says of the animals on one."""
-    from fieldmon.decisions.taylor import mean_band  # noqa: PLC0415
-
-    band = mean_band(leaves.looked_at, int(leaves.counted))
-    verdict = (
-        "treat" if band.low >= asked.level
-        else "do not treat" if band.high < asked.level
-        else "look on, or count the animals"
-    )  # fmt: skip
-    return (
-        f"{leaves.looked_at} leaves, {int(leaves.counted)} infested: {band.mean:.1f} a leaf "
-        f"({band.low:.1f} to {band.high:.1f}, by all published laws): {verdict}."
-    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from fieldmon.compute.arrays import read_only
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT, Verdict
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import pair_chances
@@ -60,22 +60,18 @@ class MapVerdict:
 
     def sentence(self) -> str:
         """Return it as an answer to "do I have to spray?"."""
-        return worded(
-            _ANSWERS[self.verdict],
+        answer = (
+            worded("Treat:") if self.verdict == TREAT
+            else worded("Do not treat:") if self.verdict == LEAVE
+            else worded("Look on before you decide:")
+        )  # fmt: skip
+        believed = worded(
+            "{share:.1%} of the plants are believed infested ({low:.1%} to {high:.1%}), treating "
+            "pays from {level:.1%} on; the chance that it is so much is {chance:.0%}.",
             share=self.share, low=self.low, high=self.high, level=self.level,
             chance=self.chance_above,
         )  # fmt: skip
-
-
-_BELIEVED = (
-    "{share:.1%} of the plants are believed infested ({low:.1%} to {high:.1%}), treating pays from "
-    "{level:.1%} on; the chance that it is so much is {chance:.0%}."
-)
-_ANSWERS: dict[Verdict, str] = {
-    TREAT: f"Treat: {_BELIEVED}",
-    LEAVE: f"Do not treat: {_BELIEVED}",
-    LOOK_ON: f"Look on before you decide: {_BELIEVED}",
-}
+        return joined(" ", (answer, believed))
 
 
 def map_verdict(  # noqa: PLR0913 - two of them have to be named
@@ -159,10 +155,7 @@ def zone_verdicts(
     grid: PlantGrid,
     believed: tuple[Floats, Floats | None],
     zones: NDArray[np.int64],
-    level: float,
-    works: float,
-    *,
-    sure: float = 0.9,
+    asked: tuple[float, float, float],
     doubt: float = 0.0,
 ) -> ZoneVerdicts:
     """Return the verdict of each zone, and the chance that treating them all is enough.
@@ -175,11 +168,10 @@ def zone_verdicts(
         ``(n,)`` chance of each plant, and ``(e,)`` of two neighbours, None: as records have it.
     zones
         ``(n,)`` the zone of each plant, from 0; -1: none.
-    level
-        Share of the plants from which on treating pays, of a zone and of the plot.
-    works
-        Chance that treating cleans an infested plant.
-    sure, doubt
+    asked
+        Share of the plants from which on treating pays, of a zone and of the plot; how sure a
+        verdict must be; and the chance that treating cleans an infested plant.
+    doubt
         As of `map_verdict`.
 
     Raises
@@ -187,6 +179,7 @@ def zone_verdicts(
     SettingError
         If the level or `sure` cannot be.
     """
+    level, sure, works = asked
     _check(level, sure)
     chance, pair_chance = believed
     pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance

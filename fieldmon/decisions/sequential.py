@@ -434,8 +434,8 @@ def tried(plan: Plan, counts: NDArray[Any]) -> Trials:
 
 def simulated_curve(
     plan: Plan,
-    means: Any,
-    draw: Callable[[float], NDArray[Any]],  # noqa: ANN401 - a list of them
+    means: Any,  # noqa: ANN401 - a list of them
+    draw: Callable[[float], NDArray[Any]],
 ) -> OperatingCurve:
     """Return what a plan does at true means ``(k,)`` on looks that are drawn, clustered or not.
 

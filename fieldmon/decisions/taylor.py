@@ -148,7 +148,8 @@ PUBLISHED_LAWS = (
     PublishedLaw(TaylorLaw(), "generic, Tollerup et al. 2013, J. Econ. Entomol. 106(4):1707"),
     PublishedLaw(
         TaylorLaw(float(np.exp(2.56)), 1.64),
-        "strawberry before harvest, Raworth 1986, Can. Entomol. 118:807, its abstract", 0.0969, 0.0355,
+        "strawberry before harvest, Raworth 1986, Can. Entomol. 118:807 (abstract)",
+        0.0969, 0.0355,
     ),
     PublishedLaw(
         TaylorLaw(float(np.exp(1.76)), 1.64),

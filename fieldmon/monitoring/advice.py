@@ -245,8 +245,8 @@ def advice(
     )
     zones = best_zones(grid, evening.chance, asked.sprayer, asked.costs)
     said = zone_verdicts(
-        grid, (evening.chance, evening.pair_chance), zones.zone, asked.level, asked.costs.works,
-        sure=asked.sure, doubt=evening.doubt,
+        grid, (evening.chance, evening.pair_chance), zones.zone,
+        (asked.level, asked.sure, asked.costs.works), evening.doubt,
     )  # fmt: skip
     more = None
     if scene is not None and plot.verdict == LOOK_ON:

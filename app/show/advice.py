@@ -36,12 +36,15 @@ def headline(advice: Advice) -> None:
     """Answer the daily question in one sentence, and say what the answer rests on."""
     with st.container(key="lead"):
         st.markdown(f"**{in_words(advice.headline())}**")
-    for sentence in advice.said_of_plot():
+    for sentence in advice.reasons():
         st.markdown(in_words(sentence))
 
 
 def figures(choices: Choices, advice: Advice, product: str) -> None:
     """Show what treating the zones comes to."""
+    if not len(advice.zones):
+        st.markdown(in_words(advice.zones.sentence()))
+        return
     zones, units = advice.zones, choices.units
     share = number(zones.m2 / zones.plot_m2, ".0%")
     with st.container(horizontal=True):
@@ -88,17 +91,21 @@ def _span(numbers: np.ndarray) -> str:
 
 def zone_map(choices: Choices, advice: Advice) -> MapContent:
     """Return the map of the chosen day with the zones on it, each with its number."""
-    content = map_layers.day_map(choices, off=("records", "route", "hot"))
+    day = map_layers.day_map(choices, off=("records", "route", "hot"))
+    places = [one for one in day.labels if one["k"] not in {"stop", "leg"}]
+    content = replace(day, labels=places, play=None)
     key = f"zones {choices.key} {choices.revision} {choices.day} {choices.dark} {advice.asked}"
     layers = cached.layers(key, partial(_layers, advice, dark=choices.dark))
     if not layers:
         return content
-    switch = Switch("zones", texts.DECIDE_ON_MAP, tuple(layer.id for layer in layers))
+    own = Switch("zones", texts.DECIDE_ON_MAP, tuple(layer.id for layer in layers))
+    numbers = Switch("numbers", texts.DECIDE_NUMBERS, ())
+    others = [one for one in content.switches if one.key not in {"numbers", "route"}]
     edge = colours.ZONE_IN_DARK if choices.dark else colours.ZONE
     sign = legends.part("", [("outline", edge, texts.DECIDE_ON_MAP)], "zones")
-    labels = [*_numbers(advice), *(one for one in content.labels if one["k"] != "stop")]
+    labels = [*_numbers(advice), *places]
     return replace(
-        content, layers=[*content.layers, *layers], switches=(switch, *content.switches),
+        content, layers=[*content.layers, *layers], switches=(own, numbers, *others),
         legend=[*content.legend, sign], labels=labels,
     )  # fmt: skip
 
@@ -129,6 +136,6 @@ def _numbers(advice: Advice) -> list[Label]:
     """Return each zone's number in its middle."""
     inner = [area.representative_point() for area in advice.outlines[:_MOST_NUMBERS]]
     return [
-        {"p": [round(point.x, 7), round(point.y, 7)], "t": f"{k}", "k": "block"}
+        {"p": [round(point.x, 7), round(point.y, 7)], "t": f"{k}", "k": "leg"}
         for k, point in enumerate(inner, start=1)
     ]

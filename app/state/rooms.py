@@ -18,8 +18,8 @@ class Room:
 #: by their addresses, in the order in which they stand at the top
 ROOMS = {
     "plots": Room("grid_view", ("plots",)),
-    "today": Room("route", ("today", "scout", "record")),
-    "season": Room("calendar_month", ("season", "decide", "field", "report")),
+    "today": Room("route", ("today", "scout", "record", "decide")),
+    "season": Room("calendar_month", ("season", "field", "report")),
     "ahead": Room("balance", ("compare", "simulate")),
     "plot": Room("polyline", ("plot",)),
 }

@@ -414,6 +414,7 @@ DECIDE_WRONG_HELP = (
     "treating would be."
 )
 DECIDE_VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}
+DECIDE_NUMBERS = "numbers of the zones"
 DECIDE_ON_MAP, DECIDE_TIP = "zones to treat", "Zone {zone}: {share:.0%} infested; {verdict}"
 DECIDE_SPRAYER, DECIDE_COSTS, DECIDE_PRODUCT = "Sprayer", "Costs, in any currency", "Product"
 DECIDE_BOXES = {

@@ -65,13 +65,16 @@ class MapVerdict:
             else worded("Do not treat:") if self.verdict == LEAVE
             else worded("Look on before you decide:")
         )  # fmt: skip
-        believed = worded(
+        return joined(" ", (answer, self.believed()))
+
+    def believed(self) -> str:
+        """Return what the answer rests on."""
+        return worded(
             "{share:.1%} of the plants are believed infested ({low:.1%} to {high:.1%}), treating "
             "pays from {level:.1%} on; the chance that it is so much is {chance:.0%}.",
             share=self.share, low=self.low, high=self.high, level=self.level,
             chance=self.chance_above,
         )  # fmt: skip
-        return joined(" ", (answer, believed))
 
 
 def map_verdict(  # noqa: PLR0913 - two of them have to be named

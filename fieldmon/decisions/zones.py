@@ -191,6 +191,13 @@ class Zones:
         """Return the number of zones."""
         return int(self.zone.max(initial=-1)) + 1
 
+    def only(
+        self, grid: PlantGrid, chance: Floats, kept: NDArray[np.bool_], costs: TreatmentCosts
+    ) -> Zones:
+        """Return some of the zones, ``(zones,)`` whether each is kept, numbered anew."""
+        number = np.append(np.where(kept, np.cumsum(kept) - 1, -1), -1)
+        return _zones(number[self.zone], chance, _Plants.of(grid, chance, costs), costs)
+
     def sentence(self) -> str:
         """Return it in words, beside treating the whole plot."""
         if not len(self):
@@ -242,6 +249,20 @@ def best_zones(
     if costs.reserve > 0.0 and plants.m2 * np.count_nonzero(plants.once & (zone >= 0)) > most:
         zone = _within(lambda dearer: choose(grid, dearer, sprayer, costs), plants, most)
     return _zones(zone, chance, plants, costs)
+
+
+def whole_plot(grid: PlantGrid, chance: Floats, costs: TreatmentCosts | None = None) -> Zones:
+    """Return the plot as one zone, which is what most growers treat.
+
+    Examples
+    --------
+    >>> import numpy as np, fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> len(whole_plot(plot.grid, np.full(plot.n_plants, 0.1)))
+    1
+    """
+    costs = costs or TreatmentCosts()
+    return _zones(np.zeros(len(grid), np.int64), chance, _Plants.of(grid, chance, costs), costs)
 
 
 class _Plants(NamedTuple):

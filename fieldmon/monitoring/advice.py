@@ -133,6 +133,11 @@ class Advice:
         return self.plot.verdict
 
     @property
+    def above(self) -> int:
+        """Return how many zones are above the threshold by themselves."""
+        return sum(one.verdict == TREAT for one in self.said.zones)
+
+    @property
     def litres(self) -> float:
         """Return what is sprayed in the zones altogether."""
         return self.zones.m2 / 10_000 * self.asked.rate_l_ha
@@ -157,6 +162,12 @@ class Advice:
             )  # fmt: skip
         if self.verdict == TREAT:
             return worded("Treat: so much is infested, though nowhere it pays by these costs.")
+        if self.verdict == LEAVE and self.above:
+            return worded(
+                "Do not treat the whole plot, but {area:.2f} ha of it in {zones}, {share:.0%}.",
+                area=self.zones.m2 / 10_000, zones=counted(len(self.zones), "zone"),
+                share=self.zones.m2 / self.zones.plot_m2,
+            )  # fmt: skip
         if self.verdict == LEAVE:
             return worded("Do not treat today.")
         least = self.more.least if self.more else None
@@ -169,19 +180,25 @@ class Advice:
 
     def sentences(self) -> list[str]:
         """Return the answer and what it rests on, in sentences."""
-        return [self.headline(), *self.said_of_plot(), *self.said_of_zones()]
+        return [self.headline(), *self.reasons(), *self.said_of_zones()]
+
+    def reasons(self) -> list[str]:
+        """Return what the answer rests on, and the looks that it lacks."""
+        return [self.plot.believed(), *self._looks_said()]
 
     def said_of_plot(self) -> list[str]:
         """Return the verdict of the plot, and the looks that it lacks."""
+        return [self.plot.sentence(), *self._looks_said()]
+
+    def _looks_said(self) -> list[str]:
         more = self.more
         if more is None or more.if_clean is None:
-            return [self.plot.sentence()]
+            return []
         return [
-            self.plot.sentence(),
             worded(
                 "If nothing is found on {plants} more, it need not be treated.",
                 plants=counted(more.if_clean, "plant"),
-            ),
+            )
         ]
 
     def said_of_zones(self, *, above: bool = True) -> list[str]:

@@ -13,6 +13,7 @@ from fieldmon.infestation.spread import Spread, night
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.workday import draw_detections, work_day
 from fieldmon.samplers.base import NEVER, Scene, resting_place
+from fieldmon.simulation.treating import Sprayed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Sampler
     from fieldmon.simulation.start import Start
+    from fieldmon.simulation.treating import TreatmentRule
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,8 @@ class SeasonSettings:
     hidden_nights
         Nights for which a new infestation spreads and no inspection finds it; 0 for those of the
         first morning.
+    treating
+        By what rule it is treated in the evening, see `TreatmentRule`; None: never.
     """
 
     n_days: int = 25
@@ -60,6 +64,7 @@ class SeasonSettings:
     believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = TracedPairs.of
     pests: Callable[[PlantGrid, NDArray[np.bool_], np.uint64], NDArray[np.bool_]] | None = None
     hidden_nights: int = 0
+    treating: TreatmentRule | None = None
 
     def __post_init__(self) -> None:
         if self.n_days < 1:
@@ -96,6 +101,8 @@ class SimulatedDay:
         Finds so far, today's included.
     each
         The working day of each of a team; of one alone it is `work`.
+    sprayed
+        What was treated in the evening; None: nothing.
     """
 
     number: int
@@ -106,6 +113,7 @@ class SimulatedDay:
     ever_infested: int
     ever_found: int
     each: tuple[Workday, ...] = ()
+    sprayed: Sprayed | None = None
 
     @property
     def worked_s(self) -> float:
@@ -130,7 +138,16 @@ class SimulatedDay:
     @property
     def left(self) -> int:
         """Return the number of infested plants this evening, before the night."""
-        return int(np.count_nonzero(self.infested)) - self.found
+        return int(np.count_nonzero(self.evening))
+
+    @property
+    def evening(self) -> NDArray[np.bool_]:
+        """Return who is infested in the evening, ``(n,)``: neither found nor cleaned by spraying."""
+        evening = self.infested.copy()
+        evening[self.work.plant[self.work.found]] = False
+        if self.sprayed is not None:
+            evening &= ~self.sprayed.cleaned
+        return evening
 
     @property
     def detection_pct(self) -> float:
@@ -159,6 +176,7 @@ class MorningBeliefs:
     ) -> None:
         self._first, self.learning, self._spread = first, learning, spread
         self._works: list[Workday] = []
+        self._left: dict[int, NDArray[np.float64]] = {}
         self._last: tuple[int, Belief] | None = None
 
     @property
@@ -166,17 +184,25 @@ class MorningBeliefs:
         """Return the number of the first day whose work it has not heard of."""
         return len(self._works)
 
-    def add(self, work: Workday) -> None:
-        """Hear of the next day's work."""
+    def add(self, work: Workday, left: NDArray[np.float64] | None = None) -> None:
+        """Hear of the next day's work, and which share of each chance outlived its treatment."""
+        if left is not None:
+            self._left[self.known] = left
         self._works.append(work)
+
+    def evening(self, number: int, work: Workday) -> Belief:
+        """Return what is believed after a day's work, before any treatment."""
+        return self.on(number).learn(work.plant, work.found, self.learning(work))
 
     def on(self, number: int) -> Belief:
         """Return the belief of a morning, from the last one asked for if that was before."""
         day, belief = self._last or (0, self._first())
         if day > number:
             day, belief = 0, self._first()
-        for work in self._works[day:number]:
+        for k, work in enumerate(self._works[day:number], day):
             evening = belief.learn(work.plant, work.found, self.learning(work))
+            if k in self._left:
+                evening = evening.treated(self._left[k])
             belief = evening.overnight(self._spread)
         self._last = number, belief
         return belief
@@ -202,7 +228,7 @@ def simulated_days(
     for number, (own, inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
         day = season.work(number, own, inspect)
         yield day
-        season.pass_night(day.work, overnight)
+        season.pass_night(day, overnight)
 
 
 class SeasonOnItsWay:
@@ -226,6 +252,7 @@ class SeasonOnItsWay:
         self.ever_infested, self.ever_found = int(np.count_nonzero(self.infested)), 0
         self.trail = np.empty(0, np.int32)
         self.shows_on = np.zeros(len(self.infested), np.int32)
+        self.last_treated: int | None = None
 
     def work(self, number: int, own_key: np.uint64, inspect_key: np.uint64) -> SimulatedDay:
         """Work for a day; return what came of it."""
@@ -251,14 +278,25 @@ class SeasonOnItsWay:
             self.ever_infested,
             self.ever_found,
             each,
+            self._treat(number, work),
         )
 
-    def pass_night(self, work: Workday, key: np.uint64) -> None:
-        """Destroy what was found, and let the others spread."""
-        self.mornings.add(work)
+    def _treat(self, number: int, work: Workday) -> Sprayed | None:
+        """Return what is treated on an evening by the season's rule."""
+        rule, last = self.settings.treating, self.last_treated
+        if rule is None or (last is not None and number - last < rule.every_days):
+            return None
+        zones = rule.treated(self.aisles.grid, self.mornings.evening(number, work).chance)
+        if zones is None:
+            return None
+        self.last_treated = number
+        return Sprayed(zones, rule.cleaned(zones, number), rule.costs.works)
+
+    def pass_night(self, day: SimulatedDay, key: np.uint64) -> None:
+        """Destroy what was found or sprayed, and let the others spread."""
+        work, evening = day.work, day.evening
+        self.mornings.add(work, None if day.sprayed is None else day.sprayed.left)
         day_after = self.mornings.known
-        evening = self.infested.copy()
-        evening[work.plant[work.found]] = False
         self.infested = self.settings.night(self.aisles.grid, evening, key)
         self.shows_on[self.infested & ~evening] = day_after + self.settings.hidden_nights
         # nobody recovers at night

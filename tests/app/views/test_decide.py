@@ -1,0 +1,1 @@
+"""Decide in the browser's page, driven without a browser."""

@@ -98,7 +98,8 @@ class Reach:
         back
             Whether it goes the other way: from where it would land to where it came from.
         """
-        spectrum = np.tensordot(shares, self.spectra, 1)
+        # not by a matrix library: its threads cost a hundred times what is added here
+        spectrum = np.einsum("k,kij->ij", shares, self.spectra)
         return self._landed(self._sent(values) * (np.conj(spectrum) if back else spectrum))
 
     def brought_by_each(self, values: Floats) -> Floats:

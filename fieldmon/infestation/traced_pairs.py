@@ -129,17 +129,17 @@ class TracedPairs:
 
         As far as what each origin brings is known, and as infestations that jumped come in groups.
         """
-        brought = self.chance @ self.shares.astype(np.float64)
+        brought = np.einsum("i,ik->k", self.chance, self.shares, dtype=np.float64)
         expected = float(brought.sum())
         origins = float(((brought * self.counts.doubt) ** 2).sum()) / expected**2
-        sent = float(self.unseen @ self.chance) / expected
+        sent = float((self.unseen * self.chance).sum()) / expected
         relatives = 2.0 * self.jumps * float(self.beyond.sum()) * sent
         return float(np.sqrt(origins + relatives / expected))
 
     @cached_property
     def traces(self) -> Traces:
         """What a day needs to trace a find."""
-        kernel = np.tensordot(self.beyond, self.reach.kernels, 1)
+        kernel = np.einsum("k,kij->ij", self.beyond, self.reach.kernels)
         afar = self.shares[:, JUMPED:].sum(axis=1, dtype=np.float64)
         return Traces(self.reach.cells, kernel, self.unseen, afar, self.evidence)
 

@@ -10,6 +10,19 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 
 
+def require_folder(target: Path) -> None:
+    """Raise `FileProblem` unless the folder that a file is written into exists."""
+    if not target.parent.is_dir():
+        raise FileProblem(
+            worded(
+                "The folder {parent} must exist before {name} can be written "
+                "into it. Make it, or choose another one.",
+                parent=target.parent,
+                name=target.name,
+            )
+        )
+
+
 def write_whole(path: str | Path, data: bytes) -> None:
     """Write a file so that nobody ever sees half of it; raise `FileProblem` if it cannot be.
 
@@ -24,15 +37,7 @@ def write_whole(path: str | Path, data: bytes) -> None:
                 "{target} must be a file to write to, but it is {what}.", target=target, what=what
             )
         )
-    if not target.parent.is_dir():
-        raise FileProblem(
-            worded(
-                "The folder {parent} must exist before {name} can be written "
-                "into it. Make it, or choose another one.",
-                parent=target.parent,
-                name=target.name,
-            )
-        )
+    require_folder(target)
     name = None
     try:
         with tempfile.NamedTemporaryFile(

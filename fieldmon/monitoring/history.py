@@ -181,6 +181,19 @@ class History:
 
     def evening(self, morning: Belief, day: int) -> Belief:
         """Return what is believed after what was found and treated on a day."""
+        last = self._last_evening.get(day)
+        if last is not None and last[0] is morning:  # asked for by each layer of a day
+            return last[1]
+        believed = self._evening(morning, day)
+        self._last_evening.clear()
+        self._last_evening[day] = morning, believed
+        return believed
+
+    @cached_property
+    def _last_evening(self) -> dict[int, tuple[Belief, Belief]]:
+        return {}
+
+    def _evening(self, morning: Belief, day: int) -> Belief:
         done = self.on(day).inspected
         found = done.result == FOUND
         believed = self.belief.evening(morning, done.plant, found, self._detection(done))

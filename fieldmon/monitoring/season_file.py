@@ -57,7 +57,7 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
     from datetime import date, time
 
     from numpy.typing import NDArray
@@ -428,7 +428,8 @@ class Season:
             If a date is not of this season.
         """
         with self._lock, self.store.writing() as db:
-            held = self._read(db).history.inspections
+            before = self._read(db)
+            held = before.history.inspections
             if not confirmed:
                 contradictions(inspections, held).refuse(self.label)
             news = inspections.take(~said_before(inspections, held))
@@ -441,7 +442,8 @@ class Season:
             new = inspection_table.store(db, made)
             batches.end(db, batch, new, grows=into is not None)
             if new:
-                self._refresh(db, _settings(db).day(inspections.date.min().item()))
+                first = _settings(db).day(inspections.date.min().item())
+                self._refresh(db, first, before.mornings[: first + 1])
         return Recorded(batch if new else None, new, len(inspections) - new)
 
     @contextmanager
@@ -682,10 +684,16 @@ class Season:
         inside: NDArray[np.bool_] = shapely.intersects_xy(ground, self.plot.grid.xy_m)
         return inside
 
-    def _refresh(self, db: sqlite3.Connection, since: int = 0) -> None:
-        """Write what follows from the causes, within the transaction that changes them."""
+    def _refresh(
+        self, db: sqlite3.Connection, since: int = 0, mornings: Sequence[Belief] = ()
+    ) -> None:
+        """Write what follows from the causes, within the transaction that changes them.
+
+        Mornings up to `since` that are still believed need not be made again.
+        """
         self._last = None
         now = self._read(db)
+        now.mornings.extend(mornings[1:])
         derived_layers.refresh(db, self.plot, now.history, now.morning, since)
         qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.io.atomic_write import require_folder
 from fieldmon.monitoring import changes_beside
 from fieldmon.monitoring.geopackage import APPLICATION_ID
 from fieldmon.monitoring.schema import MIGRATIONS, NEEDS, OPEN, VERSION, lay_out, watch
@@ -259,15 +260,7 @@ def _refuse_old(target: Path, path: str | Path) -> None:
                 path=path,
             )
         )
-    if not target.parent.is_dir():
-        raise FileProblem(
-            worded(
-                "The folder {parent} must exist before {name} can be made "
-                "in it. Make it, or choose another one.",
-                parent=target.parent,
-                name=target.name,
-            )
-        )
+    require_folder(target)
 
 
 @contextmanager

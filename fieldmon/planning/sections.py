@@ -149,34 +149,23 @@ def _value(
     for row in range(travel.row_start.size - 1):
         first, end = travel.row_start[row], travel.row_start[row + 1]
         low_m, high_m = travel.end_x_m[row, 0], travel.end_x_m[row, 1]
-        gains, n = 0.0, 0
         best, best_s = 0.0, 0.0
-        for i in range(first, end):
-            if finds[i] > least:
-                gains += finds[i]
-                n += 1
-                spent_s = (
-                    clock.row_change_s
-                    + n * clock.visit_s
-                    + 2.0 * (travel.x_m[i] - low_m) / clock.speed_m_s
-                )
-                if gains - price * spent_s > best:
-                    best, best_s = gains - price * spent_s, spent_s
-        if n > 0:
-            spent_s = clock.row_change_s + n * clock.visit_s + (high_m - low_m) / clock.speed_m_s
-            if gains - price * spent_s > best:
-                best, best_s = gains - price * spent_s, spent_s
+        for from_high in (False, True):
             gains, n = 0.0, 0
-            for i in range(end - 1, first - 1, -1):
+            for k in range(end - first):
+                i = end - 1 - k if from_high else first + k
                 if finds[i] > least:
                     gains += finds[i]
                     n += 1
-                    spent_s = (
-                        clock.row_change_s
-                        + n * clock.visit_s
-                        + 2.0 * (high_m - travel.x_m[i]) / clock.speed_m_s
-                    )
+                    deep_m = high_m - travel.x_m[i] if from_high else travel.x_m[i] - low_m
+                    spent_s = clock.row_change_s + n * clock.visit_s
+                    spent_s += 2.0 * deep_m / clock.speed_m_s
                     if gains - price * spent_s > best:
                         best, best_s = gains - price * spent_s, spent_s
+            if n > 0 and not from_high:  # all through
+                spent_s = clock.row_change_s + n * clock.visit_s
+                spent_s += (high_m - low_m) / clock.speed_m_s
+                if gains - price * spent_s > best:
+                    best, best_s = gains - price * spent_s, spent_s
         net[travel.corridor[row]] += best
         seconds[travel.corridor[row]] += best_s

@@ -15,6 +15,7 @@ from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
 from fieldmon.io.rasters.opening import (
     M_PER_DEGREE,
     RasterPart,
+    ReadPixels,
     band_named,
     open_raster,
     part_of,
@@ -45,24 +46,12 @@ def backdrop(
     """Return a picture of a source, or of what lies within bounds (west, south, east, north)."""
     with open_raster(folder, source, options) as opened:
         bands = _shown(opened, options.band)
-        part = part_of(opened, bounds, _SIDE * _SIDE, len(bands))
-        part = RasterPart(part.window, within_side(part.shape))
         colours = _colours(opened, bands)
         kinds = {opened.tif.dtypes[band - 1] for band in bands}
         smooth = kinds <= {"uint8", "uint16"} and colours is None
         how = Resampling.average if smooth else Resampling.nearest
-        read = read_pixels(opened, bands, part, options, how)
-        raw, said = read.values, list(read.messages)
-        missing = read.missing | ~np.isfinite(raw).all(axis=0)
-        if missing.all():
-            raise FileProblem(
-                worded(
-                    "{name} must show something, but there is no value in "
-                    "it{value}. Choose another raster.",
-                    name=opened.name,
-                    value="" if bounds is None else " about the plot",
-                )
-            )
+        part, read = read_for_picture(opened, bands, bounds, options, how)
+        raw, missing, said = read.values, read.missing, list(read.messages)
         if colours is not None:
             image, missing = _coloured(raw[0], colours, missing)
         else:
@@ -70,6 +59,36 @@ def backdrop(
             said += stretched
         corners, bent = corners_on_map(opened, part)
         return Imported(Backdrop(*encoded(image, missing), corners), (*said, *bent))
+
+
+def read_for_picture(
+    opened: OpenRaster,
+    bands: tuple[int, ...],
+    bounds: Bounds | None,
+    options: RasterOptions,
+    resampling: Resampling,
+) -> tuple[RasterPart, ReadPixels]:
+    """Return at most 2000 pixels a side; refuse a raster without a value there."""
+    part = part_of(opened, bounds, _SIDE * _SIDE, len(bands))
+    shrink = min(1.0, _SIDE / max(part.shape))
+    high, wide = (max(1, round(pixels * shrink)) for pixels in part.shape)
+    part = RasterPart(part.window, (high, wide))
+    read = read_pixels(opened, bands, part, options, resampling)
+    missing = read.missing | ~np.isfinite(read.values).all(axis=0)
+    if missing.all():
+        raise FileProblem(
+            worded(
+                "{name} must show something, but there is no value in it. Choose another raster.",
+                name=opened.name,
+            )
+            if bounds is None
+            else worded(
+                "{name} must show something about the plot, but there is no value in it there. "
+                "Choose another raster.",
+                name=opened.name,
+            )
+        )
+    return part, ReadPixels(read.values, missing, read.messages)
 
 
 def _shown(opened: OpenRaster, wanted: str | None) -> tuple[int, ...]:
@@ -88,12 +107,6 @@ def _shown(opened: OpenRaster, wanted: str | None) -> tuple[int, ...]:
         return tuple(meaning.index(colour) + 1 for colour in rgb)
     plain = [b for b in range(1, opened.tif.count + 1) if meaning[b - 1] != ColorInterp.alpha]
     return tuple(plain[:3]) if len(plain) >= 3 else tuple(plain[:1])
-
-
-def within_side(shape: tuple[int, int]) -> tuple[int, int]:
-    """Return the pixels of a picture of at most 2000 a side."""
-    shrink = min(1.0, _SIDE / max(shape))
-    return max(1, round(shape[0] * shrink)), max(1, round(shape[1] * shrink))
 
 
 def _colours(opened: OpenRaster, bands: tuple[int, ...]) -> NDArray[np.uint8] | None:

@@ -8,30 +8,26 @@ import numpy as np
 from rasterio.enums import ColorInterp, Resampling
 from scipy import ndimage
 
-from fieldmon.errors import FileProblem
+from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import Imported, seen
 from fieldmon.io.rasters.opening import (
     M_PER_DEGREE,
-    RasterPart,
     band_named,
     open_raster,
-    part_of,
-    read_pixels,
 )
-from fieldmon.io.rasters.picture import corners_on_map, encoded, within_side
+from fieldmon.io.rasters.picture import corners_on_map, encoded, read_for_picture
 from fieldmon.io.rasters.values import Backdrop, map_xy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.options import Source
-    from fieldmon.io.rasters.opening import OpenRaster
+    from fieldmon.io.rasters.opening import OpenRaster, RasterPart
     from fieldmon.io.rasters.values import RasterOptions
 
     Float = NDArray[np.float64]
     Bounds = tuple[float, float, float, float]
 
-_SIDE = 2000
 # coarse heights are drawn on at least so many pixels, as a smooth surface
 _FINE = 600
 # four lights from the west half of the sky, each on what faces it (Mark, USGS OFR 92-422, 1992)
@@ -51,16 +47,8 @@ def relief(
     """Return the relief of a source, or of what lies within bounds (west, south, east, north)."""
     with open_raster(folder, source, options) as opened:
         band = 1 if options.band is None else band_named(opened, options.band)
-        part = part_of(opened, bounds, _SIDE * _SIDE)
-        part = RasterPart(part.window, within_side(part.shape))
-        read = read_pixels(opened, (band,), part, options, Resampling.average)
-        heights = read.values[0].astype(np.float64)
-        missing = read.missing | ~np.isfinite(heights)
-        if missing.all():
-            raise FileProblem(
-                f"{opened.name} must hold heights, but there is no value in it"
-                f"{'' if bounds is None else ' about the plot'}. Choose another raster."
-            )
+        part, read = read_for_picture(opened, (band,), bounds, options, Resampling.average)
+        heights, missing = read.values[0].astype(np.float64), read.missing
         low, high = heights[~missing].min(), heights[~missing].max()
         heights, missing = finer(filled(heights, missing), missing)
         slope = slopes(heights, _ground(opened, part, heights.shape))
@@ -68,8 +56,13 @@ def relief(
         grey = _GREYS[0] + shade(times * slope) / _FLAT * (_GREYS[1] - _GREYS[0])
         corners, bent = corners_on_map(opened, part)
         said = seen(
-            f"Heights of {low:.5g} to {high:.5g} m; slopes are drawn {times:.3g} times as steep as "
-            "they are, so that they are seen."
+            worded(
+                "Heights of {low:.5g} to {high:.5g} m; slopes are drawn {times:.3g} times as "
+                "steep as they are, so that they are seen.",
+                low=low,
+                high=high,
+                times=times,
+            )
         )
         picture = Backdrop(*encoded(np.clip(grey, 0, 255).astype(np.uint8)[None], missing), corners)
         return Imported(picture, (*read.messages, said, *bent))

@@ -3,18 +3,19 @@
 import gettext
 import re
 import string
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 import fieldmon
 from app.state import chosen_language
-from app.words import catalogues, language, texts
+from app.words import language, texts
 from fieldmon.io.writers import FORMATS
 from tests.app.driving import go, opened, texts_of
+from tests.app.words.known_texts import catalogue, entries
 
 OTHERS = tuple(code for code in language.LANGUAGES if code != language.ENGLISH)
-ENTRIES = catalogues.entries()
 #: words that are the same in English and Spanish, and names of programs
 SAME_WORDS = {
     "Robot", "No", "m", "km", "ft", "mi", "ha", "dunam", "acre", "QGIS", "QField", "ArcGIS",
@@ -30,9 +31,9 @@ def blanks(words):
     }  # fmt: skip
 
 
-def strings(catalogue, entry):
+def strings(held, entry):
     """Return the words of an entry in a catalogue, all its forms; none where it has no entry."""
-    found = catalogue.get(entry.id, entry.context)
+    found = held.get(entry.id, entry.context)
     if found is None:
         return ()
     return found.string if isinstance(found.string, tuple) else (found.string,)
@@ -40,19 +41,19 @@ def strings(catalogue, entry):
 
 @pytest.mark.parametrize("code", OTHERS)
 def test_every_text_is_translated_and_no_catalogue_holds_more(code):
-    catalogue = catalogues.read(code)
-    missing = [e for e in ENTRIES if not all(strings(catalogue, e) or ("",))]
+    held = catalogue(code)
+    missing = [e for e in entries() if not all(strings(held, e) or ("",))]
     assert missing == []
-    known = {(entry.context, entry.words) for entry in ENTRIES}
-    held = {(m.context, m.id[-1] if isinstance(m.id, tuple) else m.id) for m in catalogue if m.id}
-    assert held - known == set()
+    known = {(entry.context, entry.words) for entry in entries()}
+    kept = {(m.context, m.id[-1] if isinstance(m.id, tuple) else m.id) for m in held if m.id}
+    assert kept - known == set()
 
 
 @pytest.mark.parametrize("code", OTHERS)
 def test_translations_have_the_blanks_of_the_english(code):
-    catalogue = catalogues.read(code)
-    for entry in ENTRIES:
-        for words in strings(catalogue, entry):
+    held = catalogue(code)
+    for entry in entries():
+        for words in strings(held, entry):
             less = blanks(entry.words) - blanks(words)
             # "one plant" and "two plants" are words in some languages, not numbers
             counts = {one for one in less if entry.one and one[0] in {"n", "inspected"}}
@@ -62,26 +63,26 @@ def test_translations_have_the_blanks_of_the_english(code):
 
 @pytest.mark.parametrize("code", OTHERS)
 def test_translations_keep_the_signs_of_the_page(code):
-    catalogue = catalogues.read(code)
-    for entry in ENTRIES:
-        for words in strings(catalogue, entry):
+    held = catalogue(code)
+    for entry in entries():
+        for words in strings(held, entry):
             for sign in ("**", "### ", "\n"):
                 assert words.count(sign) == entry.words.count(sign), (entry, words)
 
 
 @pytest.mark.parametrize("code", OTHERS)
 def test_a_plural_has_as_many_forms_as_the_language_tells_apart(code):
-    catalogue = catalogues.read(code)
-    some = gettext.c2py(catalogue.plural_expr)
-    assert {some(n) for n in range(201)} == set(range(catalogue.num_plurals))
-    for entry in ENTRIES:
+    held = catalogue(code)
+    some = gettext.c2py(held.plural_expr)
+    assert {some(n) for n in range(201)} == set(range(held.num_plurals))
+    for entry in entries():
         if entry.one:
-            assert len(strings(catalogue, entry)) == catalogue.num_plurals, entry
+            assert len(strings(held, entry)) == held.num_plurals, entry
 
 
 @pytest.mark.parametrize("code", OTHERS)
 def test_a_catalogue_says_who_made_it_and_holds_the_words_of_the_field(code):
-    head = catalogues.read(code).header_comment
+    head = catalogue(code).header_comment
     assert "MADE BY A MACHINE" in head
     assert "hot spot = " in head
 
@@ -141,14 +142,14 @@ def said(app):
 
 def english_left(app, code):
     """Return our own English texts on a page, and lines with three of our English words."""
-    catalogue = catalogues.read(code)
+    held = catalogue(code)
     english = {
-        entry.words for entry in ENTRIES if entry.words not in strings(catalogue, entry)
-    } - {w for entry in ENTRIES for w in strings(catalogue, entry)}  # fmt: skip
+        entry.words for entry in entries() if entry.words not in strings(held, entry)
+    } - {w for entry in entries() for w in strings(held, entry)}  # fmt: skip
     lines = [line for line in said(app) if "[English]" not in line]
     whole = [line for line in lines if line in english]
     plain = [re.sub(r"\u2068.*?\u2069|\u2066.*?\u2069", "", line) for line in lines]
-    ours = {w.lower() for e in ENTRIES for w in re.findall(r"[A-Za-z]{2,}", e.words)}
+    ours = {w.lower() for e in entries() for w in re.findall(r"[A-Za-z]{2,}", e.words)}
     ours -= {word.lower() for word in SAME_WORDS}
     return whole + [
         line for line in plain
@@ -159,10 +160,13 @@ def english_left(app, code):
 
 def spanish(words):
     """Return whether all of these words are also Spanish ones of ours."""
-    return all(word.lower() in SPANISH for word in words.split())
+    return all(word.lower() in spanish_words() for word in words.split())
 
 
-SPANISH = {
-    word.lower() for entry in ENTRIES for text in strings(catalogues.read("es"), entry)
-    for word in re.findall(r"[A-Za-z]{2,}", text)
-}  # fmt: skip
+@cache
+def spanish_words():
+    held = catalogue("es")
+    return {
+        word.lower() for entry in entries() for text in strings(held, entry)
+        for word in re.findall(r"[A-Za-z]{2,}", text)
+    }  # fmt: skip

@@ -87,5 +87,5 @@ def test_heights_that_are_not_about_the_plot_are_refused_with_a_sentence(tmp_pat
     with pytest.raises(FileProblem, match="must lie on the plot"):
         read_relief(far, None, PLOT)
     empty = write(tmp_path / "empty.tif", np.full((40, 40), -9999, "float32"), nodata=-9999)
-    with pytest.raises(FileProblem, match="must hold heights"):
+    with pytest.raises(FileProblem, match="must show something"):
         read_relief(empty)

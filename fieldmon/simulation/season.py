@@ -142,7 +142,7 @@ class SimulatedDay:
 
     @property
     def evening(self) -> NDArray[np.bool_]:
-        """Return who is infested in the evening, ``(n,)``: neither found nor cleaned by spraying."""
+        """Return who is infested in the evening, ``(n,)``: not found, not cleaned by spraying."""
         evening = self.infested.copy()
         evening[self.work.plant[self.work.found]] = False
         if self.sprayed is not None:

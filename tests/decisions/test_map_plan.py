@@ -1,4 +1,4 @@
-"""Wald's test on a chance map: the plain test where the map is flat, and no news from neighbours."""
+"""Wald's test on a chance map: the plain one where it is flat, and no news from neighbours."""
 
 import numpy as np
 import pytest

@@ -58,7 +58,7 @@ def test_a_find_draws_no_more_looks_to_it():
                 for i in stops[:25]
             ]
         ).tolist()
-    )  # noqa: E501
+    )
     assert len(beside & set(stops[25:50].tolist())) <= 4
 
 

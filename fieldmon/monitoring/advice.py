@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 # nobody looks at more plants than this for a verdict
 _MOST_LOOKS = 1000
 _LONG_DAY_S = 1e7
+# zones of so much of a plot are called the plot
+_WHOLE = 0.995
 
 
 @dataclass(frozen=True)
@@ -154,6 +156,8 @@ class Advice:
 
     def headline(self) -> str:
         """Return the daily question's answer in one sentence."""
+        if self.verdict == TREAT and self.zones.m2 >= _WHOLE * self.zones.plot_m2:
+            return worded("Treat the whole plot, {area:.2f} ha.", area=self.zones.m2 / 10_000)
         if self.verdict == TREAT and len(self.zones):
             return worded(
                 "Treat {area:.2f} ha in {zones}, {share:.0%} of the plot.",

@@ -98,11 +98,11 @@ def treatment_map_bytes(of: TreatmentMap, name: str) -> bytes:
     SettingError
         If the ending tells no format.
     """
-    for ending, make in _FORMATS.items():
+    for ending, make in FORMATS.items():
         if name.lower().endswith(ending):
             return make(of)
     raise SettingError(
-        f"A treatment map must be called *{', *'.join(_FORMATS)}, but it is {name!r}."
+        f"A treatment map must be called *{', *'.join(FORMATS)}, but it is {name!r}."
     )
 
 
@@ -190,7 +190,7 @@ def _geotiff(of: TreatmentMap) -> bytes:
 
 
 #: by ending; one whose ending ends another's comes later
-_FORMATS: dict[str, Callable[[TreatmentMap], bytes]] = {
+FORMATS: dict[str, Callable[[TreatmentMap], bytes]] = {
     **{
         f"{of}.grid{kind}.xml.zip": _taskdata(version, kind)
         for of, version in ((".v3", 3), ("", 4))

@@ -156,24 +156,26 @@ class Advice:
 
     def headline(self) -> str:
         """Return the daily question's answer in one sentence."""
+        if self.verdict == LOOK_ON:
+            return self._look_on()
+        area = {
+            "area": self.zones.m2 / 10_000, "zones": counted(len(self.zones), "zone"),
+            "share": self.zones.m2 / self.zones.plot_m2,
+        }  # fmt: skip
         if self.verdict == TREAT and self.zones.m2 >= _WHOLE * self.zones.plot_m2:
-            return worded("Treat the whole plot, {area:.2f} ha.", area=self.zones.m2 / 10_000)
+            return worded("Treat the whole plot, {area:.2f} ha.", area=area["area"])
         if self.verdict == TREAT and len(self.zones):
-            return worded(
-                "Treat {area:.2f} ha in {zones}, {share:.0%} of the plot.",
-                area=self.zones.m2 / 10_000, zones=counted(len(self.zones), "zone"),
-                share=self.zones.m2 / self.zones.plot_m2,
-            )  # fmt: skip
+            return worded("Treat {area:.2f} ha in {zones}, {share:.0%} of the plot.", **area)
         if self.verdict == TREAT:
             return worded("Treat: so much is infested, though nowhere it pays by these costs.")
-        if self.verdict == LEAVE and self.above:
+        if self.above:
             return worded(
                 "Do not treat the whole plot, but {area:.2f} ha of it in {zones}, {share:.0%}.",
-                area=self.zones.m2 / 10_000, zones=counted(len(self.zones), "zone"),
-                share=self.zones.m2 / self.zones.plot_m2,
-            )  # fmt: skip
-        if self.verdict == LEAVE:
-            return worded("Do not treat today.")
+                **area,
+            )
+        return worded("Do not treat today.")
+
+    def _look_on(self) -> str:
         least = self.more.least if self.more else None
         if least is None:
             return worded("Look on: the plot is near the threshold, no few looks decide.")

@@ -13,6 +13,7 @@ FLOORS = [
     {"errors"},
     {"compute"},
     {"plot"},
+    {"pests"},
     {"infestation"},
     {"io"},
     {"decisions"},

@@ -19,6 +19,7 @@ from ..state import chosen_day, notices, unconfirmed
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
 from ..words.language import in_words
+from . import treating
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
@@ -42,7 +43,7 @@ def show(choices: Choices) -> None:
     with file:
         _show_file(choices)
     with treat:
-        _show_treatment(choices)
+        treating.show(choices)
 
 
 # -- one plant
@@ -239,26 +240,6 @@ def _drop(choices: Choices) -> None:  # noqa: ARG001 - as the others
     unconfirmed.drop()
 
 
-# -- a treatment
-
-
-def _show_treatment(choices: Choices) -> None:
-    with st.form("treatment_form", border=False):
-        st.number_input(texts.TREAT_EFFICACY, 0, 100, None, 5, key="efficacy")
-        st.text_input(texts.TREAT_PRODUCT, key="product")
-        st.form_submit_button(texts.TREAT_BUTTON, on_click=_treat, args=(choices,))
-
-
-@notices.reporting
-def _treat(choices: Choices) -> str:
-    """Note that the whole plot was treated."""
-    efficacy, product = st.session_state["efficacy"], st.session_state["product"]
-    if efficacy is None:
-        raise SettingError(texts.TREAT_UNSAID)
-    done = choices.season.treat(choices.on, efficacy / 100, product=product)
-    return texts.TREATED if done.new else texts.TREATED_BEFORE
-
-
 # -- what was recorded
 
 
@@ -282,4 +263,4 @@ def show_batches(choices: Choices) -> None:
 @notices.reporting
 def undo(choices: Choices, batch: int) -> str:
     """Take a batch back."""
-    return in_words(choices.season.undo(batch))
+    return in_words(choices.season.undo(batch, who=choices.who or ""))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fieldmon.io.import_report import Severity
+from fieldmon.reports.certification import certification_report
 from fieldmon.reports.day import DayFacts, day_report, results_on
 from fieldmon.reports.settings_rows import WorkSettings
 
@@ -22,6 +23,12 @@ def of_season(choices: Choices) -> Report:
     made = cached.season_report(
         choices.key, choices.revision, choices.day, choices.units.of_library, choices.season
     )
+    return made.said_in(language.tongue(language.current()))
+
+
+def for_certifier(choices: Choices) -> Report:
+    """Return the record of the season up to the chosen day, for a certifier."""
+    made = certification_report([choices.season], choices.units.of_library, choices.on)
     return made.said_in(language.tongue(language.current()))
 
 

@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 def show(choices: Choices) -> None:
     """Show the report, and hand it out."""
     plant_history.want(choices, map_layers.day_map(choices))
-    whole = choices.season is not None and _about() == "season"
-    made = report.of_season(choices) if whole else report.of_day(choices)
+    about = "day" if choices.season is None else _about()
+    made = _MADE[about](choices)
     paper = widget_memory.show(
         st.selectbox, texts.REPORT_PAPER, [*PAPERS], key="report paper", default="a4",
         format_func=texts.REPORT_PAPERS.__getitem__,
     )  # fmt: skip
-    name, page = f"{'season' if whole else 'day'}_{choices.day}", html_text(made)
+    name, page = f"{about}_{choices.day}", html_text(made)
     with st.container(horizontal=True):
         # made when it is asked for: fonts are cut and plants are drawn, in a second or two
         st.download_button(
@@ -42,8 +42,15 @@ def show(choices: Choices) -> None:
     st.iframe(f"data:text/html;charset=utf-8;base64,{data}", height=900, alt=texts.REPORT)
 
 
+_MADE = {
+    "day": report.of_day,
+    "season": report.of_season,
+    "certification": report.for_certifier,
+}
+
+
 def _about() -> str:
-    """Return what the report is to be about: a day or the season."""
+    """Return what the report is to be about."""
     chosen: str = widget_memory.show(
         st.radio, texts.REPORT_ABOUT, [*texts.REPORT_KINDS], key="report about", default="day",
         format_func=texts.REPORT_KINDS.__getitem__, horizontal=True,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from ..actions import assuming, beginning, choosing, morning, picking
-from ..show import day, map_layers, plant_history
+from ..show import cautions, day, map_layers, plant_history
 from ..state import chosen_day, wishes
 from ..state.chosen_day import DayRoute
 from ..words import texts
@@ -24,6 +24,7 @@ def show(choices: Choices) -> None:
     with st.container(key="lead"):
         st.markdown(day.headline(choices, plan))
     day.said_of_day(choices, plan)
+    cautions.show(choices, ("entry", "harvest"))
     morning.show(choices, plan)
     content = map_layers.day_map(choices, above=picking.layers(choices))
     picked = wishes.picked(choices.place)

@@ -150,6 +150,68 @@ SEASON_INTRO = (
     "neighbouring plants at night; every sampler meets the same insects. Detection is all finds "
     "so far in percent of all infestations so far."
 )
+# pests and weather
+LIVING = "Pest and weather"
+LIVING_NOTE = (
+    "Which pest is looked for, and how warm it was. The chance map then follows that pest's "
+    "nights, and the season says when its next generation is due."
+)
+WHICH_PEST, NO_PEST, OWN_PEST = "Pest", "Any pest: nights are as assumed", "From a file"
+PEST_FILE = "Pest: TOML, as the documentation says"
+WEATHER_FILE = "Weather by hours or days: CSV or Excel of a station, IPM Decisions JSON"
+LIVING_USE = "Use these in the season"
+LIVING_CHANGED = "The season's nights are believed by these from the first on."
+LIVING_KEPT = "Pest of this season: {pest}."
+WEATHER_KEPT = "Its weather: {first} to {last}."
+WEATHER_NEEDS_PEST = "Weather goes with a pest, which says what warmth does: choose one."
+PEST_TITLES = {
+    "thesis": "Two-spotted spider mite, the thesis's rule",
+    "spider-mite": "Two-spotted spider mite, by degree-days",
+    "green-peach-aphid": "Green peach aphid",
+    "plum-pox-virus": "Plum pox virus (sharka), carried by aphids",
+    "strawberry-anthracnose": "Strawberry anthracnose, carried by rain splash",
+    "western-flower-thrips": "Western flower thrips",
+    "whitefly": "Tobacco whitefly",
+}
+PEST_STAGES = {
+    "egg": "egg", "larva": "larva", "protonymph": "protonymph", "deutonymph": "deutonymph",
+    "egg to adult": "egg to adult", "adult before eggs": "adult before eggs",
+    "first instar": "first instar", "second instar": "second instar",
+    "third instar": "third instar", "fourth instar": "fourth instar",
+    "adult before young": "adult before young",
+}  # fmt: skip
+PEST_PARTS = {
+    "stages": "Stages", "generation": "A generation", "increase": "Rate of increase",
+    "movement": "How it moves", "entry": "How it enters", "detection": "How it is seen",
+    "course": "Its course in a plant",
+}  # fmt: skip
+PEST_COLUMNS = ("Stage", "Threshold (°C)", "Degree-days")
+PEST_NOT_FOUND = "Not found, or our choice"
+PEST_GENERATION = "A generation takes {degree_days} degree-days above {threshold} °C."
+PEST_INCREASE = "Rate of increase a day"
+PEST_RATE = "{rate} at {at} °C"
+PEST_MOVES = {
+    "adjacent": "It goes to each plant beside it with a chance of {per_day} a day.",
+    "exponential": "A plant sends out {per_day} a day, on average {reach} m far.",
+    "cauchy": "A plant sends out {per_day} a day, half of them farther than {reach} m.",
+}
+PEST_WITH_WIND, PEST_IN_RAIN = "It goes with the wind.", "It moves only in rain of {rain} mm on."
+DEGREE_DAYS = "Degree-days"
+NEXT_GENERATION = "Next generation around {when}."
+GATHERED = "{degree_days} degree-days above {threshold} °C since {since}, of {needed} a generation."
+STAGE_NOW = "Those of that day: {stage}."
+NO_GENERATION = "At this warmth the next generation is more than a year away."
+GENERATION_MARK = "generation {n}"
+NEEDS_WEATHER = "Bring its weather on Plot & data to see when its next generation is due."
+NO_DEVELOPMENT = "Its file does not say how warmth brings it on."
+DAYS_FILLED = Plural(
+    "{n} of the days so far is filled in from those about it: no weather is known.",
+    "{n} of the days so far are filled in from those about them: no weather is known.",
+)
+DEVELOPMENT_NOTE = (
+    "Counted from the first find, or the season's first day until there is one. Beyond the "
+    "weather's end it goes on as in its last seven days (dashed)."
+)
 DAYS, INFESTED, SPREAD, SEED = "Days", "Infested at the start (%)", "Spread a night (%)", "Seed"
 SPREAD_HELP = "Chance a night that an infested plant infests each plant next to it."
 SEED_HELP = "The same seed gives the same season."
@@ -549,12 +611,40 @@ BATCHES_SAID = {
         "{day} {time} · {source} · {n} plant", "{day} {time} · {source} · {n} plants"
     ),
     "treatment": "{day} {time} · treatment of the plot {source}",
+    "corrections": "{day} {time} · corrections: {source}",
 }
 TYPED_IN, ROUTE_TABLE = "typed in", "route table"
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
 TREAT_UNSAID = (
     "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
     "it kills, as on the label or by experience."
+)
+TREAT_RECORD = "What a certifier asks: dose, waiting period, who and why"
+TREAT_DOSE, TREAT_UNIT, TREAT_WATER = "Dose of the product", "Unit of the dose", "Water, l/ha"
+TREAT_GROUP, TREAT_GROUP_HELP = "Mode-of-action group (IRAC)", "Such as 6, or 4A+28."
+TREAT_WAIT, TREAT_ENTRY = "Waiting days until harvest", "Hours until re-entry"
+TREAT_BY_LABEL = "Empty: as the season's label table says, where it does."
+TREAT_BEGAN, TREAT_ENDED = "Began at", "Ended at"
+TREAT_ENDED_HELP = "Empty: waiting periods count from the end of the day."
+TREAT_TEXTS = {
+    "operator": "Operator",
+    "reason": "Reason",
+    "machinery": "Machinery",
+    "crop": "Crop",
+    "pest": "Pest",
+    "authorised_by": "Authorised by",
+}
+TREAT_DOSE_UNSAID = (
+    "A dose must have a number and a unit, but one of them is empty. Write both, such as 0.5 and "
+    "l/ha, or none."
+)
+HARVEST, HARVEST_KEPT = "First day of harvest", "The first day of harvest was changed."
+HARVEST_HELP = "Treatments whose waiting period is not over by then are warned of."
+HARVEST_FROM = "After the treatments so far, harvest is allowed from **{day}** on."
+EFFECTS = "Whether treatments worked"
+EFFECTS_TREATED = (
+    "Plants found infested are taken as treated at once in this season: what that did is in these "
+    "figures too."
 )
 TREAT_BUTTON, TREATED = "Note the treatment", "Treatment noted."
 TREATED_BEFORE = "This treatment was noted already; nothing changed."
@@ -573,6 +663,17 @@ LEARNT = {
         "They jump farther than to the next plant: with a chance of {value}."
     ),
     "length of jumps": "If so, jumps go {value} plants on average ({low} to {high}).",
+}
+AHEAD_TITLE, AHEAD_AXIS = "If nobody inspects from now on", "infested (expected)"
+AHEAD = (
+    "About {last} plants are infested after {nights} nights without inspections ({low} to {high} "
+    "with a chance of 90%); now it is about {now}."
+)
+AHEAD_BASIS = {
+    "none": "No weather is known of: every night is taken as the season's settings say.",
+    "forecast": "By the weather forecast.",
+    "partly": "By the weather forecast for {n} of the nights, and the usual of the date after it.",
+    "usual": "By the usual weather of the date: there is no forecast.",
 }
 NOT_LEARNT = "This season traces finds to the plants next to them only, as it did when it began."
 
@@ -653,7 +754,14 @@ GAIN_MORE = {
 GAIN_NONE = "Of one season no interval is known: simulate more to see what a robot would save."
 
 # -- the report
-REPORT_ABOUT, REPORT_KINDS = "About", {"day": "the day", "season": "the season"}
+REPORT_ABOUT, REPORT_KINDS = (
+    "About",
+    {
+        "day": "the day",
+        "season": "the season",
+        "certification": "the record for a certifier",
+    },
+)
 REPORT_PAPER, REPORT_PAPERS = "Paper", {"a4": "A4", "letter": "Letter"}
 REPORT_WAS = "result"
 REPORT_PDF, REPORT_HTML, REPORT_PREVIEW = "Download as PDF", "Download as HTML", "Preview"

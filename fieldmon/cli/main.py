@@ -12,7 +12,10 @@ from fieldmon.cli.compare import compare
 from fieldmon.cli.correct import correct
 from fieldmon.cli.decide import decide
 from fieldmon.cli.drive import drive
+from fieldmon.cli.export import export
 from fieldmon.cli.init import init
+from fieldmon.cli.labels import labels
+from fieldmon.cli.log import log
 from fieldmon.cli.merge import merge
 from fieldmon.cli.plan import plan
 from fieldmon.cli.plots import plots
@@ -44,6 +47,9 @@ app.command()(report)
 app.command()(undo)
 app.command()(decide)
 app.command()(treat)
+app.command()(labels)
+app.command()(log)
+app.command()(export)
 app.command()(change)
 app.command()(correct)
 app.command()(merge)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.times import day
 from fieldmon.errors import SettingError
 
@@ -33,17 +32,31 @@ OneDay = Annotated[
 Until = Annotated[
     str | None, typer.Option("--until", help="The season up to this day; else to its last one.")
 ]
+Seasons = Annotated[
+    list[Path],
+    typer.Argument(help="The season's file, made by fieldmon init; with --certification several."),
+]
+ForCertifier = Annotated[
+    bool,
+    typer.Option(
+        "--certification",
+        help="The record for a certifier: applications as GLOBALG.A.P. asks, inspections, log.",
+    ),
+]
 OnPaper = Annotated[Paper, typer.Option("--paper", help="Paper of a PDF.")]
 
 
 def report(
-    season: SeasonFile,
+    seasons: Seasons,
     output: Output = Path("report.pdf"),
     on: OneDay = None,
     until: Until = None,
     paper: OnPaper = Paper.a4,
+    certification: ForCertifier = False,  # noqa: FBT002 - a flag
 ) -> None:
     """Write a season on four pages, or one of its days on one; nothing of it is changed.
+
+    With --certification it is the record of one season or several for a certifier.
 
     Example: fieldmon report season.gpkg -o report.pdf
     """
@@ -52,12 +65,28 @@ def report(
             "A report must be of one day or of the season, but both --date and --until were given. "
             "Leave one away."
         )
+    if certification and on is not None:
+        raise SettingError("A record for a certifier is of seasons, not of --date. Leave it away.")
+    if not certification and len(seasons) > 1:
+        raise SettingError(
+            f"A report is of one season, but {len(seasons)} are given. Several go into one with "
+            "--certification."
+        )
     from fieldmon.monitoring import Season  # noqa: PLC0415
     from fieldmon.reports.write import checked_ending, write_report  # noqa: PLC0415
 
     checked_ending(output)
-    made = _made(Season(season), on, until)
+    kept = [Season(path) for path in seasons]
+    made = _certified(kept, until) if certification else _made(kept[0], on, until)
     typer.echo(f"Report written to {write_report(made, output, paper.value)}")
+
+
+def _certified(seasons: list[Season], until: str | None) -> Report:
+    """Return the record of seasons for a certifier."""
+    from fieldmon.compute.units import Units  # noqa: PLC0415
+    from fieldmon.reports.certification import certification_report  # noqa: PLC0415
+
+    return certification_report(seasons, Units(), day(until, "--until"))
 
 
 def _made(season: Season, on: str | None, until: str | None) -> Report:

@@ -37,6 +37,9 @@ def status(
     kept = Season(season)
     now = kept.status(day(on) or kept.last_date())
     typer.echo("\n".join(lines(kept, now)))
+    typer.echo(f"  in days to come        {kept.forecast(now.on).sentence()}")
+    for line in of_treatments(kept, now):
+        typer.echo(line)
     if rows:
         _show_rows(kept, now)
     if batches:
@@ -71,11 +74,29 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         yield f"  {'' if number else 'as inspections tell':22} {learnt.sentence()}"
     if not now.learnt:
         yield "  finds are traced       to neighbours only; fieldmon change --trace goes farther"
+    if (pest := season.settings.pest) is not None:
+        yield f"  pest                   {pest.title or pest.name}"
+    if now.development is not None:
+        stage = f" ({now.development.stage})" if now.development.stage else ""
+        yield f"  its development        {now.development.sentence()}{stage}"
+        if guessed := int(now.development.guessed[: now.development.elapsed].sum()):
+            yield f"                         {guessed} of its days are filled in: no weather known"
     spots = now.hot_spots
     yield f"  hot spots              {len(spots):6d}" + "".join(
         f"; {spots.found[h]} finds where {spots.expected[h]:.1f} were expected"
         for h in range(min(len(spots), 3))
     )
+
+
+def of_treatments(season: Season, now: Status) -> Iterator[str]:
+    """Yield what treatments ask for, and whether they worked, line by line."""
+    first = season.harvest_from(now.on)
+    if first is not None:
+        yield f"  harvest                from {first[0]} on, after the treatment of {first[1].on}"
+    for number, effect in enumerate(one for one in season.effects(now.on) if one.before.inspected):
+        yield f"  {'' if number else 'as treatments worked':22} {effect.sentence()}"
+    for caution in dict.fromkeys(one.sentence for one in season.cautions(now.on)):
+        yield f"  beware                 {caution}"
 
 
 def _show_rows(season: Season, now: Status) -> None:

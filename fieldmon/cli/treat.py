@@ -2,40 +2,126 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import SeasonFile, TheDate
-from fieldmon.cli.times import day, day_on
+from fieldmon.cli.times import clock, day, day_on
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from shapely import MultiPolygon
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.decisions.doses import Dose
+    from fieldmon.monitoring import Application, Season
+
+Area = Annotated[
+    Path | None,
+    typer.Option(help="File with the area treated, as fieldmon decide writes it; else the plot."),
+]
+RowsTreated = Annotated[
+    str | None, typer.Option("--rows", help="Rows treated instead of an area: 3-5,8.")
+]
+DoseSaid = Annotated[
+    str | None, typer.Option(help="Dose of the product with its unit: '0.5 l/ha', '20 ml/dunam'.")
+]
+Groups = Annotated[str, typer.Option("--irac", help="Mode-of-action group: 6, or 4A+28.")]
+Waiting = Annotated[
+    int | None, typer.Option("--waiting-days", help="Whole days until harvest; else the label's.")
+]
+ReEntry = Annotated[
+    float | None,
+    typer.Option("--reentry-hours", help="Hours until people may enter; else the label's."),
+]
+Began = Annotated[str | None, typer.Option("--began", help="Local time it began, HH:MM.")]
+Ended = Annotated[
+    str | None, typer.Option("--ended", help="Local time it ended; else the end of the day.")
+]
 
 
-def treat(
-    season: SeasonFile,
+@dataclass(frozen=True)
+class TreatOptions:
+    """What `fieldmon treat` is told."""
+
+    season: SeasonFile
     efficacy: Annotated[
-        float, typer.Option(help="Chance that an infested plant is clean afterwards, 0 to 1.")
-    ],
-    area: Annotated[
-        Path | None, typer.Option(help="File with the area treated; the whole plot if none.")
-    ] = None,
-    product: Annotated[str, typer.Option(help="What was used.")] = "",
-    on: TheDate = None,
-) -> None:
-    """Note that the plot or an area of it was sprayed; the chance falls there.
+        float | None,
+        typer.Option(
+            help="Chance that an infested plant is clean afterwards, 0 to 1; else as the season "
+            "learnt it of the product."
+        ),
+    ] = None
+    area: Area = None
+    rows: RowsTreated = None
+    on: TheDate = None
+    product: Annotated[str, typer.Option(help="What was used.")] = ""
+    dose: DoseSaid = None
+    water: Annotated[float | None, typer.Option(help="Litres of water a hectare.")] = None
+    operator: Annotated[str, typer.Option(help="Who did it.")] = ""
+    reason: Annotated[str, typer.Option(help="Why: the pest, and what was seen.")] = ""
+    waiting_days: Waiting = None
+    reentry_hours: ReEntry = None
+    irac: Groups = ""
+    began: Began = None
+    ended: Ended = None
+    machinery: Annotated[str, typer.Option(help="Sprayer, knapsack, by hand.")] = ""
+    crop: Annotated[str, typer.Option(help="Crop it was for.")] = ""
+    pest: Annotated[str, typer.Option(help="Pest it was for.")] = ""
+    authorised_by: Annotated[str, typer.Option(help="Who authorised it.")] = ""
 
-    Example: fieldmon treat season.gpkg --efficacy 0.8 --area corner.geojson --product soap
+    def application(self) -> Application:
+        """Return what was applied."""
+        from fieldmon.decisions.labels import irac_groups  # noqa: PLC0415
+        from fieldmon.monitoring import Application  # noqa: PLC0415
+
+        return Application(
+            product=self.product,
+            dose=None if self.dose is None else _dose(self.dose),
+            water_l_ha=self.water,
+            operator=self.operator,
+            reason=self.reason,
+            waiting_days=self.waiting_days,
+            reentry_hours=self.reentry_hours,
+            irac_groups=irac_groups(self.irac),
+            began=None if self.began is None else clock(self.began, "--began"),
+            ended=None if self.ended is None else clock(self.ended, "--ended"),
+            machinery=self.machinery,
+            crop=self.crop,
+            pest=self.pest,
+            authorised_by=self.authorised_by,
+        )
+
+
+@with_options
+def treat(options: TreatOptions) -> None:
+    """Note that the plot or a part of it was sprayed; the chance falls there.
+
+    Waiting periods, dose and mode-of-action group are held to the season's label table, see
+    fieldmon labels, and what to beware of is said.
+
+    Example: fieldmon treat season.gpkg --efficacy 0.8 --area zones.gpkg --product soap
     """
+    from fieldmon.io.read import read_treated  # noqa: PLC0415
     from fieldmon.monitoring import Season  # noqa: PLC0415
 
-    told = day(on)
-    kept = Season(season)
-    treated = None if area is None else _area(area)
+    if options.area is not None and options.rows is not None:
+        raise SettingError("Give --area or --rows, not both.")
+    told, said = day(options.on), options.application()
+    kept = Season(options.season)
+    treated = None
+    if options.area is not None:
+        read = read_treated(options.area)
+        treated = read.value
+        for message in read.messages:
+            typer.echo(str(message), err=True)
+    plants = None if options.rows is None else _plants_of(kept, options.rows)
     on_day = day_on(kept.plot.field, told)
-    done = kept.treat(on_day, efficacy, treated, product)
+    done = kept.treat(on_day, options.efficacy, treated, application=said, plants=plants)
     if not done.new:
         typer.echo("This treatment was noted already; nothing changed.")
         return
@@ -44,17 +130,54 @@ def treat(
         f"Treatment noted as batch {done.batch}; about {ahead.expected:.1f} plants are believed "
         f"infested now ({ahead.low} to {ahead.high})."
     )
+    _say_what_follows(kept, done.batch, learnt=options.efficacy is None)
 
 
-def _area(file: Path) -> MultiPolygon:
-    """Return all areas of a file as one."""
-    import shapely  # noqa: PLC0415
-    from shapely import MultiPolygon  # noqa: PLC0415
+def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
+    """Say what a treatment asks for: waiting, and what to beware of."""
+    (one,) = (treatment for treatment in kept.treatments() if treatment.batch == batch)
+    if learnt:
+        typer.echo(f"Assumed: it cleans {one.efficacy:.0%} of infested plants, as learnt before.")
+    waits = one.waits
+    if waits.entry_from is not None:
+        typer.echo(f"Enter there from {waits.entry_from:%Y-%m-%d %H:%M} on ({one.clock.zone}).")
+    if waits.harvest_from is not None:
+        typer.echo(f"Harvest there from {waits.harvest_from} on.")
+    for caution in kept.cautions(one.on):
+        if caution.batch == batch:
+            typer.echo(f"beware: {caution.sentence}", err=True)
 
-    from fieldmon.io.read import read_plots  # noqa: PLC0415
 
-    read = read_plots(file)
-    for message in read.messages:
-        typer.echo(str(message), err=True)
-    whole = shapely.union_all([field.boundary for field in read.value])
-    return MultiPolygon(list(shapely.get_parts(whole)))
+def _dose(text: str) -> Dose:
+    """Return a dose as it was written: a number, and its unit behind it."""
+    from fieldmon.decisions.doses import Dose  # noqa: PLC0415
+
+    bare = text.strip()
+    letters = next((k for k, one in enumerate(bare) if one not in "0123456789.,"), len(bare))
+    try:
+        value = float(bare[:letters].replace(",", "."))
+    except ValueError as error:
+        raise SettingError(
+            f"--dose must be a number with its unit, such as '0.5 l/ha', but it is {text!r}."
+        ) from error
+    return Dose(value, bare[letters:].strip())
+
+
+def _plants_of(kept: Season, rows: str) -> NDArray[np.bool_]:
+    """Return the plants ``(n,)`` of rows as people count them."""
+    import numpy as np  # noqa: PLC0415
+
+    grid = kept.plot.grid
+    wanted: list[int] = []
+    for part in rows.split(","):
+        first, dash, last = part.strip().partition("-")
+        if not first.strip().isdigit() or (dash and not last.strip().isdigit()):
+            raise SettingError(f"--rows must be rows such as 3-5,8, but it is {rows!r}.")
+        wanted += range(int(first), int(last if dash else first) + 1)
+    there = set((grid.row_line + 1).tolist())
+    if missing := [row for row in wanted if row not in there]:
+        raise SettingError(
+            f"Rows of this plot are {min(there)} to {max(there)}, but --rows says {missing[0]}."
+        )
+    plants: NDArray[np.bool_] = np.isin(kept.label.line, wanted)
+    return plants

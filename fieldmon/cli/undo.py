@@ -23,6 +23,7 @@ def undo(
         int | None, typer.Option(help="Number (fid) of one inspection in the season's file.")
     ] = None,
     change: UndoChange = False,  # noqa: FBT002 - a flag
+    who: Annotated[str, typer.Option(help="Who takes it back.")] = "",
 ) -> None:
     """Take back what was recorded last, a batch, one inspection, or a change; nothing is deleted.
 
@@ -33,10 +34,10 @@ def undo(
     from fieldmon.monitoring import Season  # noqa: PLC0415
 
     if change:
-        settings = Season(season).undo_change()
+        settings = Season(season).undo_change(who)
         typer.echo(
             f"The last change was taken back: {settings.sampler}, {settings.robot.hours:g} h from "
             f"{settings.starts:%H:%M}, {settings.robot.look_s:g} s at a plant."
         )
         return
-    typer.echo(Season(season).undo(batch, inspection))
+    typer.echo(Season(season).undo(batch, inspection, who))

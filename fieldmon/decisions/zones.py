@@ -388,17 +388,20 @@ def outlines(grid: PlantGrid, zones: Zones) -> list[shapely.MultiPolygon]:
 
     Each plant stands for the ground half a spacing around it; touching grounds are one.
     """
+    return [outline_of(grid, zones.zone == k) for k in range(len(zones))]
+
+
+def outline_of(grid: PlantGrid, plants: NDArray[np.bool_]) -> shapely.MultiPolygon:
+    """Return the area, lon/lat, that some plants ``(n,)`` fill, each half a spacing around it."""
     half_m = np.array([grid.plant_spacing_m, grid.row_spacing_m]) / 2 * 1.001
-    areas = []
-    for k in range(len(zones)):
-        x, y = grid.xy_m[zones.zone == k].T
-        # turned along each row where rows bend would gain centimetres: squares follow the plants
-        cells = shapely.box(x - half_m[0], y - half_m[1], x + half_m[0], y + half_m[1])
-        whole = shapely.union_all(cells)
-        areas.append(
-            grid.frame.geometry_lonlat(shapely.MultiPolygon(list(shapely.get_parts(whole))))
-        )
-    return areas
+    x, y = grid.xy_m[plants].T
+    # turned along each row where rows bend would gain centimetres: squares follow the plants
+    cells = shapely.box(x - half_m[0], y - half_m[1], x + half_m[0], y + half_m[1])
+    whole = shapely.union_all(cells)
+    outline: shapely.MultiPolygon = grid.frame.geometry_lonlat(
+        shapely.MultiPolygon(list(shapely.get_parts(whole)))
+    )
+    return outline
 
 
 class _Strips(NamedTuple):

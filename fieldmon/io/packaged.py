@@ -26,3 +26,15 @@ def packaged_table(path: str) -> list[dict[str, str]]:
     """
     lines = packaged_text(path).splitlines()
     return list(csv.DictReader((line for line in lines if not line.startswith("#")), strict=True))
+
+
+def packaged_names(folder: str, ending: str) -> list[str]:
+    """Return the names of the program's files in a folder that end so, sorted.
+
+    Parameters
+    ----------
+    folder, ending
+        As ``"fieldmon/pests"`` and ``".toml"``.
+    """
+    inside = files(folder.replace("/", ".")).iterdir()
+    return sorted(one.name for one in inside if one.name.endswith(ending))

@@ -18,7 +18,7 @@ from fieldmon.io.readers.nearby import of_plot
 from fieldmon.io.sandbox import process
 
 if TYPE_CHECKING:
-    from shapely import MultiLineString
+    from shapely import MultiLineString, MultiPolygon
 
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.formats.layer import LayerInfo
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.places import NamedPlaces, Plants
     from fieldmon.io.readers.points_and_lines import DrawnBlocks
+    from fieldmon.io.readers.weather_options import WeatherOptions
+    from fieldmon.pests.weather import Weather
     from fieldmon.plot.field import Field
 
 
@@ -60,6 +62,12 @@ def read_crews(
         "crews", source, options or PlotOptions()
     )
     return read
+
+
+def read_treated(source: Source, options: PlotOptions | None = None) -> Imported[MultiPolygon]:
+    """Return the area that a file says was treated, as the zones of a decision, degrees WGS84."""
+    area: Imported[MultiPolygon] = _read("treated", source, options or PlotOptions())
+    return area
 
 
 def read_records(
@@ -148,3 +156,9 @@ def read_inspection_rows(source: Source, options: InspectionOptions) -> Imported
     """Return what a file says of plants that were inspected, before they are looked up."""
     rows: Imported[InspectionRows] = _read("inspection_rows", source, options)
     return rows
+
+
+def read_weather(source: Source, options: WeatherOptions) -> Imported[Weather]:
+    """Return the weather of a source, by the hour or by the day."""
+    weather: Imported[Weather] = _read("weather", source, options)
+    return weather

@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.batches import Batch, Recorded
+from fieldmon.monitoring.cautions import Caution
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.inspection_table import counting_copy
 from fieldmon.monitoring.merging import Merged
 from fieldmon.monitoring.outside_changes import OutsideChange
 from fieldmon.monitoring.recorded_before import Contradictions
 from fieldmon.monitoring.season_file import Season
+from fieldmon.monitoring.season_log import LogEntry
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.tables import KeptMessage
 from fieldmon.monitoring.transactions import Store, copy_season, is_season
+from fieldmon.monitoring.treatment_effect import TreatmentEffect
+from fieldmon.monitoring.treatments import KeptTreatment
 from fieldmon.monitoring.worked_route import day_was_worked, worked_route
 
 __all__ = [
+    "Application",
     "Batch",
+    "Caution",
     "Contradictions",
     "DayFigures",
     "KeptMessage",
+    "KeptTreatment",
+    "LogEntry",
     "Merged",
     "MonitoringSettings",
     "OutsideChange",
@@ -28,6 +37,7 @@ __all__ = [
     "Season",
     "Status",
     "Store",
+    "TreatmentEffect",
     "copy_season",
     "counting_copy",
     "day_was_worked",

@@ -108,8 +108,8 @@ def all_of(db: sqlite3.Connection) -> tuple[Batch, ...]:
     )
 
 
-def undo(db: sqlite3.Connection, number: int | None) -> str:
-    """Mark a batch (None: the last one that counts) as undone; return what was done."""
+def undo(db: sqlite3.Connection, number: int | None) -> tuple[int, str]:
+    """Mark a batch (None: the last one that counts) as undone; return which, and what was done."""
     waiting = [batch for batch in all_of(db) if not batch.undone]
     if number is not None:
         waiting = [batch for batch in waiting if batch.number == number]
@@ -128,11 +128,11 @@ def undo(db: sqlite3.Connection, number: int | None) -> str:
     db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (batch.number,))
     touch(db, table)
     source = f" from {batch.source}" if batch.source else ""
-    return f"Batch {batch.number} was undone: {batch.rows} {batch.kind}{source}."
+    return batch.number, f"Batch {batch.number} was undone: {batch.rows} {batch.kind}{source}."
 
 
-def undo_one(db: sqlite3.Connection, inspection: int) -> str:
-    """Mark one inspection as undone; return what was done."""
+def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[int, str]:
+    """Mark one inspection as undone; return the batch it was of, and what was done."""
     row = db.execute(
         "SELECT line, number, date, result, batch FROM inspections WHERE fid = ? AND undone = 0",
         (inspection,),
@@ -149,7 +149,7 @@ def undo_one(db: sqlite3.Connection, inspection: int) -> str:
     db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
     close_if_empty(db, row[4])
     touch(db, schema.INSPECTIONS.name)
-    return f"Undone: row {row[0]}, plant {row[1]} on {row[2]} ({row[3]})."
+    return row[4], f"Undone: row {row[0]}, plant {row[1]} on {row[2]} ({row[3]})."
 
 
 def close_if_empty(db: sqlite3.Connection, batch: int) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
@@ -90,11 +91,16 @@ def _write_spots(db: sqlite3.Connection, plot: Plot, history: History, day: int)
 def spot_area(plot: Plot, spots: HotSpots, h: int) -> MultiPolygon:
     """Return the ground of a hot spot, lon/lat: its plants and half a row around them."""
     grid = plot.grid
-    plants = shapely.MultiPoint(grid.xy_m[spots.of_plant == h])
-    row_m = grid.row_spacing_m
-    around = plants.buffer(1.5 * row_m, quad_segs=4).buffer(-row_m, quad_segs=4)
+    around = _ground_around(grid.xy_m[spots.of_plant == h].tobytes(), grid.row_spacing_m)
     parts = shapely.get_parts(grid.frame.geometry_lonlat(around))
     return MultiPolygon(list(parts))
+
+
+@lru_cache(maxsize=64)  # a tap changes one spot of many
+def _ground_around(xy_m: bytes, row_m: float) -> shapely.Geometry:
+    plants = shapely.MultiPoint(np.frombuffer(xy_m).reshape(-1, 2))
+    around: shapely.Geometry = plants.buffer(1.5 * row_m, quad_segs=4)
+    return around.buffer(-row_m, quad_segs=4)
 
 
 def _write_states(

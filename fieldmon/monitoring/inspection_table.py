@@ -152,6 +152,35 @@ def store(db: sqlite3.Connection, made: list[tuple[object, ...]]) -> int:
     return new
 
 
+def in_words(result: NDArray[np.int8], on: NDArray[np.datetime64]) -> dict[str, object]:
+    """Return what the season's log says of inspections: how many of each result, on which days."""
+    counts = {name: int(np.count_nonzero(result == code)) for name, code in _CODES.items()}
+    return {**counts, "from": str(on.min()), "to": str(on.max())}
+
+
+def not_what_they_say(db: sqlite3.Connection) -> list[int]:
+    """Return rows whose digest is not that of what they say.
+
+    Of two that a phone told alike, the second has a digest with its telling's id in it.
+    """
+    wrong = {
+        fid: mark
+        for fid, plant, on, at, result, count, mark in db.execute(
+            "SELECT fid, plant, date, time, result, count, digest FROM inspections "
+            "WHERE digest NOTNULL"
+        )
+        if _digest(plant, on, at, result, count) != mark
+    }
+    told = "SELECT id FROM tellings WHERE inspection = ?"
+    said = "SELECT plant, date, time, result, count FROM inspections WHERE fid = ?"
+    for fid, mark in list(wrong.items()):
+        own = _digest(*db.execute(said, (fid,)).fetchone())
+        ids = [one for (one,) in db.execute(told, (fid,))]
+        if mark in {digest(own, one, length=24) for one in ids}:
+            del wrong[fid]
+    return sorted(wrong)
+
+
 def n_counting(db: sqlite3.Connection) -> int:
     """Return how many inspections count."""
     counts = "SELECT count(*) FROM inspections WHERE undone = 0 AND digest IS NOT NULL"

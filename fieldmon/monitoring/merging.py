@@ -29,8 +29,10 @@ SAME = (schema.ARRAYS, schema.PLOTS, schema.PLACES, schema.ROWS, schema.PLANTS, 
 #: what is taken row by row, each as the functions below say
 TAKEN = (
     *(schema.BATCHES, schema.INSPECTIONS, schema.TREATMENTS, schema.SETTINGS),
-    *(schema.ROUTES, schema.STOPS, schema.IMPORTS, schema.OUTSIDE_CHANGES),
+    *(schema.ROUTES, schema.STOPS, schema.IMPORTS, schema.OUTSIDE_CHANGES, schema.LABELS),
 )
+#: what stays ours and is told of the other's, see `fieldmon.monitoring.season_log`
+LOGGED = (schema.LOG,)
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:
     said = _differing(copies)
     _write(db, schema.SETTINGS, _once(copies, "settings", ("changed", "name", "value")))
     _write(db, schema.IMPORTS, _once(copies, "import_findings", schema.IMPORTS.names, ("at",)))
+    _write(db, schema.LABELS, _once(copies, "labels", schema.LABELS.names, ("product",)))
     for copied in copies:
         for row in copied["outside_changes"]:
             row["batch"] = _number(batches, copied, row["batch"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime, timedelta
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from shapely import LineString
@@ -82,6 +82,17 @@ def keep(
         for table in (schema.ROUTES, schema.STOPS):
             touch(db, table.name, bounds)
     return True
+
+
+def in_words(settings: MonitoringSettings, today: DayPlan) -> dict[str, Any]:
+    """Return what the season's log says of a route."""
+    return {
+        "date": str(settings.date(today.scene.day)),
+        "stops": len(today.route),
+        "sampler": settings.sampler,
+        "expected": round(today.route.expected_finds, 1),
+        "digest": _digest(today),
+    }
 
 
 def is_kept(db: sqlite3.Connection, today: DayPlan, who: str = "") -> bool:

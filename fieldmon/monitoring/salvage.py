@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fieldmon.errors import FieldmonError, FileProblem
-from fieldmon.monitoring import schema
+from fieldmon.monitoring import schema, season_log
 from fieldmon.monitoring.geopackage import insert
 from fieldmon.monitoring.season_file import Season
 from fieldmon.monitoring.transactions import Store
@@ -52,16 +52,18 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
     if not source.is_file():
         raise FileProblem(f"{damaged} must be a file, but there is none. Check the name.")
     tables = [table for table in schema.CAUSES if table is not schema.META]
-    saved: dict[str, list[tuple[object, ...]]] = {}
+    saved: dict[str, tuple[tuple[str, ...], list[tuple[object, ...]]]] = {}
     lost = []
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
         copy = _padded_copy(source, Path(folder))
         with closing(sqlite3.connect(copy)) as db:
             for table in tables:
-                saved[table.name], complete = _rows(db, table)
+                names = _columns(db, table)
+                found, complete = _rows(db, table, names)
+                saved[table.name] = names, found
                 if not complete:
                     lost.append(table.name)
-    if not any(saved.values()):
+    if not any(found for _, found in saved.values()):
         raise FileProblem(
             f"Something must be readable in {damaged}, but nothing is. Was it a season of "
             "fieldmon? Take the last copy you have of it."
@@ -69,12 +71,13 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
     with Store.new(to) as new:
         new.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES ('revision', '0')")
         for table in tables:
-            names = (table.key, *table.names)
+            names, found = saved[table.name]
             marks = ", ".join("?" * len(names))
             new.executemany(
                 f"INSERT OR IGNORE INTO {table.name} ({', '.join(names)}) VALUES ({marks})",  # noqa: S608 - ours
-                saved[table.name],
+                found,
             )
+        season_log.go_on_saved(new)
         # a file whose derived layers are not there yet still says on which day it stands
         insert(new, schema.DAYS, [(0, None, 0, 0, None, None, None, None, "")])
     whole = True
@@ -82,7 +85,7 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
         Season(to).rebuild()
     except FieldmonError:
         whole = False
-    return Salvaged({name: len(rows) for name, rows in saved.items()}, tuple(lost), whole)
+    return Salvaged({name: len(found) for name, (_, found) in saved.items()}, tuple(lost), whole)
 
 
 def _padded_copy(source: Path, folder: Path) -> Path:
@@ -108,14 +111,26 @@ def _padded_copy(source: Path, folder: Path) -> Path:
     return copy
 
 
-def _rows(db: sqlite3.Connection, table: GeoPackageTable) -> tuple[list[tuple[object, ...]], bool]:
+def _columns(db: sqlite3.Connection, table: GeoPackageTable) -> tuple[str, ...]:
+    """Return which columns of a table are there: a file of an earlier version lacks some."""
+    names = (table.key, *table.names)
+    try:
+        there = {row[1] for row in db.execute(f"PRAGMA table_info({table.name})")}
+    except sqlite3.Error:
+        return names
+    return tuple(name for name in names if name in there) or names
+
+
+def _rows(
+    db: sqlite3.Connection, table: GeoPackageTable, names: tuple[str, ...]
+) -> tuple[list[tuple[object, ...]], bool]:
     """Return the rows that can be read, and whether those are all.
 
     Read forwards up to the damage, then backwards down to it.
     """
     got: dict[int, tuple[object, ...]] = {}
     complete = False
-    wanted = f"SELECT {table.key}, {', '.join(table.names)} FROM {table.name} ORDER BY {table.key}"  # noqa: S608 - ours
+    wanted = f"SELECT {', '.join(names)} FROM {table.name} ORDER BY {table.key}"  # noqa: S608 - ours
     for order in ("ASC", "DESC"):
         try:
             for row in db.execute(f"{wanted} {order} LIMIT {_MOST_ROWS}"):

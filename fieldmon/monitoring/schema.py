@@ -12,7 +12,9 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 6
+VERSION = 7
+#: files of this version and later have a log
+LOGS_SINCE = 7
 #: the first fieldmon that reads files of this version
 NEEDS = "0.2"
 #: what the settings say of a team where there is none
@@ -81,7 +83,7 @@ PLOTS = GeoPackageTable(
     "Boundary of the plot.",
 )
 PLACES = GeoPackageTable(
-    "places", ("kind TEXT NOT NULL",), "GEOMETRY", "Gate, paths and no-go areas."
+    "places", ("kind TEXT NOT NULL",), "GEOMETRY", "Gate, paths, no-go areas and blocks."
 )
 ROWS = GeoPackageTable("rows", ("line INTEGER", "plants INTEGER"), "LINESTRING", "Rows of plants.")
 PLANTS = GeoPackageTable(
@@ -124,6 +126,26 @@ INSPECTIONS = GeoPackageTable(
     "POINT",
     "What was found at which plant: clean, found or skipped.",
 )
+#: what is kept of an application since version 7
+APPLIED = (
+    "dose REAL",
+    "unit TEXT",
+    "water_l_ha REAL",
+    "area_ha REAL",
+    "operator TEXT",
+    "reason TEXT",
+    "waiting_days INTEGER",
+    "reentry_hours REAL",
+    "irac_groups TEXT",
+    "began TEXT",
+    "ended TEXT",
+    "zone TEXT",
+    "machinery TEXT",
+    "crop TEXT",
+    "pest TEXT",
+    "authorised_by TEXT",
+    "of_plants BLOB",
+)
 TREATMENTS = GeoPackageTable(
     "treatments",
     (
@@ -135,9 +157,34 @@ TREATMENTS = GeoPackageTable(
         "batch INTEGER",
         "digest TEXT",
         "undone INTEGER NOT NULL DEFAULT 0",
+        *APPLIED,
     ),
     "MULTIPOLYGON",
-    "Areas treated, and how well it works.",
+    "Areas treated: with what, how, by whom and why, and how well it works.",
+)
+LABELS = GeoPackageTable(
+    "labels",
+    (
+        "product TEXT NOT NULL",
+        "crop TEXT",
+        "pest TEXT",
+        "max_dose REAL",
+        "unit TEXT",
+        "waiting_days INTEGER",
+        "reentry_hours REAL",
+        "irac_groups TEXT",
+        "max_uses INTEGER",
+        "source TEXT",
+    ),
+    None,
+    "What the labels of products allow, as the user's own table says.",
+)
+LOG = GeoPackageTable(
+    "log",
+    ("entry TEXT NOT NULL", "digest TEXT NOT NULL"),
+    None,
+    "What was seen, planned, advised and treated, in order; each digest is of the entry and of "
+    "the digest before it.",
 )
 ROUTES = GeoPackageTable(
     "routes",
@@ -217,13 +264,13 @@ CHANCE = GeoPackageTable(
 TABLES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
     *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
-    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT),
+    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT, LABELS, LOG),
     *phone_tables.TABLES,
 )
 #: layers from which everything else follows: what must be saved from a damaged file
 CAUSES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, PLOTS, PLACES, ROWS, PLANTS),
-    *(OBSERVATIONS, INSPECTIONS, TREATMENTS, ROUTES, STOPS, OUTSIDE_CHANGES),
+    *(OBSERVATIONS, INSPECTIONS, TREATMENTS, ROUTES, STOPS, OUTSIDE_CHANGES, LABELS, LOG),
     *phone_tables.TABLES,
 )
 _INSPECTED = (
@@ -243,6 +290,8 @@ _WATCHED: dict[str, tuple[str, tuple[str, ...]]] = {
     "arrays": ("old.name", ()),
     "routes": ("'day ' || old.day", ()),
     "stops": ("'route ' || old.route || ', stop ' || old.stop", ()),
+    "labels": ("old.product", ()),
+    "log": ("'entry ' || old.fid", ()),
 }
 #: in `fieldmon`: "1" while we write ourselves
 OPEN = "open"
@@ -260,6 +309,7 @@ _INDEXES = (
     "CREATE UNIQUE INDEX treatments_once ON treatments (digest) WHERE undone = 0",
     "CREATE UNIQUE INDEX routes_revision ON routes (day, who, revision)",
     "CREATE INDEX stops_route ON stops (route, stop)",
+    "CREATE INDEX inspections_batch ON inspections (batch)",
 )
 
 
@@ -340,6 +390,17 @@ def _phones_come(db: sqlite3.Connection) -> None:
     add_photo_styles(db)
 
 
+def _records_come(db: sqlite3.Connection) -> None:
+    """Version 6 knew of treatments only where, when, how well and the product; it had no log."""
+    there = {row[1] for row in db.execute("PRAGMA table_info(treatments)")}
+    for column in APPLIED:
+        if column.split()[0] not in there:
+            db.execute(f"ALTER TABLE treatments ADD COLUMN {column}")
+    create(db, LABELS)
+    create(db, LOG)
+    db.execute(_INDEXES[4])
+
+
 #: what makes a file of version k one of version k + 1; `watch` follows the last
 MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     1: _treatments_come,
@@ -347,4 +408,5 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     3: _teams_come,
     4: _estimates_come,
     5: _phones_come,
+    6: _records_come,
 }

@@ -14,7 +14,9 @@ import shapely
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import worded
+from fieldmon.decisions.labels import label_for
 from fieldmon.decisions.map_verdict import map_verdict
+from fieldmon.decisions.zones import outline_of
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.hotspots import record_states
 from fieldmon.infestation.observations import Observations, usable
@@ -22,18 +24,23 @@ from fieldmon.infestation.prior import prior_chance
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.monitoring import (
     batches,
+    cautions,
     day_figures,
     derived_layers,
     inspection_table,
+    label_table,
     merging,
     outside_changes,
     qgis_project,
     routes,
+    season_log,
     settings_log,
     tables,
+    treatment_effect,
     treatments,
 )
 from fieldmon.monitoring.advice import AdviceSettings, advice
+from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
@@ -47,6 +54,8 @@ from fieldmon.monitoring.recorded_before import (
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
+from fieldmon.monitoring.treatments import TreatedPlace
+from fieldmon.pests.development import development
 from fieldmon.planning.assumptions import assumed_by
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
@@ -63,13 +72,21 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
+    from fieldmon.compute.units import Units
+    from fieldmon.decisions.labels import ProductLabel
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.monitoring.advice import Advice
     from fieldmon.monitoring.batches import Batch
+    from fieldmon.monitoring.cautions import Caution
+    from fieldmon.monitoring.season_log import LogEntry
     from fieldmon.monitoring.tables import KeptMessage
+    from fieldmon.monitoring.treatment_effect import TreatmentEffect
+    from fieldmon.monitoring.treatments import KeptTreatment
+    from fieldmon.pests.development import Development
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
@@ -181,6 +198,7 @@ class Season:
             set_meta(db, "revision", "0")
             derived_layers.refresh(db, plot, history, first.morning)
             qgis_project.keep(db, Path(path).name)
+            season_log.begin(db, f"a season on {plot.field.name}")
         return cls(path)
 
     @property
@@ -209,7 +227,7 @@ class Season:
         settings = self.settings
         made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
         rate = settings.belief.spread.rate_per_day
-        if rate != BeliefSettings().spread.rate_per_day:
+        if settings.pest is not None or rate != BeliefSettings().spread.rate_per_day:
             return made
         return (*made, Assumed("rate_per_day", rate))
 
@@ -218,7 +236,7 @@ class Season:
         """Row and number of every plant, as people count."""
         return row_label(self.plot.grid)
 
-    def change(self, settings: MonitoringSettings, seen: MonitoringSettings) -> None:
+    def change(self, settings: MonitoringSettings, seen: MonitoringSettings, who: str = "") -> None:
         """Choose otherwise; raise `FileProblem` if the choices are no longer those `seen`."""
         with self._lock, self.store.writing() as db:
             if as_json(_settings(db)) != as_json(seen):
@@ -228,7 +246,7 @@ class Season:
                         "window changed them. Look again and repeat your change."
                     )
                 )
-            settings_log.write(db, as_json(settings))
+            self._log_change(db, settings_log.write(db, as_json(settings)), who)
             self._refresh(db)
 
     def before_change(self) -> MonitoringSettings | None:
@@ -237,15 +255,26 @@ class Season:
             parts = settings_log.before_now(db)
         return None if parts is None else from_json(parts)
 
-    def undo_change(self) -> MonitoringSettings:
+    def undo_change(self, who: str = "") -> MonitoringSettings:
         """Take the last change of settings back; return what counts again.
 
         Raise `SettingError` if there is none.
         """
         with self._lock, self.store.writing() as db:
+            before = settings_log.now(db)
             settings = settings_log.undo(db)
+            now = settings_log.now(db)
+            self._log_change(db, [name for name in now if now[name] != before.get(name)], who)
             self._refresh(db)
         return settings
+
+    def _log_change(self, db: sqlite3.Connection, names: list[str], who: str) -> None:
+        now = settings_log.now(db)
+        season_log.append(
+            db, "changed", who,
+            states={"settings": season_log.settings_state(db)},
+            names=", ".join(names), now={name: now[name] for name in names},
+        )  # fmt: skip
 
     # -- the working day
 
@@ -311,8 +340,14 @@ class Season:
             if all(routes.is_kept(db, today, who) for today, who in named):
                 return
         with self.store.writing() as db:
-            kept = [routes.keep(db, settings, self.label, today, who) for today, who in named]
-            if any(kept):
+            kept = [
+                (today, who)
+                for today, who in named
+                if routes.keep(db, settings, self.label, today, who)
+            ]
+            for today, who in kept:
+                season_log.append(db, "planned", who, **routes.in_words(settings, today))
+            if kept:
                 self._refresh(db, named[0][0].scene.day)
 
     def _noted(self, settings: MonitoringSettings, today: DayPlan, who: str) -> DayPlan:
@@ -442,9 +477,20 @@ class Season:
             new = inspection_table.store(db, made)
             batches.end(db, batch, new, grows=into is not None)
             if new:
+                self._log_seen(db, news, (batch, source, who))
                 first = _settings(db).day(inspections.date.min().item())
                 self._refresh(db, first, before.mornings[: first + 1])
         return Recorded(batch if new else None, new, len(inspections) - new)
+
+    def _log_seen(
+        self, db: sqlite3.Connection, news: Inspections, said: tuple[int, str, str]
+    ) -> None:
+        batch, source, who = said
+        names = {str(name) for name in news.who} - {""}
+        season_log.append(
+            db, "seen", who or ", ".join(sorted(names)), states=season_log.states(db, [batch]),
+            batch=batch, source=source, **inspection_table.in_words(news.result, news.date),
+        )  # fmt: skip
 
     @contextmanager
     def changing(self) -> Iterator[SeasonChange]:
@@ -464,38 +510,189 @@ class Season:
         return contradicting(self.history.inspections.on(on))
 
     def treat(
-        self, on: date, efficacy: float, area: MultiPolygon | None = None, product: str = ""
-    ) -> Recorded:
-        """Note that an area (lon/lat; None: the whole plot) was treated, after the day's work."""
-        ground = self.plot.field.boundary if area is None else area
-        plants = self._inside(ground)
-        if not plants.any():
+        self, on: date, efficacy: float | None = None, area: MultiPolygon | None = None,
+        product: str = "", *, application: Application | None = None,
+        plants: NDArray[np.bool_] | None = None,
+    ) -> Recorded:  # fmt: skip
+        """Note that a part of the plot was treated, after the day's work.
+
+        Parameters
+        ----------
+        on
+            The day.
+        efficacy
+            Chance that an infested plant is clean afterwards; None: what the season learnt of this
+            product, see `effects`.
+        area
+            Outline, lon/lat; None: the whole plot, unless `plants` are given.
+        product
+            What was used, where nothing else is said of it.
+        application
+            What was applied and how. What it does not say of waiting periods and of the
+            mode-of-action group comes from the product's label, where the season has one.
+        plants
+            ``(n,)`` the plants that were treated one by one, instead of an area.
+
+        Raises
+        ------
+        SettingError
+            If no plant was treated, or nothing tells how well it works.
+        """
+        said = Application(product) if application is None else application
+        if area is not None and plants is not None:
+            raise SettingError("A treatment is of an area or of plants, but both were given.")
+        place = self._treated(area) if plants is None else self._treated_one_by_one(plants)
+        if not place.plants.any():
             raise SettingError(
                 worded(
                     "The area treated must hold plants of this plot, but it holds none. Check its "
                     "coordinates."
                 )
             )
+        works = self._efficacy(said.product) if efficacy is None else efficacy
         with self._lock, self.store.writing() as db:
             day = _settings(db).day(on)
-            treatment = Treatment(day, plants, efficacy)  # or raise
-            batch = batches.begin(db, "treatment", product, "")
-            new = treatments.store(db, treatment, (ground, str(on), product), batch)
+            said = said.by_label(
+                label_for(label_table.read(db), said.product, said.crop, said.pest)
+            )
+            treatment = Treatment(day, place.plants, works)  # or raise
+            batch = batches.begin(db, "treatment", said.product, said.operator)
+            new = treatments.store(
+                db, treatment, (place, on, said), batch, local_clock(self.plot.field)
+            )
             batches.end(db, batch, new)
             if new:
+                season_log.append(
+                    db, "treated", said.operator, states=season_log.states(db, [batch]),
+                    batch=batch, date=str(on), said=treatments.in_words(place, said),
+                    efficacy=works, **said.said(),
+                )  # fmt: skip
                 self._refresh(db, day)
         return Recorded(batch if new else None, new, 1 - new)
 
-    def undo(self, batch: int | None = None, inspection: int | None = None) -> str:
+    def _treated(self, area: MultiPolygon | None) -> TreatedPlace:
+        boundary = self.plot.field.boundary
+        ground = boundary if area is None else area
+        frame = self.plot.grid.frame
+        on_plot = shapely.intersection(frame.geometry_m(ground), frame.geometry_m(boundary))
+        return TreatedPlace(ground, self._inside(ground), float(on_plot.area) / 1e4)
+
+    def _treated_one_by_one(self, plants: NDArray[np.bool_]) -> TreatedPlace:
+        grid = self.plot.grid
+        if plants.shape != (len(grid),):
+            raise SettingError(
+                f"Whether it was treated must be said of each of the {len(grid)} plants, but it is "
+                f"of {plants.size}."
+            )
+        outline = outline_of(grid, np.asarray(plants, bool))
+        area_ha = float(grid.frame.geometry_m(outline).area) / 1e4
+        return TreatedPlace(outline, np.asarray(plants, bool), area_ha, by_plant=True)
+
+    def _efficacy(self, product: str) -> float:
+        """Return how well a product works, as the season learnt it."""
+        known = treatment_effect.learnt_efficacy(self.effects(self.last_date()), product)
+        if known is None:
+            raise SettingError(
+                worded(
+                    "How well a treatment works must be said (efficacy, 0 to 1), for this season "
+                    "has not learnt it: no plant was inspected before and after a treatment with "
+                    "{product}.",
+                    product=product or worded("a product that nobody named"),
+                )
+            )
+        return known.efficacy
+
+    def treatments(self) -> tuple[KeptTreatment, ...]:
+        """Return the treatments that count, in the order in which they ended."""
+        with self._lock, self.store.reading() as db:
+            outside_changes.refuse(db)
+            return treatments.kept(db, self._inside, local_clock(self.plot.field))
+
+    def keep_labels(self, labels: Iterable[ProductLabel], source: str = "", who: str = "") -> int:
+        """Let these be what labels allow, instead of those before; return how many there are."""
+        kept = tuple(labels)
+        with self._lock, self.store.writing() as db:
+            if kept != label_table.read(db):
+                label_table.write(db, kept)
+                season_log.append(
+                    db, "labels", who, states={"labels": season_log.labels_state(db)},
+                    labels=len(kept), source=source,
+                )  # fmt: skip
+        return len(kept)
+
+    def labels(self) -> tuple[ProductLabel, ...]:
+        """Return what the labels of products allow, as the user's own table says."""
+        with self.store.reading() as db:
+            return label_table.read(db)
+
+    def cautions(self, on: date, units: Units | None = None) -> tuple[Caution, ...]:
+        """Return what to beware of on a day: harvest, entry, resistance, what labels allow."""
+        settings = self.settings
+        rules = cautions.RulesToKeep(self.labels(), settings.harvest, settings.starts)
+        if units is not None:
+            rules = replace(rules, units=units)
+        return cautions.cautions(self.treatments(), rules, on)
+
+    def harvest_from(self, on: date) -> tuple[date, KeptTreatment] | None:
+        """Return the first day of harvest that treatments up to a day allow, and which one waits.
+
+        None: no treatment is known to need a wait.
+        """
+        done = [one for one in self.treatments() if one.on <= on]
+        return cautions.harvest_from(done, self.labels())
+
+    def effects(self, on: date, units: Units | None = None) -> tuple[TreatmentEffect, ...]:
+        """Return what inspections up to the evening of a day tell of each treatment before it."""
+        now = self._now()
+        day = now.settings.day(on)
+        return treatment_effect.effects(self.treatments(), now.history, day, units)
+
+    def advise(self, on: date, said: str, who: str = "") -> None:
+        """Write into the log what was advised for a day, unless that was written last of it."""
+        with self._lock, self.store.reading() as db:
+            of_day = [one for one in season_log.entries(db) if one.kind == "advised"]
+        told = [one.what["said"] for one in of_day if one.what["date"] == str(on)]
+        if told[-1:] == [said]:
+            return
+        with self._lock, self.store.writing() as db:
+            season_log.append(db, "advised", who, date=str(on), said=said)
+
+    def log(self) -> tuple[LogEntry, ...]:
+        """Return the log, the first entry first.
+
+        Raise `FileProblem` where the past was changed: at which entry.
+        """
+        with self.store.reading() as db:
+            return season_log.entries(db)
+
+    def held_to_log(self) -> tuple[str, ...]:
+        """Return a sentence for each thing that the file says otherwise than its log."""
+        with self.store.reading() as db:
+            wrong = {
+                "inspections": inspection_table.not_what_they_say(db),
+                "treatments": treatments.not_what_they_say(db),
+            }
+            return (
+                *season_log.differing(db),
+                *(
+                    f"Row {row} of the layer {layer} is not what was recorded."
+                    for layer, rows in wrong.items()
+                    for row in rows
+                ),
+            )
+
+    def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
         """Take a batch back (None: the last one), or one inspection; nothing is deleted.
 
         Return a sentence that says what was undone. Raise `SettingError` if there is nothing.
         """
         with self._lock, self.store.writing() as db:
             if inspection is None:
-                said = batches.undo(db, batch)
+                number, said = batches.undo(db, batch)
             else:
-                said = batches.undo_one(db, inspection)
+                number, said = batches.undo_one(db, inspection)
+            states = season_log.states(db, [number])
+            season_log.append(db, "undone", who, states=states, batch=number, said=said)
             self._refresh(db)
         return said
 
@@ -510,6 +707,7 @@ class Season:
             settings, plot = _settings(db), (self.plot.grid, self.label)
             n = outside_changes.correct(db, plot, settings, who)
             if n:
+                season_log.append(db, "corrected", who, states=season_log.states(db), rows=n)
                 self._refresh(db)
         return n
 
@@ -522,11 +720,17 @@ class Season:
             contradict = contradictions(
                 other.history.inspections, self._read(db).history.inspections
             )
-            before = inspection_table.n_counting(db)
+            before, was = inspection_table.n_counting(db), season_log.states(db)
             with other.store.reading() as theirs:
+                told = season_log.taken_in(db, theirs)
                 chosen = merging.merge(db, theirs)
             self._refresh(db)
             new = inspection_table.n_counting(db) - before
+            if told or season_log.states(db) != was:
+                season_log.append(
+                    db, "merged", states=season_log.states(db), new=new, entries=len(told),
+                    theirs=told,
+                )  # fmt: skip
         return Merged(new, (*contradict.sentences(self.label), *chosen))
 
     # -- what is known
@@ -583,7 +787,27 @@ class Season:
         with self._lock:
             contents = self._now()
             day = contents.settings.day(on)
-            return Status.of(contents.history, contents.morning(day), day)
+            now = Status.of(contents.history, contents.morning(day), day)
+        return replace(now, development=self.development(on))
+
+    def development(self, on: date) -> Development | None:
+        """Return how far the pest has come on a day, counted from its first find.
+
+        Until there is one, from the season's first day. None: no pest or weather was given, or
+        its development is not known.
+        """
+        now = self._now()
+        pest, weather = now.settings.pest, now.settings.weather
+        if pest is None or weather is None:
+            return None
+        return development(pest, weather, now.history.first_find(on) or now.settings.begins, on)
+
+    def forecast(self, on: date) -> Forecast:
+        """Return how many plants are infested on the mornings after a day, nobody inspecting."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.forecast(contents.morning(day), day)
 
     def learnt(self, on: date) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of a day tell of the insects."""
@@ -636,11 +860,15 @@ class Season:
             with self.store.reading() as db:
                 kept = db.execute("SELECT day, date, digest FROM days ORDER BY day").fetchall()
             doubt = () if self.store.doubt is None else (self.store.doubt,)
-            return doubt + tuple(
-                f"The chance map of {on} comes out differently from the one used then: it was "
-                "made by another version of fieldmon, or the file was changed by other hands."
-                for day, on, then in kept
-                if derived_layers.map_digest(contents.morning(day).chance) != then
+            return (
+                doubt
+                + self.held_to_log()
+                + tuple(
+                    f"The chance map of {on} comes out differently from the one used then: it was "
+                    "made by another version of fieldmon, or the file was changed by other hands."
+                    for day, on, then in kept
+                    if derived_layers.map_digest(contents.morning(day).chance) != then
+                )
             )
 
     def rebuild(self) -> None:
@@ -702,7 +930,7 @@ class Season:
 def _nothing_yet(
     plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
 ) -> History:
-    belief = settings.belief.first_morning(plot.grid, prior)
+    belief = settings.belief.first_morning(plot.grid, prior, settings.pest)
     known = usable(records, np.datetime64(settings.begins, "D")).observations
     return History(
         plot.grid,
@@ -712,6 +940,7 @@ def _nothing_yet(
         detection=settings.robot.detects,
         recorded=record_states(plot.grid, known) if len(known) else None,
         detection_of={one.name.casefold(): one.robot.detects for one in settings.team},
+        living=settings.living(),
     )
 
 

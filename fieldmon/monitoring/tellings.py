@@ -17,7 +17,14 @@ from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
 from fieldmon.errors import LimitError, ObservationError, SettingError
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
-from fieldmon.monitoring import batches, inspection_table, phone_tables, schema, scouts
+from fieldmon.monitoring import (
+    batches,
+    inspection_table,
+    phone_tables,
+    schema,
+    scouts,
+    season_log,
+)
 from fieldmon.monitoring.geopackage import insert, point_blobs, touch
 from fieldmon.monitoring.settings import seconds
 from fieldmon.plot.local_clock import local_clock, utc_now
@@ -137,9 +144,19 @@ def take(
         clocks = received, sent
         for one in news.values():
             known[one.id] = one.content(), ""
-        problems = _write(season, change, scout, _Letter(list(news.values()), clocks, shift))
-        if news:
-            _take_back(change)
+        letter = _Letter(list(news.values()), clocks, shift)
+        problems, batch, made = _write(season, change, scout, letter)
+        taken_back = _take_back(change) if news else set()
+        if made:
+            states = season_log.states(change.db, {batch, *taken_back})
+            columns = (np.concatenate([getattr(one, name) for one in made])
+                       for name in ("result", "date"))  # fmt: skip
+            said = {"batch": batch, "source": SOURCE, **inspection_table.in_words(*columns)}
+            season_log.append(change.db, "seen", scout.name, states=states, **said)
+        elif taken_back:
+            states = season_log.states(change.db, taken_back)
+            said = {"said": "What a phone told was taken back by it."}
+            season_log.append(change.db, "undone", scout.name, states=states, **said)
     return tuple(
         Taken(
             one.id, one.id in news, problems.get(one.id, known[one.id][1]) or _differs(one, known)
@@ -183,14 +200,19 @@ def _limit(db: sqlite3.Connection, scout: Scout, now: datetime, news: int) -> No
         )  # fmt: skip
 
 
-def _write(season: Season, change: SeasonChange, scout: Scout, letter: _Letter) -> dict[str, str]:
-    """Write tellings and their inspections; return what is wrong with those that do not count."""
+def _write(
+    season: Season, change: SeasonChange, scout: Scout, letter: _Letter
+) -> tuple[dict[str, str], int, list[Inspections]]:
+    """Write tellings and their inspections.
+
+    Return what is wrong with those that do not count, the batch, and what was seen.
+    """
+    seen: list[Inspections] = []
     if not letter.tellings:
-        return {}
+        return {}, 0, seen
     settings = season.settings_in(change.db)  # before anything is written: it is read once
     batch = batches.begin(change.db, "findings", SOURCE, scout.name)
     problems: dict[str, str] = {}
-    added = 0
     for one in letter.tellings:
         inspection = None
         if not one.undoes:
@@ -200,14 +222,14 @@ def _write(season: Season, change: SeasonChange, scout: Scout, letter: _Letter) 
                 (row,) = inspection_table.rows(made, season.plot.grid, season.label, *days)
                 inspection = _insert(change.db, row, one.id)
                 change.reaches(settings.day(made.date[0].item()))
-                added += 1
+                seen.append(made)
             except (ObservationError, SettingError) as error:
                 problems[one.id] = str(error)
         _keep(change.db, scout, letter.clocks, (one, inspection, problems.get(one.id)))
-    batches.end(change.db, batch, added)
+    batches.end(change.db, batch, len(seen))
     touch(change.db, phone_tables.TELLINGS.name)
     touch(change.db, schema.INSPECTIONS.name)
-    return problems
+    return problems, batch, seen
 
 
 def _inspection(season: Season, one: Telling, at: datetime) -> Inspections:
@@ -265,10 +287,13 @@ def _keep(
     )
 
 
-def _take_back(change: SeasonChange) -> None:
-    for batch, day in phone_tables.take_back(change.db):
+def _take_back(change: SeasonChange) -> set[int]:
+    """Take back what was told to be; return the batches that it was of."""
+    back = phone_tables.take_back(change.db)
+    for batch, day in back:
         batches.close_if_empty(change.db, batch)
         change.reaches(day)
+    return {batch for batch, _ in back}
 
 
 def _text(moment: datetime) -> str:

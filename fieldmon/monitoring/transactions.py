@@ -12,9 +12,17 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import require_folder
-from fieldmon.monitoring import changes_beside
+from fieldmon.monitoring import changes_beside, season_log
 from fieldmon.monitoring.geopackage import APPLICATION_ID
-from fieldmon.monitoring.schema import MIGRATIONS, NEEDS, OPEN, VERSION, lay_out, watch
+from fieldmon.monitoring.schema import (
+    LOGS_SINCE,
+    MIGRATIONS,
+    NEEDS,
+    OPEN,
+    VERSION,
+    lay_out,
+    watch,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -64,6 +72,7 @@ class Store:
             version = _version(db)
             is_parted = not has_more and db.execute("PRAGMA journal_mode").fetchone()[0] == "wal"
             needs = get_meta(db, "needs") if version else None
+        self._checked: tuple[int, str] | None = None
         #: what is to be doubted of the file, in a sentence, or None
         self.doubt = changes_beside.PARTED.format(path=self.path) if is_parted else None
         if version is None:
@@ -138,6 +147,8 @@ class Store:
             _into_one_file(db)
             db.execute("BEGIN IMMEDIATE")
             set_meta(db, OPEN, "1")  # what is changed from here on is changed by us
+            if _version(db) == VERSION:
+                self._checked = season_log.refuse_changed(db, self._checked)
             yield db
             set_meta(db, OPEN, "0")
             db.execute("UPDATE fieldmon SET value = value + 1 WHERE key = 'revision'")
@@ -237,10 +248,13 @@ def _version(db: sqlite3.Connection) -> int | None:
 
 def _migrate(db: sqlite3.Connection) -> None:
     # asked again inside the transaction: another window may have been quicker
-    for version in range(_version(db) or 0, VERSION):
+    begun = _version(db) or 0
+    for version in range(begun, VERSION):
         MIGRATIONS[version](db)
     watch(db)
     _mark(db)
+    if begun < LOGS_SINCE:
+        season_log.begin(db, f"the file was of format {begun}; what stands in it is held to now")
 
 
 def _mark(db: sqlite3.Connection) -> None:

@@ -1,52 +1,250 @@
-"""Treatments as the season's file keeps them: areas, and how well it works there."""
+"""Treatments as the season's file keeps them: where, with what, and how well it works there."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import zlib
+from dataclasses import dataclass
+from datetime import date, datetime, time, timedelta
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fieldmon.compute.digest import digest
+from fieldmon.decisions.doses import Dose
+from fieldmon.decisions.labels import irac_groups
 from fieldmon.monitoring import schema
+from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.geopackage import blob, geometry, touch
 from fieldmon.monitoring.history import Treatment
+from fieldmon.monitoring.waiting_periods import WaitingPeriod, end_of
+from fieldmon.plot.local_clock import LocalClock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     import shapely
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
+    Inside = Callable[[shapely.Geometry], NDArray[np.bool_]]
+
+#: what the application says, by the names of its columns
+_TEXTS = ("operator", "reason", "machinery", "crop", "pest", "authorised_by")
+
+
+@dataclass(frozen=True, eq=False)
+class TreatedPlace:
+    """Where a treatment was: its outline, its plants and its size.
+
+    Parameters
+    ----------
+    area
+        Outline, lon/lat.
+    plants
+        ``(n,)`` whether each plant was treated.
+    area_ha
+        Hectares of the plot that it covers; None: a file of an earlier version does not say.
+    by_plant
+        Whether plants were treated one by one: then they count, not the outline.
+    """
+
+    area: MultiPolygon
+    plants: NDArray[np.bool_]
+    area_ha: float | None
+    by_plant: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class KeptTreatment:
+    """A treatment that counts, as the season's file keeps it.
+
+    Parameters
+    ----------
+    number, batch
+        Its row in the layer, and the batch that undoing names.
+    day, on
+        Number of the day, and its date.
+    place
+        Where.
+    efficacy
+        Chance that an infested plant is clean afterwards, as it was said.
+    application
+        What was applied, and how.
+    ended
+        The moment it ended: of what was said, or the end of its day.
+    clock
+        Of the plot.
+    """
+
+    number: int
+    batch: int
+    day: int
+    on: date
+    place: TreatedPlace
+    efficacy: float
+    application: Application
+    ended: datetime
+    clock: LocalClock
+
+    @property
+    def waits(self) -> WaitingPeriod:
+        """Return what has to be waited for after it, as it was entered."""
+        said = self.application
+        return WaitingPeriod(self.ended, said.waiting_days, said.reentry_hours, self.clock)
+
+    @property
+    def believed(self) -> Treatment:
+        """Return it as the belief takes it."""
+        return Treatment(self.day, self.place.plants, self.efficacy)
+
 
 def store(
     db: sqlite3.Connection,
     treatment: Treatment,
-    said: tuple[MultiPolygon, str, str],
+    said: tuple[TreatedPlace, date, Application],
     batch: int,
+    clock: LocalClock,
 ) -> int:
     """Keep a treatment that is not there yet; return how many were new, 1 or 0.
 
-    `said` is its area (lon/lat), its date and the product.
+    `said` is its place, its date and what was applied; `clock` that of the plot.
     """
-    area, on, product = said
-    n_plants = int(np.count_nonzero(treatment.plants))
-    values = (treatment.day, on, treatment.efficacy, product, n_plants)
-    mark = digest((values, blob(area)), length=24, end=b"")
-    names = schema.TREATMENTS.names
+    place = said[0]
+    row = _row(treatment, said, clock)
+    row |= {"batch": batch, "digest": digest_of(row), "undone": 0}
     cursor = db.execute(
-        f"INSERT OR IGNORE INTO treatments ({', '.join(names)}) "  # noqa: S608 - names of ours
-        f"VALUES ({', '.join('?' * len(names))})",
-        (blob(area), *values, batch, mark, 0),
+        f"INSERT OR IGNORE INTO treatments ({', '.join(row)}) "  # noqa: S608 - names of ours
+        f"VALUES ({', '.join('?' * len(row))})",
+        tuple(row.values()),
     )
-    touch(db, schema.TREATMENTS.name, area.bounds)
+    touch(db, schema.TREATMENTS.name, place.area.bounds)
     return cursor.rowcount
 
 
-def load(
-    db: sqlite3.Connection, inside: Callable[[shapely.Geometry], NDArray[np.bool_]]
-) -> tuple[Treatment, ...]:
-    """Return the treatments that count; `inside` tells which plants stand in an area."""
-    kept = db.execute("SELECT day, geom, efficacy FROM treatments WHERE undone = 0 ORDER BY fid")
-    return tuple(Treatment(day, inside(geometry(geom)), share) for day, geom, share in kept)
+def _row(
+    treatment: Treatment, said: tuple[TreatedPlace, date, Application], clock: LocalClock
+) -> dict[str, Any]:
+    place, on, application = said
+    dose, began, ended = application.dose, application.began, application.ended
+    over = on + timedelta(days=1) if began and ended and ended < began else on
+    return {
+        "geom": blob(place.area),
+        "day": treatment.day,
+        "date": str(on),
+        "efficacy": float(treatment.efficacy),
+        "product": application.product,
+        "plants": int(np.count_nonzero(place.plants)),
+        "dose": None if dose is None else float(dose.value),
+        "unit": None if dose is None else dose.unit,
+        "water_l_ha": _real(application.water_l_ha),
+        "area_ha": None if place.area_ha is None else round(place.area_ha, 4),
+        "waiting_days": application.waiting_days,
+        "reentry_hours": _real(application.reentry_hours),
+        "irac_groups": "+".join(application.irac_groups) or None,
+        "began": None if began is None else _moment(clock, on, began),
+        "ended": None if ended is None else _moment(clock, over, ended),
+        "zone": clock.zone or None,
+        **{name: getattr(application, name) or None for name in _TEXTS},
+        "of_plants": zlib.compress(np.packbits(place.plants).tobytes()) if place.by_plant else None,
+    }
+
+
+def _real(value: float | None) -> float | None:
+    """Return a number as it comes out of the file again."""
+    return None if value is None else float(value)
+
+
+def _moment(clock: LocalClock, on: date, at: time) -> str:
+    """Return a local time with the offset of its zone."""
+    moment = end_of(clock, on, at)
+    local = clock.at(moment)
+    ahead = local - moment.replace(tzinfo=None)
+    minutes = round(ahead.total_seconds() / 60)
+    sign = "-" if minutes < 0 else "+"
+    return f"{local:%Y-%m-%dT%H:%M:%S}{sign}{abs(minutes) // 60:02d}:{abs(minutes) % 60:02d}"
+
+
+def digest_of(row: Mapping[str, Any]) -> str:
+    """Return the digest of a treatment's row: the same for the same treatment only.
+
+    Of one of which only product, area and efficacy were said it is that of earlier versions.
+    """
+    values = tuple(row[name] for name in ("day", "date", "efficacy", "product", "plants"))
+    # how large it is and in which zone follows from the rest; plants stand in the outline
+    more = ("dose", "unit", "water_l_ha", "waiting_days", "reentry_hours", "irac_groups")
+    told = {name: row[name] for name in (*more, "began", "ended", *_TEXTS) if row[name] is not None}
+    parts: tuple[object, ...] = (values, row["geom"])
+    if told:
+        parts = (*parts, tuple(sorted(told.items())))
+    return digest(parts, length=24, end=b"")
+
+
+def in_words(place: TreatedPlace, application: Application) -> str:
+    """Return what the season's log says of a treatment."""
+    parts = [application.product or "a product that nobody named"]
+    if application.dose is not None:
+        parts.append(str(application.dose))
+    if place.area_ha is not None:
+        parts.append(f"on {place.area_ha:.3g} ha")
+    return f"{' '.join(parts)}, {int(np.count_nonzero(place.plants))} plants"
+
+
+def not_what_they_say(db: sqlite3.Connection) -> list[int]:
+    """Return rows whose digest is not that of what they say."""
+    names = ("fid", *schema.TREATMENTS.names)
+    found = []
+    for values in db.execute(f"SELECT {', '.join(names)} FROM treatments ORDER BY fid"):  # noqa: S608
+        row = dict(zip(names, values, strict=True))
+        # a library that was told 1 and not 1.0 once kept the digest of 1
+        whole = row | {"efficacy": int(row["efficacy"])}
+        if row["digest"] not in {digest_of(row), digest_of(whole)}:
+            found.append(row["fid"])
+    return found
+
+
+def kept(db: sqlite3.Connection, inside: Inside, clock: LocalClock) -> tuple[KeptTreatment, ...]:
+    """Return the treatments that count, in the order in which they ended.
+
+    `inside` tells which plants stand in an area.
+    """
+    names = ("fid", *schema.TREATMENTS.names)
+    rows = db.execute(f"SELECT {', '.join(names)} FROM treatments WHERE undone = 0 ORDER BY fid")  # noqa: S608 - ours
+    made = [_kept(dict(zip(names, row, strict=True)), inside, clock) for row in rows]
+    return tuple(sorted(made, key=lambda one: (one.ended, one.number)))
+
+
+def load(db: sqlite3.Connection, inside: Inside) -> tuple[Treatment, ...]:
+    """Return the treatments that count as the belief takes them, as they were recorded."""
+    made = kept(db, inside, LocalClock("UTC"))
+    return tuple(one.believed for one in sorted(made, key=lambda one: one.number))
+
+
+def _kept(row: dict[str, Any], inside: Inside, clock: LocalClock) -> KeptTreatment:
+    area, on = geometry(row["geom"]), date.fromisoformat(row["date"])
+    clock = LocalClock(row["zone"]) if row["zone"] else clock
+    by_plant = row["of_plants"] is not None
+    plants = inside(area)
+    if by_plant:
+        bits = np.frombuffer(zlib.decompress(row["of_plants"]), np.uint8)
+        plants = np.unpackbits(bits, count=len(plants)).astype(bool)
+    began, ended = (_read(row[name]) for name in ("began", "ended"))
+    more: dict[str, Any] = {name: row[name] or "" for name in _TEXTS}
+    more |= {name: row[name] for name in ("water_l_ha", "waiting_days", "reentry_hours")}
+    application = Application(
+        product=row["product"] or "",
+        dose=None if row["dose"] is None else Dose(row["dose"], row["unit"]),
+        irac_groups=irac_groups(row["irac_groups"] or ""),
+        began=None if began is None else began.time(),
+        ended=None if ended is None else ended.time(),
+        **more,
+    )
+    place = TreatedPlace(area, plants, row["area_ha"], by_plant)
+    over = end_of(clock, on, None) if ended is None else ended
+    return KeptTreatment(
+        row["fid"], row["batch"], row["day"], on, place, row["efficacy"], application, over, clock
+    )
+
+
+def _read(moment: str | None) -> datetime | None:
+    return None if moment is None else datetime.fromisoformat(moment)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from contextlib import suppress
 from dataclasses import dataclass
-from datetime import UTC, date, datetime, time
+from datetime import UTC, date, datetime, time, timedelta
 from functools import cache
 from itertools import product
 from typing import TYPE_CHECKING
@@ -16,7 +16,12 @@ import shapely
 from shapely import MultiPolygon
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fieldmon.plot.field import Field
+
+# no clock was ever put back by more than a day: where the date line moved
+_BACK_HOURS = 26
 
 
 @dataclass(frozen=True)
@@ -48,6 +53,41 @@ class LocalClock:
     def today(self) -> date:
         """Return the local date."""
         return self.now().date()
+
+    def latest(self, local: datetime) -> datetime:
+        """Return the last moment at which the clock shows a local time.
+
+        Where clocks are put back it shows the time twice; a time that was left out counts by the
+        offset that puts it later.
+        """
+        zone = ZoneInfo(self.zone) if self.zone else None
+        folds = (local.replace(tzinfo=zone, fold=fold).astimezone(UTC) for fold in (0, 1))
+        return max(folds)
+
+    def passed(self, moment: datetime) -> datetime:
+        """Return a local time that the clock never shows before a moment; whole minutes.
+
+        It is the time of that moment, rounded up. Within the hour after clocks were put back it is
+        later: an hour earlier the clock showed the same.
+        """
+        ahead = max(_ahead(self, moment), *self._shown_twice(moment))
+        local = moment.astimezone(UTC).replace(tzinfo=None) + ahead
+        whole = local.replace(second=0, microsecond=0)
+        return whole if whole == local else whole + timedelta(minutes=1)
+
+    def _shown_twice(self, moment: datetime) -> Iterator[timedelta]:
+        """Yield offsets by which the clock showed the time of a moment, or later, before it."""
+        now = _ahead(self, moment)
+        yield now
+        earlier = (_ahead(self, moment - timedelta(hours=h)) for h in range(1, _BACK_HOURS))
+        for before in {*earlier}:
+            if before > now and _ahead(self, moment - (before - now)) == before:
+                yield before
+
+
+def _ahead(clock: LocalClock, moment: datetime) -> timedelta:
+    """Return how far the clock is ahead of UTC at a moment."""
+    return clock.at(moment) - moment.astimezone(UTC).replace(tzinfo=None)
 
 
 def utc_now() -> datetime:

@@ -10,6 +10,7 @@ import numpy as np
 from fieldmon.compute.wording import counted, figure, joined, worded
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
+from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import words
 from fieldmon.reports.charts import DayChart
@@ -40,6 +41,8 @@ if TYPE_CHECKING:
     from fieldmon.monitoring import Season, Status
 
 _LATE_DAYS = 7
+# as many as a page has room for beside its map
+_MOST_CAUTIONS, _MOST_EFFECTS = 6, 3
 # as many letters as a line of rows, and a column of plants, may have
 _ROWS_LONG, _FINDS_LONG = 70, 46
 
@@ -120,8 +123,15 @@ def _stands(facts: _Facts) -> Iterator[Block]:
     assumed = assumed_sentence(WorkSettings.of_season(facts.season), facts.units)
     if assumed:
         yield Paragraph(assumed)
+    beware = facts.season.cautions(facts.on, facts.units)
+    if beware:
+        sentences = tuple(dict.fromkeys(one.sentence for one in beware))
+        yield Listing(words.CERT_CAUTIONS, sentences[:_MOST_CAUTIONS])
     yield from facts.plot_map(by_state=False)
     yield Paragraph(joined(" ", _rows_seen(facts)))
+    told = [one for one in facts.season.effects(facts.on, facts.units) if one.before.inspected]
+    if told:
+        yield Listing("", tuple(one.sentence() for one in told[-_MOST_EFFECTS:]))
 
 
 def _figures(facts: _Facts) -> KeyFigures:
@@ -271,15 +281,19 @@ def _batches(facts: _Facts) -> Block:
 
 
 def _treatments(facts: _Facts) -> Block:
-    kept = [one for one in facts.season.history.treatments if one.day <= facts.status.day]
+    kept = [one for one in facts.season.treatments() if one.day <= facts.status.day]
     if not kept:
         return Listing(words.TREATMENTS, (words.TREATMENTS_NONE,))
-    rows = tuple(
-        (facts.units.day(facts.season.settings.date(one.day)),
-         figure(int(np.count_nonzero(one.plants))), figure(one.efficacy, ".0%"))
-        for one in reversed(kept)
-    )  # fmt: skip
+    labels = facts.season.labels()
+    rows = []
+    for one in reversed(kept):
+        first = waits(one, label_of(one, labels)).harvest_from
+        rows.append(
+            (facts.units.day(one.on), one.application.product,
+             figure(int(np.count_nonzero(one.place.plants))), figure(one.efficacy, ".0%"),
+             "" if first is None else facts.units.day(first))
+        )  # fmt: skip
     return Table(
-        words.TREATMENTS, words.TREATMENT_COLUMNS, rows, (0.34, 0.33, 0.33), flow=2,
-        rest=words.TREATMENTS_REST, left=(0,),
+        words.TREATMENTS, words.TREATMENT_COLUMNS, tuple(rows), (0.18, 0.34, 0.14, 0.14, 0.2),
+        rest=words.TREATMENTS_REST, left=(0, 1),
     )  # fmt: skip

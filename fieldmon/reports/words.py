@@ -93,12 +93,16 @@ FINDS_COLUMNS = ("row", "finds", "plants")
 FINDS_NONE = "No plant was found infested yet."
 BATCHES = "What was recorded"
 BATCH_COLUMNS = ("recorded (UTC)", "what", "from", "by", "rows")
-BATCH_KINDS = {"findings": "inspections", "treatment": "treatment"}
+BATCH_KINDS = {
+    "findings": "inspections",
+    "treatment": "treatment",
+    "corrections": "corrections",
+}
 BATCH_UNDONE = "{kind}, taken back"
 BATCHES_NONE = "Nothing was recorded yet."
 BATCHES_REST = "... and {n} earlier ones; fieldmon status --batches lists them."
 TREATMENTS = "Treatments"
-TREATMENT_COLUMNS = ("day", "plants", "works on")
+TREATMENT_COLUMNS = ("day", "product", "plants", "works on", "harvest from")
 TREATMENTS_NONE = "No treatment was noted."
 TREATMENTS_REST = "... and {n} earlier ones."
 ASSUMED = "Assumed, though nobody said so: {what}."
@@ -132,6 +136,50 @@ MEANINGS = (
     "A hot spot is where finds cluster more than chance allows, three or more; false ones: 5 %.",
     "What is marked as assumed was neither measured nor chosen. Other values give other chances.",
 )
+
+# -- for a certifier
+CERT_TITLE = "Plant protection record, {begins} to {day}"
+CERT_SHEETS = ("Summary", "Applications", "Inspections")
+CERT_LEAD = "{treatments} on {plots}; {inspections}, {finds}."
+CERT_AREA, CERT_AREA_NOTE = "Area treated", "all treatments added"
+CERT_INSPECTIONS, CERT_FINDS = "Inspections", "Finds"
+CERT_CAUTIONS, CERT_CAUTIONS_NONE = "To beware of", "Nothing."
+CERT_PLOTS = "Plots"
+CERT_PLOT_COLUMNS = ("plot", "area", "from", "to", "treatments", "inspected", "found")
+CERT_UNSAID, CERT_UNSAID_NONE = "Asked for and not said", "Nothing: every application is complete."
+CERT_MISSING = "{plot}, {day}: {what}."
+CERT_LOG = "Log"
+CERT_LOG_HOLDS = "{plot}: {n} entries since {since}, the chain holds. The last digest is {digest}."
+CERT_MEANINGS = (
+    "Each entry of the log has a digest of itself and of all before it: keep the last one.",
+    "Whoever keeps it can tell later whether the past was changed: the log must still hold it.",
+    "A waiting period counts from the end of the application; of its day, where no time was said.",
+    "Its end is rounded up to a whole day.",
+    "What labels allow is the grower's own table; where it says nothing, nothing was checked.",
+)
+CERT_COLUMNS, CERT_NOT_SAID = ("what", "said"), "not said"
+CERT_FIELDS = {
+    "product": "Product",
+    "group": "Mode of action (IRAC)",
+    "dose": "Dose",
+    "water": "Water",
+    "area": "Area",
+    "plants": "Plants",
+    "time": "Began and ended",
+    "zone": "Time zone",
+    "crop": "Crop",
+    "pest": "Pest",
+    "operator": "Operator",
+    "authorised": "Authorised by",
+    "machinery": "Machinery",
+    "waiting": "Waiting period",
+    "harvest": "Harvest from",
+    "entry": "Entry from",
+    "reason": "Reason",
+    "advised": "Advised",
+}
+CERT_OF_PLOT, CERT_NONE = "Inspections on {plot}", "none"
+CERT_DAY_COLUMNS = ("day", "inspected", "found", "by")
 
 
 def _remembered(value: Any) -> Any:  # noqa: ANN401 - a text, or many in a dict or tuple

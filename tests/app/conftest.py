@@ -9,11 +9,13 @@ import tempfile
 import time
 import urllib.request
 from datetime import UTC, datetime, timedelta
+from functools import cache
 from itertools import count
 from pathlib import Path
 
 import pytest
 import streamlit as st
+from streamlit.components.v2 import manifest_scanner
 
 from app.words import language
 from fieldmon.monitoring import Season
@@ -22,6 +24,15 @@ from tests.app.driving import begun, opened
 from tests.paths import SHARED
 
 SHOTS = Path(__file__).with_name("screenshots")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def components():
+    """Look for components among all installed packages once, not for each session."""
+    with pytest.MonkeyPatch.context() as patch:
+        scan = manifest_scanner.scan_component_manifests
+        patch.setattr(manifest_scanner, "scan_component_manifests", cache(scan))
+        yield
 
 
 @pytest.fixture(autouse=True)

@@ -3,7 +3,7 @@
 import pytest
 
 from fieldmon.io import packaged
-from fieldmon.io.packaged import packaged_table, packaged_text
+from fieldmon.io.packaged import packaged_names, packaged_table, packaged_text
 
 
 def test_a_text_is_that_of_the_file():
@@ -20,3 +20,7 @@ def test_remarks_are_no_rows_and_quoted_commas_no_columns(monkeypatch):
     text = '# from: a book, table 2\n# more\na,b\n1,"x, # y"\n2,\n'
     monkeypatch.setattr(packaged, "packaged_text", lambda _: text)
     assert packaged_table("any") == [{"a": "1", "b": "x, # y"}, {"a": "2", "b": ""}]
+
+
+def test_files_of_a_folder_are_found_by_their_ending():
+    assert packaged_names("fieldmon/decisions", ".csv") == ["thresholds.csv"]

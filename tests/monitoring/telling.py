@@ -8,7 +8,7 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 
 from fieldmon.infestation.inspections import CLEAN, FOUND
-from fieldmon.monitoring import phone_tables
+from fieldmon.monitoring import phone_tables, schema
 from fieldmon.monitoring.tellings import Telling
 from tests.monitoring.seasons import BEGINS
 
@@ -44,8 +44,27 @@ def told(season):
     return ids, rows
 
 
+def without_records(path):
+    """Make a file one of version 6: without labels, a log, and what was said of applications."""
+    with closing(sqlite3.connect(path)) as db:
+        triggers = db.execute("SELECT name FROM sqlite_master WHERE type = 'trigger'").fetchall()
+        for (name,) in triggers:
+            db.execute(f"DROP TRIGGER {name}")
+        for name in ("labels", "log"):
+            db.execute(f"DROP TABLE {name}")
+            db.execute("DELETE FROM gpkg_contents WHERE table_name = ?", (name,))
+        db.execute("DROP INDEX inspections_batch")
+        older = {row[1] for row in db.execute("PRAGMA table_info(treatments)")}
+        for name in older & {column.split()[0] for column in schema.APPLIED}:
+            db.execute(f"ALTER TABLE treatments DROP COLUMN {name}")
+        db.execute("DELETE FROM fieldmon WHERE key = 'log'")
+        db.execute("UPDATE fieldmon SET value = '6' WHERE key = 'version'")
+        db.commit()
+
+
 def without_phones(path):
     """Make a file one of version 5."""
+    without_records(path)
     ours = [table.name for table in phone_tables.TABLES]
     views = ["inspections_photos", "photo_places"]
     with closing(sqlite3.connect(path)) as db:

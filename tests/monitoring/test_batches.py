@@ -38,8 +38,8 @@ def test_a_batch_that_added_nothing_was_none(db):
 def test_the_last_batch_that_counts_is_undone_and_its_rows_stay(db):
     recorded(db, 2, "first")
     recorded(db, 3, "second")
-    assert batches.undo(db, None) == "Batch 2 was undone: 3 findings from second."
-    assert batches.undo(db, None) == "Batch 1 was undone: 2 findings from first."
+    assert batches.undo(db, None)[1] == "Batch 2 was undone: 3 findings from second."
+    assert batches.undo(db, None)[1] == "Batch 1 was undone: 2 findings from first."
     assert counting(db) == 0
     assert db.execute("SELECT count(*) FROM inspections").fetchone() == (5,)
     with pytest.raises(SettingError, match="something to undo, but there is nothing"):
@@ -49,7 +49,7 @@ def test_the_last_batch_that_counts_is_undone_and_its_rows_stay(db):
 def test_any_batch_is_undone_by_its_number_but_once(db):
     recorded(db, 2, "first")
     recorded(db, 1, "soap", kind="treatment")
-    assert "Batch 1 was undone" in batches.undo(db, 1)
+    assert "Batch 1 was undone" in batches.undo(db, 1)[1]
     assert (counting(db), counting(db, "treatments")) == (0, 1)
     with pytest.raises(SettingError, match="called batch 1 that still counts"):
         batches.undo(db, 1)

@@ -1,9 +1,12 @@
 """Today is the plot's, wherever the program runs."""
 
-from datetime import UTC, date, datetime
+import zoneinfo
+from datetime import UTC, date, datetime, timedelta
 
 import pytest
 import tzfpy
+from hypothesis import example, given
+from hypothesis import strategies as st
 from shapely import MultiPolygon, box
 
 from fieldmon.plot import local_clock as clocks
@@ -47,3 +50,35 @@ def test_where_no_zone_is_known_the_machines_clock_counts(monkeypatch):
     assert clock.zone == ""
     moment = datetime(2026, 11, 21, 22, 30, tzinfo=UTC)
     assert clock.at(moment) == moment.astimezone().replace(tzinfo=None)
+
+
+ZONES = st.sampled_from(sorted(zoneinfo.available_timezones() - {"Factory", "localtime"}))
+MOMENTS = st.datetimes(datetime(1990, 1, 1), datetime(2037, 12, 31), timezones=st.just(UTC))
+
+
+@example("Asia/Jerusalem", datetime(2026, 10, 24, 22, 30, tzinfo=UTC))  # 01:30, for the first time
+@example("Asia/Jerusalem", datetime(2026, 10, 24, 23, 30, tzinfo=UTC))  # and for the second
+@example("America/Havana", datetime(2026, 11, 1, 5, 10, tzinfo=UTC))  # put back to midnight
+@example("Pacific/Kwajalein", datetime(1993, 8, 21, 13, 0, tzinfo=UTC))  # a day left out
+@example("Australia/Lord_Howe", datetime(2026, 4, 4, 15, 5, tzinfo=UTC))  # by half an hour
+@given(ZONES, MOMENTS)
+def test_a_time_that_passed_is_never_shown_by_the_clock_before_the_moment(zone, moment):
+    clock = LocalClock(zone)
+    shown = clock.passed(moment)
+    assert shown >= clock.at(moment)
+    for minutes in range(1, 200):
+        assert clock.at(moment - timedelta(minutes=minutes)) < shown
+    assert shown - clock.at(moment) < timedelta(hours=1, minutes=1) or zone == "Antarctica/Troll"
+    assert (shown.second, shown.microsecond) == (0, 0)
+
+
+@example("Asia/Jerusalem", datetime(2026, 10, 25, 1, 30))
+@example("Asia/Jerusalem", datetime(2026, 3, 27, 2, 30))
+@given(ZONES, st.datetimes(datetime(1990, 1, 1), datetime(2037, 12, 31)))
+def test_the_latest_moment_of_a_local_time_is_that_time_or_later(zone, local):
+    clock = LocalClock(zone)
+    latest = clock.latest(local)
+    assert clock.at(latest) >= local
+    assert clock.at(latest + timedelta(minutes=1)) != local
+    if clock.at(latest) == local:  # no other moment after it shows the same
+        assert all(clock.at(latest + timedelta(minutes=15 * k)) > local for k in range(1, 9))

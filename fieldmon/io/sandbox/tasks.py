@@ -16,10 +16,12 @@ from fieldmon.io.readers.points_and_lines import (
     plants_of,
 )
 from fieldmon.io.readers.records import records_by_plot, records_of
+from fieldmon.io.readers.treated import treated_of
+from fieldmon.io.readers.weather import weather_in
 from fieldmon.io.sandbox.unpack import Workroom
 
 if TYPE_CHECKING:
-    from shapely import MultiLineString
+    from shapely import MultiLineString, MultiPolygon
 
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.formats.layer import LayerInfo
@@ -29,6 +31,8 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.places import NamedPlaces, Plants
     from fieldmon.io.readers.points_and_lines import DrawnBlocks
+    from fieldmon.io.readers.weather_options import WeatherOptions
+    from fieldmon.pests.weather import Weather
     from fieldmon.plot.field import Field
 
 
@@ -48,6 +52,11 @@ def crews(
     """Return the plots of a source, and who works on each."""
     layer = open_layer(source, options, Workroom(Path(folder)))
     return plots_of(layer, options), crews_of(*named_areas(layer, options))
+
+
+def treated(folder: str, source: Source, options: PlotOptions) -> Imported[MultiPolygon]:
+    """Return the area that a source says was treated."""
+    return treated_of(open_layer(source, options, Workroom(Path(folder))), options)
 
 
 def records(
@@ -90,3 +99,8 @@ def inspection_rows(
 ) -> Imported[InspectionRows]:
     """Return what a file says of plants that were inspected."""
     return rows_of(source, options, Workroom(Path(folder)))
+
+
+def weather(folder: str, source: Source, options: WeatherOptions) -> Imported[Weather]:
+    """Return the weather of a source."""
+    return weather_in(source, options, Workroom(Path(folder)))

@@ -43,16 +43,16 @@ def _cells(stop: Stop, plan: HandoffPlan) -> tuple[object, ...]:
         *((stop.row,) if plan.in_rows else ()),
         stop.number,
         *((stop.face,) if plan.has_faces else ()),
-        *(_safe(plan.notes.who or "") if name == "who" else "" for name in TO_FILL_IN),
+        *(safe_cell(plan.notes.who or "") if name == "who" else "" for name in TO_FILL_IN),
         stop.plant,
         f"{stop.lon:.{DECIMALS}f}",
         f"{stop.lat:.{DECIMALS}f}",
         *(stop.arrive, stop.arrive_s, stop.inspect_s, f"{stop.chance:.6f}"),
-        _safe(plan.notes.plot),
+        safe_cell(plan.notes.plot),
     )
 
 
-def _safe(text: str) -> str:
+def safe_cell(text: str) -> str:
     """Return a text that no spreadsheet runs as a formula."""
     plain = plain_text(text)
     return f"'{plain}" if plain.startswith(_FORMULA) else plain

@@ -1,0 +1,123 @@
+"""Noting a treatment: where, with what, how, by whom and why; and when harvest begins."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import streamlit as st
+
+from fieldmon.decisions.doses import Dose
+from fieldmon.decisions.labels import irac_groups
+from fieldmon.errors import SettingError
+from fieldmon.monitoring import Application
+
+from ..state import notices
+from ..words import texts
+from ..words.language import in_words
+
+if TYPE_CHECKING:
+    from shapely import MultiPolygon
+
+    from ..state.choices import Choices
+
+#: boxes of the form for what was said of an application, by what they are about
+_TEXTS = ("operator", "reason", "machinery", "crop", "pest", "authorised_by")
+
+
+def show(choices: Choices, area: MultiPolygon | None = None) -> None:
+    """Show the form for a treatment of the open season, and note it on demand.
+
+    Parameters
+    ----------
+    choices
+        With a season.
+    area
+        Where it was, lon/lat, as the zones of a decision; None: on the whole plot.
+    """
+    with st.form("treatment_form", border=False):
+        st.number_input(texts.TREAT_EFFICACY, 0, 100, None, 5, key="efficacy")
+        st.text_input(texts.TREAT_PRODUCT, key="product")
+        with st.expander(texts.TREAT_RECORD):
+            _boxes()
+        st.form_submit_button(texts.TREAT_BUTTON, on_click=_treat, args=(choices, area))
+    _harvest(choices)
+
+
+def _boxes() -> None:
+    """Show what a certifier asks of each treatment."""
+    left, right = st.columns(2)
+    left.number_input(texts.TREAT_DOSE, 0.0, None, None, key="treat dose")
+    right.text_input(texts.TREAT_UNIT, key="treat unit", placeholder="l/ha")
+    left.number_input(texts.TREAT_WATER, 0.0, None, None, key="treat water")
+    right.text_input(texts.TREAT_GROUP, key="treat group", help=texts.TREAT_GROUP_HELP)
+    left.number_input(texts.TREAT_WAIT, 0, None, None, key="treat days", help=texts.TREAT_BY_LABEL)
+    right.number_input(
+        texts.TREAT_ENTRY, 0.0, None, None, key="treat hours", help=texts.TREAT_BY_LABEL
+    )
+    left.time_input(texts.TREAT_BEGAN, None, key="treat began")
+    right.time_input(texts.TREAT_ENDED, None, key="treat ended", help=texts.TREAT_ENDED_HELP)
+    for name in _TEXTS:
+        st.text_input(texts.TREAT_TEXTS[name], key=f"treat {name}")
+
+
+def _said() -> Application:
+    """Return what the boxes say."""
+    state: Any = st.session_state
+    dose, unit = state["treat dose"], state["treat unit"].strip()
+    if bool(dose) != bool(unit):
+        raise SettingError(texts.TREAT_DOSE_UNSAID)
+    days = state["treat days"]
+    return Application(
+        product=state["product"].strip(),
+        dose=Dose(float(dose), unit) if dose else None,
+        water_l_ha=state["treat water"] or None,
+        waiting_days=None if days is None else int(days),
+        reentry_hours=state["treat hours"],
+        irac_groups=irac_groups(state["treat group"]),
+        began=state["treat began"],
+        ended=state["treat ended"],
+        **{name: state[f"treat {name}"].strip() for name in _TEXTS},
+    )
+
+
+@notices.reporting
+def _treat(choices: Choices, area: MultiPolygon | None) -> str:
+    """Note a treatment; say what to beware of because of it."""
+    efficacy, season = st.session_state["efficacy"], choices.season
+    said = _said()
+    said = replace(said, operator=said.operator or choices.who or "")
+    if efficacy is None and not said.product:
+        raise SettingError(texts.TREAT_UNSAID)
+    works = None if efficacy is None else efficacy / 100
+    done = season.treat(choices.on, works, area, application=said)
+    if not done.new:
+        return texts.TREATED_BEFORE
+    beware = [
+        in_words(one.sentence)
+        for one in season.cautions(choices.on, choices.units.of_library)
+        if one.batch == done.batch
+    ]
+    return "\n- ".join([texts.TREATED, *beware])
+
+
+# -- the harvest
+
+
+def _harvest(choices: Choices) -> None:
+    """Show when harvest begins, and change it on demand."""
+    harvest = choices.season.settings.harvest
+    st.date_input(
+        texts.HARVEST, harvest, min_value=choices.season.settings.begins, key=f"harvest {harvest}",
+        format=choices.units.date_format, help=texts.HARVEST_HELP,
+        on_change=_change_harvest, args=(choices, f"harvest {harvest}"),
+    )  # fmt: skip
+
+
+@notices.reporting
+def _change_harvest(choices: Choices, key: str) -> str:
+    settings = choices.season.settings
+    choices.season.change(
+        replace(settings, harvest=st.session_state[key]), settings, choices.who or ""
+    )
+    return texts.HARVEST_KEPT

@@ -1,0 +1,37 @@
+"""What to beware of after treatments, when harvest may begin, and whether treatments worked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from ..words import texts
+from ..words.language import in_words
+
+if TYPE_CHECKING:
+    from ..state.choices import Choices
+
+
+def show(choices: Choices, kinds: tuple[str, ...] = ()) -> None:
+    """Show what to beware of on the chosen day; `kinds`: of these alone."""
+    if choices.season is None:
+        return
+    found = choices.season.cautions(choices.on, choices.units.of_library)
+    said = [in_words(one.sentence) for one in found if not kinds or one.kind in kinds]
+    if said:
+        st.warning("\n".join(f"- {sentence}" for sentence in dict.fromkeys(said)))
+
+
+def show_treatments(choices: Choices) -> None:
+    """Show when harvest may begin, and what inspections tell of each treatment."""
+    season, units = choices.season, choices.units.of_library
+    first = season.harvest_from(choices.on)
+    if first is not None:
+        st.markdown(texts.HARVEST_FROM.format(day=choices.units.day(first[0])))
+    effects = season.effects(choices.on, units)
+    if effects:
+        st.markdown(f"**{texts.EFFECTS}**")
+        st.markdown("\n".join(f"- {in_words(one.sentence())}" for one in effects))
+    if effects and season.settings.belief.treated:
+        st.caption(texts.EFFECTS_TREATED)

@@ -1,0 +1,56 @@
+"""`fieldmon labels`: what the labels of products allow. Heavy imports wait."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fieldmon.cli.options import SeasonFile
+
+if TYPE_CHECKING:
+    from fieldmon.decisions.labels import ProductLabel
+
+Table = Annotated[
+    Path | None,
+    typer.Argument(
+        help="CSV to take in: product, crop, pest, max dose, unit, waiting days, re-entry hours, "
+        "IRAC group, max uses, source. None: what the season has is listed."
+    ),
+]
+Who = Annotated[str, typer.Option(help="Who says so.")]
+
+
+def labels(season: SeasonFile, table: Table = None, who: Who = "") -> None:
+    """Let a table say what the labels of products allow; treatments are held to it.
+
+    The table is yours: fieldmon knows no label and no law. It takes the place of the one before.
+
+    Example: fieldmon labels season.gpkg labels.csv
+    """
+    from fieldmon.decisions.labels import read_labels  # noqa: PLC0415
+    from fieldmon.monitoring import Season  # noqa: PLC0415
+
+    kept = Season(season)
+    if table is not None:
+        read = read_labels(table)
+        for message in read.messages:
+            typer.echo(f"{table.name}: {message}", err=True)
+        typer.echo(f"{table.name}: {kept.keep_labels(read.value, table.name, who)} labels kept")
+    for one in kept.labels():
+        typer.echo(f"  {_line(one)}")
+
+
+def _line(one: ProductLabel) -> str:
+    said = [
+        f"on {one.crop}" if one.crop else "",
+        f"against {one.pest}" if one.pest else "",
+        f"at most {one.max_dose}" if one.max_dose else "",
+        "" if one.waiting_days is None else f"{one.waiting_days} days until harvest",
+        "" if one.reentry_hours is None else f"{one.reentry_hours:g} h until re-entry",
+        f"group {'+'.join(one.irac_groups)}" if one.irac_groups else "",
+        "" if one.max_uses is None else f"{one.max_uses} uses a season",
+        f"({one.source})" if one.source else "",
+    ]
+    return f"{one.product}: " + ", ".join(part for part in said if part)

@@ -1,0 +1,98 @@
+"""Doses of a product in the units people write them in, compared with one another."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from fieldmon.errors import SettingError
+
+# litres or kilograms
+_AMOUNTS = {
+    "l": ("l", 1.0), "ltr": ("l", 1.0), "litre": ("l", 1.0), "liter": ("l", 1.0),
+    "ml": ("l", 1e-3), "cc": ("l", 1e-3), "cm3": ("l", 1e-3),
+    "kg": ("kg", 1.0), "g": ("kg", 1e-3), "gr": ("kg", 1e-3), "mg": ("kg", 1e-6),
+}  # fmt: skip
+# hectares; litres of water
+_OF = {
+    "ha": ("area", 1.0), "hectare": ("area", 1.0), "dunam": ("area", 0.1), "du": ("area", 0.1),
+    "acre": ("area", 0.404_685_642_24), "m2": ("area", 1e-4), "100m2": ("area", 1e-2),
+    "l": ("water", 1.0), "100l": ("water", 100.0), "hl": ("water", 100.0),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Dose:
+    """So much of a product on an area, or in water.
+
+    Parameters
+    ----------
+    value
+        Above 0.
+    unit
+        An amount by what it is for: ``"l/ha"``, ``"ml/dunam"``, ``"g/100 l"``; or ``"%"``, litres
+        in 100 litres of water.
+
+    Raises
+    ------
+    SettingError
+        If the value is not above 0, or the unit is none of these.
+
+    Examples
+    --------
+    >>> Dose(50, "ml/dunam").share_of(Dose(1, "l/ha"))
+    0.5
+    >>> Dose(0.1, "%").share_of(Dose(1, "l/ha"), water_l_ha=800)
+    0.8
+    """
+
+    value: float
+    unit: str
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.value < 1e6:
+            raise SettingError(
+                f"A dose must be above 0, and below a million, but it is {self.value:g}."
+            )
+        _parts(self.unit)
+
+    def __str__(self) -> str:
+        """Return it as people write it."""
+        return f"{self.value:g} {self.unit}"
+
+    def share_of(self, other: Dose, water_l_ha: float | None = None) -> float | None:
+        """Return how many times another dose this is; None where the two cannot be compared.
+
+        Litres and kilograms cannot. A dose in water and one on an area can where it is known how
+        much water goes on a hectare.
+        """
+        amount, per, size = self._sized()
+        their_amount, their_per, their_size = other._sized()
+        if amount != their_amount:
+            return None
+        if per != their_per:
+            if not water_l_ha:
+                return None
+            size, their_size = (
+                one * (water_l_ha if kind == "water" else 1.0)
+                for one, kind in ((size, per), (their_size, their_per))
+            )
+        return round(size / their_size, 9)
+
+    def _sized(self) -> tuple[str, str, float]:
+        """Return litres or kilograms, of area or water, and how many by hectare or litre."""
+        (amount, of_one), (per, base) = _parts(self.unit)
+        return amount, per, self.value * of_one / base
+
+
+def _parts(unit: str) -> tuple[tuple[str, float], tuple[str, float]]:
+    bare = re.sub(r"[\s.]", "", unit.casefold()).replace("litres", "l").replace("²", "2")
+    if bare in {"%", "%v/v"}:
+        return ("l", 1.0), ("water", 100.0)
+    amount, slash, per = bare.partition("/")
+    if not slash or amount not in _AMOUNTS or per not in _OF:
+        raise SettingError(
+            "The unit of a dose must be an amount by what it is for, as l/ha, ml/dunam, kg/ha, "
+            f"g/100 l or %, but it is {unit!r}."
+        )
+    return _AMOUNTS[amount], _OF[per]

@@ -1,0 +1,195 @@
+"""Which column of a weather table holds what, and in which unit, by the names stations give."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from fieldmon.io.parse.columns import plain
+
+
+class WeatherUnit(NamedTuple):
+    """A unit: of what it is one, and how it becomes ours: ``value * factor + offset``."""
+
+    kind: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+_C = WeatherUnit("temperature")
+_F = WeatherUnit("temperature", 5 / 9, -160 / 9)
+_KMH = WeatherUnit("speed", 1 / 3.6)
+_MPH = WeatherUnit("speed", 0.44704)
+_KN = WeatherUnit("speed", 1852 / 3600)
+_MS = WeatherUnit("speed")
+_MM = WeatherUnit("rain")
+_INCH = WeatherUnit("rain", 25.4)
+_OTHER = WeatherUnit("something else")
+#: units as people write them, without blanks, in small letters
+UNITS = {
+    **dict.fromkeys(("c", "°c", "ºc", "degc", "degreesc", "celsius", "℃", "c°"), _C),
+    **dict.fromkeys(("f", "°f", "ºf", "degf", "degreesf", "fahrenheit", "℉", "f°"), _F),
+    **dict.fromkeys(("k", "kelvin", "degk"), WeatherUnit("temperature", 1.0, -273.15)),
+    **dict.fromkeys(("m/s", "ms", "mps", "ms-1", "m.s-1", "m/sec", "מ/ש", "م/ث"), _MS),
+    **dict.fromkeys(("km/h", "kmh", "kph", "kmph", "kmh-1", "km/hr", "קמ/ש", "كم/س"), _KMH),
+    **dict.fromkeys(("mph", "mi/h", "miles/h"), _MPH),
+    **dict.fromkeys(("kn", "kt", "kts", "knot", "knots"), _KN),
+    **dict.fromkeys(("mm", "l/m2", "l/m²", "mm/h", "מ״מ", 'מ"מ', "מממ", "مم", "ملم"), _MM),
+    **dict.fromkeys(("cm",), WeatherUnit("rain", 10.0)),
+    **dict.fromkeys(("in", "inch", "inches", '"', "in."), _INCH),
+    **dict.fromkeys(("%", "pct", "percent", "%rh", "rh%", "prozent"), WeatherUnit("humidity")),
+    **dict.fromkeys(("°", "º", "deg", "degrees", "grad", "grados"), WeatherUnit("direction")),
+    **dict.fromkeys(
+        ("hpa", "mbar", "mb", "kpa", "pa", "inhg", "mmhg", "w/m2", "w/m²", "wm-2", "v", "volts"),
+        _OTHER,
+    ),
+    **dict.fromkeys(("mj/m2", "mj/m²", "min", "h", "m", "km", "kg", "g/m3", "ppm", "lux"), _OTHER),
+}
+#: of which kind each measure's unit must be
+KIND_OF = {
+    "temperature_c": "temperature", "low_c": "temperature", "high_c": "temperature",
+    "wind_speed_m_s": "speed", "wind_from_deg": "direction", "rain_mm": "rain",
+    "humidity_pct": "humidity",
+}  # fmt: skip
+#: what people may write for each kind
+WRITTEN = {
+    "temperature": "C, F or K", "speed": "m/s, km/h, mph or kn", "rain": "mm, cm or in",
+    "humidity": "%", "direction": "degrees",
+}  # fmt: skip
+
+# English, Spanish, French, German, Italian, Portuguese, Dutch, Hebrew, Arabic; DWD, KNMI, NASA
+# POWER and GHCN have short names of their own
+_TEMPERATURE = (
+    *("temp", "tair", "airt", "t2m", "tavg", "tmean", "tmoy", "tmed", "טמפ", "حرار", "wärme"),
+    *("tmin", "tmax", "mint", "maxt"),
+)
+_EXACT = {
+    **dict.fromkeys(("t", "ta", "tm", "tg", "tmk", "ttu", "tmp", "tmpc", "tmpf"), "temperature_c"),
+    **dict.fromkeys(("tn", "tnk"), "low_c"),
+    **dict.fromkeys(("tx", "txk"), "high_c"),
+    **dict.fromkeys(("ws", "ff", "fm", "u2", "wspd", "ws2m", "ws10m", "awnd"), "wind_speed_m_s"),
+    **dict.fromkeys(("sknt", "fh", "fg", "u10"), "wind_speed_m_s"),
+    **dict.fromkeys(("wd", "dd", "wdir", "drct", "wd2m", "wd10m", "ddvec"), "wind_from_deg"),
+    **dict.fromkeys(("rr", "rsk", "prcp", "ppt", "p01i", "r1", "precip"), "rain_mm"),
+    **dict.fromkeys(("rh", "rh2m", "upm", "hr", "ur", "relh", "rf", "rhavg"), "humidity_pct"),
+}
+_LOW = (
+    *("min", "low", "tief", "laag", "bassa", "baja", "נמוכ", "מינימ", "صغر"),
+    *("ادن", "أدن", "دنيا"),
+)
+_HIGH = (
+    *("max", "high", "hoch", "hoechst", "höchst", "hoog", "alta", "מקסימ", "מירב", "גבוה"),
+    *("عظم", "اعل", "أعل", "قصوى", "massim"),
+)
+_RAIN = (
+    *("rain", "precip", "prectot", "pluie", "pluvi", "lluvia", "regen", "niederschlag"),
+    *("neerslag", "pioggia", "chuva", "משקע", "גשם", "مطر", "امطار", "أمطار", "هطول"),
+)
+_HUMIDITY = ("humid", "hum", "feucht", "vochtig", "umid", "לחות", "رطوب")
+_WIND = ("wind", "viento", "vent", "רוח", "رياح", "الريح", "windspd")
+_KINDS = (
+    ("wind", _WIND),
+    ("air", _TEMPERATURE),
+    ("rain_mm", _RAIN),
+    ("humidity_pct", _HUMIDITY),
+)
+_DIRECTION = ("dir", "richt", "rumbo", "כיוון", "اتجاه", "azimut")
+# what looks like one of them and is none
+_NOT = (
+    *("soil", "boden", "suelo", "ground", "grass", "dew", "taupunkt", "rocio", "rosee", "rugiada"),
+    *("wet", "bulb", "feel", "appar", "chill", "heat", "leaf", "water", "inside", "indoor", "room"),
+    *("logger", "batt", "canopy", "road", "sea", "rate", "intens", "gust", "rafag", "rafal"),
+    *("raffic", "boe", "windboe", "peak", "prob", "stdev", "stddev", "panel", "inner", "innen"),
+    *("bulbo", "קרקע", "טל", "משב", "تربة", "ندى", "ventil", "event", "template", "month", "year"),
+)
+
+
+class WeatherColumn(NamedTuple):
+    """A column of a weather table: its name, what it measures, and the unit that it states."""
+
+    name: str
+    measure: str
+    unit: str
+
+
+def weather_columns(names: list[str], units: dict[str, str]) -> tuple[WeatherColumn, ...]:
+    """Return the columns that measure the weather, one for each measure, the first that does.
+
+    Parameters
+    ----------
+    names
+        Of the table's columns, in their order.
+    units
+        What a line of units below the names says, by name; empty without one.
+    """
+    found: dict[str, WeatherColumn] = {}
+    for name in names:
+        column = weather_column(name, units.get(name, ""))
+        if column is not None:
+            found.setdefault(column.measure, column)
+    return tuple(found.values())
+
+
+def weather_column(name: str, unit: str = "") -> WeatherColumn | None:
+    """Return what a column measures by its name; None: nothing of the weather that is used.
+
+    Examples
+    --------
+    >>> weather_column("Wind_Speed_km_h")
+    WeatherColumn(name='Wind_Speed_km_h', measure='wind_speed_m_s', unit='km/h')
+    """
+    bare, stated = _split(name)
+    measure = _measure(plain(bare) or plain(name))
+    if measure is None:
+        return None
+    return WeatherColumn(name, measure, _unit(unit) or stated)
+
+
+def _split(name: str) -> tuple[str, str]:
+    """Return a name without its unit, and the unit, as in ``Temp (°C)`` or ``wind_m_s``."""
+    if bracket := re.search(r"[(\[]\s*([^)\]]*?)\s*[)\]]", name):
+        return name[: bracket.start()] + name[bracket.end() :], _unit(bracket[1]) or bracket[1]
+    spread = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
+    parts = [part for part in re.split(r"[\s_\-,.:;]+", spread) if part]
+    for n in (2, 1):
+        if len(parts) > n:
+            for between in ("/", ""):
+                unit = _unit(between.join(parts[-n:]))
+                # T2M_MIN is no number of minutes
+                if unit and UNITS[unit] is not _OTHER:
+                    return " ".join(parts[:-n]), unit
+    return name, ""
+
+
+def _unit(text: str) -> str:
+    """Return a unit as `UNITS` has it; empty if it is none."""
+    bare = text.strip().casefold().replace(" ", "").replace("_", "/")
+    return next((one for one in (bare, bare.strip(".")) if one in UNITS), "")
+
+
+def _measure(name: str) -> str | None:
+    """Return what a plain name measures."""
+    if name in _EXACT:
+        return _EXACT[name]
+    kinds = (
+        ("wind", _WIND),
+        ("air", _TEMPERATURE),
+        ("rain_mm", _RAIN),
+        ("humidity_pct", _HUMIDITY),
+    )
+    found = [kind for kind, stems in kinds if _has(name, stems)]
+    if not found or _has(name, _NOT):
+        return None
+    is_low, is_high = _has(name, _LOW), _has(name, _HIGH)
+    if found[0] == "wind" and _has(name, _DIRECTION):
+        return "wind_from_deg"
+    if found[0] == "air":
+        return "low_c" if is_low else "high_c" if is_high else "temperature_c"
+    if found[0] == "rain_mm":
+        return "rain_mm"
+    measure = {"wind": "wind_speed_m_s"}.get(found[0], found[0])
+    return None if is_low or is_high else measure
+
+
+def _has(name: str, stems: tuple[str, ...]) -> bool:
+    return any(stem in name for stem in stems)

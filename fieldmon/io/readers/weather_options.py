@@ -1,0 +1,73 @@
+"""What can be chosen when weather is read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
+
+from fieldmon.compute.wording import worded
+from fieldmon.errors import SettingError
+from fieldmon.io.options import RecordOptions
+from fieldmon.io.parse.clock import zone_of
+from fieldmon.io.parse.weather_columns import UNITS, WRITTEN
+from fieldmon.plot.local_clock import local_clock
+
+if TYPE_CHECKING:
+    from datetime import datetime
+
+    from fieldmon.plot.field import Field
+
+
+@dataclass(frozen=True)
+class WeatherOptions(RecordOptions):
+    """What can be chosen when weather is read.
+
+    Parameters
+    ----------
+    zone
+        Time zone of times that name none, and by which days begin: ``"Asia/Jerusalem"``. None:
+        UTC; `on` gives the plot's.
+    temperature_unit, wind_unit, rain_unit
+        Units where the file does not state them: C, F, K; m/s, km/h, mph, kn; mm, cm, in.
+    location
+        Which place of a file that holds several, counted from 1.
+    now
+        What begins later was forecast; None: nothing was, unless a column says so.
+    """
+
+    zone: str | None = None
+    temperature_unit: str | None = None
+    wind_unit: str | None = None
+    rain_unit: str | None = None
+    location: str | None = None
+    now: datetime | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.zone is not None:
+            zone_of(self.zone)
+        for kind, told in (
+            ("temperature", self.temperature_unit),
+            ("speed", self.wind_unit),
+            ("rain", self.rain_unit),
+        ):
+            if told is not None and UNITS.get(told.casefold(), (None,))[0] != kind:
+                raise SettingError(
+                    worded(
+                        "The unit of {kind} must be {known}, but it is {told!r}.",
+                        kind=kind,
+                        known=WRITTEN[kind],
+                        told=told,
+                    )
+                )
+
+    def on(self, field: Field) -> Self:
+        """Return these options with the time zone in which a plot lies, where none was told."""
+        return self if self.zone else replace(self, zone=local_clock(field).zone or None)
+
+    def unit(self, kind: str) -> str:
+        """Return the unit told for a kind of measure, in small letters; empty: none was."""
+        told = {
+            "temperature": self.temperature_unit, "speed": self.wind_unit, "rain": self.rain_unit
+        }  # fmt: skip
+        return (told.get(kind) or "").casefold()

@@ -1,0 +1,112 @@
+"""What was applied in a treatment, and how: what a certifier asks of each.
+
+The fields are those of GLOBALG.A.P.'s application record (IFA, Crops Base 7.3): place, date and end
+time, product, waiting period, operator, justification, who authorised it, quantity, machinery.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.decisions.labels import checked_waits
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from datetime import time
+
+    from fieldmon.decisions.doses import Dose
+    from fieldmon.decisions.labels import ProductLabel
+
+_MOST_LETTERS = 2000
+
+
+@dataclass(frozen=True)
+class Application:
+    """What was applied, and how; what nobody said is empty or None.
+
+    Parameters
+    ----------
+    product
+        Trade name.
+    dose
+        Of the product.
+    water_l_ha
+        Litres of water a hectare.
+    operator
+        Who did it.
+    reason
+        Why: pest, and what was seen.
+    waiting_days
+        Whole days until harvest.
+    reentry_hours
+        Hours until people may enter.
+    irac_groups
+        Mode-of-action groups, as ``("4A", "28")``.
+    began, ended
+        Local times of the day. A treatment that ended earlier than it began ended the day after.
+    machinery
+        Sprayer, knapsack, by hand.
+    crop, pest
+        What it was for.
+    authorised_by
+        Who gave the technical authorisation.
+
+    Raises
+    ------
+    SettingError
+        If a number cannot be, or a text is longer than a record.
+    """
+
+    product: str = ""
+    dose: Dose | None = None
+    water_l_ha: float | None = None
+    operator: str = ""
+    reason: str = ""
+    waiting_days: int | None = None
+    reentry_hours: float | None = None
+    irac_groups: tuple[str, ...] = ()
+    began: time | None = None
+    ended: time | None = None
+    machinery: str = ""
+    crop: str = ""
+    pest: str = ""
+    authorised_by: str = ""
+
+    def __post_init__(self) -> None:
+        checked_waits(self.waiting_days, self.reentry_hours)
+        if self.water_l_ha is not None and not 0.0 < self.water_l_ha < 1e6:
+            raise SettingError(
+                f"Water must be above 0 litres a hectare, but it is {self.water_l_ha:g}."
+            )
+        for name, value in vars(self).items():
+            if isinstance(value, str) and len(value) > _MOST_LETTERS:
+                raise SettingError(
+                    f"What is said as {name.replace('_', ' ')} may have {_MOST_LETTERS} letters, "
+                    f"but it has {len(value)}."
+                )
+
+    def by_label(self, label: ProductLabel | None) -> Application:
+        """Return it with what nobody said of waiting and group taken from the product's label."""
+        if label is None:
+            return self
+        return replace(
+            self,
+            waiting_days=_said(self.waiting_days, label.waiting_days),
+            reentry_hours=_said(self.reentry_hours, label.reentry_hours),
+            irac_groups=self.irac_groups or label.irac_groups,
+        )
+
+    def said(self) -> dict[str, Any]:
+        """Return what was said of it, as plain values by name."""
+        plain = asdict(self) | {
+            "dose": None if self.dose is None else str(self.dose),
+            "irac_groups": "+".join(self.irac_groups),
+            "began": None if self.began is None else f"{self.began:%H:%M}",
+            "ended": None if self.ended is None else f"{self.ended:%H:%M}",
+        }
+        return {name: value for name, value in plain.items() if value not in {None, ""}}
+
+
+def _said(value: Any, otherwise: Any) -> Any:  # noqa: ANN401 - a number or None
+    return otherwise if value is None else value

@@ -1,0 +1,266 @@
+"""What to beware of after treatments: harvest, entry, resistance, and what labels allow.
+
+Labels are the user's own table; where it does not say, nothing is made up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from datetime import datetime
+from itertools import groupby
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from fieldmon.compute.units import Units
+from fieldmon.compute.wording import counted, figure, worded
+from fieldmon.decisions.labels import label_for
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from datetime import date, time
+
+    from numpy.typing import NDArray
+
+    from fieldmon.decisions.labels import ProductLabel
+    from fieldmon.monitoring.treatments import KeptTreatment
+    from fieldmon.monitoring.waiting_periods import WaitingPeriod
+
+_Wait = TypeVar("_Wait", int, float)
+#: uses of one mode-of-action group after another that breed resistance
+MOST_IN_A_ROW = 2
+
+
+@dataclass(frozen=True)
+class Caution:
+    """One thing to beware of.
+
+    Parameters
+    ----------
+    kind
+        ``"harvest"``, ``"entry"``, ``"group"``, ``"dose"``, ``"uses"``, ``"waiting"`` or
+        ``"label"``.
+    sentence
+        What, where and from when on.
+    batch
+        Of the treatment that it is about.
+    """
+
+    kind: str
+    sentence: str
+    batch: int
+
+
+@dataclass(frozen=True)
+class RulesToKeep:
+    """What treatments are held to.
+
+    Parameters
+    ----------
+    labels
+        What labels allow; empty: the user gave none.
+    harvest
+        The first day of harvest; None: not known.
+    starts
+        Local time at which a day's work starts.
+    units
+        How dates are written.
+    """
+
+    labels: tuple[ProductLabel, ...]
+    harvest: date | None
+    starts: time
+    units: Units = field(default_factory=Units)
+
+
+def cautions(
+    treatments: Sequence[KeptTreatment], rules: RulesToKeep, on: date
+) -> tuple[Caution, ...]:
+    """Return what to beware of on a day, after the treatments up to it.
+
+    Those whose mode-of-action group nobody said are no use of any group, and end no row of uses.
+    """
+    done = [one for one in treatments if one.on <= on]
+    said = [(one, label_of(one, rules.labels)) for one in done]
+    return (
+        *(caution for one, label in said for caution in _of_waits(one, label, rules, on)),
+        *_groups_in_a_row(said, rules.units),
+        *_uses(said, rules.units),
+        *(caution for one, label in said for caution in _of_dose(one, label, rules)),
+    )
+
+
+def label_of(one: KeptTreatment, labels: Iterable[ProductLabel]) -> ProductLabel | None:
+    """Return what the label of a treatment's product allows; None: there is none of it."""
+    said = one.application
+    return label_for(labels, said.product, said.crop, said.pest) if said.product else None
+
+
+def waits(one: KeptTreatment, label: ProductLabel | None) -> WaitingPeriod:
+    """Return what has to be waited for: as entered, or longer where the label says so."""
+    period = one.waits
+    if label is None:
+        return period
+    return replace(
+        period,
+        days=_longer(period.days, label.waiting_days),
+        hours=_longer(period.hours, label.reentry_hours),
+    )
+
+
+def harvest_from(
+    treatments: Iterable[KeptTreatment], labels: Sequence[ProductLabel]
+) -> tuple[date, KeptTreatment] | None:
+    """Return the first day on which harvest is allowed everywhere, and after which treatment.
+
+    None: no treatment is known to need a wait.
+    """
+    known = [(waits(one, label_of(one, labels)).harvest_from, one) for one in treatments]
+    days = [(day, one) for day, one in known if day is not None]
+    return max(days, key=lambda item: item[0], default=None)
+
+
+def _longer(one: _Wait | None, other: _Wait | None) -> _Wait | None:
+    return max((wait for wait in (one, other) if wait is not None), default=None)
+
+
+def _named(one: KeptTreatment, units: Units) -> dict[str, str]:
+    product = one.application.product or worded("a product that nobody named")
+    return {"product": product, "day": units.day(one.on)}
+
+
+def _of_waits(
+    one: KeptTreatment, label: ProductLabel | None, rules: RulesToKeep, on: date
+) -> Iterator[Caution]:
+    period, named = waits(one, label), _named(one, rules.units)
+    first, entry = period.harvest_from, period.entry_from
+    if rules.harvest is not None and one.on <= rules.harvest:
+        harvest = rules.units.day(rules.harvest)
+        if first is None:
+            said = worded(
+                "How long to wait from {product} on {day} until the harvest on {harvest} was not "
+                "said. Look at its label.", harvest=harvest, **named,
+            )  # fmt: skip
+            yield Caution("harvest", said, one.batch)
+        elif rules.harvest < first:
+            said = worded(
+                "Harvest on {harvest} is too soon after {product} on {day}: it has to wait "
+                "{days}, until {first}.",
+                harvest=harvest, days=counted(period.days or 0, "day"),
+                first=rules.units.day(first), **named,
+            )  # fmt: skip
+            yield Caution("harvest", said, one.batch)
+    if entry is not None and entry > datetime.combine(on, rules.starts):
+        said = worded(
+            "Do not enter where {product} was applied on {day} before {time} on {date}.",
+            time=f"{entry:%H:%M}", date=rules.units.day(entry.date()), **named,
+        )  # fmt: skip
+        yield Caution("entry", said, one.batch)
+    yield from _shorter_than_the_label(one, label, named)
+
+
+def _shorter_than_the_label(
+    one: KeptTreatment, label: ProductLabel | None, named: dict[str, str]
+) -> Iterator[Caution]:
+    days, asked = one.application.waiting_days, label.waiting_days if label else None
+    if days is not None and asked is not None and days < asked:
+        said = worded(
+            "The waiting period of {product} on {day} was entered as {days}, but its label says "
+            "{asked}: the label's counts.",
+            days=counted(days, "day"), asked=counted(asked, "day"), **named,
+        )  # fmt: skip
+        yield Caution("waiting", said, one.batch)
+    hours, least = one.application.reentry_hours, label.reentry_hours if label else None
+    if hours is not None and least is not None and hours < least:
+        said = worded(
+            "Re-entry after {product} on {day} was entered as {hours} h, but its label says "
+            "{least} h: the label's counts.",
+            hours=figure(hours, "g"), least=figure(least, "g"), **named,
+        )  # fmt: skip
+        yield Caution("waiting", said, one.batch)
+
+
+_Said = tuple["KeptTreatment", "ProductLabel | None"]
+
+
+def _groups_in_a_row(said: list[_Said], units: Units) -> Iterator[Caution]:
+    """Yield uses of one mode-of-action group after another on the same plants."""
+    row: dict[str, NDArray[np.int64]] = {}
+    of = {one.batch: _groups(one, label) for one, label in said}
+    for _, same_day in groupby((one for one, _ in said if of[one.batch]), lambda one: one.on):
+        today = list(same_day)
+        any_group = np.logical_or.reduce([one.place.plants for one in today])
+        for group in {*row, *(g for one in today for g in of[one.batch])}:
+            used = np.zeros(len(any_group), bool)
+            for one in today:
+                if group in of[one.batch]:
+                    used |= one.place.plants
+            before = row.get(group, np.zeros(len(any_group), np.int64))
+            row[group] = np.where(used, before + 1, np.where(any_group, 0, before))
+        for one in today:
+            for group in of[one.batch]:
+                plants = row[group][one.place.plants]
+                if (uses := int(plants.max(initial=0))) > MOST_IN_A_ROW:
+                    n = int(np.count_nonzero(plants > MOST_IN_A_ROW))
+                    sentence = worded(
+                        "{product} on {day} is use {n} of mode-of-action group {group} in a row "
+                        "on {plants}: take another group, or mites become resistant.",
+                        n=uses, group=group, plants=counted(n, "plant"), **_named(one, units),
+                    )  # fmt: skip
+                    yield Caution("group", sentence, one.batch)
+
+
+def _groups(one: KeptTreatment, label: ProductLabel | None) -> tuple[str, ...]:
+    return one.application.irac_groups or (label.irac_groups if label else ())
+
+
+def _uses(said: list[_Said], units: Units) -> Iterator[Caution]:
+    """Yield uses of a product beyond what its label allows in a season, on the same plants."""
+    uses: dict[str, NDArray[np.int64]] = {}
+    last: dict[str, NDArray[np.int64]] = {}
+    for one, label in said:
+        if label is None:
+            continue
+        name, plants = label.product.casefold(), one.place.plants
+        count = uses.setdefault(name, np.zeros(len(plants), np.int64))
+        day = last.setdefault(name, np.full(len(plants), -1))
+        count += plants & (day != one.day)  # two zones of one day are one use
+        day[plants] = one.day
+        most, n = label.max_uses, int(count[plants].max(initial=0))
+        if most is not None and n > most:
+            sentence = worded(
+                "{product} on {day} is use {n} in this season on {plants}, but its label allows "
+                "{most}.",
+                n=n, plants=counted(int(np.count_nonzero(count[plants] > most)), "plant"),
+                most=figure(most), **_named(one, units),
+            )  # fmt: skip
+            yield Caution("uses", sentence, one.batch)
+
+
+def _of_dose(
+    one: KeptTreatment, label: ProductLabel | None, rules: RulesToKeep
+) -> Iterator[Caution]:
+    named, dose = _named(one, rules.units), one.application.dose
+    if label is None:
+        if rules.labels and one.application.product:
+            said = worded(
+                "No label of {product} stands in the season's table: what it allows was not "
+                "looked at.", product=named["product"],
+            )  # fmt: skip
+            yield Caution("label", said, one.batch)
+        return
+    if dose is None or label.max_dose is None:
+        return
+    share = dose.share_of(label.max_dose, one.application.water_l_ha)
+    if share is None:
+        said = worded(
+            "The dose of {product} on {day}, {dose}, cannot be compared with its label's, {most}. "
+            "Look yourself.", dose=str(dose), most=str(label.max_dose), **named,
+        )  # fmt: skip
+        yield Caution("dose", said, one.batch)
+    elif share > 1.0:
+        said = worded(
+            "The dose of {product} on {day}, {dose}, is more than its label allows, {most}.",
+            dose=str(dose), most=str(label.max_dose), **named,
+        )  # fmt: skip
+        yield Caution("dose", said, one.batch)

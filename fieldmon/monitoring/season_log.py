@@ -1,0 +1,327 @@
+"""The log of a season: what was seen, planned, advised and treated, by whom and when.
+
+Entries are only ever added. Each has a digest, of its own words and of the digest before it: who
+changes one, takes one out or puts one elsewhere breaks the chain there. Entries also hold digests
+of what the file says after them, batch by batch, so that a file whose tables say otherwise than
+its log is found too. Somebody who writes the whole log anew can hide: only a last digest that was
+given away, as a certification report gives it, tells of that.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from hashlib import sha256
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.compute.wording import worded
+from fieldmon.errors import FileProblem
+from fieldmon.monitoring import schema
+from fieldmon.monitoring.geopackage import touch
+from fieldmon.monitoring.tables import utc_now
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Iterable, Iterator, Sequence
+
+#: in `fieldmon`: how many entries the log has, and the last one's digest
+_HEAD = "log"
+_NOTHING = "0" * 64
+#: what a log does not hold but is held to: by name, and how it is read
+_PLOT = ("arrays", "plots", "places", "observations")
+
+
+@dataclass(frozen=True)
+class LogEntry:
+    """One entry of the log.
+
+    Parameters
+    ----------
+    number
+        From 1.
+    at
+        When it was written, UTC.
+    kind
+        ``"begins"``, ``"seen"``, ``"planned"``, ``"advised"``, ``"treated"``, ``"undone"``,
+        ``"corrected"``, ``"changed"``, ``"labels"``, ``"merged"`` or ``"saved"``.
+    who
+        Whose doing; empty: nobody said.
+    what
+        What happened, by name.
+    digest
+        Of it and of all before it.
+    """
+
+    number: int
+    at: str
+    kind: str
+    who: str
+    what: dict[str, Any]
+    digest: str
+
+    def sentence(self) -> str:
+        """Return what happened, in words."""
+        words = _SAID[self.kind]
+        return words.format_map({**_BLANK, **self.what})
+
+    def __str__(self) -> str:
+        """Return which entry it is, for a sentence about it."""
+        return f"entry {self.number} ({self.at[:16]}, {self.kind})"
+
+
+class _Blank(dict[str, Any]):
+    def __missing__(self, key: str) -> str:
+        return "?"
+
+
+_BLANK = _Blank()
+_SAID = {
+    "begins": "the log begins: {why}",
+    "seen": "{source}: {found} found, {clean} clean, {skipped} could not be inspected, "
+    "batch {batch}",
+    "planned": "{date}: {stops} stops by {sampler}, about {expected} finds expected",
+    "advised": "{date}: {said}",
+    "treated": "{date}: {said}, batch {batch}",
+    "undone": "{said}",
+    "corrected": "{rows} changes of another program taken as corrections",
+    "changed": "settings: {names}",
+    "labels": "{labels} labels from {source}",
+    "merged": "another copy of the season taken in: {new} inspections, {entries} entries",
+    "saved": "saved from a damaged file",
+}
+
+
+# -- writing
+
+
+def begin(db: sqlite3.Connection, why: str) -> None:
+    """Begin the log of a file; what stands in it already is held to from here on."""
+    append(db, "begins", states=states(db), why=why)
+
+
+def go_on_saved(db: sqlite3.Connection) -> None:
+    """Go on with a log that was saved from a damaged file; begin a new one where it has a hole."""
+    rows = db.execute("SELECT fid, digest FROM log ORDER BY fid").fetchall()
+    _note_head(db, *(rows[-1] if rows else (0, _NOTHING)))
+    try:
+        refuse_changed(db)
+    except FileProblem as hole:
+        db.execute("DELETE FROM log")
+        _note_head(db, 0, _NOTHING)
+        begin(db, f"the one before could not be saved whole ({hole})")
+    else:
+        append(db, "saved" if rows else "begins", states=states(db), why="saved from an old file")
+
+
+def append(
+    db: sqlite3.Connection,
+    kind: str,
+    who: str = "",
+    *,
+    states: dict[str, str] | None = None,
+    **what: Any,  # noqa: ANN401 - whatever JSON can hold
+) -> None:
+    """Add an entry; `states` are the digests of what the file says now, by name."""
+    number, before = _head(db)
+    if states:
+        what["states"] = states
+    content = _canonical(
+        {"entry": number + 1, "at": utc_now(), "kind": kind, "who": who, "what": what}
+    )
+    mark = _chained(before, content)
+    db.execute("INSERT INTO log (fid, entry, digest) VALUES (?, ?, ?)", (number + 1, content, mark))
+    _note_head(db, number + 1, mark)
+    touch(db, schema.LOG.name)
+
+
+def _note_head(db: sqlite3.Connection, number: int, mark: str) -> None:
+    db.execute(
+        "INSERT OR REPLACE INTO fieldmon (key, value) VALUES (?, ?)", (_HEAD, f"{number} {mark}")
+    )
+
+
+def _head(db: sqlite3.Connection) -> tuple[int, str]:
+    row = db.execute("SELECT value FROM fieldmon WHERE key = ?", (_HEAD,)).fetchone()
+    if row is None:
+        return 0, _NOTHING
+    number, _, mark = str(row[0]).partition(" ")
+    return (int(number) if number.isdigit() else -1), mark
+
+
+def _canonical(entry: dict[str, Any]) -> str:
+    return json.dumps(entry, sort_keys=True, ensure_ascii=False, separators=(",", ":"), default=str)
+
+
+def _chained(before: str, content: str) -> str:
+    return sha256(f"{before}\n{content}".encode("utf-8", "surrogatepass")).hexdigest()
+
+
+# -- what the file says, as digests
+
+
+def states(db: sqlite3.Connection, batches: Iterable[int] | None = None) -> dict[str, str]:
+    """Return digests of what the file says, by name; of some batches alone, or of everything."""
+    if batches is not None:
+        return {f"batch {number}": _batch_state(db, number) for number in sorted({*batches})}
+    numbers = [number for (number,) in db.execute("SELECT fid FROM batches ORDER BY fid")]
+    return {
+        **states(db, numbers),
+        "settings": settings_state(db),
+        "labels": labels_state(db),
+        "plot": _plot_state(db),
+    }
+
+
+def settings_state(db: sqlite3.Connection) -> str:
+    """Return the digest of all that was ever chosen for the season."""
+    return _digest(db.execute("SELECT name, value FROM settings ORDER BY fid"))
+
+
+def labels_state(db: sqlite3.Connection) -> str:
+    """Return the digest of the label table."""
+    names = ", ".join(schema.LABELS.names)
+    return _digest(db.execute(f"SELECT {names} FROM labels ORDER BY fid"))  # noqa: S608 - ours
+
+
+def _plot_state(db: sqlite3.Connection) -> str:
+    return _digest(
+        row
+        for table in _PLOT
+        for row in db.execute(f"SELECT * FROM {table} ORDER BY fid")  # noqa: S608 - ours
+    )
+
+
+def _batch_state(db: sqlite3.Connection, number: int) -> str:
+    """Return the digest of a batch: what was recorded, by whom, and what of it was undone."""
+    inspected = "SELECT digest, undone, coalesce(who, '') FROM inspections WHERE batch = ?"
+    treated = "SELECT digest, undone, '' FROM treatments WHERE batch = ?"
+    own = db.execute("SELECT at, kind, source, who FROM batches WHERE fid = ?", (number,))
+    rows = [row for sql in (inspected, treated) for row in db.execute(sql, (number,))]
+    return _digest([*own, *sorted(rows, key=repr)])
+
+
+def _digest(rows: Iterable[tuple[object, ...]]) -> str:
+    everything = sha256()
+    for row in rows:
+        everything.update(repr(tuple(row)).encode("utf-8", "surrogatepass"))
+    return everything.hexdigest()[:32]
+
+
+# -- reading and checking
+
+
+def entries(db: sqlite3.Connection) -> tuple[LogEntry, ...]:
+    """Return every entry, the first one first; raise `FileProblem` where the past was changed."""
+    refuse_changed(db)
+    made = []
+    for content, mark in db.execute("SELECT entry, digest FROM log ORDER BY fid"):
+        said = json.loads(content)
+        made.append(
+            LogEntry(said["entry"], said["at"], said["kind"], said["who"], said["what"], mark)
+        )
+    return tuple(made)
+
+
+def refuse_changed(
+    db: sqlite3.Connection, checked: tuple[int, str] | None = None
+) -> tuple[int, str]:
+    """Raise `FileProblem` where the chain of the log does not hold, and say at which entry.
+
+    Return number and digest of its last entry. `checked` is such an answer from before: entries up
+    to that one are not looked at again.
+    """
+    number, before = checked or (0, _NOTHING)
+    row = db.execute("SELECT digest FROM log WHERE fid = ?", (number,)).fetchone()
+    if row is None or row[0] != before:  # another file stands here now: a copy was brought back
+        number, before = 0, _NOTHING
+    rows = db.execute("SELECT fid, entry, digest FROM log WHERE fid > ? ORDER BY fid", (number,))
+    for fid, content, mark in rows:
+        number += 1
+        if fid != number:
+            raise _changed(number, "is missing, or stands elsewhere")
+        if mark != _chained(before, str(content)) or not _is_entry(content, number):
+            raise _changed(number, "is not what was written")
+        before = mark
+    head = _head(db)
+    if head[0] > number:
+        raise _changed(number + 1, "is missing, and whatever came after it")
+    if head != (number, before):
+        raise _changed(number, "is not the last that was written")
+    return number, before
+
+
+def _is_entry(content: object, number: int) -> bool:
+    try:
+        said = json.loads(str(content))
+    except ValueError:
+        return False
+    return isinstance(said, dict) and said.get("entry") == number
+
+
+def _changed(number: int, how: str) -> FileProblem:
+    return FileProblem(
+        worded(
+            "The log of the season must be as fieldmon wrote it, but entry {number} {how}. "
+            "Somebody changed the past: nothing is added to it. Go back to a copy from before.",
+            number=number,
+            how=how,
+        )
+    )
+
+
+def differing(db: sqlite3.Connection) -> tuple[str, ...]:
+    """Return a sentence for each thing that the file says otherwise than its log."""
+    last: dict[str, tuple[str, LogEntry]] = {}
+    planned: dict[str, LogEntry] = {}
+    for entry in entries(db):
+        for name, state in entry.what.get("states", {}).items():
+            last[name] = state, entry
+        if entry.kind == "planned":
+            planned[entry.what["digest"]] = entry
+    now = states(db)
+    said = [
+        f"The {name} of the file is not what {entry} says."
+        for name, (state, entry) in last.items()
+        if name in now and now[name] != state
+    ]
+    said += [
+        f"The {name} that {entry} tells of is not in the file."
+        for name, (_, entry) in last.items()
+        if name not in now
+    ]
+    said += [f"The log knows nothing of {name}." for name in now if name not in last]
+    routes = {mark for (mark,) in db.execute("SELECT digest FROM routes")}
+    said += [
+        f"The route of {entry.what['date']} that {entry} tells of is not in the file."
+        for mark, entry in planned.items()
+        if mark not in routes
+    ]
+    return tuple(said)
+
+
+# -- two copies
+
+
+def taken_in(ours: sqlite3.Connection, theirs: sqlite3.Connection) -> list[dict[str, str]]:
+    """Return the entries of another copy's log that ours does not know, word for word."""
+    refuse_changed(theirs)
+    known = {mark for mark, _ in _with_those_taken_in(ours)}
+    unknown = dict(one for one in _with_those_taken_in(theirs) if one[0] not in known)
+    return [{"digest": mark, "entry": content} for mark, content in unknown.items()]
+
+
+def _with_those_taken_in(db: sqlite3.Connection) -> Iterator[tuple[str, str]]:
+    for content, mark in db.execute("SELECT entry, digest FROM log ORDER BY fid"):
+        for inner in json.loads(content)["what"].get("theirs", ()):
+            yield inner["digest"], inner["entry"]
+        yield mark, content
+
+
+def lines(of: Sequence[LogEntry]) -> Iterator[str]:
+    """Yield entries as lines for people."""
+    for entry in of:
+        who = entry.who or "-"
+        yield f"{entry.number:5d}  {entry.at[:16]}  {entry.kind:9}  {who:12}  {entry.sentence()}"
+    if of:
+        n = "1 entry" if len(of) == 1 else f"{len(of)} entries"
+        yield f"{n}, the chain holds; the last digest is {of[-1].digest}"

@@ -1,0 +1,318 @@
+"""A pest as data: how it develops, multiplies, moves, enters, and how it is seen."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.robot import Robot, Viewpoints
+
+    Floats = NDArray[np.float64]
+
+#: how far a jump goes is drawn from these
+KernelName = Literal["adjacent", "exponential", "cauchy"]
+#: what happens to development above the upper threshold
+Cutoff = Literal["horizontal", "vertical", "intermediate"]
+# nothing that lives on plants begins to develop above, or dies of warmth below
+_THRESHOLDS_C = (-10.0, 45.0)
+_TABLE_C = (-40.0, 60.0)
+
+
+@dataclass(frozen=True)
+class Citation:
+    """Where the figures of a part of a pest come from.
+
+    Parameters
+    ----------
+    part
+        Which part: ``"stages"``, ``"increase"``, ``"movement"``, ...
+    source
+        Who published them; or that they are our choice, where nothing was found.
+    doubt
+        Why they should be doubted; empty: no more than usual.
+    """
+
+    part: str
+    source: str
+    doubt: str = ""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A stage of life: what it needs to pass, whether it is seen, whether it moves.
+
+    Parameters
+    ----------
+    name
+        ``"egg"``, ``"adult before eggs"``.
+    threshold_c
+        Lower development threshold.
+    degree_days
+        Above the threshold, from entering the stage to leaving it.
+    upper_c
+        Upper threshold; None: none was published.
+    visible, mobile
+        Whether an inspection can see it, and whether it goes to other plants.
+    """
+
+    name: str
+    threshold_c: float
+    degree_days: float
+    upper_c: float | None = None
+    visible: bool = True
+    mobile: bool = True
+
+    def __post_init__(self) -> None:
+        low, high = _THRESHOLDS_C
+        _must(
+            self.name, "threshold_c", self.threshold_c, f"{low:g} to {high:g} °C",
+            low <= self.threshold_c <= high,
+        )  # fmt: skip
+        _must(self.name, "degree_days", self.degree_days, "above 0", self.degree_days > 0)
+        if self.upper_c is not None:
+            above = self.threshold_c < self.upper_c <= _TABLE_C[1]
+            _must(self.name, "upper_c", self.upper_c, "above threshold_c, 60 °C at most", above)
+
+
+@dataclass(frozen=True)
+class Increase:
+    """Daily rate of increase against temperature: straight lines between published points.
+
+    Parameters
+    ----------
+    at_c
+        Temperatures, rising.
+    per_day
+        Intrinsic rate of increase r at each: numbers grow e^r times in a day. Outside the
+        temperatures it is as at the nearest.
+    """
+
+    at_c: tuple[float, ...]
+    per_day: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if not self.at_c or len(self.at_c) != len(self.per_day):
+            raise SettingError(
+                "An increase must have as many rates per_day as temperatures at_c, one or more, "
+                f"but it has {len(self.per_day)} and {len(self.at_c)}."
+            )
+        if any(a >= b for a, b in pairwise(self.at_c)):
+            raise SettingError(f"Temperatures at_c must rise, but they are {list(self.at_c)}.")
+        for value in self.at_c:
+            within = _TABLE_C[0] <= value <= _TABLE_C[1]
+            _must("increase", "at_c", value, "-40 to 60 °C", within)
+        for rate in self.per_day:
+            _must("increase", "per_day", rate, "0 to 2", 0 <= rate <= 2)
+
+    def at(self, temperature_c: float | Floats) -> Floats:
+        """Return the rate per day at temperatures, of their shape."""
+        return np.asarray(np.interp(temperature_c, self.at_c, self.per_day))
+
+
+@dataclass(frozen=True)
+class Movement:
+    """How a pest comes from plant to plant.
+
+    Parameters
+    ----------
+    kernel
+        ``"adjacent"``: to the plants next to it. ``"exponential"`` or ``"cauchy"``: in an even
+        direction (but for `along_over_across` and `wind`), so far as drawn from that distribution.
+    reach_m
+        How far: the mean jump of the exponential, the median jump of the Cauchy. Without meaning
+        for ``"adjacent"``.
+    share_of_long_jumps
+        How many of the jumps land anywhere on the plot instead.
+    along_over_across
+        How many times as far a jump goes along the rows as across them.
+    wind
+        ``"with"``: jumps go with the wind. ``"none"``: it does not matter.
+    hours
+        Local hours of the day between which it moves; past midnight where the second is smaller.
+    per_day
+        ``"adjacent"``: chance in 0..1 a day that an infested plant infests each plant next to it.
+        Otherwise: new infestations a day that an infested plant sends out.
+    at_c
+        Temperature at which `per_day` holds; at others it goes with the pest's rate of increase.
+        None: at any.
+    by_hour
+        Whether it is simulated by the hour rather than by the night.
+    least_rain_mm
+        It moves only in hours or days with so much rain or more; 0: whatever the weather.
+    """
+
+    kernel: KernelName = "adjacent"
+    per_day: float = 0.5
+    reach_m: float | None = None
+    share_of_long_jumps: float = 0.0
+    along_over_across: float = 1.0
+    wind: Literal["none", "with"] = "none"
+    hours: tuple[float, float] = (0.0, 24.0)
+    at_c: float | None = None
+    by_hour: bool = False
+    least_rain_mm: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.kernel not in get_args(KernelName):
+            raise SettingError(
+                f"A kernel must be one of {', '.join(get_args(KernelName))}, but it is "
+                f"{self.kernel!r}."
+            )
+        if self.wind not in ("none", "with"):
+            raise SettingError(f"The wind must be 'none' or 'with', but it is {self.wind!r}.")
+        adjacent = self.kernel == "adjacent"
+        if not adjacent and self.reach_m is None:
+            raise SettingError(f"A kernel that is {self.kernel} must have a reach_m. Add it.")
+        rule = "a chance in 0..1 where the kernel is adjacent" if adjacent else "0 or more"
+        most = 1.0 if adjacent else math.inf
+        _must("movement", "per_day", self.per_day, rule, 0 <= self.per_day <= most)
+        if self.reach_m is not None:
+            _must("movement", "reach_m", self.reach_m, "above 0", self.reach_m > 0)
+        share = self.share_of_long_jumps
+        _must("movement", "share_of_long_jumps", share, "in 0..1", 0 <= share <= 1)
+        _must("movement", "least_rain_mm", self.least_rain_mm, "0 or more", self.least_rain_mm >= 0)
+        ratio = self.along_over_across
+        _must("movement", "along_over_across", ratio, "0.01 to 100", 0.01 <= ratio <= 100)
+        for hour in self.hours:
+            _must("movement", "hours", hour, "0 to 24", 0 <= hour <= 24)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """Where a pest comes in from outside, as chances a day that a clean plant is infested.
+
+    Parameters
+    ----------
+    edge_per_day, paths_per_day
+        Of plants at the plot's edge and beside a path; 1/e of it `depth_m` further in.
+    anywhere_per_day
+        Of every plant.
+    depth_m
+        How deep edges and paths let it in.
+    """
+
+    edge_per_day: float = 0.0
+    paths_per_day: float = 0.0
+    anywhere_per_day: float = 0.0
+    depth_m: float = 10.0
+
+    def __post_init__(self) -> None:
+        for name in ("edge_per_day", "paths_per_day", "anywhere_per_day"):
+            value = getattr(self, name)
+            _must("entry", name, value, "a chance in 0..1", 0 <= value <= 1)
+        _must("entry", "depth_m", self.depth_m, "above 0", self.depth_m > 0)
+
+
+@dataclass(frozen=True)
+class Pest:
+    """A pest: what was published of it, and what we had to choose.
+
+    Parameters
+    ----------
+    name
+        By which it is asked for: ``"spider-mite"``.
+    title, species
+        In words, and in Latin.
+    stages
+        From the egg to the adult that lays the next; empty: its development is not known.
+    cutoff
+        What happens to development above a stage's upper threshold.
+    increase
+        Daily rate of increase; None: not known.
+    movement
+        How it comes from plant to plant.
+    entry
+        How it comes in from outside.
+    viewpoints
+        Seconds of looking -> chance of detection; None: as the robot's.
+    detection
+        That chance given outright; None: by `viewpoints`.
+    latency_days
+        From infection until a plant infects others.
+    hidden_days
+        From infestation until an inspection can see it.
+    mortality_per_day
+        Chance that a plant's infestation ends of itself.
+    count_means
+        What one that is counted is: ``"mites on a leaf"``.
+    generation
+        A whole generation in one, where that was published beside its stages; None: their sum.
+    not_found
+        What was looked for and not found, in words.
+    citations
+        Where each part comes from.
+    """
+
+    name: str
+    title: str = ""
+    species: str = ""
+    stages: tuple[Stage, ...] = ()
+    cutoff: Cutoff = "horizontal"
+    increase: Increase | None = None
+    movement: Movement = field(default_factory=Movement)
+    entry: Entry = field(default_factory=Entry)
+    viewpoints: Viewpoints | None = None
+    detection: float | None = None
+    latency_days: float = 0.0
+    hidden_days: float = 0.0
+    mortality_per_day: float = 0.0
+    count_means: str = ""
+    generation: Stage | None = None
+    not_found: str = ""
+    citations: tuple[Citation, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.name:
+            raise SettingError("A pest must have a name, but it is empty.")
+        if self.cutoff not in get_args(Cutoff):
+            raise SettingError(
+                f"A cutoff must be one of {', '.join(get_args(Cutoff))}, but it is {self.cutoff!r}."
+            )
+        for name in ("latency_days", "hidden_days"):
+            _must("pest", name, getattr(self, name), "0 or more", getattr(self, name) >= 0)
+        for name in ("detection", "mortality_per_day"):
+            value = getattr(self, name)
+            if value is not None:
+                _must("pest", name, value, "a chance in 0..1", 0 <= value <= 1)
+
+    def infests_per_day(self, temperature_c: float | Floats | None = None) -> Floats:
+        """Return `movement.per_day` at temperatures, of their shape; None: as it is.
+
+        It goes with the rate of increase, where both are known with the temperature. A chance
+        stays one: it follows 1 - (1 - per_day)^ratio.
+        """
+        usual = self.movement.per_day
+        if temperature_c is None or self.increase is None or self.movement.at_c is None:
+            return np.full(np.shape(temperature_c) if temperature_c is not None else (), usual)
+        at_usual = float(self.increase.at(self.movement.at_c))
+        ratio = self.increase.at(temperature_c) / at_usual if at_usual > 0 else 1.0
+        if self.movement.kernel != "adjacent":
+            return np.asarray(usual * ratio)
+        return np.asarray(1.0 - (1.0 - usual) ** ratio)
+
+    def seen_by(self, robot: Robot) -> Robot:
+        """Return the robot with this pest's chance of detection, if it has one of its own."""
+        own: dict[str, Any] = {}
+        if self.viewpoints is not None:
+            own = {"viewpoints": self.viewpoints, "detection": None}
+        if self.detection is not None:
+            own["detection"] = self.detection
+        return replace(robot, **own)
+
+    def source(self, part: str) -> Citation | None:
+        """Return where a part comes from; None: the file does not speak of it."""
+        return next((one for one in self.citations if one.part == part), None)
+
+
+def _must(of: str, name: str, value: float, rule: str, holds: bool) -> None:  # noqa: FBT001
+    if not (holds and math.isfinite(value)):
+        raise SettingError(f"The {name} of {of} must be {rule}, but it is {value:g}.")

@@ -1,0 +1,159 @@
+"""The weather of a place: what a station measured, and what was forecast."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from datetime import date, datetime
+from typing import TYPE_CHECKING, Any
+from zoneinfo import ZoneInfo
+
+import numpy as np
+
+from fieldmon.compute.arrays import read_only
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Times = NDArray[np.datetime64]
+
+HOUR_S, DAY_S = 3_600, 86_400
+#: what can be measured, and between which values it can be on earth
+MEASURED = {
+    "temperature_c": (-70.0, 60.0),
+    "low_c": (-70.0, 60.0),
+    "high_c": (-70.0, 60.0),
+    "wind_speed_m_s": (0.0, 100.0),
+    "wind_from_deg": (0.0, 360.0),
+    "rain_mm": (0.0, 2_000.0),
+    "humidity_pct": (0.0, 100.0),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Weather:
+    """Hours or days of weather, one entry each, in the order of time; NaN: not measured.
+
+    Parameters
+    ----------
+    at
+        ``(n,)`` datetime64[s], UTC: when each hour or local day begins.
+    step_s
+        3 600 or 86 400.
+    temperature_c
+        ``(n,)`` the mean.
+    low_c, high_c
+        ``(n,)`` the extremes; of hours often not measured.
+    wind_speed_m_s, wind_from_deg
+        ``(n,)`` the mean wind, and where it comes from: 0 north, 90 east.
+    rain_mm, humidity_pct
+        ``(n,)`` the sum of rain, the mean relative humidity.
+    forecast
+        ``(n,)`` whether it was forecast rather than measured.
+    zone
+        Name of the place's time zone, by which days begin; empty: UTC.
+    """
+
+    at: Times
+    step_s: int
+    temperature_c: Floats
+    low_c: Floats
+    high_c: Floats
+    wind_speed_m_s: Floats
+    wind_from_deg: Floats
+    rain_mm: Floats
+    humidity_pct: Floats
+    forecast: NDArray[np.bool_]
+    zone: str = ""
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if isinstance(value, np.ndarray):
+                if len(value) != len(self.at):
+                    raise SettingError(
+                        f"Weather must have one {each.name} for each of its {len(self.at)} times, "
+                        f"but it has {len(value)}."
+                    )
+                object.__setattr__(self, each.name, read_only(value.copy()))
+        if self.step_s not in (HOUR_S, DAY_S):
+            raise SettingError(f"Weather must be by hours or days, but a step is {self.step_s} s.")
+
+    def __len__(self) -> int:
+        return len(self.at)
+
+    def __repr__(self) -> str:
+        if not len(self):
+            return "Weather(nothing)"
+        kind = "hours" if self.hourly else "days"
+        return f"Weather({len(self)} {kind} from {self.at[0]} UTC)"
+
+    @property
+    def hourly(self) -> bool:
+        """Return whether entries are hours."""
+        return self.step_s == HOUR_S
+
+    @property
+    def gaps(self) -> int:
+        """Return how many hours or days between the first and the last have no temperature."""
+        known = self.at[~np.isnan(self.temperature_c)]
+        if not len(known):
+            return 0
+        between = int((known[-1] - known[0]) / np.timedelta64(1, "s")) / self.step_s
+        return max(round(between) + 1 - len(known), 0)
+
+    def between(self, first: np.datetime64, end: np.datetime64) -> Weather:
+        """Return what begins at `first` or later and before `end`, both UTC."""
+        return self.chosen((self.at >= first) & (self.at < end))
+
+    def chosen(self, which: NDArray[np.bool_]) -> Weather:
+        """Return the entries of a mask ``(n,)``."""
+        parts: dict[str, Any] = {
+            each.name: getattr(self, each.name)[which]
+            for each in fields(self)
+            if isinstance(getattr(self, each.name), np.ndarray)
+        }
+        return replace(self, **parts)
+
+    def local_days(self) -> NDArray[np.datetime64]:
+        """Return the local date on which each entry begins, ``(n,)`` datetime64[D]."""
+        if not self.zone:
+            return self.at.astype("datetime64[D]")
+        zone = ZoneInfo(self.zone)
+        seconds = self.at.astype("datetime64[s]").astype(np.int64)
+        days = [datetime.fromtimestamp(int(one), zone).date() for one in seconds]
+        return np.array(days, "datetime64[D]")
+
+    def by_day(self) -> Iterator[tuple[date, Weather]]:
+        """Yield each local date and what there is of it."""
+        days = self.local_days()
+        for day in np.unique(days):
+            yield day.astype(date), self.chosen(days == day)
+
+
+def weather_of(at: Times, step_s: int, zone: str = "", **measured: Floats) -> Weather:
+    """Return weather of what was measured; the rest is NaN, and nothing of it forecast.
+
+    Parameters
+    ----------
+    at, step_s, zone
+        As `Weather` has them.
+    measured
+        Some of `MEASURED`, ``(n,)`` each, and ``forecast``.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> days = np.arange("2026-11-01", "2026-11-04", dtype="datetime64[D]").astype("datetime64[s]")
+    >>> weather_of(days, 86_400, low_c=np.array([9.0, 8, 7]), high_c=np.array([21.0, 22, 23]))
+    Weather(3 days from 2026-11-01T00:00:00 UTC)
+    """
+    n = len(at)
+    given = {name: np.asarray(measured.get(name, np.full(n, np.nan)), float) for name in MEASURED}
+    if np.isnan(given["temperature_c"]).all():
+        given["temperature_c"] = (given["low_c"] + given["high_c"]) / 2
+    forecast = np.asarray(measured.get("forecast", np.zeros(n)), bool)
+    return Weather(at.astype("datetime64[s]"), step_s, forecast=forecast, zone=zone, **given)

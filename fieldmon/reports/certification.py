@@ -1,0 +1,352 @@
+"""The record of a season, or of several, for a certifier: what was applied, seen and advised.
+
+Of each application it says what GLOBALG.A.P. asks (IFA, Crops Base 7.3): place, date and end, crop,
+product, dose, water and area, reason, operator, who authorised it, machinery, waiting period.
+What nobody said stands as not said: nothing is filled in.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.wording import counted, figure, joined, worded
+from fieldmon.errors import FieldmonError, SettingError
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring.cautions import label_of, waits
+from fieldmon.reports import words
+from fieldmon.reports.content import (
+    Block,
+    KeyFigure,
+    KeyFigures,
+    Listing,
+    Paragraph,
+    Report,
+    Sheet,
+    Table,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from datetime import date
+
+    from fieldmon.compute.units import Units
+    from fieldmon.monitoring import Caution, KeptTreatment, Season
+    from fieldmon.monitoring.treatment_effect import TreatmentEffect
+
+# as many letters as a value beside its name may have, and a line of sentences; millimetres that
+# lines, titles and a page take up, a little more than they do
+_SHORT, _LINE_LETTERS = 30, 88
+_ROW_MM, _LINE_MM, _TITLE_MM, _PAGE_MM = 4.1, 4.6, 9.0, 236.0
+_DAYS_A_PAGE = 92
+
+
+@dataclass(frozen=True, eq=False)
+class _PlotRecord:
+    """What one season holds up to a day."""
+
+    season: Season
+    on: date
+    units: Units
+    treatments: tuple[KeptTreatment, ...]
+    cautions: tuple[Caution, ...]
+    effects: tuple[TreatmentEffect, ...]
+
+    @classmethod
+    def of(cls, season: Season, until: date | None, units: Units) -> _PlotRecord:
+        last = season.last_date()
+        on = last if until is None else until
+        done = tuple(one for one in season.treatments() if one.on <= on)
+        return cls(season, on, units, done, season.cautions(on, units), season.effects(on, units))
+
+    @property
+    def name(self) -> str:
+        return words.isolated(self.season.plot.field.name)
+
+    def inspected(self) -> tuple[int, int]:
+        """Return how many inspections there were, and finds among them."""
+        done = self.season.history.until(self.season.settings.day(self.on)).inspected
+        return len(done), int(np.count_nonzero(done.result == FOUND))
+
+    def advised(self, one: KeptTreatment) -> str:
+        """Return what was advised last, up to a treatment's day; empty: nothing."""
+        said = [
+            entry.what
+            for entry in self.season.log()
+            if entry.kind == "advised" and entry.what["date"] <= str(one.on)
+        ]
+        return f"{said[-1]['said']} ({said[-1]['date']})" if said else ""
+
+
+def certification_report(
+    seasons: Sequence[Season], units: Units, until: date | None = None
+) -> Report:
+    """Return the record of seasons up to a day (None: the last of each); nothing is kept by it.
+
+    Raises
+    ------
+    SettingError
+        If no season is given, or the day lies before one begins.
+    """
+    if not seasons:
+        raise SettingError("A certification report must be of a season or more, but none is given.")
+    records = [_PlotRecord.of(season, until, units) for season in seasons]
+    begins = min(one.season.settings.begins for one in records)
+    on = max(one.on for one in records)
+    title = worded(words.CERT_TITLE, begins=units.day(begins), day=units.day(on))
+    sheets = [Sheet(words.CERT_SHEETS[0], page) for page in _pages(_summary(records))]
+    sheets += [Sheet(words.CERT_SHEETS[1], page) for page in _pages(_applications(records))]
+    sheets += [
+        Sheet(words.CERT_SHEETS[2], (table,)) for one in records for table in _inspections(one)
+    ]
+    plots = ", ".join(dict.fromkeys(one.season.plot.field.name for one in records))
+    return Report(plots, title, on, tuple(sheets))
+
+
+# -- pages
+
+
+def _pages(blocks: Iterable[tuple[Block, ...]]) -> Iterator[tuple[Block, ...]]:
+    """Yield blocks page by page; those handed over together stay together."""
+    page: list[Block] = []
+    used_mm = 0.0
+    for together in blocks:
+        high_mm = sum(map(_high_mm, together))
+        if page and used_mm + high_mm > _PAGE_MM:
+            yield tuple(page)
+            page, used_mm = [], 0.0
+        page += together
+        used_mm += high_mm
+    if page:
+        yield tuple(page)
+
+
+def _high_mm(block: Block) -> float:
+    """Return the height that a block takes up on paper, a little more than it does."""
+    if isinstance(block, Table):
+        return _TITLE_MM + _ROW_MM * (-(-len(block.rows) // block.flow) + 1)
+    if isinstance(block, Listing):
+        return _TITLE_MM + sum(map(_lines_mm, block.sentences))
+    if isinstance(block, Paragraph):
+        return _lines_mm(block.text) * (1.6 if block.lead else 1.0) + 4.0
+    return 19.0
+
+
+def _lines_mm(text: str) -> float:
+    return _LINE_MM * (len(text) // _LINE_LETTERS + 1) + 0.8
+
+
+# -- the summary
+
+
+def _summary(records: list[_PlotRecord]) -> Iterator[tuple[Block, ...]]:
+    n = sum(len(one.treatments) for one in records)
+    seen = [one.inspected() for one in records]
+    area_ha = sum(t.place.area_ha or 0.0 for one in records for t in one.treatments)
+    lead = worded(
+        words.CERT_LEAD,
+        treatments=counted(n, "treatment"), plots=counted(len(records), "plot"),
+        inspections=counted(sum(k for k, _ in seen), "inspection"),
+        finds=counted(sum(k for _, k in seen), "find"),
+    )  # fmt: skip
+    units = records[0].units
+    figures = KeyFigures(
+        (
+            KeyFigure(words.TREATMENTS, figure(n)),
+            KeyFigure(words.CERT_AREA, units.square(area_ha * 1e4), words.CERT_AREA_NOTE),
+            KeyFigure(words.CERT_INSPECTIONS, figure(sum(k for k, _ in seen))),
+            KeyFigure(words.CERT_FINDS, figure(sum(k for _, k in seen))),
+            KeyFigure(words.CERT_CAUTIONS, figure(sum(len(one.cautions) for one in records))),
+        )
+    )
+    yield Paragraph(lead, lead=True), figures
+    for table in _parts(_plots(records, seen), 40):
+        yield (table,)
+    yield from _listed(words.CERT_CAUTIONS, _cautions(records), words.CERT_CAUTIONS_NONE)
+    yield from _listed(words.CERT_UNSAID, _unsaid(records), words.CERT_UNSAID_NONE)
+    yield from _listed(words.CERT_LOG, [_log(one) for one in records], "")
+    yield (Listing(words.MEANING, words.CERT_MEANINGS),)
+
+
+def _listed(title: str, said: Sequence[str], none: str) -> Iterator[tuple[Block, ...]]:
+    """Yield sentences as listings that can be parted between pages."""
+    for first in range(0, max(len(said), 1), 12):
+        part = tuple(said[first : first + 12]) or (none,)
+        yield (Listing(title if not first else "", part),)
+
+
+def _plots(records: list[_PlotRecord], seen: list[tuple[int, int]]) -> Table:
+    rows = tuple(
+        (
+            one.name,
+            one.units.square(_area_m2(one.season)),
+            one.units.day(one.season.settings.begins),
+            one.units.day(one.on),
+            figure(len(one.treatments)),
+            figure(inspected),
+            figure(found),
+        )
+        for one, (inspected, found) in zip(records, seen, strict=True)
+    )
+    return Table(
+        words.CERT_PLOTS, words.CERT_PLOT_COLUMNS, rows,
+        (0.28, 0.14, 0.13, 0.13, 0.11, 0.11, 0.1), left=(0,), whole=True,
+    )  # fmt: skip
+
+
+def _area_m2(season: Season) -> float:
+    return float(season.plot.grid.frame.geometry_m(season.plot.field.boundary).area)
+
+
+def _parts(table: Table, most: int) -> Iterator[Table]:
+    """Yield a table in parts of so many rows; the first has its title."""
+    for first in range(0, len(table.rows), most):
+        yield Table(
+            table.title if not first else "", table.columns, table.rows[first : first + most],
+            table.shares, table.flow, left=table.left, whole=True,
+        )  # fmt: skip
+
+
+def _cautions(records: list[_PlotRecord]) -> list[str]:
+    return [
+        worded("{plot}: {said}", plot=one.name, said=caution.sentence)
+        for one in records
+        for caution in one.cautions
+    ]
+
+
+def _unsaid(records: list[_PlotRecord]) -> list[str]:
+    """Return what GLOBALG.A.P. asks of each treatment and nobody said."""
+    said: list[str] = []
+    for one in records:
+        for treatment in one.treatments:
+            missing = [
+                label
+                for label, value in _fields(one, treatment)
+                if not value and label in _ASKED_FOR
+            ]
+            if missing:
+                said.append(
+                    worded(
+                        words.CERT_MISSING, plot=one.name, day=one.units.day(treatment.on),
+                        what=joined(", ", missing),
+                    )
+                )  # fmt: skip
+    return said
+
+
+def _log(one: _PlotRecord) -> str:
+    try:
+        log, wrong = one.season.log(), one.season.held_to_log()
+    except FieldmonError as changed:
+        return worded("{plot}: {said}", plot=one.name, said=str(changed))
+    if wrong:
+        return worded("{plot}: {said}", plot=one.name, said=" ".join(wrong))
+    return worded(
+        words.CERT_LOG_HOLDS, plot=one.name, n=figure(len(log)),
+        since=one.units.day(log[0].at[:10]), digest=log[-1].digest,
+    )  # fmt: skip
+
+
+# -- the applications
+
+
+_F = words.CERT_FIELDS
+_ASKED_FOR = tuple(
+    _F[name]
+    for name in (
+        *("product", "dose", "reason", "operator", "waiting", "machinery", "crop", "authorised"),
+    )
+)
+
+
+def _applications(records: list[_PlotRecord]) -> Iterator[tuple[Block, ...]]:
+    number = 0
+    for one in records:
+        for treatment in one.treatments:
+            number += 1
+            yield _card(number, one, treatment)
+    if not number:
+        yield (Paragraph(words.TREATMENTS_NONE),)
+
+
+def _card(number: int, one: _PlotRecord, treatment: KeptTreatment) -> tuple[Block, ...]:
+    """Return all there is to say of one treatment: short values in a table, long ones below."""
+    said = [(label, value or words.CERT_NOT_SAID) for label, value in _fields(one, treatment)]
+    short = tuple((label, value) for label, value in said if len(value) <= _SHORT)
+    long = [
+        worded("{what}: {said}", what=label, said=value)
+        for label, value in said
+        if len(value) > _SHORT
+    ]
+    more = [caution.sentence for caution in one.cautions if caution.batch == treatment.batch]
+    more += [effect.sentence() for effect in one.effects if effect.batch == treatment.batch]
+    title = worded(
+        "{number}. {plot}, {day}", number=number, plot=one.name, day=one.units.day(treatment.on)
+    )
+    table = Table(title, words.CERT_COLUMNS, short, (0.4, 0.6), flow=2, left=(0, 1), whole=True)
+    below = (*long, *more)
+    return (table, Listing("", below)) if below else (table,)
+
+
+def _fields(one: _PlotRecord, treatment: KeptTreatment) -> list[tuple[str, str]]:
+    """Return what a certifier asks of a treatment, with its name; empty: not said."""
+    said, place = treatment.application, treatment.place
+    period = waits(treatment, label_of(treatment, one.season.labels()))
+    first, entry = period.harvest_from, period.entry_from
+    times = [f"{at:%H:%M}" if at else "?" for at in (said.began, said.ended)]
+    days = "" if period.days is None else counted(period.days, "day")
+    return [
+        (_F["product"], _plain(said.product)),
+        (_F["group"], "+".join(said.irac_groups)),
+        (_F["dose"], "" if said.dose is None else str(said.dose)),
+        (_F["water"], "" if said.water_l_ha is None else figure(said.water_l_ha, ",g", " l/ha")),
+        (_F["area"], "" if place.area_ha is None else one.units.square(place.area_ha * 1e4)),
+        (_F["plants"], figure(int(np.count_nonzero(place.plants)))),
+        (_F["time"], "" if times == ["?", "?"] else f"{times[0]}–{times[1]}"),
+        (_F["zone"], treatment.clock.zone),
+        (_F["crop"], _plain(said.crop)),
+        (_F["pest"], _plain(said.pest)),
+        (_F["operator"], _plain(said.operator)),
+        (_F["authorised"], _plain(said.authorised_by)),
+        (_F["machinery"], _plain(said.machinery)),
+        (_F["waiting"], days),
+        (_F["harvest"], "" if first is None else one.units.day(first)),
+        (
+            _F["entry"],
+            ""
+            if entry is None
+            else worded("{day} {time}", day=one.units.day(entry.date()), time=f"{entry:%H:%M}"),
+        ),
+        (_F["reason"], _plain(said.reason)),
+        (_F["advised"], one.advised(treatment)),
+    ]
+
+
+def _plain(text: str) -> str:
+    return " ".join(text.split())
+
+
+# -- the inspections
+
+
+def _inspections(one: _PlotRecord) -> Iterator[Table]:
+    """Yield which plants were inspected, day by day and by whom, page by page."""
+    history = one.season.history
+    done = history.until(one.season.settings.day(one.on)).inspected
+    rows: list[tuple[str, ...]] = []
+    for day in np.unique(done.date).tolist():
+        of = done.take(done.date == np.datetime64(day, "D"))
+        who = sorted({str(name) for name in of.who} - {""})
+        found = int(np.count_nonzero(of.result == FOUND))
+        rows.append((one.units.day(day), figure(len(of)), figure(found), ", ".join(who)))
+    title = worded(words.CERT_OF_PLOT, plot=one.name)
+    if not rows:
+        rows = [(words.CERT_NONE, "", "", "")]
+    table = Table(
+        title, words.CERT_DAY_COLUMNS, tuple(rows), (0.24, 0.2, 0.16, 0.4), flow=2, left=(0, 3),
+        whole=True,
+    )  # fmt: skip
+    yield from _parts(table, _DAYS_A_PAGE)

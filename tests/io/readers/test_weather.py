@@ -1,0 +1,239 @@
+"""Weather is read as stations write it, and refused where it makes no sense."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+from tempfile import mkdtemp
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.options import Upload
+from fieldmon.io.readers.weather import weather_in
+from fieldmon.io.readers.weather_options import WeatherOptions
+from fieldmon.io.sandbox.unpack import Workroom
+
+JERUSALEM = WeatherOptions(zone="Asia/Jerusalem")
+
+
+@pytest.fixture
+def read(tmp_path):
+    def _read(text, options=JERUSALEM, name="weather.csv"):
+        data = text if isinstance(text, bytes) else text.encode()
+        return weather_in(Upload(name, data), options, Workroom(Path(mkdtemp(dir=tmp_path))))
+
+    return _read
+
+
+def said(read):
+    return " ".join(str(message) for message in read.messages)
+
+
+HOURS = "\n".join(
+    f"2026-11-18 {hour:02d}:00;{hour}.5;{18 + hour / 10};{hour * 10};0,2;{50 + hour}"
+    for hour in range(24)
+)
+
+
+def test_hours_with_units_in_the_names_become_ours(read):
+    table = f"Time;Temp (°C);Wind (km/h);Wind direction (deg);Rain (mm);Hum (%)\n{HOURS}"
+    weather = read(table.replace(",", ".")).value
+    assert weather.hourly
+    assert len(weather) == 24
+    # local midnight in winter is two hours before that of UTC
+    assert weather.at[0] == np.datetime64("2026-11-17T22:00:00")
+    assert weather.temperature_c[3] == 3.5
+    assert weather.wind_speed_m_s[0] == pytest.approx(5.0)
+    assert weather.wind_from_deg[9] == 90
+    assert weather.rain_mm.sum() == pytest.approx(4.8)
+    assert weather.humidity_pct[1] == 51
+    assert weather.gaps == 0
+    assert not weather.forecast.any()
+
+
+@pytest.mark.parametrize(
+    ("header", "row", "wanted"),
+    [
+        ("Date,Tmin (F),Tmax (F),Rain (in)", "2026-11-{},50,68,0.5", (10, 20, 12.7)),
+        ("Datum;Temperatur Min;Temperatur Max;Niederschlag (mm)", "{}.11.2026;10;20;12,7",
+         (10, 20, 12.7)),
+        ("Fecha,Temperatura mínima (°C),Temperatura máxima (°C),Lluvia mm",
+         "2026-11-{},10,20,12.7", (10, 20, 12.7)),
+        ("תאריך,טמפרטורת מינימום,טמפרטורת מקסימום,גשם (מ״מ)", "{}/11/2026,10,20,12.7",
+         (10, 20, 12.7)),
+        ("التاريخ,درجة الحرارة الصغرى,درجة الحرارة العظمى,أمطار (مم)", "2026-11-{},10,20,12.7",
+         (10, 20, 12.7)),
+        ("Date,Température minimale,Température maximale,Pluie (mm)", "2026-11-{},10,20,12.7",
+         (10, 20, 12.7)),
+        ("YEAR,MO,DY,T2M_MIN,T2M_MAX,PRECTOTCORR", "2026,11,{},10,20,12.7", (10, 20, 12.7)),
+        ("date,tmin_k,tmax_k,rain_cm", "2026-11-{},283.15,293.15,1.27", (10, 20, 12.7)),
+    ],
+)  # fmt: skip
+def test_days_are_read_in_large_languages_and_units(read, header, row, wanted):
+    weather = read("\n".join([header, *(row.format(day) for day in (18, 19, 20))])).value
+    assert not weather.hourly
+    assert weather.local_days().astype(str).tolist() == ["2026-11-18", "2026-11-19", "2026-11-20"]
+    made = weather.low_c[1], weather.high_c[1], weather.rain_mm[1]
+    assert made == pytest.approx(wanted)
+    assert weather.temperature_c[0] == pytest.approx(15)
+
+
+@pytest.mark.parametrize(
+    ("header", "cell", "wanted"),
+    [("wind_m_s", "5", 5), ("Wind Speed mph", "10", 4.4704), ("wind (kn)", "10", 5.144444),
+     ("windSpeedKmh", "36", 10), ("Windgeschwindigkeit (km/h)", "36", 10)],
+)  # fmt: skip
+def test_winds_come_in_any_unit_that_is_named(read, header, cell, wanted):
+    weather = read(f"date,temp_c,{header}\n2026-11-18,20,{cell}\n2026-11-19,20,{cell}").value
+    assert weather.wind_speed_m_s[0] == pytest.approx(wanted, rel=1e-5)
+
+
+def test_a_line_of_units_below_the_names_is_read(read):
+    table = "TIMESTAMP,AirTC_Avg,WS_ms,Rain_Tot\n,Deg F,m/s,in\n2026-11-18 00:00,68,2,1\n"
+    weather = read(table + "2026-11-18 01:00,50,2,0\n").value
+    assert weather.temperature_c.tolist() == pytest.approx([20, 10])
+    assert weather.rain_mm[0] == pytest.approx(25.4)
+
+
+def test_a_wind_without_a_unit_is_left_out_and_told(read):
+    imported = read("date,temp,wind\n2026-11-18,20,12\n2026-11-19,21,9")
+    assert np.isnan(imported.value.wind_speed_m_s).all()
+    assert "wind has no unit" in said(imported)
+    assert "wind_unit=km/h" in said(imported)
+    told = WeatherOptions(wind_unit="km/h")
+    again = read("date,temp,wind\n2026-11-18,20,36\n2026-11-19,21,9", told)
+    assert again.value.wind_speed_m_s[0] == pytest.approx(10)
+
+
+def test_temperatures_without_a_unit_tell_it_or_are_asked_for(read):
+    cool = read("date,temp\n2026-11-18,12\n2026-11-19,14")
+    assert "read as Celsius" in said(cool)
+    warm = read("date,temp\n2026-11-18,72\n2026-11-19,50")
+    assert "read as Fahrenheit" in said(warm)
+    assert warm.value.temperature_c[1] == pytest.approx(10)
+    with pytest.raises(ChoiceNeeded, match="Celsius or Fahrenheit") as asked:
+        read("date,temp\n2026-11-18,52\n2026-11-19,44")
+    assert asked.value.option == "temperature_unit"
+    kept = read("date,temp\n2026-11-18,50\n2026-11-19,41", WeatherOptions(temperature_unit="F"))
+    assert kept.value.temperature_c.tolist() == pytest.approx([10, 5])
+
+
+@pytest.mark.parametrize(
+    ("header", "sentence"),
+    [("Temperature (mm)", "must be in C, F or K, but its unit is 'mm'"),
+     ("Temp (hPa)", "its unit is 'hpa'"), ("air temp (bananas)", "its unit is 'bananas'")],
+)  # fmt: skip
+def test_a_unit_of_something_else_is_refused(read, header, sentence):
+    with pytest.raises(FileProblem, match=sentence):
+        read(f"date,{header}\n2026-11-18,20\n2026-11-19,20")
+
+
+def test_values_of_no_weather_are_left_out_or_refuse_the_file(read):
+    days = "\n".join(f"2026-10-{day:02d},20" for day in range(1, 31))
+    imported = read(f"date,temp (C)\n{days}\n2026-10-31,999")
+    assert "1 value(s) of temperature_c are impossible" in said(imported)
+    assert imported.value.gaps == 0  # after the last known nothing is missing
+    with pytest.raises(FileProblem, match=r"3 of 3 values are beyond it \(the first is 201\)"):
+        read("date,temp (C)\n2026-11-18,201\n2026-11-19,205\n2026-11-20,199")
+    with pytest.raises(FileProblem, match="record 2 they are 21 and 20"):
+        read("date,tmin (C),tmax (C)\n2026-11-18,10,20\n2026-11-19,21,20")
+
+
+def test_a_file_without_temperatures_or_times_says_what_it_lacks(read):
+    with pytest.raises(FileProblem, match="must hold temperatures"):
+        read("date,rain (mm)\n2026-11-18,1\n2026-11-19,2")
+    with pytest.raises(FileProblem, match="column of dates or times, but has station, temp"):
+        read("station,temp (C)\nA,20\nB,21")
+
+
+def test_days_that_could_be_months_are_asked_for(read):
+    with pytest.raises(ChoiceNeeded, match="day or month first") as asked:
+        read("date,temp (C)\n03/04/2026,20\n04/04/2026,21")
+    assert asked.value.option == "date_order"
+
+
+def test_times_that_name_a_zone_are_taken_at_their_word(read):
+    weather = read("time,temp (C)\n2026-11-18T00:00Z,1\n2026-11-18T01:00Z,2").value
+    assert weather.at[0] == np.datetime64("2026-11-18T00:00:00")
+    utc = read("Time (UTC),temp (C)\n2026-11-18 00:00,1\n2026-11-18 01:00,2").value
+    assert utc.at[0] == np.datetime64("2026-11-18T00:00:00")
+
+
+def test_the_hour_that_comes_twice_in_autumn_stands_twice(read):
+    table = "time,temp (C)\n" + "\n".join(
+        f"2026-10-25 {clock},{i}" for i, clock in enumerate(("00:00", "01:00", "01:00", "02:00"))
+    )
+    weather = read(table).value
+    assert np.diff(weather.at).astype(int).tolist() == [3600] * 3
+    assert weather.temperature_c.tolist() == [0, 1, 2, 3]
+
+
+def test_a_date_and_a_clock_in_two_columns_are_one_time(read):
+    weather = read("Date,Hour,temp (C)\n2026-11-18,13:00,20\n2026-11-18,14:00,21").value
+    assert weather.at[0] == np.datetime64("2026-11-18T11:00:00")
+
+
+def test_ten_minutes_are_gathered_into_hours(read):
+    rows = [f"2026-11-18 {h:02d}:{m:02d},{10 + m / 10},{m},{2 * (m == 0)}" for h in range(3)
+            for m in range(0, 60, 10)]  # fmt: skip
+    imported = read("time,temp (C),wind dir (deg),rain (mm)\n" + "\n".join(rows))
+    weather = imported.value
+    assert len(weather) == 3
+    assert weather.temperature_c[0] == pytest.approx(12.5)
+    assert (weather.low_c[0], weather.high_c[0]) == (10, 15)
+    assert weather.rain_mm.tolist() == [2, 2, 2]
+    assert weather.wind_from_deg[0] == pytest.approx(25, abs=0.1)
+    assert "every 10 minutes" in said(imported)
+
+
+def test_winds_are_averaged_as_vectors(read):
+    rows = ["2026-11-18 00:00,1,350", "2026-11-18 00:30,1,10"]
+    weather = read("time,temp (C),wind dir (deg)\n" + "\n".join(rows)).value
+    assert weather.wind_from_deg[0] == pytest.approx(0, abs=1e-6)
+
+
+def test_compass_points_are_directions(read):
+    rows = ["2026-11-18,20,SW", "2026-11-19,20,calm", "2026-11-20,20,N"]
+    weather = read("date,temp (C),wind dir\n" + "\n".join(rows)).value
+    assert weather.wind_from_deg[[0, 2]].tolist() == [225, 0]
+    assert np.isnan(weather.wind_from_deg[1])
+
+
+def test_gaps_are_stated_with_the_longest(read):
+    rows = [f"2026-11-{day},20" for day in (1, 2, 6, 8, 9)]
+    imported = read("date,temp (C)\n" + "\n".join(rows))
+    assert imported.value.gaps == 4
+    assert "4 days without a temperature; the longest gap, 3 days" in said(imported)
+
+
+def test_what_lies_ahead_is_forecast(read):
+    now = datetime(2026, 11, 18, 12, tzinfo=UTC)
+    options = WeatherOptions(zone="UTC", now=now)
+    weather = read("date,temp (C)\n2026-11-18,20\n2026-11-19,21", options).value
+    assert weather.forecast.tolist() == [False, True]
+    flagged = read("date,temp (C),forecast\n2026-11-18,20,no\n2026-11-19,21,yes").value
+    assert flagged.forecast.tolist() == [False, True]
+
+
+def test_soil_dew_and_gusts_are_not_taken_for_the_weather(read):
+    table = "date,soil temp (C),dew point (C),gust (m/s),air temp (C)\n2026-11-18,1,2,3,20\n"
+    weather = read(table + "2026-11-19,1,2,3,21").value
+    assert weather.temperature_c.tolist() == [20, 21]
+    assert np.isnan(weather.wind_speed_m_s).all()
+
+
+def test_fuzzed_tables_are_read_or_refused_with_a_sentence(tmp_path):
+    table = "Time,Temp (C),Wind (m/s)\n2026-11-18 00:00,1,2\n2026-11-18 01:00,2,3\n"
+    rng, sentences = np.random.default_rng(7), []
+    for number in range(40):
+        data = bytearray(table.encode())
+        for at in rng.integers(0, len(data), 4):
+            data[at] = rng.integers(32, 127)
+        room = tmp_path / str(number)
+        room.mkdir()
+        try:
+            weather_in(Upload("w.csv", bytes(data)), JERUSALEM, Workroom(room))
+        except (FileProblem, ChoiceNeeded) as refused:
+            sentences.append(str(refused))
+    assert 5 < len(sentences) < 40
+    assert all(sentence.endswith((".", "?")) for sentence in sentences)

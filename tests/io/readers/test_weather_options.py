@@ -1,0 +1,21 @@
+"""What is chosen about weather is checked when it is chosen."""
+
+import pytest
+
+import fieldmon as fm
+from fieldmon.errors import SettingError
+from fieldmon.io.readers.weather_options import WeatherOptions
+
+
+def test_units_and_zones_that_are_none_are_refused():
+    with pytest.raises(SettingError, match="must be m/s, km/h, mph or kn, but it is 'C'"):
+        WeatherOptions(wind_unit="C")
+    with pytest.raises(SettingError, match="time zone must be named"):
+        WeatherOptions(zone="Mars/Olympus")
+    assert WeatherOptions().choose("rain_unit", "in").unit("rain") == "in"
+
+
+def test_days_begin_by_the_plots_clock_unless_another_is_told():
+    field = fm.read_plots("sample_data/paran_estate.zip")[0]
+    assert WeatherOptions().on(field).zone == "Asia/Jerusalem"
+    assert WeatherOptions(zone="UTC").on(field).zone == "UTC"

@@ -1,0 +1,236 @@
+"""The log of a season: a changed past is refused, and said where."""
+
+import json
+import shutil
+import sqlite3
+from contextlib import closing
+from dataclasses import replace
+from datetime import timedelta
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fieldmon.errors import FileProblem
+from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.monitoring import Application, Season, schema, season_log
+from fieldmon.monitoring.scouts import let_in
+from fieldmon.monitoring.tellings import take
+from tests.monitoring.seasons import BEGINS, state, three_results
+from tests.monitoring.telling import NOW, a_telling, without_records
+
+N = 7
+
+
+@pytest.fixture(scope="module")
+def written():
+    """Give a log of seven entries, in memory, as bytes of a database."""
+    with closing(sqlite3.connect(":memory:", isolation_level=None)) as db:
+        schema.lay_out(db)
+        for k in range(N):
+            season_log.append(db, "seen", f"Ann {k}", source="מטע.csv", found=k, batch=k)
+        yield db.serialize()
+
+
+def opened(written):
+    db = sqlite3.connect(":memory:", isolation_level=None)
+    db.deserialize(written)
+    return closing(db)
+
+
+def by_hand(path, change):
+    """Change a file as somebody does who takes away first what would notice it."""
+    triggers = "SELECT name FROM sqlite_master WHERE type = 'trigger'"
+    with closing(sqlite3.connect(path)) as db:
+        for (name,) in db.execute(triggers).fetchall():
+            db.execute(f"DROP TRIGGER {name}")
+        db.execute(change)
+        db.commit()
+
+
+@given(st.data())
+def test_any_byte_of_any_entry_that_is_changed_is_found_and_the_entry_named(written, data):
+    number = data.draw(st.integers(1, N))
+    column = data.draw(st.sampled_from(["entry", "digest"]))
+    with opened(written) as db:
+        (text,) = db.execute(f"SELECT {column} FROM log WHERE fid = ?", (number,)).fetchone()  # noqa: S608
+        raw = bytearray(text.encode())
+        raw[data.draw(st.integers(0, len(raw) - 1))] ^= data.draw(st.integers(1, 127))
+        changed = raw.decode("utf-8", "surrogateescape")
+        if "\0" in changed or "\udc80" <= max(changed) <= "\udcff":
+            changed = text[:-1]  # what SQLite cannot hold as text
+        db.execute(f"UPDATE log SET {column} = ? WHERE fid = ?", (changed, number))  # noqa: S608
+        with pytest.raises(FileProblem, match=rf"entry {number} "):
+            season_log.refuse_changed(db)
+
+
+@given(st.sets(st.integers(1, N), min_size=1))
+def test_entries_that_were_taken_out_are_missed_from_the_first_one_on(written, gone):
+    with opened(written) as db:
+        db.executemany("DELETE FROM log WHERE fid = ?", [(number,) for number in gone])
+        with pytest.raises(FileProblem, match=rf"entry {min(gone)} is missing"):
+            season_log.refuse_changed(db)
+
+
+@given(st.permutations(range(1, N + 1)).filter(lambda order: order != list(range(1, N + 1))))
+def test_entries_in_another_order_are_noticed_where_the_order_breaks(written, order):
+    first = next(k for k, number in enumerate(order, 1) if number != k)
+    with opened(written) as db:
+        rows = dict(db.execute("SELECT fid, entry || char(10) || digest FROM log").fetchall())
+        for k, number in enumerate(order, 1):
+            entry, _, mark = rows[number].rpartition("\n")
+            db.execute("UPDATE log SET entry = ?, digest = ? WHERE fid = ?", (entry, mark, k))
+        with pytest.raises(FileProblem, match=rf"entry {first} "):
+            season_log.refuse_changed(db)
+
+
+@given(st.integers(1, N))
+def test_a_chain_that_was_made_anew_from_an_entry_on_is_told_by_its_last_digest(written, number):
+    with opened(written) as db:
+        *_, last = season_log.entries(db)
+        rows = db.execute("SELECT entry FROM log WHERE fid >= ? ORDER BY fid", (number,)).fetchall()
+        db.execute("DELETE FROM log WHERE fid >= ?", (number,))
+        found = db.execute("SELECT fid, digest FROM log ORDER BY fid DESC LIMIT 1").fetchone()
+        season_log._note_head(db, *(found or (0, season_log._NOTHING)))
+        for (entry,) in rows:
+            said = json.loads(entry)
+            season_log.append(db, said["kind"], "somebody else", **said["what"])
+        assert season_log.entries(db)[-1].digest != last.digest
+
+
+def test_nothing_is_written_on_a_changed_past(path):
+    by_hand(path, "UPDATE log SET entry = replace(entry, 'Ann', 'Eve') WHERE fid = 3")
+    season = Season(path)
+    for act in (
+        lambda: season.record(three_results(), "more"),
+        lambda: season.treat(BEGINS, 0.5),
+        season.undo,
+        season.log,
+    ):
+        with pytest.raises(FileProblem, match="entry 3 is not what was written"):
+            act()
+
+
+def test_what_another_program_changes_in_the_log_is_noticed_as_elsewhere(path):
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("DELETE FROM log WHERE fid = 2")
+        db.commit()
+    with pytest.raises(FileProblem, match=r"row 2 of the layer log .* was deleted"):
+        Season(path).status(BEGINS)
+
+
+def test_the_log_says_what_was_seen_planned_advised_treated_and_undone_by_whom(path):
+    season = Season(path)
+    season.advise(BEGINS, "Treat: 6 % of the plants are believed infested.", "Ben")
+    season.advise(BEGINS, "Treat: 6 % of the plants are believed infested.", "Ben")
+    season.treat(BEGINS, 0.5, application=Application("soap", operator="Cyd"))
+    season.undo(who="Dan")
+    season.change(replace(season.settings, harvest=BEGINS + timedelta(9)), season.settings, "Eve")
+    season.undo_change("Eve")
+    log = season.log()
+    assert [(one.kind, one.who) for one in log] == [
+        ("begins", ""), ("planned", ""), ("seen", "Ann"), ("advised", "Ben"), ("treated", "Cyd"),
+        ("undone", "Dan"), ("changed", "Eve"), ("changed", "Eve"),
+    ]  # fmt: skip
+    said = [one.sentence() for one in log]
+    assert said[2] == "monday.csv: 3 found, 9 clean, 0 could not be inspected, batch 1"
+    assert said[4].startswith("2026-04-06: soap on ")
+    assert said[5] == "Batch 2 was undone: 1 treatment from soap."
+    assert season.held_to_log() == ()
+    assert [one.number for one in log] == list(range(1, 9))
+    assert list(season_log.lines(log))[-1].endswith(log[-1].digest)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("UPDATE inspections SET result = 'clean' WHERE fid = 4", "Row 4 of the layer inspections"),
+        ("UPDATE inspections SET undone = 1 WHERE fid = 4", "The batch 1 of the file is not what"),
+        ("UPDATE inspections SET who = 'Eve' WHERE fid = 4", "The batch 1 of the file is not what"),
+        ("DELETE FROM inspections WHERE fid = 4", "The batch 1 of the file is not what entry 3"),
+        ("DELETE FROM batches WHERE fid = 1", "The batch 1 that entry 3"),
+        ("UPDATE settings SET value = '{}' WHERE name = 'team'", "The settings of the file"),
+        ("UPDATE routes SET digest = 'x'", "The route of 2026-04-06 that entry 2"),
+        ("UPDATE observations SET present = 0", "The plot of the file is not what entry 1"),
+        ("INSERT INTO batches (at, kind, rows) VALUES ('', 'findings', 0)", "nothing of batch 2"),
+    ],
+)
+def test_a_file_that_says_otherwise_than_its_log_is_found(path, change, said):
+    by_hand(path, change)
+    assert any(said in one for one in Season(path).held_to_log())
+
+
+def test_what_phones_tell_and_take_back_is_in_the_log(path):
+    season = Season(path)
+    key = let_in(season, "Ben")
+    one = a_telling(3, FOUND)
+    take(season, key, [one, a_telling(4, CLEAN)], NOW)
+    take(season, key, [a_telling(None, None, undoes=one.id)], NOW)
+    take(season, key, [one], NOW)  # once more, as networks do
+    told = [entry for entry in season.log() if entry.who == "Ben"]
+    assert [entry.kind for entry in told] == ["seen", "undone"]
+    assert told[0].what["found"] == 1
+    assert season.held_to_log() == ()
+
+
+def test_corrections_are_added_and_nothing_is_taken_out(path):
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("UPDATE inspections SET result = 'clean' WHERE fid = 4")
+        db.commit()
+    season = Season(path)
+    season.correct("Ann")
+    *_, before, last = season.log()
+    assert (before.kind, last.kind, last.who, last.what["rows"]) == ("seen", "corrected", "Ann", 1)
+    assert season.held_to_log() == ()
+
+
+def test_two_copies_keep_both_logs_when_they_become_one(path, tmp_path):
+    other = shutil.copy(path, tmp_path / "other.gpkg")
+    here, there = Season(path), Season(other)
+    here.record(three_results(), "here", "Ann")
+    there.record(three_results(1), "there", "Ben")
+    there.treat(BEGINS, 0.5)
+    theirs = there.log()[-2:]
+    here.merge(there)
+    last = here.log()[-1]
+    assert (last.kind, last.what["entries"], last.what["new"]) == ("merged", 2, 3)
+    assert [one["digest"] for one in last.what["theirs"]] == [one.digest for one in theirs]
+    assert here.held_to_log() == ()
+    n = len(here.log())
+    here.merge(there)
+    assert len(here.log()) == n  # nothing was new
+    there.merge(here)
+    assert [one["digest"] for one in there.log()[-1].what["theirs"]][-1] == last.digest
+    assert there.held_to_log() == ()
+
+
+def test_a_copy_whose_past_was_changed_is_not_taken_in(path, tmp_path):
+    other = shutil.copy(path, tmp_path / "other.gpkg")
+    by_hand(other, "UPDATE log SET digest = 'x' WHERE fid = 2")
+    before = path.read_bytes()
+    with pytest.raises(FileProblem, match="entry 2 is not what was written"):
+        Season(path).merge(Season(other))
+    assert len(path.read_bytes()) == len(before)
+
+
+def test_the_log_of_an_old_season_begins_at_its_migration_and_says_so(path):
+    without_records(path)
+    season = Season(path)
+    (first,) = season.log()
+    assert first.sentence() == (
+        "the log begins: the file was of format 6; what stands in it is held to now"
+    )
+    assert set(first.what["states"]) == {"batch 1", "settings", "labels", "plot"}
+    season.treat(BEGINS, 0.5)
+    assert state(path) == 12
+    by_hand(path, "DELETE FROM inspections WHERE fid = 4")
+    assert "The batch 1 of the file is not what entry 1" in Season(path).held_to_log()[0]
+
+
+def test_a_copy_that_is_brought_back_is_taken_as_it_is(path, tmp_path):
+    copy = shutil.copy(path, tmp_path / "before.gpkg")
+    season = Season(path)
+    season.record(three_results(), "more")
+    shutil.copy(copy, path)
+    season.record(three_results(1), "again")
+    assert [one.kind for one in season.log()] == ["begins", "planned", "seen", "seen"]

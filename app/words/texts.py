@@ -790,6 +790,9 @@ SCOUT_PAGE = {
     "load_day": "Load the day", "old_day": "This route is of {day}: load today's",
     "loading": "Loading ...", "route_done": "The route is done.",
     "place": "Row {row}, plant {plant}", "no_position": "No position yet", "there": "You are there",
+    "photo_asked": "A photo is asked for.", "photo_asked_of": "A photo is asked for: {note}",
+    "asked": "Photos asked for: {n}", "photo_comes": "The photo is being kept ...",
+    "kept": "Kept: {what}", "keeping": "Being kept: {what}",
     "away": "{m} m away", "chance": "Chance {n} %", "off_route": "Off the route",
     "who_says": "{who}: {result}",
     "clean": "Clean", "found": "Found", "skipped": "Could not inspect",
@@ -831,8 +834,16 @@ INVITE_LOCAL = (
 INVITE_NAME, INVITE_FIRST, INVITE_LAST = "Name", "From row", "To row"
 INVITE_BUTTON, TAKE_BACK = "Make a code", "Take back"
 INVITE_CODE = "Code for {name}"
+INVITE_ALT = "Picture with a person's own address of the season, for a phone's camera."
 INVITED = "{name}, rows {low} to {high}"
 TAKEN_BACK = "{name} can no longer read or record anything of this season."
+ASK_PHOTOS = "Photos asked for: {n}"
+ASK_PHOTO, ASK_PHOTO_BUTTON = "What is to be seen on it", "Ask for a photo of {plants}"
+ASK_PHOTO_NOTE = (
+    "The route leads by, as far as the hours allow, and the scout's page shows it at the plant. It "
+    "is asked for until a photo of the plant has come."
+)
+ASKED_PHOTO, ASK_NO_MORE = "Row {row}, plant {plant}. {note}", "No more"
 SAID_OTHERWISE = "Said otherwise of the same plant on this day. Look again, and undo what is wrong:"
 SAID_BY = "Row {row}, plant {plant}: {said}"
 

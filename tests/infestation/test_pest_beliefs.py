@@ -89,6 +89,13 @@ def test_eggs_send_nothing_out_in_the_chance_map_either():
     assert slow == pytest.approx(simulated(living, some(), 3).sum(), rel=0.15, abs=0.5)
 
 
+def test_what_predators_end_the_chance_map_ends_too():
+    grown = replace(pest(), stages=(), mortality_per_day=0.2)
+    living = PestInWeather(grown, None)
+    said, made = believed(living, some(), 3).chance.sum(), simulated(living, some(), 3).sum()
+    assert said == pytest.approx(made, rel=0.15, abs=0.5)
+
+
 def test_nights_are_as_warm_as_they_were():
     cold, hot = (
         believed(PestInWeather(pest(), weather(t), date(2026, 6, 1)), some(), 3).chance.sum()

@@ -148,6 +148,8 @@ PLOT: dict[str, Any] = {
                 "start": _LIST | {"description": "Plants of row k: start[k] to start[k + 1]."},
                 "row": _LIST | {"description": "Its number on the ground, from 1."},
                 "aisle": _LIST | {"description": "Rows of one number share their aisle."},
+                "side": _LIST
+                | {"description": "The aisle is left of a row's plants in order (1), or right (-1)."},
             },
         },
         "plants": {

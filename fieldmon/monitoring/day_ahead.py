@@ -67,7 +67,9 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
         return season.plan(on, wishes=Wishes(_asked(season)), who=who or None).route
     scene = season.scene(on, who=who)
     left = kept[(scene.last_inspected[kept] != scene.day) & inside(season, part.rows)[kept]]
-    return _through(scene, left) if len(left) else planned_again(season, on, part)
+    if len(left):
+        return _through(scene, left)
+    return planned_again(season, on, part, work_left_s(season, on, part))
 
 
 def planned_again(
@@ -84,6 +86,21 @@ def planned_again(
     wishes = Wishes(asked, tuple(np.flatnonzero(~mine).tolist()))
     who = None if member is None else member.name
     return season.plan(on, now, keep=part.rows is None, wishes=wishes, who=who).route
+
+
+def work_left_s(season: Season, on: date, part: Part) -> float:
+    """Return the seconds left of somebody's working day, which begins with the first inspection.
+
+    Of nobody in particular, and where inspections have no times, it is what the season reckons.
+    """
+    member = part.member(season)
+    done = season.history.inspections.on(on)
+    own_s = done.second[done.who == part.name]
+    known_s = own_s[~np.isnan(own_s)]
+    if not part.name or (len(own_s) and not len(known_s)):
+        return float(season.scene(on, who="" if member is None else member.name).seconds_left)
+    robot = season.settings.robot if member is None else member.robot
+    return max(float(robot.day_s - (np.ptp(known_s) if len(known_s) else 0.0)), 0.0)
 
 
 def inside(season: Season, rows: tuple[int, int] | None) -> NDArray[np.bool_]:

@@ -233,9 +233,10 @@ def development(
             "guessed": there.guessed,
         }
     )
+    days = alt.X("day:O", title=axes[0], sort=None,
+                 axis=alt.Axis(labelAngle=0, labelOverlap=True))  # fmt: skip
     base = alt.Chart(table).encode(
-        x=alt.X("day:O", title=axes[0], sort=None,
-                axis=alt.Axis(labelAngle=0, labelOverlap=True)),
+        x=days,
         y=alt.Y("gathered:Q", title=axes[1]),
         tooltip=[alt.Tooltip("day", title=axes[0]),
                  alt.Tooltip("gathered:Q", title=axes[1], format=".0f")],
@@ -255,11 +256,11 @@ def development(
     side = _sides()[0]
     words = (
         alt.Chart(named)
-        .mark_text(align=side, dy=-6, color=_GREY, fontSize=11)
+        .mark_text(align=side, dy=8, color=_GREY, fontSize=11)
         .encode(y="gathered:Q", text="name:N", x=alt.value(0 if side == "left" else "width"))
     )
     today = pd.DataFrame({"day": [str(there.on)[5:]]})
-    now = alt.Chart(today).mark_rule(color=_GREY).encode(x=alt.X("day:O", sort=None))
+    now = alt.Chart(today).mark_rule(color=_GREY).encode(x=days)
     return alt.layer(*lines, rules, words, now).properties(height=260)
 
 

@@ -53,13 +53,12 @@ class ChangeOptions:
             help="Trace finds beyond the plants next to them, and learn how far insects jump.",
         ),
     ] = None
-    living: PestOptions = field(default_factory=PestOptions)
-
     harvest: Annotated[
         str | None,
         typer.Option(help="First day of harvest, YYYY-MM-DD, which treatments wait for; or none."),
     ] = None
     who: Annotated[str, typer.Option(help="Who chooses so.")] = ""
+    living: PestOptions = field(default_factory=PestOptions)
 
     def changed(self, settings: MonitoringSettings, plot: Field) -> MonitoringSettings:
         """Return a season's settings as they are to be."""

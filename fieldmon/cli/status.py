@@ -37,9 +37,9 @@ def status(
     kept = Season(season)
     now = kept.status(day(on) or kept.last_date())
     typer.echo("\n".join(lines(kept, now)))
+    typer.echo(f"  in days to come        {kept.forecast(now.on).sentence()}")
     for line in of_treatments(kept, now):
         typer.echo(line)
-    typer.echo(f"  in days to come        {kept.forecast(now.on).sentence()}")
     if rows:
         _show_rows(kept, now)
     if batches:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 import shapely
-from shapely import MultiLineString, MultiPolygon
+from shapely import LineString, MultiLineString, MultiPolygon
 
 from fieldmon.compute.wording import worded
-from fieldmon.errors import PlotError, SettingError
+from fieldmon.errors import FileProblem, PlotError, SettingError
 from fieldmon.io.import_report import Imported, doubtful, dropped, guessed, seen
 from fieldmon.io.read import read_blocks, read_rows
 from fieldmon.plot.block import blocks_from_outline, cut_blocks
@@ -38,6 +38,10 @@ _ON_PLOT = 0.01
 # more of a plot than this in no block, or of a block in another, is worth a word
 _WORTH_A_WORD = 0.01
 _NAMED = 5
+# rows that rise or fall by less, metres a metre, are as good as level
+_LEVEL = 0.03
+# a contour may run along the edge of its block
+_NEAR_DEG = 1e-7
 
 
 class Hearing(Protocol):
@@ -61,12 +65,10 @@ def with_rows(
             fields = hearing.read("rows", file, partial(rows_of_each, fields, rows))
         else:
             fields = (replace(fields[0], row_lines=rows),)
+    fields = _with_blocks(fields, sources, hearing)
     if (raster := sources.contours) is not None:
-        contour = partial(_with_contour, sources=sources, choices=choices, many=many)
-        fields = tuple(
-            hearing.read("contours", raster, partial(contour, field)) for field in fields
-        )
-    return _with_blocks(fields, sources, hearing)
+        fields = _with_contours(fields, raster, (sources, choices), hearing)
+    return fields
 
 
 def rows_of_each(fields: Fields, rows: MultiLineString) -> Imported[Fields]:
@@ -91,6 +93,20 @@ def rows_of_each(fields: Fields, rows: MultiLineString) -> Imported[Fields]:
     return Imported(found, tuple(messages))
 
 
+def _with_contours(
+    fields: Fields, raster: Source, told: tuple[PlotSources, PlantingChoices], hearing: Hearing
+) -> Fields:
+    """Return plots with the contours along which their rows run."""
+    contour = partial(_with_contour, sources=told[0], choices=told[1])
+    many = len(fields) > 1
+    found = [
+        hearing.read("contours", raster, partial(contour, field, many=many)) for field in fields
+    ]
+    if all(field.row_lines.is_empty for field in found):  # no plot has one: say why
+        hearing.read("contours", raster, partial(contour, fields[0], many=False))
+    return tuple(found)
+
+
 def _with_contour(
     field: Field, sources: PlotSources, choices: PlantingChoices, *, many: bool
 ) -> Imported[Field]:
@@ -98,24 +114,50 @@ def _with_contour(
     source = sources.contours
     if source is None:
         return Imported(field)
-    spacing_m = planting_of(field, **choices.given()).row_spacing_m
-    try:
-        read = contour_of(field, source, spacing_m, sources.contours_options)
-    except PlotError as problem:
-        if not many:
-            raise
-        several = "{n} plots have no contour, and straight rows are laid"
-        said = doubtful(f"{problem} Straight rows are laid.", field.name, many=several)
-        return Imported(field, (said,))
-    return read.having(replace(field, row_lines=read.value))
+    options = sources.contours_options
+    rows: list[LineString] = []
+    messages: list[ImportMessage] = []
+    for part in _parts(field):
+        spacing_m = planting_of(part, **choices.given()).row_spacing_m
+        try:
+            read = contour_of(part, source, spacing_m, options)
+        except (PlotError, FileProblem) as problem:
+            if not many and (not field.blocks or isinstance(problem, FileProblem)):
+                raise
+            several = "{n} plots or blocks have no contour, and straight rows are laid"
+            said = doubtful(f"{problem} Straight rows are laid.", part.name, many=several)
+            messages.append(said)
+            continue
+        rows += read.value.geoms
+        about = part.name if many or field.blocks else None
+        messages += [replace(message, feature=about) for message in read.messages]
+    return Imported(replace(field, row_lines=MultiLineString(rows)), tuple(messages))
+
+
+def _parts(field: Field) -> Fields:
+    """Return the blocks of a plot as plots, or the plot itself if it has none."""
+    return tuple(
+        replace(
+            field,
+            name=f"{field.name}, block {block.name or number}",
+            boundary=_areas(shapely.intersection(block.area, field.boundary)),
+            row_spacing_m=block.row_spacing_m or field.row_spacing_m,
+            blocks=(),
+        )
+        for number, block in enumerate(field.blocks, 1)
+    ) or (field,)
 
 
 def contour_of(
     field: Field, source: Source, row_spacing_m: float, options: RasterOptions | None = None
 ) -> Imported[MultiLineString]:
-    """Return the contour through the middle of a plot, of which its rows are copies."""
+    """Return the contour through the middle of a plot, of which its rows are copies.
+
+    And how far these are level: where contours come nearer to each other or part, rows that keep
+    their distance leave them.
+    """
     from fieldmon.io.rasters.read import read_raster  # noqa: PLC0415 - half a second
-    from fieldmon.plot.row_drawing import contour_row  # noqa: PLC0415
+    from fieldmon.plot.row_drawing import contour_row, falls_along  # noqa: PLC0415
 
     read = read_raster(source, options, field)
 
@@ -126,7 +168,33 @@ def contour_of(
     said = seen(
         worded("Rows run along the contour through the middle of the plot, all others beside it.")
     )
-    return read.having(row, [said])
+    falls = falls_along(field, row, row_spacing_m, height_m)
+    inside = shapely.intersection(row, shapely.buffer(field.boundary, _NEAR_DEG))
+    longest = max(shapely.get_parts(inside), key=shapely.length)
+    return read.having(MultiLineString([longest]), [said, *_about_falls(falls)])
+
+
+def _about_falls(falls: NDArray[np.float64]) -> list[ImportMessage]:
+    """Return what to say of rows that should be level, and fall ``(k,)`` metres a metre."""
+    if not len(falls):
+        return []
+    steep = float(np.mean(falls > _LEVEL))
+    if steep <= _WORTH_A_WORD:
+        told = worded("They rise or fall by {most:.1%} at most.", most=float(falls.max()))
+        return [seen(told)]
+    return [
+        doubtful(
+            worded(
+                "Contours come nearer to each other or part, and rows that keep their distance "
+                "leave them: {share:.0%} of their length rises or falls by more than {level:.0%}, "
+                "{most:.0%} at most. Part the plot by lines: each block follows a contour of its "
+                "own.",
+                share=steep,
+                level=_LEVEL,
+                most=float(falls.max()),
+            )
+        )
+    ]
 
 
 def _with_blocks(fields: Fields, sources: PlotSources, hearing: Hearing) -> Fields:

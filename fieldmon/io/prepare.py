@@ -541,7 +541,7 @@ def _plants_of(fields: tuple[Field, ...], lay: Callable[[Field], Laid]) -> dict[
     problem = None
     for each in fields:
         try:
-            plants[each.name] = labelled(lay(each).plot.grid)
+            plants[each.name] = labelled(lay(each).plot.grid, None, each.blocks)
         except PlotError as error:
             problem = error
     if problem is not None and not plants:

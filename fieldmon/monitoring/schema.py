@@ -83,7 +83,7 @@ PLOTS = GeoPackageTable(
     "Boundary of the plot.",
 )
 PLACES = GeoPackageTable(
-    "places", ("kind TEXT NOT NULL",), "GEOMETRY", "Gate, paths and no-go areas."
+    "places", ("kind TEXT NOT NULL",), "GEOMETRY", "Gate, paths, no-go areas and blocks."
 )
 ROWS = GeoPackageTable("rows", ("line INTEGER", "plants INTEGER"), "LINESTRING", "Rows of plants.")
 PLANTS = GeoPackageTable(
@@ -241,6 +241,17 @@ LEARNT = GeoPackageTable(
     None,
     "What the inspections so far tell of the insects: best guess and interval of 90 %.",
 )
+MORNINGS = GeoPackageTable(
+    "mornings",
+    (
+        "day INTEGER NOT NULL UNIQUE",
+        "causes TEXT NOT NULL",
+        "content TEXT NOT NULL",
+        "chances BLOB NOT NULL",
+    ),
+    None,
+    "Late mornings as they were worked out, so that they need not be again.",
+)
 OUTSIDE_CHANGES = GeoPackageTable(
     "outside_changes",
     (
@@ -264,7 +275,7 @@ CHANCE = GeoPackageTable(
 TABLES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
     *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
-    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT, LABELS, LOG),
+    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT, LABELS, LOG, MORNINGS),
     *phone_tables.TABLES,
 )
 #: layers from which everything else follows: what must be saved from a damaged file
@@ -404,6 +415,7 @@ def _records_come(db: sqlite3.Connection) -> None:
             db.execute(f"ALTER TABLE treatments ADD COLUMN {column}")
     create(db, LABELS)
     create(db, LOG)
+    create(db, MORNINGS)
     db.execute(_INDEXES[4])
 
 

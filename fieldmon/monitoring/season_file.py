@@ -44,6 +44,9 @@ from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
 from fieldmon.monitoring.merging import Merged
+from fieldmon.monitoring.mornings import Mornings
+from fieldmon.monitoring.mornings import keep as keep_mornings
+from fieldmon.monitoring.mornings import take as take_mornings
 from fieldmon.monitoring.recorded_before import (
     Contradictions,
     contradicting,
@@ -65,7 +68,7 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping
     from datetime import date, time
 
     from numpy.typing import NDArray
@@ -97,18 +100,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class _Contents:
-    """What the file said when it was read last; mornings are added as they are asked for."""
+    """What the file said when it was read last."""
 
     revision: str
     settings: MonitoringSettings
     history: History
-    mornings: list[Belief]
+    mornings: Mornings
 
     def morning(self, day: int) -> Belief:
-        while len(self.mornings) <= day:
-            number = len(self.mornings) - 1
-            self.mornings.append(self.history.night_after(self.mornings[number], number))
-        return self.mornings[day]
+        return self.mornings.of(day)
 
 
 class SeasonChange:
@@ -185,7 +185,7 @@ class Season:
         begins = np.datetime64(settings.begins, "D")
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
         history = _nothing_yet(plot, settings, prior, observations)
-        first = _Contents("", settings, history, [history.first_morning])
+        first = _Contents("", settings, history, Mornings(history))
         with Store.new(path) as db:
             tables.write_plot(db, plot)
             tables.write_observations(db, observations)
@@ -477,7 +477,7 @@ class Season:
             if new:
                 self._log_seen(db, news, (batch, source, who))
                 first = _settings(db).day(inspections.date.min().item())
-                self._refresh(db, first, before.mornings[: first + 1])
+                self._refresh(db, first, before.mornings.until(first))
         return Recorded(batch if new else None, new, len(inspections) - new)
 
     def _log_seen(
@@ -859,8 +859,13 @@ class Season:
         with self._lock, self.store.reading() as db:
             return self._read(db)
 
-    def _read(self, db: sqlite3.Connection) -> _Contents:
-        """Return what the file says; nothing is read again that did not change."""
+    def _read(
+        self, db: sqlite3.Connection, at_hand: Mapping[int, Belief] | None = None
+    ) -> _Contents:
+        """Return what the file says; nothing is read again that did not change.
+
+        Mornings that are at hand are still believed, and need not be worked out again.
+        """
         outside_changes.refuse(db)
         revision = _revision(db)
         if self._last is None or self._last.revision != revision:
@@ -871,7 +876,10 @@ class Season:
                 inspections=inspection_table.load(db, settings.begins),
                 treatments=treatments.load(db, self._inside),
             )
-            self._last = _Contents(revision, settings, history, [history.first_morning])
+            mornings = Mornings(history, dict(at_hand or {}))
+            if at_hand is None:
+                take_mornings(db, mornings)
+            self._last = _Contents(revision, settings, history, mornings)
         return self._last
 
     def _first_morning(self, settings: MonitoringSettings) -> Floats:
@@ -890,16 +898,13 @@ class Season:
         return inside
 
     def _refresh(
-        self, db: sqlite3.Connection, since: int = 0, mornings: Sequence[Belief] = ()
+        self, db: sqlite3.Connection, since: int = 0, at_hand: Mapping[int, Belief] | None = None
     ) -> None:
-        """Write what follows from the causes, within the transaction that changes them.
-
-        Mornings up to `since` that are still believed need not be made again.
-        """
+        """Write what follows from the causes, within the transaction that changes them."""
         self._last = None
-        now = self._read(db)
-        now.mornings.extend(mornings[1:])
-        derived_layers.refresh(db, self.plot, now.history, now.morning, since)
+        now = self._read(db, at_hand)
+        newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
+        keep_mornings(db, now.mornings, newest)
         qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
 

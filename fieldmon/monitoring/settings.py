@@ -54,12 +54,12 @@ class MonitoringSettings:
         `robot`.
     teamwork
         How they work together.
-    harvest
-        The first day of harvest, which treatments have to wait for; None: not known.
     pest
         What is looked for; None: nobody said, and nights are as `belief` has them.
     weather
         What the pest met and is forecast to meet; None: it is as the pest's figures hold.
+    harvest
+        The first day of harvest, which treatments have to wait for; None: not known.
     """
 
     begins: date
@@ -72,9 +72,9 @@ class MonitoringSettings:
     seed: int = 1
     team: tuple[TeamMember, ...] = ()
     teamwork: Teamwork = field(default_factory=Teamwork)
-    harvest: date | None = None
     pest: Pest | None = None
     weather: Weather | None = None
+    harvest: date | None = None
 
     def __post_init__(self) -> None:
         if self.harvest is not None and self.harvest < self.begins:
@@ -204,9 +204,9 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
             seed=season["seed"],
             team=tuple(_member(one) for one in team["members"]),
             teamwork=Teamwork(**team.get("teamwork", {})),
-            harvest=date.fromisoformat(season["harvest"]) if "harvest" in season else None,
             pest=pest_of_json(plain.get("pest")),
             weather=kept_weather(parts.get("weather", "null")),
+            harvest=date.fromisoformat(season["harvest"]) if "harvest" in season else None,
         )
     except (KeyError, TypeError, ValueError, FieldmonError) as error:
         raise FileProblem(

@@ -6,18 +6,21 @@ import json
 import zlib
 from dataclasses import dataclass, fields
 from datetime import UTC, datetime
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
 from shapely import LineString, MultiLineString, MultiPolygon, Point
 
+from fieldmon.compute.arrays import offsets
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, geometry, insert, point_blobs, touch
 from fieldmon.plot.assumed import Assumed
+from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import PlantGrid, row_corners, row_label
 from fieldmon.plot.plot import Plot
@@ -36,6 +39,7 @@ _FRAME, _IN_ROWS = "frame", "in_rows"
 _SPACINGS = ("row_spacing_m", "plant_spacing_m")
 _ASSUMED = ("row_spacing_m", "plant_spacing_m")
 _STATED = ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
+_NAMES = ("plant_rows", "plant_blocks")
 
 
 @dataclass(frozen=True)
@@ -109,9 +113,15 @@ def _write_field(db: sqlite3.Connection, plot: Plot) -> None:
     ]
     if field.gate is not None:
         places.append((blob(Point(field.gate)), "gate"))
+    places += [(blob(block.area), "block") for block in field.blocks]
     insert(db, schema.PLACES, places)
     if field.plants is not None:
         write_array(db, "measured_lonlat", field.plants)
+    for name in _NAMES:
+        if (names := getattr(field, name)) is not None:
+            write_array(db, name, names)
+    if field.blocks:
+        _write_blocks(db, field.blocks)
     stated = [np.nan if (v := getattr(field, name)) is None else v for name in _STATED]
     write_array(db, "stated", np.array(stated, np.float64))
     taken = {one.setting: one.value for one in plot.assumed}
@@ -119,6 +129,32 @@ def _write_field(db: sqlite3.Connection, plot: Plot) -> None:
     write_array(db, "assumed", np.array(assumed, np.float64))
     for table in (schema.PLOTS, schema.PLACES):
         touch(db, table.name, field.boundary.bounds)
+
+
+def _write_blocks(db: sqlite3.Connection, blocks: tuple[Block, ...]) -> None:
+    """Keep what is said of each block, in order."""
+    areas = [shapely.to_wkb(block.area) for block in blocks]
+    write_array(db, "blocks.name", np.array([block.name for block in blocks], np.str_))
+    write_array(db, "blocks.wkb_start", offsets(np.array([len(area) for area in areas])))
+    write_array(db, "blocks.wkb", np.frombuffer(b"".join(areas), np.uint8))
+    stated = [[getattr(block, name) for name in _STATED] for block in blocks]
+    write_array(db, "blocks.stated", np.array(stated, np.float64))
+
+
+def _blocks(arrays: dict[str, NDArray[Any]]) -> tuple[Block, ...]:
+    """Return the blocks kept; a file of an earlier version has none."""
+    if "blocks.name" not in arrays:
+        return ()
+    wkb, start = arrays["blocks.wkb"].tobytes(), arrays["blocks.wkb_start"].tolist()
+    areas: list[Any] = [shapely.from_wkb(wkb[a:b]) for a, b in pairwise(start)]
+    stated = [
+        [None if np.isnan(value) else value for value in row]
+        for row in arrays["blocks.stated"].tolist()
+    ]
+    names = arrays["blocks.name"].tolist()
+    return tuple(
+        Block(name, area, *row) for name, area, row in zip(names, areas, stated, strict=True)
+    )
 
 
 def _write_grid(db: sqlite3.Connection, grid: PlantGrid) -> None:
@@ -219,6 +255,10 @@ def _field(db: sqlite3.Connection, arrays: dict[str, NDArray[Any]]) -> Field:
         paths=places.get("path", MultiLineString()),
         plants=None if measured is None else measured.copy(),
         row_lines=places.get("row line", MultiLineString()),
+        blocks=_blocks(arrays),
+        in_rows=f"grid.{_IN_ROWS}" not in arrays,
+        plant_rows=arrays.get("plant_rows"),
+        plant_blocks=arrays.get("plant_blocks"),
         **stated,
     )
 

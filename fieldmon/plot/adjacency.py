@@ -23,10 +23,11 @@ _NOBODY = -1
 
 def lists(n: int, one: Index, other: Index) -> Lists:
     """Return CSR ``(start, plant)`` of n plants from pairs, each pair counted both ways."""
-    source, target = np.concatenate([one, other]), np.concatenate([other, one])
-    n_neighbours = np.bincount(source, minlength=n)
-    ordered = np.sort(source * n + target) - np.repeat(np.arange(n) * n, n_neighbours)
-    return offsets(n_neighbours).astype(np.int32), ordered.astype(np.int32)
+    start = offsets(np.bincount(one, minlength=n) + np.bincount(other, minlength=n))
+    plant = np.empty(2 * len(one), np.int32)
+    _fill(start[:-1].copy(), np.asarray(one), np.asarray(other), plant)
+    _in_order(start, plant)
+    return start.astype(np.int32), plant
 
 
 def along(x_m: Float, row: NDArray[np.integer], plant_spacing_m: Float | float) -> Lists:
@@ -173,3 +174,24 @@ def link(start: NDArray[np.int32], plant: NDArray[np.int32], back: NDArray[np.in
             for other in range(start[plant[e]], start[plant[e] + 1]):
                 if plant[other] == i:
                     back[e] = other
+
+
+@loop
+def _fill(free: Index, one: Index, other: Index, plant: NDArray[np.int32]) -> None:
+    """Write each pair into both lists, where each has its next free place."""
+    for k in range(one.size):
+        plant[free[one[k]]], plant[free[other[k]]] = other[k], one[k]
+        free[one[k]] += 1
+        free[other[k]] += 1
+
+
+@loop
+def _in_order(start: Index, plant: NDArray[np.int32]) -> None:
+    """Sort each list, which is short."""
+    for i in range(start.size - 1):
+        for e in range(start[i] + 1, start[i + 1]):
+            this, at = plant[e], e
+            while at > start[i] and plant[at - 1] > this:
+                plant[at] = plant[at - 1]
+                at -= 1
+            plant[at] = this

@@ -75,7 +75,7 @@ def aisles_of(rows: Polylines, block: Int, row_spacing_m: Float, beyond_m: float
             gap_m = usual_m if first else _apart(rows, thin, row, row - 1, usual_m)
             middles.append(_beside(thin.line(row), _LEFT * gap_m / 2))
         else:
-            middles.append(_between(rows, thin, row, usual_m))
+            middles.append(_between(rows, thin, row, (usual_m, beyond_m / 2)))
     lines = Polylines.each(middles).extended(beyond_m).simpler(_THIN_M)
     return RowAisles(lines, right, right + 1)
 
@@ -102,8 +102,12 @@ def _apart(rows: Polylines, thin: Polylines, row: int, other: int, usual_m: floa
     return min(float(np.median(np.abs(left[beside]))), usual_m) if beside.any() else usual_m
 
 
-def _between(rows: Polylines, thin: Polylines, row: int, row_spacing_m: float) -> Float:
-    """Return the middle between a row and the next one, as long as the longer one at each end."""
+def _between(rows: Polylines, thin: Polylines, row: int, reach_m: tuple[float, float]) -> Float:
+    """Return the middle between a row and the next one, as long as the longer one at each end.
+
+    `reach_m` is the usual distance between them, and how far lanes reach beyond either.
+    """
+    row_spacing_m, lane_m = reach_m
     here, there = thin.line(row), thin.line(row + 1)
     place, left = rows.project(here, np.full(len(here), row + 1))
     beside = (place >= 0) & (place <= rows.length_m[row + 1])
@@ -120,7 +124,28 @@ def _between(rows: Polylines, thin: Polylines, row: int, row_spacing_m: float) -
     clear = 0.25 * row_spacing_m
     before = _beside(there, -np.full(len(there), half[0]))[beyond < -clear]
     after = _beside(there, -np.full(len(there), half[-1]))[beyond > rows.length_m[row] + clear]
-    return np.concatenate([before, middle, after])
+    return _joined(_joined(before, middle, lane_m), after, lane_m)
+
+
+def _joined(first: Float, last: Float, reach_m: float) -> Float:
+    """Return two lines in one: each goes straight on before it turns to the other.
+
+    So far that a lane that ends there does not turn, if there is room.
+    """
+    if not len(first) or not len(last):
+        return np.concatenate([first, last])
+    on_m = min(reach_m, float(np.hypot(*(last[0] - first[-1]))) / 3)
+    onward, back = (_straight_on(line, on_m) for line in (first, last[::-1]))
+    return np.concatenate([first, onward, back, last])
+
+
+def _straight_on(line: Float, by_m: float) -> Float:
+    """Return the place straight on from the end of a line, ``(1, 2)``; none if it is a point."""
+    if len(line) < 2:
+        return np.empty((0, 2))
+    way = line[-1] - line[-2]
+    onward: Float = line[-1:] + by_m * way / max(float(np.hypot(*way)), 1e-12)
+    return onward
 
 
 def _beside(line: Float, left_m: Float | float) -> Float:

@@ -271,8 +271,9 @@ def _pieces(
     """Return the rows of plants, cut where they cannot go on."""
     xy_m, row = plants
     on_row, _ = rows.lines.project(xy_m, row)
-    order = np.lexsort((on_row, row))
-    xy_m, row, on_row = xy_m[order], row[order], on_row[order]
+    if not (np.diff(_key(row, on_row)) >= 0).all():
+        order = np.lexsort((on_row, row))
+        xy_m, row, on_row = xy_m[order], row[order], on_row[order]
     cut = np.searchsorted(_key(blocked.row, (blocked.from_m + blocked.to_m) / 2), _key(row, on_row))
     new = (np.diff(row, prepend=row[:1]) > 0) | (np.diff(cut, prepend=cut[:1]) > 0)
     piece = np.cumsum(new.astype(np.int64))

@@ -9,6 +9,7 @@ import shapely
 
 from fieldmon.compute.arrays import offsets
 from fieldmon.compute.jit import routine
+from fieldmon.plot.row_course import row_courses
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -170,15 +171,10 @@ def _known(grid: PlantGrid) -> tuple[Polylines, Int, NDArray[np.int8]]:
 
 def row_steps(grid: PlantGrid, clearance_m: float) -> tuple[Float, Float]:
     """Return boxes and steps of the rows, ``(b, 4)`` each, sorted by the boxes' low y."""
-    twice = np.repeat(np.diff(grid.row_start) == 1, np.diff(grid.row_start))
-    owner = np.repeat(grid.row, 1 + twice)
-    lines = shapely.linestrings(np.repeat(grid.xy_m, 1 + twice, axis=0), indices=owner)
-    thin = shapely.simplify(lines, _THIN_M, preserve_topology=False)
+    thin = shapely.simplify(row_courses(grid), _THIN_M, preserve_topology=False)
     xy_m, of = shapely.get_coordinates(thin, return_index=True)
-    alone = np.flatnonzero(np.diff(grid.row_start) == 1)
     inner = np.flatnonzero(of[1:] == of[:-1])
-    spots = grid.xy_m[grid.row_start[alone]]
-    start, end = np.concatenate([xy_m[inner], spots]), np.concatenate([xy_m[inner + 1], spots])
+    start, end = xy_m[inner], xy_m[inner + 1]
     by = clearance_m + _THIN_M
     box = np.concatenate([np.minimum(start, end) - by, np.maximum(start, end) + by], axis=1)
     order = np.argsort(box[:, 1])

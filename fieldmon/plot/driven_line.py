@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import routine
+from fieldmon.compute.jit import inlined, routine
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -157,24 +157,35 @@ def _ends(travel: TravelTable, i: int, j: int) -> tuple[int, int]:
 
 @routine
 def shortest_nodes(roads: RoadNetwork, a: int, b: int) -> Int:
-    """Return the nodes on the shortest way from node a to node b (Dijkstra's, from b)."""
+    """Return the nodes on the shortest way from node a to node b.
+
+    Looked for from b, first where the way so far and the straight line on to a are shortest (A*).
+    """
     near = np.full(roads.xy_m.shape[0], np.inf)
     onward = np.full(near.size, -1)
     near[b] = 0.0
-    queue = [(0.0, b)]
+    queue = [(_straight_m(roads, b, a), b)]
     while queue[0][1] != a:
-        node_m, node = heapq.heappop(queue)
-        if node_m > near[node]:
+        least_m, node = heapq.heappop(queue)
+        if least_m > near[node] + _straight_m(roads, node, a):
             continue
         for e in range(roads.start[node], roads.start[node + 1]):
-            other, way_m = int(roads.to[e]), node_m + float(roads.length_m[e])
+            other, way_m = int(roads.to[e]), near[node] + float(roads.length_m[e])
             if way_m < near[other]:
                 near[other], onward[other] = way_m, node
-                heapq.heappush(queue, (way_m, other))
+                heapq.heappush(queue, (way_m + _straight_m(roads, other, a), other))
     nodes = [a]
     while nodes[-1] != b:
         nodes.append(onward[nodes[-1]])
     return np.array(nodes)
+
+
+@inlined
+def _straight_m(roads: RoadNetwork, one: int, other: int) -> float:
+    """Return the metres from node to node as the crow flies."""
+    x = roads.xy_m[one, 0] - roads.xy_m[other, 0]
+    y = roads.xy_m[one, 1] - roads.xy_m[other, 1]
+    return float(np.sqrt(x * x + y * y))
 
 
 @routine

@@ -254,6 +254,16 @@ def block_label(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> N
     return grid.block[row].astype(np.int64) + 1
 
 
+def row_in_block(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> NDArray[np.int64]:
+    """Return the row, counted from 1 in each block, of the given plants, or of all, ``(k,)``."""
+    row = grid.row if plants is None else grid.row[plants]
+    block = np.zeros(grid.n_rows, np.int64) if grid.block is None else grid.block
+    first = np.full(grid.n_blocks, np.iinfo(np.int64).max)
+    np.minimum.at(first, block, grid.row_line)
+    in_block: NDArray[np.int64] = (grid.row_line - first[block] + 1)[row]
+    return in_block
+
+
 def plant_at(grid: PlantGrid, line: int, number: int) -> int:
     """Return the plant with that label (its first face); raise `PlotError` if there is none."""
     first_of_line, _ = _line_faces(grid)
@@ -286,12 +296,10 @@ def row_corners(grid: PlantGrid) -> list[NDArray[np.float64]]:
     ends = zip(grid.row_start[:-1].tolist(), (grid.row_start[1:] - 1).tolist(), strict=True)
     if grid.aisles_m is None:
         return [grid.xy_m[[a, b]] for a, b in ends]
-    return [
-        shapely.get_coordinates(shapely.simplify(shapely.linestrings(grid.xy_m[a : b + 1]), 0.05))
-        if b > a
-        else grid.xy_m[[a, a]]
-        for a, b in ends
-    ]
+    from fieldmon.plot.row_course import row_courses  # noqa: PLC0415 - it compiles
+
+    thin = shapely.simplify(row_courses(grid), 0.05, preserve_topology=False)
+    return [shapely.get_coordinates(line) for line in thin]
 
 
 def before_rows(

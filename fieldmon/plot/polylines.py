@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from fieldmon.compute.arrays import offsets, runs
-from fieldmon.compute.jit import routine
+from fieldmon.compute.jit import inlined, routine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -91,10 +91,9 @@ class Polylines(NamedTuple):
 
     def points(self, line: NDArray[np.integer], place_m: Float) -> Float:
         """Return where places on lines are, ``(m, 2)``; beyond an end, straight on."""
-        at = self.corner_before(line, place_m)
-        a, b = self.xy_m[at], self.xy_m[at + 1]
-        length = np.maximum(self.at_m[at + 1] - self.at_m[at], 1e-12)
-        return a + ((place_m - self.at_m[at]) / length)[:, None] * (b - a)
+        xy_m = np.empty((len(place_m), 2))
+        _points(self, np.asarray(line, np.int64), np.asarray(place_m, np.float64), xy_m)
+        return xy_m
 
     def ahead(self, line: NDArray[np.integer], place_m: Float) -> Float:
         """Return the directions of lines at places, unit vectors ``(m, 2)``."""
@@ -143,14 +142,31 @@ def _unit(way: Float) -> Float:
 @routine
 def _corner_before(lines: Polylines, line: Int, place_m: Float, at: Int) -> None:
     for i in range(at.size):
-        low, high = lines.start[line[i]], lines.start[line[i] + 1] - 1
-        while high - low > 1:
-            middle = (low + high) // 2
-            if lines.at_m[middle] <= place_m[i]:
-                low = middle
-            else:
-                high = middle
-        at[i] = low
+        at[i] = _before(lines, line[i], place_m[i])
+
+
+@routine
+def _points(lines: Polylines, line: Int, place_m: Float, xy_m: Float) -> None:
+    for i in range(place_m.size):
+        at = _before(lines, line[i], place_m[i])
+        length = max(lines.at_m[at + 1] - lines.at_m[at], 1e-12)
+        share = (place_m[i] - lines.at_m[at]) / length
+        for k in range(2):
+            a, b = lines.xy_m[at, k], lines.xy_m[at + 1, k]
+            xy_m[i, k] = a + share * (b - a)
+
+
+@inlined
+def _before(lines: Polylines, line: int, place_m: float) -> int:
+    """Return the corner before a place, numbered through all lines."""
+    low, high = lines.start[line], lines.start[line + 1] - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if lines.at_m[middle] <= place_m:
+            low = middle
+        else:
+            high = middle
+    return int(low)
 
 
 @routine

@@ -20,6 +20,7 @@ from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.adjacency import delaunay_sides
 from fieldmon.plot.bent_ways import Bends, bends_of, off_steps, row_end_places, row_steps
+from fieldmon.plot.row_course import row_courses
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -233,7 +234,10 @@ def row_lines(grid: PlantGrid) -> NDArray[np.object_]:
     """Return each row as a line through its plants, first to last, ``(r,)``.
 
     Plants in the middle of a row along x are left out. A row of one plant is a line of no length.
+    Where rows bend they bend on between plants that are far apart.
     """
+    if grid.aisles_m is not None:
+        return row_courses(grid)
     ends = _end_plants(grid)
     plant = np.sort(np.append(_corner_plants(grid), ends[ends[:, 0] == ends[:, 1], 0]))
     lines: NDArray[np.object_] = shapely.linestrings(grid.xy_m[plant], indices=grid.row[plant])

@@ -10,6 +10,8 @@ from shapely import LineString, MultiLineString
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
+from fieldmon.plot.line_layout import copies
+from fieldmon.plot.polylines import Polylines, sampled
 from fieldmon.plot.row_detection import frame_around
 
 if TYPE_CHECKING:
@@ -27,6 +29,8 @@ _IN_LINE = 0.35
 _MOST_STEPS = 20_000
 # a row through places is looked at as finely; places nearer than that are one
 _SMOOTH_M, _SAME_M = 1.0, 0.01
+# rows are level or fall over so much of their length
+_FALL_M = 10.0
 
 
 def rows_from_posts(lonlat: Float, names: NDArray[np.str_] | None = None) -> MultiLineString:
@@ -180,6 +184,28 @@ def contour_row(field: Field, height_m: Callable[[Float], Float], step_m: float)
     return MultiLineString(
         [frame.lonlat(shapely.get_coordinates(shapely.simplify(shapely.linestrings(line), 0.02)))]
     )
+
+
+def falls_along(
+    field: Field,
+    row: MultiLineString,
+    row_spacing_m: float,
+    height_m: Callable[[Float], Float],
+) -> Float:
+    """Return how steeply a row and its copies over a plot rise or fall, metres a metre, ``(k,)``.
+
+    Over ten metres each. Copies keep their distance: where contours come nearer to each other or
+    part, they cannot be contours.
+    """
+    frame = field.frame()
+    area = frame.geometry_m(field.drivable())
+    line_m = shapely.get_coordinates(frame.geometry_m(row))
+    rows = Polylines.each(copies(line_m, area, row_spacing_m))
+    line, place_m = sampled(rows, _FALL_M / 2)
+    rise_m = height_m(frame.lonlat(rows.points(line, place_m)))
+    same = line[2:] == line[:-2]
+    falls: Float = np.abs(rise_m[2:] - rise_m[:-2])[same] / (place_m[2:] - place_m[:-2])[same]
+    return falls[np.isfinite(falls)]
 
 
 def _followed(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.measured_rows import SaidRows
     from fieldmon.plot.row_detection import Rows
 
+    Float = NDArray[np.float64]
+
 # a plant this part of the row spacing beside its row is off it
 _OFF = 0.25
 # so many off their rows, or in others than their names say, are worth a word
@@ -25,7 +28,18 @@ _WORTH_A_WORD = 0.01
 # plants in no rows stray so far from any lines seen in them, in row spacings
 _NO_ROWS = 0.2
 # so much nearer to one other than to a third, a plant is in a pair; so many are worth a word
-_CLOSE, _PAIRED, _FEW = 0.55, 0.4, 6
+_CLOSE, _PAIRED, _FEW = 0.6, 0.4, 6
+# plants of a double row stand about as far from its middle, much unlike plants that stray, and
+# mostly by turns: the greatest spread of how far, the least share of changes of side, the least
+# distance and the least number
+_EVEN, _BY_TURNS, _LEAST_M, _MANY = 0.55, 0.65, 0.05, 20
+# rows are double rows where gaps between them are of two kinds, one so much narrower
+_NARROW, _RARE = 0.5, 0.25
+# rows that bend may be traced along another direction where plants stand nearly as far apart in
+# them as the rows are
+_SQUARE, _SQUARE_STRAIGHT = 0.62, 0.8
+# so many plants are asked for the nearest one of another row, among so many about them
+_ASKED, _NEAR = 5000, 6
 
 
 @dataclass(frozen=True)
@@ -52,6 +66,14 @@ class RowReport:
         Whether the blocks that plants name run through rows, and were left aside.
     paired_share
         Share of the plants that stand much nearer to one other than to any third.
+    zigzag_m, zigzag_share
+        How far to the left and right of their row plants stand by turns, as in staggered double
+        rows, and how many of them; 0 where they do not.
+    gaps_m
+        How far apart rows are by turns, as in double rows; None where they are not.
+    nearly_square_m
+        How far apart rows are, and plants in them, where that is nearly as far, and rows that bend
+        could run another way; else None.
     """
 
     how: str
@@ -63,6 +85,10 @@ class RowReport:
     named: bool = False
     of_trial: bool = False
     paired_share: float = 0.0
+    zigzag_m: float = 0.0
+    zigzag_share: float = 0.0
+    gaps_m: tuple[float, float] | None = None
+    nearly_square_m: tuple[float, float] | None = None
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -92,10 +118,17 @@ class RowReport:
                 "where two are planted in one place: rows may be seen where there are none. Look "
                 "at them, name each plant's row, or leave one of each pair out."
             )
+        said += self._double_rows()
         if self.of_trial:
             said.append(
                 "The blocks that the file names change within rows without a gap, as those of a "
                 "trial do; they were left aside. Part the plot by areas or lines if they are not."
+            )
+        if self.nearly_square_m is not None and self.in_rows:
+            said.append(
+                f"Rows are {self.nearly_square_m[0]:.2f} m apart, and plants in them "
+                f"{self.nearly_square_m[1]:.2f} m, nearly as far: they may run, or bend, another "
+                "way. Look at them, and draw one row or name each plant's row if they do."
             )
         if self.others_deg:
             ways = " and ".join(f"{way:.0f}" for way in self.others_deg)
@@ -105,15 +138,32 @@ class RowReport:
             )
         return tuple(said)
 
+    def _double_rows(self) -> list[str]:
+        """Return what to say of double rows, taken as one row or as two."""
+        said = []
+        if self.zigzag_m and self.in_rows and not self.named:
+            said.append(
+                f"{self.zigzag_share:.0%} of the plants stand off their row, {self.zigzag_m:.2f} m "
+                "to its left and right by turns, as in staggered double rows: each double row was "
+                "taken as one row. If one drives between its two lines, name each plant's row."
+            )
+        if self.gaps_m is not None and self.in_rows:
+            said.append(
+                f"Rows are {self.gaps_m[0]:.2f} and {self.gaps_m[1]:.2f} m apart by turns, as in "
+                "double rows, and ways were laid in the narrow gaps as well. If nobody drives "
+                "there, name the two lines of each double row one row."
+            )
+        return said
+
 
 def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
     """Return how well measured plants stand in the rows of their grid."""
     first = grid.side == grid.side[0]
     faces = np.flatnonzero(first[grid.row])
     xy_m, row = grid.xy_m[faces], grid.row_line[grid.row[faces]]
-    off_m, alone_m, free = beside_their_rows(xy_m, row)
+    left_m, alone_m, free = beside_their_rows(xy_m, row)
     decided = said.bearing or said.label is not None or grid.aisles_m is not None
-    typical_m = float(np.sqrt(np.sum(off_m**2) / free)) if free > 0 else 0.0
+    typical_m = float(np.sqrt(np.sum(left_m**2) / free)) if free > 0 else 0.0
     # what bends was only taken since plants stand in it; of straight lines that is not known
     straight = grid.aisles_m is None and "hardly" in found.how
     scattered = straight or typical_m > _NO_ROWS * grid.row_spacing_m
@@ -138,6 +188,9 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
         said.label is not None,
         said.of_trial,
         _paired_share(xy_m),
+        *_zigzag(left_m, row),
+        _two_gaps(grid),
+        _nearly_square(grid, found, said),
     )
 
 
@@ -147,3 +200,66 @@ def _paired_share(xy_m: NDArray[np.float64]) -> float:
         return 0.0
     near_m = cKDTree(xy_m).query(xy_m, k=3)[0]
     return float(np.mean(near_m[:, 1] < _CLOSE * near_m[:, 2]))
+
+
+def _zigzag(left_m: Float, row: NDArray[np.integer]) -> tuple[float, float]:
+    """Return how far plants stand on either side of their row by turns, and how many; 0, 0: none.
+
+    Plants come row by row, along each.
+    """
+    off_m, same = np.abs(left_m), np.diff(row) == 0
+    if np.count_nonzero(same) < _MANY:
+        return 0.0, 0.0
+    turned = np.mean((left_m[1:] * left_m[:-1] < 0.0)[same])
+    typical_m = float(off_m.mean())
+    if typical_m < _LEAST_M or off_m.std() > _EVEN * typical_m or turned < _BY_TURNS:
+        return 0.0, 0.0
+    return typical_m, float(np.mean(off_m > typical_m / 2))
+
+
+def _two_gaps(grid: PlantGrid) -> tuple[float, float] | None:
+    """Return the two distances of neighbouring rows, if there are two of them; else None."""
+    gap_m = _gaps_m(grid)
+    if len(gap_m) < _FEW:
+        return None
+    wide_m = float(np.quantile(gap_m, 0.9))
+    narrow = gap_m < _NARROW * wide_m
+    if _RARE < narrow.mean() < 1.0 - _RARE:
+        return float(np.median(gap_m[narrow])), float(np.median(gap_m[~narrow]))
+    # the two lines of a double row may have been taken into different blocks
+    nearest_m = _nearest_row_m(grid) if grid.n_blocks > 1 else wide_m
+    return (nearest_m, float(np.median(gap_m))) if nearest_m < _NARROW * wide_m else None
+
+
+def _nearly_square(grid: PlantGrid, found: Rows, said: SaidRows) -> tuple[float, float] | None:
+    """Return how far apart rows and their plants are, if rows that bend could run another way."""
+    apart_m = grid.row_spacing_m, grid.plant_spacing_m
+    bent = grid.aisles_m is not None
+    # straight rows that cross others are told of as such
+    sure = said.label is not None or (not bent and (said.bearing or bool(found.others_deg)))
+    least = _SQUARE if bent else _SQUARE_STRAIGHT
+    if sure or not least < apart_m[1] / apart_m[0] < 1 / least:
+        return None
+    return apart_m
+
+
+def _gaps_m(grid: PlantGrid) -> Float:
+    """Return how far rows are from the next ones."""
+    if grid.aisles_m is None:
+        line = grid.row_line[grid.row]
+        return np.diff(np.bincount(line, grid.xy_m[:, 1]) / np.bincount(line))
+    # where rows bend lanes run midway between them
+    half_m = np.hypot(*(grid.stop_m - grid.xy_m).T)
+    middle = [np.median(half_m[a:b]) for a, b in pairwise(grid.row_start.tolist())]
+    return 2 * np.array(middle)
+
+
+def _nearest_row_m(grid: PlantGrid) -> float:
+    """Return how far plants usually are from the nearest one of another row."""
+    some = np.arange(0, len(grid), max(len(grid) // _ASKED, 1))
+    far_m, near = grid.tree.query(grid.xy_m[some], k=min(_NEAR, len(grid)))
+    line = grid.row_line[grid.row]
+    other = line[near] != line[some][:, None]
+    found = other.any(axis=1)
+    nearest = far_m[np.arange(len(some)), np.argmax(other, axis=1)][found]
+    return float(np.median(nearest)) if 2 * len(nearest) > len(some) else np.inf

@@ -569,17 +569,17 @@ def _lines(strands: _Strands) -> Polylines:
 class BesideRows(NamedTuple):
     """How far plants stand beside the lines of their rows.
 
-    ``off_m (n,)`` from the line through all of them, ``alone_m (n,)`` from that of the others; and
-    how many are ``free`` to say so: a line that bends follows few plants of itself, about a
-    fourth of them and two a row.
+    ``left_m (n,)`` to the left of the line through all of them, below 0 to its right;
+    ``alone_m (n,)`` from that of the others; and how many are ``free`` to say so: a line that
+    bends follows few plants of itself, about a fourth of them and two a row.
     """
 
-    off_m: Float
+    left_m: Float
     alone_m: Float
     free: float
 
     def __repr__(self) -> str:
-        return f"<BesideRows: {len(self.off_m)} plants>"
+        return f"<BesideRows: {len(self.left_m)} plants>"
 
 
 def beside_their_rows(xy_m: Float, row: NDArray[np.integer]) -> BesideRows:
@@ -592,9 +592,9 @@ def beside_their_rows(xy_m: Float, row: NDArray[np.integer]) -> BesideRows:
     xy_m = np.ascontiguousarray(xy_m)
     _smooth(xy_m, start, np.cumsum(step), (line_m, ahead, own))
     off = xy_m - line_m
-    off_m: Float = np.abs(ahead[:, 0] * off[:, 1] - ahead[:, 1] * off[:, 0])
-    alone_m: Float = off_m / np.maximum(1.0 - own, 0.2)
-    return BesideRows(off_m, alone_m, float(np.maximum(0.75 * n_plants - 2.0, 0.0).sum()))
+    left_m: Float = ahead[:, 0] * off[:, 1] - ahead[:, 1] * off[:, 0]
+    alone_m: Float = np.abs(left_m) / np.maximum(1.0 - own, 0.2)
+    return BesideRows(left_m, alone_m, float(np.maximum(0.75 * n_plants - 2.0, 0.0).sum()))
 
 
 def _traced(xy_m: Float, strands: _Strands, block: Int, spacing_m: float) -> TracedRows:

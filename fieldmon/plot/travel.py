@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 GATE = -1
 _TOUCH_M = 0.01
 _BLOCK = 64
+# what is kept half as exactly is no more than it was
+_LESS = 1.0 - 1e-6
 
 
 class TravelTable(NamedTuple):
@@ -205,6 +207,16 @@ class Aisles:
         return driven_line(self.travel, self.roads, self._lanes, places)
 
     @cached_property
+    def onward_m(self) -> NDArray[np.float32]:
+        """Least metres ``(r, r)`` from the lane ends of row i to those of row j or any beyond j.
+
+        Below 0 where a row that is inspected from the same stretch of aisle is among these.
+        """
+        onward_m = np.zeros((self.grid.n_rows, self.grid.n_rows), np.float32)
+        _onward(self.travel, onward_m)
+        return read_only(onward_m)
+
+    @cached_property
     def _lanes(self) -> Lanes:
         grid = self.grid
         end_node = np.append(self.roads.end.ravel(), self.roads.gate)
@@ -230,7 +242,7 @@ def trace(aisles: Aisles, a: int, b: int) -> list[int]:
 def crosses_rows(grid: PlantGrid, line_xy_m: Float) -> bool:
     """Tell whether a line ``(k, 2)`` comes within a centimetre of a row.
 
-    A row is the line through its plants, from the first to the last.
+    A row is the line through its plants, from the first to the last; see `row_lines`.
     """
     # not by distance: to lines of no length, as a row of one plant is, GEOS finds none
     rows = shapely.STRtree(shapely.buffer(row_lines(grid), _TOUCH_M))
@@ -296,6 +308,21 @@ def _reach(roads: RoadNetwork, stops: NDArray[np.int64], between_m: Float) -> No
             # there and back are the same to the last bit
             for t in range(first + s + 1):
                 between_m[first + s, t] = between_m[t, first + s] = near[stops[t], s]
+
+
+@routine
+def _onward(travel: TravelTable, onward_m: NDArray[np.float32]) -> None:
+    for own in range(onward_m.shape[0]):
+        for step in (1, -1):
+            row, least = onward_m.shape[0] - 1 if step == 1 else 0, np.inf
+            while row != own:
+                for end in range(2):
+                    ways_m = travel.between_m[2 * own + end]
+                    least = min(least, ways_m[2 * row], ways_m[2 * row + 1])
+                if travel.corridor[row] == travel.corridor[own]:
+                    least = -np.inf
+                onward_m[own, row] = np.float32(least * _LESS)
+                row -= step
 
 
 @routine

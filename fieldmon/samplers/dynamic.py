@@ -93,7 +93,7 @@ class Dynamic(Sampler):
         grid, chance_bits = scene.grid, scene.chance.view(np.int64)
         return scene.walked(
             _walk,
-            (grid.adjacent, grid.lane_y_m, chance_bits, would_find.view(np.uint8)),
+            (grid.adjacent, scene.aisles.onward_m, chance_bits, would_find.view(np.uint8)),
             (scene.last_inspected == scene.day, _Open.on(grid, steps)),
             (scene.at, steps, self.at_once),
         )
@@ -103,13 +103,13 @@ class Dynamic(Sampler):
 def _walk(
     travel: TravelTable,
     clock: Clock,
-    plants: tuple[Csr, NDArray[np.float64], NDArray[np.int64], NDArray[np.uint8]],
+    plants: tuple[Csr, NDArray[np.float32], NDArray[np.int64], NDArray[np.uint8]],
     lists: tuple[NDArray[np.bool_], _Open],
     start: tuple[int, int, float],
     stops: Stops,
 ) -> int:
     at, steps, at_once = start
-    adjacent, lane_y_m, chance_bits, would_find = plants
+    adjacent, onward_m, chance_bits, would_find = plants
     closed, opened = lists
     now_s, k, left = 0.0, 0, 0
     while k < stops.plant.size:
@@ -118,7 +118,7 @@ def _walk(
             left = _refill(travel, opened, (closed, chance_bits), (max(room, 1), steps))
             if left == 0:
                 break
-        plant, way_s = _nearest(travel, clock, opened, lane_y_m, at)
+        plant, way_s = _nearest(travel, clock, opened, onward_m, at)
         if not in_time(travel, clock, plant, now_s + way_s):
             break
         now_s += way_s
@@ -217,13 +217,12 @@ def _least_of(
 
 @inlined
 def _nearest(
-    travel: TravelTable, clock: Clock, opened: _Open, lane_y_m: NDArray[np.float64], at: int
+    travel: TravelTable, clock: Clock, opened: _Open, onward_m: NDArray[np.float32], at: int
 ) -> tuple[int, float]:
     """Return the open plant that is reached first from `at` (a plant or the gate), and the seconds.
 
-    Rows are looked at outward from the robot's own, as their lanes ascend with y, until driving
-    out of its aisle and straight across to the next one would already take longer than to the
-    best plant so far.
+    Rows are looked at outward from the robot's own, until driving out of its aisle and to the next
+    one or any beyond it would already take longer than to the best plant so far.
     """
     best, best_s = -1, np.inf
     own, out_m = 0, 0.0
@@ -234,8 +233,8 @@ def _nearest(
     for step in (1, -1):
         row = own if step == 1 else own - 1
         while 0 <= row < opened.n_open.size:
-            if at >= 0 and travel.corridor[row] != travel.corridor[own]:
-                least_m = (abs(lane_y_m[row] - lane_y_m[own]) + out_m) * _NEARLY
+            if at >= 0 and row != own:
+                least_m = (onward_m[own, row] + out_m) * _NEARLY
                 if least_m / clock.speed_m_s + clock.row_change_s > best_s:
                     break
             if opened.n_open[row] > 0:

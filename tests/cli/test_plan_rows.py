@@ -122,14 +122,21 @@ def test_plants_stand_between_end_posts(run, tmp_path):
     assert "two a row" in err
 
 
-def test_rows_run_along_the_contours_of_a_raster(run, tmp_path):
-    east, north = Transformer.from_crs(4326, 32630, always_xy=True).transform(FRAME.lon, FRAME.lat)
+def write_hill(path):
+    """Write heights of a cone, whose top is 120 m south of the frame's middle; return its place."""
+    to_utm = Transformer.from_crs(4326, 32630, always_xy=True)
+    east, north = to_utm.transform(FRAME.lon, FRAME.lat)
     x, y = np.meshgrid(east - 99.5 + np.arange(200), north + 99.5 - np.arange(200))
     height = (200 - 0.3 * np.hypot(x - east, y - north + 120)).astype(np.float32)
     profile = {"driver": "GTiff", "width": 200, "height": 200, "count": 1, "dtype": "float32"}
     place = from_origin(east - 100, north + 100, 1.0, 1.0)
-    with rasterio.open(tmp_path / "dem.tif", "w", crs=32630, transform=place, **profile) as tif:
+    with rasterio.open(path, "w", crs=32630, transform=place, **profile) as tif:
         tif.write(height, 1)
+    return FRAME.xy_m([to_utm.transform(east, north - 120, direction="INVERSE")])[0]
+
+
+def test_rows_run_along_the_contours_of_a_raster(run, tmp_path):
+    write_hill(tmp_path / "dem.tif")
     home = area(tmp_path / "home.geojson")
     words = ["--contours", "dem.tif", "--row-spacing", 3, "--plant-spacing", 1.5, "--hours", 1]
     code, out, err, _ = run("plan", home, *words)
@@ -168,6 +175,32 @@ def test_an_estate_is_planned_with_the_rows_and_blocks_of_its_plots(run, tmp_pat
     }
     assert "block" not in stops["1-west"][0]["properties"]
     assert {stop["properties"]["block"] for stop in stops["2-east"]} <= {1, 2}
+
+
+def test_each_plot_of_an_estate_follows_contours_of_its_own(run, tmp_path):
+    top_m = write_hill(tmp_path / "dem.tif")
+    boxes = {
+        "west": shapely.box(-60, -30, -5, 30),
+        "east": shapely.box(5, -30, 60, 30),
+        "far": shapely.box(305, -30, 360, 30),
+    }
+    shapes = [FRAME.geometry_lonlat(box) for box in boxes.values()]
+    estate = gpd.GeoDataFrame({"name": list(boxes)}, geometry=shapes, crs=4326)
+    estate.to_file(tmp_path / "estate.geojson")
+    words = ["--contours", "dem.tif", "--row-spacing", 3, "--plant-spacing", 1.5, "--hours", 1]
+    code, out, err, _ = run("plan", "estate.geojson", "--all", *words, "--no-bound", "-o", "routes")
+    assert code == 0, err
+    assert "3 of 3 plots planned" in out
+    assert "Rows run along the contour through the middle of the plot" in err
+    assert "Straight rows are laid" in err
+    for name in ("1-west", "2-east"):
+        stops = gpd.read_file(tmp_path / "routes" / f"{name}.geojson")
+        stops = stops[(stops.geom_type == "Point") & stops["row"].notna()]
+        xy_m = FRAME.xy_m(np.stack([stops.geometry.x, stops.geometry.y], axis=1))
+        away_m = np.hypot(*(xy_m - top_m).T)
+        # one row, one level
+        levels = [np.ptp(away_m[stops["row"] == row]) for row in stops["row"].unique()]
+        assert max(levels) < 1.0
 
 
 def test_a_plot_is_only_its_rows(run, tmp_path):

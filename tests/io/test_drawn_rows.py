@@ -1,9 +1,14 @@
 """Rows and blocks that come with one plot or with many."""
 
+from itertools import pairwise
+
 import geopandas as gpd
 import numpy as np
 import pytest
+import rasterio
 import shapely
+from pyproj import Transformer
+from rasterio.transform import from_origin
 from shapely import LineString, MultiLineString, MultiPolygon
 
 from fieldmon.errors import PlotError, SettingError
@@ -162,3 +167,70 @@ def test_plants_name_their_blocks_in_a_column(tmp_path):
     made = prepare(PlotRequest(PlotSources(plants=tmp_path / "vines.csv")))
     assert made.plot.grid.n_blocks == 2
     assert "Column 'block' names the blocks." in sentences(made)
+
+
+def terrain(path, height_m):
+    """Write heights about the frame's middle, of 1 m pixels, as a GeoTIFF."""
+    to_utm = Transformer.from_crs("OGC:CRS84", 32632, always_xy=True)
+    east, north = np.round(to_utm.transform(FRAME.lon, FRAME.lat))
+    x, y = np.meshgrid(east - 149.5 + np.arange(300), north + 149.5 - np.arange(300))
+    lon, lat = to_utm.transform(x.ravel(), y.ravel(), direction="INVERSE")
+    xy_m = FRAME.xy_m(np.stack([lon, lat], axis=1))
+    profile = {"driver": "GTiff", "width": 300, "height": 300, "count": 1, "dtype": "float32"}
+    place = from_origin(east - 150, north + 150, 1.0, 1.0)
+    with rasterio.open(path, "w", crs=32632, transform=place, **profile) as tif:
+        tif.write(height_m(*xy_m.T).reshape(300, 300).astype(np.float32), 1)
+    return path
+
+
+def hill(x, y):
+    """Return heights of a cone whose top is 90 m south."""
+    return 400.0 - 0.3 * np.hypot(x, y + 90.0)
+
+
+def fan(x, y):
+    """Return heights of a slope that is three times as steep in the east as in the west."""
+    return 400.0 + 0.2 * (y + 40.0) * (1.0 + x / 100.0)
+
+
+def on_terraces(tmp_path, height_m, **more):
+    home = write(tmp_path / "home.geojson", [shapely.box(-50, -30, 50, 35)], name=["terrace"])
+    sources = PlotSources(home, contours=terrain(tmp_path / "dem.tif", height_m), **more)
+    return prepare(PlotRequest(sources, PlantingChoices(row_spacing_m=3.0, plant_spacing_m=1.2)))
+
+
+def rise_m(grid, height_m):
+    """Return how far each row rises from its lowest plant to its highest."""
+    height = height_m(*FRAME.xy_m(grid.lonlat()).T)
+    return np.array([np.ptp(height[a:b]) for a, b in pairwise(grid.row_start)])
+
+
+def test_rows_of_a_terrace_follow_the_contours_of_its_raster_a_spacing_apart(tmp_path):
+    prepared = on_terraces(tmp_path, hill)
+    grid = prepared.plot.grid
+    assert grid.n_rows > 15
+    # a row of 100 m on a slope of 30 % keeps to its level
+    assert rise_m(grid, hill).max() < 0.2
+    one = np.repeat(np.arange(len(grid)), np.diff(grid.across_start))
+    away_m = np.hypot(*(FRAME.xy_m(grid.lonlat()) + np.array([0.0, 90.0])).T)
+    apart_m = np.abs(away_m[one] - away_m[grid.across_plant])
+    assert apart_m == pytest.approx(np.full(len(apart_m), 3.0), rel=0.05)
+    assert "They rise or fall by 1.0% at most." in sentences(prepared)
+    assert "leave them" not in sentences(prepared)
+
+
+def test_where_contours_come_nearer_it_is_said_how_steep_rows_get_and_blocks_follow_their_own(
+    tmp_path,
+):
+    whole = on_terraces(tmp_path, fan)
+    assert "Contours come nearer to each other or part" in sentences(whole)
+    # rows still keep their distance
+    grid = whole.plot.grid
+    one = np.repeat(np.arange(len(grid)), np.diff(grid.across_start))
+    off_m = np.hypot(*(grid.xy_m[one] - grid.xy_m[grid.across_plant]).T)
+    assert (off_m > 0.95 * 3.0).all()
+    cuts = [shapely.LineString([(-60, -8), (60, -8)]), shapely.LineString([(-60, 14), (60, 14)])]
+    parted = on_terraces(tmp_path, fan, blocks=write(tmp_path / "cuts.geojson", cuts))
+    assert parted.plot.grid.n_blocks == 3
+    assert rise_m(parted.plot.grid, fan).max() < 0.7 * rise_m(grid, fan).max()
+    assert "leave them" in sentences(parted)

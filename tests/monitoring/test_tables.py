@@ -1,6 +1,6 @@
 """What a season's file holds comes back bit for bit."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ from fieldmon.infestation.observations import Observations
 from fieldmon.io.import_report import Remedy, guessed, seen
 from fieldmon.monitoring import tables
 from fieldmon.monitoring.tables import KeptMessage
+from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting
 from fieldmon.plot.plot import Plot
@@ -60,13 +61,44 @@ def full_field():
 @pytest.mark.parametrize("faces", [1, 2])
 def test_a_plot_comes_back_exactly_as_it_was_laid(db, faces):
     plot = Plot.of(full_field(), Planting(row_bearing_deg=12.5, row_spacing_m=4.0, faces=faces))
+    check_comes_back(db, plot)
+
+
+def test_a_plot_comes_back_with_its_blocks_and_the_names_of_its_rows(db):
+    field = replace(full_field(), plants=None, row_bearing_deg=None)
+    west, east = box(35.15, 30.36, 35.1503, 30.3607), box(35.1503, 30.36, 35.1508, 30.3607)
+    blocks = (
+        Block("hill", MultiPolygon([west]), 10.0, 4.0, 2.0),
+        Block("", MultiPolygon([east]), plant_spacing_m=1.5),
+    )
+    check_comes_back(db, Plot.of(replace(field, blocks=blocks)))
+    kinds = db.execute("SELECT kind FROM places").fetchall()
+    assert sum(kind == "block" for (kind,) in kinds) == 2
+
+
+def test_measured_plants_come_back_with_the_names_of_their_rows_and_blocks(db):
+    grid = Plot.of(replace(full_field(), plants=None)).grid
+    names = (grid.row_line[grid.row] + 1).astype(np.str_)
+    field = replace(
+        full_field(),
+        plants=grid.lonlat(),
+        plant_rows=names,
+        plant_blocks=np.full(len(grid), "home"),
+    )
+    check_comes_back(db, Plot.of(field))
+
+
+def check_comes_back(db, plot):
     tables.write_plot(db, plot)
     again = tables.read_plot(db)
+    assert [block.told for block in again.field.blocks] == [
+        block.told for block in plot.field.blocks
+    ]
     for name in (each.name for each in fields(plot.grid)):
         value, other = getattr(plot.grid, name), getattr(again.grid, name)
         same = np.array_equal(value, other) if isinstance(value, np.ndarray) else value == other
         assert same, name
-    for name in (each.name for each in fields(plot.field)):
+    for name in {each.name for each in fields(plot.field)} - {"blocks"}:
         value, other = getattr(plot.field, name), getattr(again.field, name)
         same = np.array_equal(value, other) if isinstance(value, np.ndarray) else value == other
         assert same, name

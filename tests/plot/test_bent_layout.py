@@ -20,8 +20,7 @@ def length_m(line):
     return float(np.hypot(*np.diff(line, axis=0).T).sum())
 
 
-@given(bent_grids(), st.integers(0, 1000))
-def test_paths_are_as_long_as_said_and_cross_no_row(grid, seed):
+def check_paths(grid, seed):
     aisles = Aisles.of(grid)
     stops = np.concatenate([aisles.stop_m, [aisles.gate_m]])
     plants = np.random.default_rng(seed).integers(-1, len(grid), 15)
@@ -33,8 +32,12 @@ def test_paths_are_as_long_as_said_and_cross_no_row(grid, seed):
         assert not crosses_rows(grid, line)
 
 
-@given(bent_grids())
-def test_lanes_meet_no_plant_and_stay_where_driving_is_allowed(grid):
+@given(bent_grids(), st.integers(0, 1000))
+def test_paths_are_as_long_as_said_and_cross_no_row(grid, seed):
+    check_paths(grid, seed)
+
+
+def check_lanes(grid):
     aisles, own = grid.aisles_m, grid.aisle.astype(int)
     stop_m = grid.stop_m
     # a plant is inspected from beside it, within its aisle
@@ -50,6 +53,20 @@ def test_lanes_meet_no_plant_and_stay_where_driving_is_allowed(grid):
         lane = shapely.linestrings(np.concatenate([ends[:1], inner, ends[1:]]))
         assert shapely.distance(lane, rows) > 0.2 * grid.row_spacing_m
         assert shapely.covers(shapely.buffer(grid.drivable_m, 0.02), lane)
+
+
+@given(bent_grids())
+def test_lanes_meet_no_plant_and_stay_where_driving_is_allowed(grid):
+    check_lanes(grid)
+
+
+def test_a_lane_goes_straight_on_before_its_aisle_turns_to_a_row_far_off():
+    # three short rows of one block, one after the other rather than beside each other
+    ends = [[8.57, -4.57], [11.57, -4.57]], [[14.52, -2.06], [17.35, -3.04]], [[0, -1], [2.7, 0.2]]
+    rows = RowLines(Polylines.each([np.array(line, float) for line in ends]), np.zeros(3, int))
+    plants = np.array([[11.6, -4.86], [14.42, -1.89], [17.23, -3.07]]), np.array([0, 1, 1])
+    planting = Planting(row_spacing_m=3.0, plant_spacing_m=3.0, headland_m=1.0)
+    check_lanes(bent_grid(FRAME, rows, plants, Ground(None, shapely.MultiPolygon()), planting))
 
 
 @given(bent_grids())
@@ -90,6 +107,17 @@ def concentric(n_rows=10, n_plants=40, radius_m=60.0):
     at = radius_m + 2.5 * k
     turn = (j - (n_plants - 1) / 2) * 1.4 / radius_m
     return np.stack([at * np.sin(turn), at * np.cos(turn)], axis=1), turn, k
+
+
+def test_a_row_bends_on_where_many_of_its_plants_are_missing():
+    xy_m, _, row = concentric(3, 30, 12.0)
+    left = (row != 1) | (np.arange(90) % 30 < 2) | (np.arange(90) % 30 > 20)
+    rows = RowLines(Polylines.each([xy_m[row == k] for k in range(3)]), np.zeros(3, int))
+    planting = Planting(row_spacing_m=2.5, plant_spacing_m=1.4)
+    ground = Ground(None, shapely.MultiPolygon())
+    grid = bent_grid(FRAME, rows, (xy_m[left], row[left]), ground, planting)
+    for seed in range(20):
+        check_paths(grid, seed)
 
 
 def test_neighbours_of_radial_rows_stand_on_one_radius():

@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from shapely import MultiPolygon
 
 from fieldmon.plot.block import Block
@@ -202,22 +204,72 @@ def test_a_block_of_a_plant_or_two_is_a_row():
     assert len(plot.grid) == n
 
 
-@pytest.mark.parametrize("across_m", [0.15, 0.35])
-@pytest.mark.parametrize("radius_m", [None, 80.0])
-def test_double_rows_are_right_or_doubted(radius_m, across_m):
+def doubled(half_m, apart_m, stagger, radius_m=None, noise_m=0.02):
+    """Return twelve double rows 3 m apart, a twentieth missing; the double row and line of each."""
+    rng = np.random.default_rng(0)
     k, j = np.divmod(np.arange(12 * 40), 40)
-    x, y = np.tile((j - 20) * 1.4, 2), np.concatenate([3.0 * k - across_m, 3.0 * k + across_m])
+    x = np.concatenate([j - 20, j - 20 + stagger]) * apart_m
+    y = np.concatenate([3.0 * k - half_m, 3.0 * k + half_m])
     xy_m = np.stack([x, y], axis=1)
     if radius_m is not None:
         at = radius_m + y
         xy_m = np.stack([at * np.sin(x / at), at * np.cos(x / at) - radius_m], axis=1)
-    xy_m += np.random.default_rng(0).normal(0, 0.02, xy_m.shape)
+    xy_m += rng.normal(0, noise_m, xy_m.shape)
+    kept = rng.random(len(xy_m)) > 0.05
+    return xy_m[kept], np.tile(k, 2)[kept], np.concatenate([2 * k, 2 * k + 1])[kept]
+
+
+@pytest.mark.parametrize("apart_m", [0.4, 1.0, 1.4])
+@pytest.mark.parametrize("stagger", [0.0, 0.5])
+@pytest.mark.parametrize("half_m", [0.15, 0.25, 0.4])
+@pytest.mark.parametrize("radius_m", [None, 80.0])
+def test_double_rows_are_told_of_abreast_or_staggered(radius_m, half_m, stagger, apart_m):
+    xy_m, _, _ = doubled(half_m, apart_m, stagger, radius_m)
+    assert Plot.around("double", FRAME.lonlat(xy_m)).rows.doubts != ()
+
+
+@pytest.mark.parametrize("radius_m", [None, 80.0])
+@pytest.mark.parametrize("noise_m", [0.02, 0.08])
+def test_a_staggered_double_row_is_one_row_and_said_to_be(radius_m, noise_m):
+    xy_m, pair, _ = doubled(0.15, 1.0, 0.5, radius_m, noise_m)
     plot = Plot.around("double", FRAME.lonlat(xy_m))
-    shares = [
-        right_share(rows_of(plot.grid, xy_m), true)
-        for true in (np.tile(k, 2), np.concatenate([2 * k, 2 * k + 1]))
-    ]
-    assert max(shares) >= 0.95 or plot.rows.doubts != ()
+    assert right_share(rows_of(plot.grid, xy_m), pair) >= 0.99
+    assert plot.rows.zigzag_m == pytest.approx(0.15, abs=0.02)
+    assert any("0.15 m to its left and right by turns" in said for said in plot.rows.doubts)
+
+
+def test_double_rows_taken_as_two_are_said_with_both_distances():
+    xy_m, _, line = doubled(0.25, 0.5, 0.5)
+    plot = Plot.around("double", FRAME.lonlat(xy_m))
+    assert right_share(rows_of(plot.grid, xy_m), line) >= 0.99
+    assert plot.rows.gaps_m == pytest.approx((0.5, 2.5), abs=0.05)
+    assert any("0.50 and 2.50 m apart by turns" in said for said in plot.rows.doubts)
+
+
+@settings(max_examples=10)
+@given(
+    size=st.tuples(st.integers(5, 12), st.integers(15, 30)),
+    closer=st.floats(0.6, 1.1),
+    bend=st.floats(0.1, 0.9),
+    seed=st.integers(0, 2**32),
+)
+def test_rows_that_bend_and_are_nearly_square_are_right_or_doubted(size, closer, bend, seed):
+    k, j = np.divmod(np.arange(size[0] * size[1]), size[1])
+    at = max(size[1] * 3.0 * closer / bend, 45.0) + 3.0 * k
+    turn = (j - size[1] / 2) * 3.0 * closer / at
+    xy_m = np.stack([at * np.sin(turn), at * np.cos(turn) - at[0]], axis=1)
+    rng = np.random.default_rng(seed)
+    kept = rng.permutation(np.flatnonzero(rng.random(len(k)) > 0.1))
+    xy_m = xy_m[kept] + rng.normal(0.0, 0.1, (len(kept), 2))
+    plot = Plot.around("square", FRAME.lonlat(xy_m))
+    assert right_share(rows_of(plot.grid, xy_m), k[kept]) >= 0.99 or plot.rows.doubts
+
+
+@pytest.mark.parametrize("radius_m", [None, 80.0])
+@pytest.mark.parametrize("noise_m", [0.0, 0.05, 0.2])
+def test_single_rows_are_no_double_rows(radius_m, noise_m):
+    plot = Plot.around("single", FRAME.lonlat(planted(radius_m=radius_m, noise_m=noise_m)[0]))
+    assert (plot.rows.zigzag_m, plot.rows.gaps_m) == (0.0, None)
 
 
 def test_two_plants_close_in_a_row_are_in_that_row():

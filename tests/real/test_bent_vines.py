@@ -59,6 +59,12 @@ def test_vines_of_two_blocks_are_found_in_their_own_rows(survey, turn_deg, noise
     check(measured(side_by_side(*blocks), noise_m), NOISES[noise_m])
 
 
+@pytest.mark.parametrize("turn_deg", TURNS)
+def test_vines_of_three_blocks_each_turned_from_the_last_are_found(survey, turn_deg):
+    blocks = [bent(tiled(survey, 16, 36), None, k * turn_deg) for k in range(3)]
+    check(measured(side_by_side(*blocks), 0.05), NOISES[0.05])
+
+
 @pytest.mark.parametrize("noise_m", NOISES)
 def test_vines_of_four_blocks_some_of_them_bent_are_found(survey, noise_m):
     kinds = ((None, 0.0), (150.0, 30.0), (80.0, 100.0), (None, 60.0))

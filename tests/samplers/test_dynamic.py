@@ -1,12 +1,18 @@
 """Dynamic as the thesis words it: open list, closed list, nearest next, neighbours after a find."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from fieldmon.planning.workday import plan_work, work_day
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.samplers.dynamic import Dynamic
+from tests.bent import bent_grids
+from tests.crooked import crooked_grids
 from tests.scenes import GRIDS, charged_s, scene_on
 
 GRID = GRIDS["rectangle"]
@@ -38,6 +44,32 @@ def test_the_nearest_open_plant_is_always_next():
         assert charged_s(scene, at, plant) == pytest.approx(best_s)
         open_plants.remove(plant)
         at = plant
+
+
+def seconds_to(scene, at, plants):
+    """Return the seconds from a place to each of some plants."""
+    seconds = scene.aisles.distance_m(at, plants) / scene.robot.speed_m_s
+    if at == GATE:
+        return seconds
+    grid, row = scene.grid, scene.grid.row
+    other = grid.corridor[row[plants]] != grid.corridor[row[at]]
+    turned = ~other & (grid.side[row[plants]] != grid.side[row[at]])
+    return seconds + scene.robot.row_change_s * other + scene.robot.turn_180_s * turned
+
+
+@settings(max_examples=15)
+@given(st.one_of(bent_grids(), crooked_grids()), st.integers(0, 1000))
+def test_wherever_rows_bend_or_are_cut_the_nearest_open_plant_is_next(grid, seed):
+    scene = scene_on(grid, hours=24.0, seed=2 * seed)
+    rng = np.random.default_rng(seed)
+    asked = np.sort(rng.permutation(len(grid))[: min(max(len(grid) // 3, 1), 200)])
+    chance = np.where(np.isin(np.arange(len(grid)), asked), 0.5, 0.001)
+    scene = replace(scene, chance=chance)
+    at, open_plants = GATE, asked
+    for plant in plan_work(scene, Dynamic()).plant[: len(asked)].tolist():
+        seconds = seconds_to(scene, at, open_plants)
+        assert seconds[open_plants == plant] == pytest.approx(seconds.min())
+        open_plants, at = open_plants[open_plants != plant], plant
 
 
 def test_suspicious_plants_come_before_all_others():

@@ -390,18 +390,46 @@ def _by_plant(
     if places.plants is None and not places.plants_of:
         raise _plants_needed(layer, names[0])
     row, plant = None if names[1] is None else layer.column(names[1]), layer.column(names[2])
+    of_block = _block_column(layer, names, options, places)
+    block = None if of_block is None else layer.column(of_block)
+    if of_block is not None and of_block == names[0]:
+        names = (None, *names[1:])
     by_hand = options.plot if isinstance(options, RecordOptions) else None
     if names[0]:
         plot = layer.column(names[0])
         if places.plants is None or plots_called({text(v) for v in plot}, places.plots):
-            return by_plot_and_plant(plot, row, plant, places)
+            return by_plot_and_plant(plot, row, plant, places, block)
     elif by_hand is not None:
         plot = np.full(len(layer), by_hand, dtype=object)
-        return by_plot_and_plant(plot, row, plant, places)
+        return by_plot_and_plant(plot, row, plant, places, block)
     if places.plants is None:
         raise _plants_needed(layer, names[0])
     _check_one_plot(layer, names[0])
-    return by_plant(row, plant, places.plants)
+    return by_plant(row, plant, places.plants, block)
+
+
+def _block_column(
+    layer: Layer,
+    names: tuple[str | None, str | None, str],
+    options: ReadOptions,
+    places: NamedPlaces,
+) -> str | None:
+    """Return the column that names blocks of plots that have several; None: there is none.
+
+    A column that could name plots as well names these if it holds the name of one.
+    """
+    told = options.column("block")
+    if told is not None:
+        return told or None
+    known = [places.plants, *places.plants_of.values()]
+    if all(plants is None or plants.block is None for plants in known):
+        return None
+    taken = frozenset(name for name in names[1:] if name)
+    found = find("block", layer.columns, taken)
+    if found is not None and found == names[0]:
+        of_plots = plots_called({text(v) for v in layer.column(found)}, places.plots)
+        return None if of_plots else found
+    return found
 
 
 def _plants_needed(layer: Layer, plot: str | None) -> ChoiceNeeded:

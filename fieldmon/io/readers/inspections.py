@@ -7,6 +7,8 @@ Decisions
   number in it, ``plant`` is read as that number.
 - What was not filled in stays unknown: blank records are no inspections. "Could not inspect" is
   one, and is kept with its note.
+- Where a plot has several blocks and a file names them, rows may be counted from 1 in each. How
+  they were counted is said.
 - A position is snapped to the nearest plant. It is doubtful where, within its accuracy, another
   plant could be the nearest, or where it lies further than half the spacing from the nearest,
   along the row or across. Doubtful records are listed and left out unless one asks for them.
@@ -37,7 +39,7 @@ from fieldmon.io.import_report import (
 )
 from fieldmon.io.read import read_inspection_rows
 from fieldmon.io.readers.inspection_options import InspectionOptions
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import block_label, row_label
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -106,6 +108,7 @@ def look_up(
             "is doubtful" + (" and was taken as asked" if options.take_doubtful else ""),
             None if options.take_doubtful else _TAKE,
         ),
+        *labelled.said,
         *_about_faces(rows, grid, plant, taken),
         *_about_accuracy(rows, options, open_yet & taken),
     ]
@@ -120,11 +123,15 @@ def look_up(
 
 
 class _Placed(NamedTuple):
-    """Plants ``(m,)``, -1 for none; why records cannot be placed, or are doubtful, by index."""
+    """Plants ``(m,)``, -1 for none; why records cannot be placed, or are doubtful, by index.
+
+    And what else there is to say.
+    """
 
     plant: NDArray[np.int64]
     problems: dict[int, str]
     doubts: dict[int, str]
+    said: tuple[ImportMessage, ...] = ()
 
 
 def _by_number(rows: InspectionRows, grid: PlantGrid) -> _Placed:
@@ -186,19 +193,76 @@ def _by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) 
     records = np.flatnonzero(wanted & (rows.line > 0) & (rows.number > 0))
     if not len(records):
         return _Placed(plant, {}, {})
-    label = row_label(grid)
-    known, first_face = np.unique(_key(label.line, label.number), return_index=True)
-    wished = _key(rows.line[records], rows.number[records])
-    at = np.minimum(np.searchsorted(known, wished), len(known) - 1)
-    is_there = known[at] == wished
-    first = first_face[at]
+    first, said = _labelled(rows, grid, records)
+    is_there = first >= 0
     second = (rows.face[records] == 2) & (grid.twin[first] >= 0)
     plant[records] = np.where(is_there, np.where(second, grid.twin[first], first), -1)
     problems = {
-        i: f"there is no plant {rows.number[i]} in row {rows.line[i]} on this plot"
+        i: f"there is no plant {rows.number[i]} in row {rows.line[i]}{_of_block(rows, grid, i)}"
         for i in records[~is_there].tolist()
     }
-    return _Placed(plant, problems, {})
+    return _Placed(plant, problems, {}, said)
+
+
+def _of_block(rows: InspectionRows, grid: PlantGrid, record: int) -> str:
+    if grid.n_blocks == 1 or not rows.block[record]:
+        return " on this plot"
+    return f" of block {rows.block[record]} (blocks are 1 to {grid.n_blocks} on this plot)"
+
+
+def _labelled(
+    rows: InspectionRows, grid: PlantGrid, records: NDArray[np.intp]
+) -> tuple[NDArray[np.int64], tuple[ImportMessage, ...]]:
+    """Return the first face of the plant that each record names by row and number; -1 for none.
+
+    Where it names the block too, rows of all records are counted on from block to block, as files
+    given out have them, or from 1 in each if more of them are found so.
+    """
+    label = row_label(grid)
+    known, line = _key(label.line, label.number), rows.line[records]
+    first = _found(known, _key(line, rows.number[records]))
+    named = np.flatnonzero((rows.block[records] != "") & (grid.n_blocks > 1))
+    said = _about_blocks(grid, len(records) - len(named), int(label.line.max()))
+    if not len(named):
+        return first, said
+    # the first and the last row of each block, as counted on
+    of_plant = block_label(grid) - 1
+    low = np.full(grid.n_blocks, np.iinfo(np.int64).max)
+    high = np.zeros(grid.n_blocks, np.int64)
+    np.minimum.at(low, of_plant, label.line)
+    np.maximum.at(high, of_plant, label.line)
+    numbers = {str(k + 1): k for k in range(grid.n_blocks)}
+    block = np.array([numbers.get(name, -1) for name in rows.block[records[named]]])
+    low, high, line = low[block], high[block], line[named]
+    on = (block >= 0) & (low <= line) & (line <= high)
+    within = (block >= 0) & (line <= high - low + 1)
+    first[named] = np.where(on, first[named], -1)
+    also = _found(known, _key(low + line - 1, rows.number[records[named]]))
+    also = np.where(within, also, -1)
+    if np.count_nonzero(also >= 0) > np.count_nonzero(first[named] >= 0):
+        first[named] = also
+        said = (*said, guessed(worded("Rows were taken as counted from 1 in each block.")))
+    return first, said
+
+
+def _about_blocks(grid: PlantGrid, unnamed: int, last: int) -> tuple[ImportMessage, ...]:
+    """Return what to say of records that name a row, but not which block's."""
+    if grid.n_blocks == 1 or not unnamed:
+        return ()
+    said = worded(
+        "{n} record(s) name no block: their rows were taken as counted on from block to block, 1 "
+        "to {last}. Where each block counts its rows from 1, give a column of blocks.",
+        n=unnamed,
+        last=last,
+    )
+    return (guessed(said),)
+
+
+def _found(known: NDArray[np.int64], wished: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the first place at which each wished key is known; -1 for none."""
+    keys, first = np.unique(known, return_index=True)
+    at = np.minimum(np.searchsorted(keys, wished), len(keys) - 1)
+    return np.where(keys[at] == wished, first[at], -1)
 
 
 def _key(line: NDArray[np.int64], number: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -224,7 +288,7 @@ def _by_position(
     xy_m = grid.frame.xy_m(rows.lonlat[records])
     first, rival, margin_m = _nearest(grid, xy_m)
     plant[records] = first
-    step = np.abs(xy_m - grid.xy_m[first])
+    step = np.abs(_along_and_across(grid, first, xy_m - grid.xy_m[first]))
     half = np.array([grid.plant_spacing_m, grid.row_spacing_m]) / 2 + _TOUCH_M
     stated = rows.accuracy_m[records]
     told = 0.0 if options.accuracy_m is None else options.accuracy_m
@@ -241,6 +305,17 @@ def _by_position(
             "which is more than half the spacing"
         )
     return _Placed(plant, problems, doubts)
+
+
+def _along_and_across(
+    grid: PlantGrid, plant: NDArray[np.int64], way_m: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return ways ``(m, 2)`` from plants as metres along their rows and across."""
+    if grid.aisles_m is None or grid.aisle is None:
+        return way_m
+    ahead = grid.aisles_m.ahead(grid.aisle[grid.row[plant]], grid.along_m[plant])
+    aside = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
+    return np.stack([(way_m * ahead).sum(axis=1), (way_m * aside).sum(axis=1)], axis=1)
 
 
 def _nearest(

@@ -10,13 +10,13 @@ import numpy as np
 import shapely
 
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ChoiceNeeded
+from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, dropped, guessed, seen
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.parse.values import is_missing
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import block_label, row_in_block, row_label
 from fieldmon.plot.measured_rows import PlantNames
 
 if TYPE_CHECKING:
@@ -24,10 +24,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.plot.block import Block
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
 
 _MOST_NAMED = 12
+_COUNTED_ON = "Rows were taken as counted on from block to block."
+_FROM_ONE = "Rows were taken as counted from 1 in each block."
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,13 +44,17 @@ class Plants:
     row, plant
         ``(n,)`` labels of the row and of the plant; empty where the file has none.
     block
-        ``(n,)`` labels of the block; None: the file has none.
+        ``(n,)`` labels of the block; None: there are none.
+    also
+        Other labels ``(n,)`` of blocks and of rows by which people may name the same plants, with
+        a word on how these count; what stands first is preferred.
     """
 
     lonlat: NDArray[np.float64]
     row: NDArray[np.str_]
     plant: NDArray[np.str_]
     block: NDArray[np.str_] | None = None
+    also: tuple[tuple[NDArray[np.str_], NDArray[np.str_], str], ...] = ()
 
     def __post_init__(self) -> None:
         for values in (self.lonlat, self.row, self.plant):
@@ -92,18 +99,41 @@ class NamedPlaces:
         plot: str | None = None,
     ) -> Self:
         """Return plots by name, and the plants of one `plot` (its name, if it is one of them)."""
-        plants = labelled(grid, measured)
+        own = next((known.blocks for known in plots if known.name == plot), ())
+        plants = labelled(grid, measured, own)
         return cls(plots, plants, {} if plot is None else {plot: plants})
 
 
-def labelled(grid: PlantGrid, measured: Plants | None = None) -> Plants:
-    """Return a plot's plants by the labels of their file, or as the grid counts."""
+def labelled(
+    grid: PlantGrid, measured: Plants | None = None, blocks: tuple[Block, ...] = ()
+) -> Plants:
+    """Return a plot's plants by the labels of their file, or as the grid counts.
+
+    Of a plot of several blocks rows are counted on from block to block, and also from 1 in each;
+    blocks are known by their number, and by what they were called when they were drawn.
+    """
     if measured is not None and (measured.plant != "").all():
         return measured
     label = np.stack(row_label(grid), axis=1)
     once, first = np.unique(label, axis=0, return_index=True)
-    names = once.astype(np.str_)
-    return Plants(grid.lonlat(first), names[:, 0], names[:, 1])
+    lonlat, row, plant = grid.lonlat(first), *once.astype(np.str_).T
+    if grid.n_blocks == 1:
+        return Plants(lonlat, row, plant)
+    number = block_label(grid, first).astype(np.str_)
+    within = row_in_block(grid, first).astype(np.str_)
+    known = [number, *_called(lonlat, blocks)]
+    ways = [(block, row, _COUNTED_ON) for block in known]
+    ways += [(block, within, _FROM_ONE) for block in known]
+    return Plants(lonlat, row, plant, number, tuple(ways[1:]))
+
+
+def _called(lonlat: NDArray[np.float64], blocks: tuple[Block, ...]) -> list[NDArray[np.str_]]:
+    """Return what the block of each plant ``(n,)`` is called, if all have names of their own."""
+    names = np.array([block.name for block in blocks], dtype=np.str_)
+    if len(names) == 0 or (names == "").any() or len(np.unique(names)) < len(names):
+        return []
+    areas = shapely.STRtree([block.area for block in blocks])
+    return [names[areas.nearest(shapely.points(lonlat))]]
 
 
 def plots_called(names: Iterable[str], plots: tuple[Field, ...]) -> tuple[Field, ...]:
@@ -135,19 +165,71 @@ class PlacedByName:
 
 
 def by_plant(
-    row: NDArray[np.object_] | None, plant: NDArray[np.object_], plants: Plants
+    row: NDArray[np.object_] | None,
+    plant: NDArray[np.object_],
+    plants: Plants,
+    block: NDArray[np.object_] | None = None,
 ) -> PlacedByName:
-    """Return where records lie that name a plant, or a row and a plant in it."""
+    """Return where records lie that name a plant, or a row and a plant in it, perhaps its block.
+
+    Raise `ObservationError` where rows of several blocks have the names they give, and they name
+    no block.
+    """
+    parts: list[tuple[NDArray[np.str_], ...]]
     if row is None:
-        known, wanted = list(plants.plant), _names(plant)
+        wanted, parts = _names(plant), [(plants.plant,)]
+    elif plants.block is None or block is None:
+        wanted, parts = _both(row, plant), [(plants.row, plants.plant)]
     else:
-        known = [f"{r}/{p}" for r, p in zip(plants.row, plants.plant, strict=True)]
-        both = zip(_names(row), _names(plant), strict=True)
-        wanted = [f"{r}/{p}" if r and p else "" for r, p in both]
-    match, how = _join(wanted, known)
+        wanted = _both(block, row, plant)
+        ways = [(plants.block, plants.row), *((b, r) for b, r, _ in plants.also)]
+        parts = [(b, r, plants.plant) for b, r in ways]
+    known = [["/".join(names) for names in zip(*part, strict=True)] for part in parts]
+    if plants.block is not None and block is None and len(set(known[0])) < len(known[0]):
+        raise ObservationError(_which_block(plants))
+    joined = [_join(wanted, names) for names in known]
+    best = int(np.argmax([np.count_nonzero(match >= 0) for match, _ in joined]))
+    match, how = joined[best]
     lonlat = np.where(match[:, None] >= 0, plants.lonlat[match], np.nan)
-    messages = (*how, *_unmatched(wanted, match, "plant"))
+    about = _about_blocks(plants, best, row, block) if (match >= 0).any() else []
+    messages = (*how, *about, *_unmatched(wanted, match, "plant"))
     return PlacedByName(lonlat, np.full(len(wanted), np.nan), messages)
+
+
+def _both(*columns: NDArray[np.object_]) -> list[str]:
+    """Return one name of several, empty where one of them is missing."""
+    parts = zip(*(_names(column) for column in columns), strict=True)
+    return ["/".join(names) if all(names) else "" for names in parts]
+
+
+def _which_block(plants: Plants) -> str:
+    names = [] if plants.block is None else sorted(set(plants.block.tolist()))
+    return worded(
+        "Records must name the block of their plants, since each of {n} blocks ({names}) has rows "
+        "of the same names. Give them a column of blocks, or positions.",
+        n=len(names),
+        names=_some(names),
+    )
+
+
+def _about_blocks(
+    plants: Plants,
+    way: int,
+    row: NDArray[np.object_] | None,
+    block: NDArray[np.object_] | None,
+) -> list[ImportMessage]:
+    """Return how rows of several blocks were counted."""
+    if row is None or not plants.also:
+        return []
+    if block is not None:
+        return [guessed(plants.also[way - 1][2] if way else _COUNTED_ON)]
+    said = worded(
+        "{n} record(s) name no block: their rows were taken as counted on from block to block, 1 "
+        "to {last}. Where each block counts its rows from 1, give a column of blocks.",
+        n=len(row),
+        last=len(set(plants.row.tolist())),
+    )
+    return [guessed(said)]
 
 
 def by_plot_and_plant(
@@ -155,6 +237,7 @@ def by_plot_and_plant(
     row: NDArray[np.object_] | None,
     plant: NDArray[np.object_],
     places: NamedPlaces,
+    block: NDArray[np.object_] | None = None,
 ) -> PlacedByName:
     """Return where records lie that name a plot, and a row and a plant on it.
 
@@ -170,7 +253,8 @@ def by_plot_and_plant(
         which = of == name
         if not which.any():
             continue
-        there = by_plant(None if row is None else row[which], plant[which], plants)
+        own_row, own_block = (None if c is None else c[which] for c in (row, block))
+        there = by_plant(own_row, plant[which], plants, own_block)
         lonlat[which] = there.lonlat
         about = name if len(places.plants_of) > 1 else None
         messages += [replace(message, feature=about) for message in there.messages]

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pyogrio
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import MultiPolygon, Polygon
@@ -19,8 +20,9 @@ from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspection_file.rows import rows_in
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import look_up, read_inspections
+from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.layout import Planting, lay, rectangle
 
 GRID = rectangle(6, 10)
@@ -392,3 +394,41 @@ def test_whatever_stands_in_cells_ends_in_findings_or_in_a_sentence(columns, tak
     assert ((findings.plant >= 0) & (findings.plant < len(GRID))).all()
     assert set(findings.result.tolist()) <= {FOUND, CLEAN, SKIPPED}
     assert all(finding.sentence.endswith((".", "?")) for finding in said)
+
+
+@pytest.fixture(scope="module")
+def two_blocks():
+    """Return two blocks whose rows run north in one and east in the other."""
+    west, east = shapely.box(5.0, 45.0, 5.0003, 45.0003), shapely.box(5.0003, 45.0, 5.001, 45.0003)
+    blocks = Block("", MultiPolygon([west]), 0.0), Block("", MultiPolygon([east]), 90.0)
+    field = Field("two", MultiPolygon([shapely.box(5.0, 45.0, 5.001, 45.0003)]), blocks=blocks)
+    return lay(field, Planting(row_spacing_m=3.0, plant_spacing_m=2.0))
+
+
+def test_rows_of_a_named_block_may_be_counted_from_one_and_how_is_said(two_blocks):
+    grid = two_blocks
+    rows = int(grid.row_line[np.asarray(grid.block) == 0].max()) + 1
+    within = read("block,row,plant,found\n2,1,3,x\n1,2,1,x\n", grid=grid)
+    there = [plant_at(grid, rows + 1, 3), plant_at(grid, 2, 1)]
+    assert within.value.plant.tolist() == there
+    assert "counted from 1 in each block" in within.messages[-1].sentence
+    on = read(f"block,row,plant,found\n2,{rows + 1},3,x\n1,2,1,x\n", grid=grid)
+    assert on.value.plant.tolist() == there
+    unnamed = read(f"row,plant,found\n{rows + 1},3,x\n2,1,x\n", grid=grid)
+    assert unnamed.value.plant.tolist() == there
+    assert "2 record(s) name no block" in unnamed.messages[-1].sentence
+    wrong = read("block,row,plant,found\n7,1,1,x\n1,1,1,x\n", grid=grid)
+    assert wrong.value.plant.tolist() == [plant_at(grid, 1, 1)]
+    assert "row 1 of block 7 (blocks are 1 to 2" in wrong.of(Severity.DROPPED)[0].sentence
+
+
+def test_how_far_a_position_is_off_is_measured_along_its_row_and_across(two_blocks):
+    grid = two_blocks
+    for block, (east_m, north_m) in ((0, (1.3, 0.0)), (1, (0.0, 1.3))):
+        plant = int(np.flatnonzero(np.asarray(grid.block)[grid.row] == block)[40])
+        lon, lat = grid.lonlat(np.array([plant]))[0]
+        lon += east_m / (111_320 * np.cos(np.deg2rad(lat)))
+        lat += north_m / 111_132
+        read_one = read(f"lon,lat,found\n{lon:.9f},{lat:.9f},x\n", grid=grid)
+        assert read_one.value.plant.tolist() == [plant]
+        assert not read_one.of(Severity.DOUBTFUL)

@@ -5,7 +5,10 @@ import pytest
 import shapely
 from shapely import MultiPolygon
 
+from fieldmon.errors import ObservationError
+from fieldmon.io.options import RecordOptions, Upload
 from fieldmon.io.parse.geometry import area_m2
+from fieldmon.io.read import read_records
 from fieldmon.io.readers.places import (
     NamedPlaces,
     Plants,
@@ -15,8 +18,10 @@ from fieldmon.io.readers.places import (
     labelled,
     plots_called,
 )
+from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import rectangle
+from fieldmon.plot.grid import plant_at
+from fieldmon.plot.layout import Planting, lay, rectangle
 
 NORTH, SOUTH, EAST = (
     Field(name, MultiPolygon([shapely.box(5.0 + east, 45.0, 5.001 + east, 45.001)]))
@@ -82,3 +87,67 @@ def test_the_only_plots_plants_are_its_own_also_by_its_name():
     assert places.plants_of == {"North 1": places.plants}
     assert NamedPlaces.of((), grid).plants_of == {}
     np.testing.assert_array_equal(labelled(grid).lonlat, places.plants.lonlat)
+
+
+@pytest.fixture(scope="module")
+def two_blocks():
+    """Return a plot of two blocks, the second with more rows, and its plants."""
+    halves = [shapely.box(5.0, 45.0, 5.0003, 45.0003), shapely.box(5.0003, 45.0, 5.001, 45.0003)]
+    blocks = tuple(
+        Block(name, MultiPolygon([half]), bearing)
+        for name, half, bearing in zip(("North", "Hill"), halves, (0.0, 0.0), strict=True)
+    )
+    field = Field("two", MultiPolygon([shapely.box(5.0, 45.0, 5.001, 45.0003)]), blocks=blocks)
+    return field, lay(field, Planting(row_spacing_m=3.0, plant_spacing_m=2.0))
+
+
+def plant_of(grid, row, number):
+    return grid.lonlat(np.array([plant_at(grid, row, number)]))[0]
+
+
+def test_rows_of_a_block_that_is_named_may_be_counted_from_one(two_blocks):
+    field, grid = two_blocks
+    first_rows = int(grid.row_line[np.asarray(grid.block) == 0].max()) + 1
+    places = NamedPlaces.of((field,), grid, None, "two")
+    for block in ("2", "Hill"):
+        within = by_plant(cells(1, 2), cells(3, 4), places.plants, cells(block, block))
+        there = [plant_of(grid, first_rows + row, row + 2) for row in (1, 2)]
+        assert within.lonlat == pytest.approx(np.array(there))
+        assert [m.sentence for m in within.messages] == [
+            "Rows were taken as counted from 1 in each block."
+        ]
+        on = by_plant(cells(first_rows + 1), cells(3), places.plants, cells(block))
+        assert on.lonlat == pytest.approx(np.array(there[:1]))
+        assert "counted on from block to block" in on.messages[0].sentence
+
+
+def test_rows_without_a_block_are_said_to_be_counted_on(two_blocks):
+    field, grid = two_blocks
+    plants = labelled(grid, None, field.blocks)
+    named = by_plant(cells(1, 2), cells(3, 4), plants)
+    assert named.lonlat == pytest.approx(np.array([plant_of(grid, 1, 3), plant_of(grid, 2, 4)]))
+    (said,) = named.messages
+    assert "2 record(s) name no block" in said.sentence
+    assert "give a column of blocks" in said.sentence
+
+
+def test_names_of_rows_that_several_blocks_have_are_refused_without_the_block():
+    lonlat = np.array([(5.0 + k * 1e-5, 45.0005) for k in range(4)])
+    row, plant = np.array(["1", "2", "1", "2"]), np.array(["1", "1", "1", "1"])
+    plants = Plants(lonlat, row, plant, np.array(["A", "A", "B", "B"]))
+    with pytest.raises(ObservationError, match=r"must name the block.*2 blocks \(A, B\)"):
+        by_plant(cells(1), cells(1), plants)
+    named = by_plant(cells(1), cells(1), plants, cells("B"))
+    np.testing.assert_array_equal(named.lonlat, lonlat[[2]])
+    unknown = by_plant(cells(1, 1), cells(1, 1), plants, cells("B", "C"))
+    assert "C/1/1" in unknown.messages[0].sentence
+
+
+def test_records_of_a_file_are_put_into_the_block_they_name(two_blocks):
+    field, grid = two_blocks
+    places = NamedPlaces.of((field,), grid, None, "two")
+    table = Upload("found.csv", b"block,row,plant,count\n2,1,3,4\n2,2,4,0\n1,1,1,2\n")
+    read = read_records(table, RecordOptions(), places=places)
+    rows = int(grid.row_line[np.asarray(grid.block) == 0].max()) + 1
+    there = [plant_of(grid, rows + 1, 3), plant_of(grid, rows + 2, 4), plant_of(grid, 1, 1)]
+    assert read.value.lonlat == pytest.approx(np.array(there))

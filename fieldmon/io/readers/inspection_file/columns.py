@@ -48,6 +48,7 @@ class InspectionColumns(NamedTuple):
     number: str | None
     face: str | None
     arrive: str | None
+    block: str | None = None
 
 
 def own_column(role: str, layer: Layer, taken: Iterable[str | None] = ()) -> str | None:
@@ -84,8 +85,9 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     if plant is not None and line is not None and number is None and plain(plant) not in _IDS:
         plant, number = None, plant
     arrive = next((n for n in names if plain(n) == "arrive"), None)
+    block = options.column("block") or find("block", names, frozenset({line or "", plant or ""}))
     return InspectionColumns(
-        result, count, marks, plant, line, number, own_column("face", layer), arrive
+        result, count, marks, plant, line, number, own_column("face", layer), arrive, block
     )
 
 

@@ -63,6 +63,8 @@ class InspectionRows:
         Text; empty where there is none.
     source_row
         Which record of the file, from 1.
+    block
+        What is named as the plant's block; empty where nothing is.
     """
 
     plant: NDArray[np.int64]
@@ -79,6 +81,7 @@ class InspectionRows:
     who: NDArray[np.str_]
     notes: NDArray[np.str_]
     source_row: NDArray[np.int64]
+    block: NDArray[np.str_]
 
     def __len__(self) -> int:
         """Return the number of records."""
@@ -165,6 +168,7 @@ def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows
         who=who_in(layer, columns, options),
         notes=notes,
         source_row=np.arange(1, len(layer) + 1),
+        block=texts_in(layer, columns.block),
     )
     kept = InspectionRows(**{name: values[said] for name, values in vars(whole).items()})
     every = (*layer.messages, *messages, *results.messages, *more, *times.messages)

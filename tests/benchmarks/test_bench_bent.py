@@ -1,0 +1,57 @@
+"""A million plants in rows that bend: laid in two seconds, a day on them as soon as on straight."""
+
+import numpy as np
+import pytest
+import shapely
+from shapely import MultiPolygon
+
+from fieldmon.planning.plan import plan_in
+from fieldmon.plot.bent_layout import Ground
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.line_layout import lay_along
+from fieldmon.plot.projection import Frame
+from fieldmon.samplers import sampler
+from tests.benchmarks.scale import best_of
+from tests.scenes import scene_on
+
+SIDE, RADIUS_M = 1000, 3000.0
+FRAME = Frame(8.0, 47.0)
+PLANTING = Planting(row_bearing_deg=90.0, row_spacing_m=2.5, plant_spacing_m=1.4)
+
+
+def bent_lines():
+    """Return rows as arcs of circles about one place, 2.5 m apart, each 1.4 km long."""
+    half_m = SIDE * 1.4 / 2
+    x = np.linspace(-half_m, half_m, 60)
+    radii = RADIUS_M + (np.arange(SIDE) - SIDE / 2) * 2.5
+    return [np.stack([r * np.sin(x / r), r * np.cos(x / r) - RADIUS_M], axis=1) for r in radii]
+
+
+def bent():
+    return lay_along("bent", FRAME, bent_lines(), Ground(None, MultiPolygon()), PLANTING)
+
+
+def straight():
+    half_x, half_y = SIDE * 1.4 / 2 + 4, SIDE * 2.5 / 2
+    area = FRAME.geometry_lonlat(shapely.box(-half_x, -half_y, half_x, half_y))
+    return lay(Field("straight", MultiPolygon([area])), PLANTING)
+
+
+def test_a_million_plants_are_laid_in_bent_rows_in_two_seconds(benchmark):
+    grid = benchmark.pedantic(bent, rounds=5, warmup_rounds=1)
+    assert len(grid) > 990_000
+    assert benchmark.stats["min"] < 2.0
+
+
+@pytest.fixture(scope="module")
+def scenes():
+    return scene_on(bent(), hours=8.0), scene_on(straight(), hours=8.0)
+
+
+@pytest.mark.parametrize("name", ["adaptive", "dynamic", "naive"])
+def test_a_day_in_bent_rows_is_planned_as_fast_as_in_straight_ones(scenes, benchmark, name):
+    who, (one, other) = sampler(name), scenes
+    benchmark.pedantic(plan_in, (one, who), rounds=9, warmup_rounds=1)
+    straight_s, _ = best_of(lambda: plan_in(other, who), 9)
+    assert benchmark.stats["min"] < 1.2 * straight_s

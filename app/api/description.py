@@ -149,7 +149,7 @@ PLOT: dict[str, Any] = {
                 "row": _LIST | {"description": "Its number on the ground, from 1."},
                 "aisle": _LIST | {"description": "Rows of one number share their aisle."},
                 "side": _LIST
-                | {"description": "The aisle is left of a row's plants in order (1), or right (-1)."},
+                | {"description": "The aisle is left (1) or right (-1) of its plants in order."},
             },
         },
         "plants": {
@@ -181,7 +181,7 @@ DAY: dict[str, Any] = {
         "photos": {"type": "array", "items": {"type": "object"}},
         "photos_asked": {
             "type": "array",
-            "description": "Photos that somebody asks for and nobody has taken yet.",
+            "description": "Photos asked for, not taken yet, and this person's to take.",
             "items": {
                 "type": "object",
                 "properties": {

@@ -17,10 +17,9 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.infestation.observations import ABSENT, PRESENT
-from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead, work_left_s
+from fieldmon.monitoring.day_ahead import Part, asked_of, planned_again, route_ahead, work_left_s
 from fieldmon.monitoring.derived_layers import spot_area
 from fieldmon.monitoring.photos import photos_of
-from fieldmon.monitoring.photos_asked import photos_asked
 from fieldmon.plot.local_clock import local_clock, utc_now
 
 if TYPE_CHECKING:
@@ -101,7 +100,7 @@ def day_document(season: Season, scout: Scout, on: date | None) -> bytes:
         "contradicting": _said(season.contradicting(on)),
         "hot_spots": _hot_spots(season, known),
         "photos": [photo._asdict() for photo in photos_of(season)],
-        "photos_asked": [one._asdict() for one in photos_asked(season)],
+        "photos_asked": [one._asdict() for one in asked_of(season, on, part)],
     }
     return _json(document)
 

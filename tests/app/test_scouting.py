@@ -62,7 +62,7 @@ def invited(phone, line, season, name="Ann"):
     """Scan the code with the network, until all that is needed is on the phone."""
     key = scouts.let_in(season, name)
     phone.page.goto(invitation(line.address, season.path.stem, key, str(BEGINS), "en"))
-    phone.page.locator("#clean").wait_for()
+    phone.page.locator("#clean").wait_for(timeout=120_000)
     phone.page.evaluate("navigator.serviceWorker.ready.then(() => null)")
     phone.page.wait_for_function("() => navigator.serviceWorker.controller !== null")
     return key

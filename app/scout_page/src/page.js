@@ -140,9 +140,16 @@ export class Page {
     const n = this.left.records + this.left.photos + field.unwritten();
     const ended = this.state === "ended", signs = { offline: "⏸", ended: "⚠", sending: "↑", sent: "✓", idle: "" };
     const text = n ? say("waiting", { n }) : this.left.refused.length ? say("some_refused", { n: this.left.refused.length }) : say("all_sent");
-    this.bar.replaceChildren(h("div", { class: "said" }, ...said),
-      h("span", { id: "sync", class: ended || this.left.refused.length ? "bad" : "", "data-state": this.state, "data-left": n }, `${signs[this.state]} ${text}`),
-      h("button", { type: "button", id: "open_menu", "aria-label": say("menu"), onclick: () => this.#openMenu() }, "☰"));
+    // the button stays the same: a keyboard may stand on it
+    if (!this.bar.hasChildNodes()) {
+      this.bar.append(h("div", { class: "said" }), h("span", { id: "sync" }),
+        h("button", { type: "button", id: "open_menu", "aria-label": say("menu"), onclick: () => this.#openMenu() }, "☰"));
+    }
+    const [head, sync] = this.bar.children;
+    head.replaceChildren(...said);
+    sync.className = ended || this.left.refused.length ? "bad" : "";
+    Object.assign(sync.dataset, { state: this.state, left: n });
+    sync.textContent = `${signs[this.state]} ${text}`;
   }
 
   #hours() {

@@ -799,7 +799,7 @@ SCOUT_PAGE = {
     "time_over": "The hours are over",
     "waiting": "{n} to send", "all_sent": "All sent", "some_refused": "{n} not taken",
     "menu": "Menu", "close": "Close", "ok": "OK", "cancel": "Cancel",
-    "scan": "Scan the code that the app shows: Scout, On a phone.",
+    "scan": "Scan the code that the app shows: Today, Send to phone.",
     "not_loaded": "{season}: nothing is loaded yet. A network is needed once.",
     "load_day": "Load the day", "old_day": "This route is of {day}: load today's",
     "loading": "Loading ...", "route_done": "The route is done.",

@@ -118,6 +118,16 @@ TREATED, TREATED_VALUES = "Plants found are", {True: "treated", False: "flagged"
 GUESSED = "Guessed when the plot was read"
 FROM_CHOSEN, FROM_USUAL, FROM_FILE = "chosen", "the usual", "of the plot's file"
 FROM_NOBODY = "assumed"
+ADVICE_TITLE = "Advice of {day}"
+ADVICE_SHEET = "Treat, or not, and where"
+ADVICE_ALT = "Map of the zones to treat."
+AREA_SPRAYED, OF_PLOT = "To be sprayed", "{share:.0%} of the plot"
+PRODUCT, PRODUCT_OPEN, RATE = "Product", "not said", "{rate:g} l/ha"
+LIQUID, INFESTED_INSIDE = "Liquid", "Infested plants inside"
+AND_ELSEWHERE, ENOUGH = "{n:.1f} elsewhere", "Chance that it is enough"
+ZONES, ZONES_REST = "Zones", "... and {n} more zones; the files for the sprayer hold all."
+ZONES_COLUMNS = ("zone", "rows", "plants of the row", "plants", "infested", "by itself")
+VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}
 MEANING = "How the numbers are meant"
 MEANINGS = (
     "Unknown is not clean: a plant was found infested, or looked clean, or was never inspected.",

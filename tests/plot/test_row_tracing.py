@@ -148,4 +148,4 @@ def test_over_a_gap_between_lines_that_do_not_lead_to_each_other_a_row_is_straig
     x = np.arange(10.0)
     one, other = np.stack([x, 0 * x], axis=1), np.stack([0 * x + 20.0, x], axis=1)
     assert len(_curve(one, other[::-1], 5)) == 0
-    assert len(_curve(one, one + [20.0, 0.0], 5)) == 5
+    assert len(_curve(one, one + np.array([20.0, 0.0]), 5)) == 5

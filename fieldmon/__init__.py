@@ -30,12 +30,21 @@ if TYPE_CHECKING:
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.spread import Spread
-    from fieldmon.io.library import read_inspections, read_plot, read_plots, read_records
+    from fieldmon.io.library import (
+        read_inspections,
+        read_pest,
+        read_plot,
+        read_plots,
+        read_records,
+        read_weather,
+    )
     from fieldmon.io.sources import PlantingChoices
     from fieldmon.monitoring.history import BeliefSettings
     from fieldmon.monitoring.monitor import Monitor, MonitorDay, PlantToInspect
     from fieldmon.monitoring.season_file import Season
     from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.pests.pest import Pest
+    from fieldmon.pests.weather import Weather
     from fieldmon.planning import routes
     from fieldmon.planning.plan import DayPlan, plan_day
     from fieldmon.planning.route import Route
@@ -65,11 +74,20 @@ _MODULES = {
     "infestation.inspections": ("Inspections",),
     "infestation.observations": ("Observations",),
     "infestation.spread": ("Spread",),
-    "io.library": ("read_inspections", "read_plot", "read_plots", "read_records"),
+    "io.library": (
+        "read_inspections",
+        "read_pest",
+        "read_plot",
+        "read_plots",
+        "read_records",
+        "read_weather",
+    ),
     "monitoring.history": ("BeliefSettings",),
     "monitoring.monitor": ("Monitor", "MonitorDay", "PlantToInspect"),
     "monitoring.season_file": ("Season",),
     "monitoring.settings": ("MonitoringSettings",),
+    "pests.pest": ("Pest",),
+    "pests.weather": ("Weather",),
     "planning.plan": ("DayPlan", "plan_day"),
     "planning.route": ("Route",),
     "plot.block": ("Block", "cut_blocks"),
@@ -106,6 +124,7 @@ __all__ = [
     "MonitoringSettings",
     "ObservationError",
     "Observations",
+    "Pest",
     "PlantToInspect",
     "Planting",
     "PlantingChoices",
@@ -120,15 +139,18 @@ __all__ = [
     "Spread",
     "Start",
     "Viewpoints",
+    "Weather",
     "__version__",
     "cut_blocks",
     "draw_start",
     "hot_spots",
     "plan_day",
     "read_inspections",
+    "read_pest",
     "read_plot",
     "read_plots",
     "read_records",
+    "read_weather",
     "routes",
     "rover",
     "scout",

@@ -8,7 +8,7 @@ import streamlit as st
 
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 
-from ..state import chosen_day, notices, plot_source, seasons_folder, work_day
+from ..state import chosen_day, living, notices, plot_source, seasons_folder, work_day
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -34,8 +34,9 @@ def begin(choices: Choices) -> str:
     """Keep what is chosen as a season from now on (for callbacks)."""
     name = st.session_state.get("season_name", _proposed(choices)).strip()
     settings = MonitoringSettings(
-        choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior
-    )
+        choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior,
+        pest=living.pest(), weather=living.met(choices) if living.pest() else None,
+    )  # fmt: skip
     said = [one.message for one in choices.messages]
     messages = [KeptMessage("import", str(m.severity), m.feature, m.sentence) for m in said]
     path = seasons_folder.new_path(name)

@@ -47,8 +47,17 @@ def show_raster(label: str, kind: str) -> None:
 
 def show_kept_raster(kind: str) -> None:
     """Show which raster is kept and what is wrong with it; take it out on demand."""
+    _kept_or(kind, rasters.problem(kind))
+
+
+def show_one(label: str, kind: str, problem: FieldmonError | None) -> None:
+    """Show a box for one file, which file is kept, and what is wrong with it."""
+    st.file_uploader(label, key=_box(kind), on_change=_take_one, args=(kind,))
+    _kept_or(kind, problem)
+
+
+def _kept_or(kind: str, problem: FieldmonError | None) -> None:
     _kept(kind)
-    problem = rasters.problem(kind)
     if kind in brought() and problem is not None:
         say(problem, brought()[kind].asked)
 

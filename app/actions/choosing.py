@@ -21,6 +21,7 @@ from ..state import (
     chosen_language,
     chosen_units,
     kept_files,
+    living,
     plot_files,
     plot_source,
     row_settings,
@@ -139,10 +140,11 @@ def _from_files(source: str, wait: Wait, foot: DeltaGenerator) -> Choices | None
         day = _day(source, Calendar(today), clock)
     with foot:
         robot, sampler = _work()
+    pest, prior = living.pest(), living.prior(assumptions.prior(), made.plot, today, day)
     return Choices(
-        made.key, made.plot, made.records, made.messages, robot, sampler, str(day),
-        chosen_units.units(), None, outline.key, made.risk, today, made.left_out,
-        assumptions.prior(),
+        made.key, made.plot, made.records, made.messages,
+        robot if pest is None else pest.seen_by(robot), sampler, str(day),
+        chosen_units.units(), None, outline.key, made.risk, today, made.left_out, prior,
     )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Handing a day's route out: to a phone by a picture of its address, and as a file."""
+"""Handing a day's route out: to a phone by a code to scan, and as a file."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from fieldmon.io.writers.geojson import RouteNotes
 from ..show import qr_code
 from ..state import chosen_day, phone
 from ..words import texts
+from . import inviting
 
 if TYPE_CHECKING:
     from fieldmon.io.writers.handoff import HandoffFormat
@@ -24,18 +25,25 @@ if TYPE_CHECKING:
 
 
 def show(choices: Choices, plan: DayPlan) -> None:
-    """Show both ways."""
-    where = phone.address(choices)
+    """Show both ways: a season's day by a code for each person, a plan by its address."""
+    if choices.season is not None:
+        inviting.show(choices)
+    else:
+        _show_address()
+    st.markdown(texts.SEND_FILE)
+    starts = chosen_day.starts(choices, plan)
+    notes = RouteNotes(choices.plot.field.name, choices.sampler, starts, choices.who)
+    _files(choices, HandoffPlan(plan.route, notes))
+
+
+def _show_address() -> None:
+    where = phone.address()
     if where.reachable:
         st.markdown(texts.SEND_SCAN)
         st.html(qr_code.image(where.url, texts.SEND_ALT))
         st.code(where.url, language=None, wrap_lines=True)
     else:
         st.info(texts.SEND_ALONE)
-    st.markdown(texts.SEND_FILE)
-    starts = chosen_day.starts(choices, plan)
-    notes = RouteNotes(choices.plot.field.name, choices.sampler, starts, choices.who)
-    _files(choices, HandoffPlan(plan.route, notes))
 
 
 def _files(choices: Choices, plan: HandoffPlan) -> None:

@@ -2,29 +2,20 @@
 
 from __future__ import annotations
 
-import base64
-import os
-from io import BytesIO
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
 from fieldmon.monitoring import scouts
 
-from ..state import notices, scout_page
+from ..show import qr_code
+from ..state import notices, phone, scout_page
 from ..words import language, texts
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
 
-#: the app's address as phones reach it; `fieldmon app --lan` sets it
-ADDRESS = "FIELDMON_ADDRESS"
 _SHOWN = "code shown"
-
-
-def phone_address() -> str | None:
-    """Return the app's address as phones reach it; None if they do not."""
-    return os.environ.get(ADDRESS) or None
 
 
 def let_in(choices: Choices, name: str, rows: tuple[int, int] | None = None) -> str:
@@ -34,21 +25,9 @@ def let_in(choices: Choices, name: str, rows: tuple[int, int] | None = None) -> 
     plot, or no name.
     """
     key = scouts.let_in(choices.season, name, rows)
-    address = (
-        phone_address() or f"http://127.0.0.1:{os.environ.get('STREAMLIT_SERVER_PORT', '8501')}"
-    )
     day = "" if choices.is_today else choices.day
     season = choices.season.path.stem
-    return scout_page.invitation(address, season, key, day, language.current())
-
-
-def code(address: str) -> str:
-    """Return an address as a QR code: a picture (SVG) in a data URL, dark on light in any theme."""
-    import segno  # noqa: PLC0415 - few need it
-
-    made = BytesIO()
-    segno.make(address, error="m").save(made, kind="svg", scale=5, border=4, light="#ffffff")
-    return f"data:image/svg+xml;base64,{base64.b64encode(made.getvalue()).decode()}"
+    return scout_page.invitation(phone.base().url, season, key, day, language.current())
 
 
 def show_folded(choices: Choices) -> None:
@@ -59,8 +38,9 @@ def show_folded(choices: Choices) -> None:
 
 def show(choices: Choices) -> None:
     """Show who may record from a phone, and make codes."""
+    notices.show()  # in a window of its own nothing else would
     st.markdown(texts.INVITE_NOTE)
-    if phone_address() is None:
+    if not phone.base().works_offline:
         st.info(texts.INVITE_LOCAL)
     with st.form("invite", border=False):
         st.text_input(texts.INVITE_NAME, key="invite_name")
@@ -85,7 +65,7 @@ def _show_code() -> None:
         return
     name, address = st.session_state[_SHOWN]
     st.markdown(f"**{texts.INVITE_CODE.format(name=texts.isolated(name))}**")
-    st.image(code(address), width=280)
+    st.html(qr_code.image(address, texts.INVITE_ALT))
     st.code(address, language=None, wrap_lines=True)
 
 

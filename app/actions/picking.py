@@ -39,7 +39,7 @@ def show(choices: Choices, plan: DayPlan) -> None:
             for key, label in (("also", texts.PICKED_ALSO), ("never", texts.PICKED_NEVER)):
                 st.button(label, key=f"picked_{key}", on_click=_wish, args=(choices, key, some))
             st.button(texts.PICKED_NONE, key="picked_none", on_click=take, args=(choices, ()))
-    wanted = choices.wishes
+    wanted = wishes.of(choices.place, choices.day)
     if not wanted:
         return
     said = [
@@ -56,7 +56,7 @@ def show(choices: Choices, plan: DayPlan) -> None:
 
 
 def _wish(choices: Choices, kind: str, plants: tuple[int, ...]) -> None:
-    now = choices.wishes
+    now = wishes.of(choices.place, choices.day)
     new = now.also(plants) if kind == "also" else now.never(plants)
     wishes.want(choices.place, choices.day, new)
     take(choices, ())

@@ -77,6 +77,15 @@ ASKED: dict[str, Any] = {
         "seconds_left": {"type": ["number", "null"], "minimum": 0, "maximum": 86_400},
     },
 }
+ASKED_PHOTO: dict[str, Any] = {
+    "type": "object",
+    "required": ["plant"],
+    "additionalProperties": False,
+    "properties": {
+        "plant": {"type": "integer", "minimum": 0, "maximum": 2**31 - 1},
+        "note": {"type": "string", "maxLength": 200, "description": "What is to be seen on it."},
+    },
+}
 TAKEN: dict[str, Any] = {
     "type": "object",
     "properties": {
@@ -119,6 +128,7 @@ ROUTE: dict[str, Any] = {
         "walk_s": _NUMBERS | {"description": "Seconds of the way to each from the one before."},
         "end_s": {"type": "number", "description": "Seconds at the end, the way back included."},
         "line": {"type": "array", "items": _NUMBERS, "description": "The way, lon/lat."},
+        "stops": _LIST | {"description": "The point of the line at which each stop is made."},
     },
 }
 PLOT: dict[str, Any] = {
@@ -167,6 +177,20 @@ DAY: dict[str, Any] = {
         "contradicting": _SAID,
         "hot_spots": {"type": "array", "items": {"type": "object"}},
         "photos": {"type": "array", "items": {"type": "object"}},
+        "photos_asked": {
+            "type": "array",
+            "description": "Photos that somebody asks for and nobody has taken yet.",
+            "items": {
+                "type": "object",
+                "properties": {
+                    "id": ID,
+                    "plant": {"type": "integer"},
+                    "note": {"type": "string"},
+                    "who": {"type": "string"},
+                    "at": _MOMENT,
+                },
+            },
+        },
     },
 }
 ERROR: dict[str, Any] = {
@@ -228,6 +252,7 @@ _OF_PHOTO = {
 def description() -> dict[str, Any]:
     """Return the OpenAPI document."""
     season = f"{PATH}/seasons/{{season}}"
+    done = _answer({"type": "object"}, "On the disk.")
     kept = _answer({"type": "object", "properties": {"new": {"type": "boolean"}}}, "On the disk.")
     send_photo = _query(**_OF_PHOTO) | {
         "requestBody": {
@@ -277,6 +302,15 @@ def description() -> dict[str, Any]:
                 "parameters": [_AT, _PHOTO],
                 "get": _operation("A photo.", _PICTURE),
                 "put": _operation("Send a photo.", kept, send_photo),
+            },
+            f"{season}/photos_asked/{{photo}}": {
+                "parameters": [_AT, _PHOTO],
+                "put": _operation(
+                    "Ask for a photo of a plant: it is asked for until one has come.",
+                    done,
+                    _body(ASKED_PHOTO),
+                ),
+                "delete": _operation("Ask for it no more.", done),
             },
         },
     }

@@ -20,6 +20,7 @@ from fieldmon.infestation.observations import ABSENT, PRESENT
 from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
 from fieldmon.monitoring.derived_layers import spot_area
 from fieldmon.monitoring.photos import photos_of
+from fieldmon.monitoring.photos_asked import photos_asked
 from fieldmon.plot.local_clock import local_clock, utc_now
 
 if TYPE_CHECKING:
@@ -100,6 +101,7 @@ def day_document(season: Season, scout: Scout, on: date | None) -> bytes:
         "contradicting": _said(season.contradicting(on)),
         "hot_spots": _hot_spots(season, known),
         "photos": [photo._asdict() for photo in photos_of(season)],
+        "photos_asked": [one._asdict() for one in photos_asked(season)],
     }
     return _json(document)
 
@@ -139,6 +141,7 @@ def _route(route: Route) -> dict[str, Any]:
         "walk_s": np.round(walk_s, 1).tolist(),
         "end_s": round(route.end_s, 1),
         "line": line.tolist(),
+        "stops": route.line_stop.tolist(),
     }
 
 

@@ -34,6 +34,13 @@ def asked(body: bytes) -> tuple[date | None, float | None]:
     return day(sent.get("on")), sent.get("seconds_left")
 
 
+def asked_photo(name: str, body: bytes) -> tuple[int, str]:
+    """Return of which plant a photo is asked for, and the note."""
+    _matches(name, description.ID)
+    sent = _checked(body, "ASKED_PHOTO")
+    return sent["plant"], sent.get("note", "")
+
+
 def day(text: str | None) -> date | None:
     """Return a day, or None where none is said."""
     try:

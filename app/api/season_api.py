@@ -20,7 +20,7 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from fieldmon.errors import AccessError, FieldmonError, FileProblem, LimitError, ObservationError
-from fieldmon.monitoring import photos, scouts, tellings
+from fieldmon.monitoring import photos, photos_asked, scouts, tellings
 
 from ..state import opened_seasons, seasons_folder
 from . import description, documents, reading
@@ -89,6 +89,22 @@ async def _get_photo(request: Request) -> Response:
     if kept is None:
         raise HTTPException(404, "There is no such photo in this season.")
     return Response(kept[1], media_type=kept[0], headers=_HEADERS)
+
+
+async def _ask_photo(request: Request) -> Response:
+    season, scout = await _asked_by(request)
+    name = request.path_params["photo"]
+    plant, note = reading.asked_photo(name, await _body(request, description.MOST_BYTES))
+    asked = (season, plant, note, scout.name, name)
+    await run_in_threadpool(photos_asked.ask_photo, *asked)
+    return JSONResponse({}, headers=_HEADERS)
+
+
+async def _ask_no_more(request: Request) -> Response:
+    season, _ = await _asked_by(request)
+    name = request.path_params["photo"]
+    await run_in_threadpool(photos_asked.ask_no_more, season, name)
+    return JSONResponse({}, headers=_HEADERS)
 
 
 async def _described(_: Request) -> Response:
@@ -209,6 +225,8 @@ def application() -> Starlette:
         Route(f"{season}/findings", _guarded(_findings), methods=["POST"]),
         Route(f"{season}/photos/{{photo}}", _guarded(_send_photo), methods=["PUT"]),
         Route(f"{season}/photos/{{photo}}", _guarded(_get_photo), methods=["GET"]),
+        Route(f"{season}/photos_asked/{{photo}}", _guarded(_ask_photo), methods=["PUT"]),
+        Route(f"{season}/photos_asked/{{photo}}", _guarded(_ask_no_more), methods=["DELETE"]),
     ]
     refusals = {404: _not_found, 405: _wrong_method}
     packed = [Middleware(GZipMiddleware, minimum_size=10_000, compresslevel=4)]

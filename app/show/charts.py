@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.monitoring import DayFigures
+    from fieldmon.pests.development import Development
     from fieldmon.simulation.metrics import SeasonMetrics
 
 
@@ -211,6 +213,74 @@ def still_out(days: list[DayFigures], axes: tuple[str, str]) -> alt.LayerChart:
         fillOpacity=0.3, color=_COLOURS[0], stroke=_COLOURS[0], strokeWidth=1, width=10
     ).encode(y="low:Q", y2="high:Q")
     line = base.mark_line(point=True, color=_COLOURS[0]).encode(
+        y=alt.Y("expected:Q", title=axes[1])
+    )
+    return alt.layer(band, line).properties(height=220)
+
+
+@_in_language
+def development(
+    there: Development, marks: list[tuple[str, float]], axes: tuple[str, str]
+) -> alt.LayerChart:
+    """Return degree-days by day against marks: names of stages and generations, and how many.
+
+    Days whose weather was filled in are dashed; a rule stands at the day that is asked about.
+    """
+    table = pd.DataFrame(
+        {
+            "day": [str(day)[5:] for day in there.days],
+            "gathered": there.degree_days,
+            "guessed": there.guessed,
+        }
+    )
+    days = alt.X("day:O", title=axes[0], sort=None,
+                 axis=alt.Axis(labelAngle=0, labelOverlap=True))  # fmt: skip
+    base = alt.Chart(table).encode(
+        x=days,
+        y=alt.Y("gathered:Q", title=axes[1]),
+        tooltip=[alt.Tooltip("day", title=axes[0]),
+                 alt.Tooltip("gathered:Q", title=axes[1], format=".0f")],
+    )  # fmt: skip
+    # the dashes begin where the line ends
+    before = table["guessed"].shift(-1, fill_value=False)
+    parts = [(table[~table["guessed"]], [1, 0]), (table[table["guessed"] | before], [4, 4])]
+    lines = [
+        base.properties(data=part).mark_line(
+            color=_COLOURS[0], strokeWidth=2.5, strokeDash=dashes, point={"size": 12}
+        )
+        for part, dashes in parts
+        if len(part)
+    ]
+    named = pd.DataFrame(marks, columns=["name", "gathered"])
+    rules = alt.Chart(named).mark_rule(color=_GREY, strokeDash=[2, 2]).encode(y="gathered:Q")
+    side = _sides()[0]
+    words = (
+        alt.Chart(named)
+        .mark_text(align=side, dy=8, color=_GREY, fontSize=11)
+        .encode(y="gathered:Q", text="name:N", x=alt.value(0 if side == "left" else "width"))
+    )
+    today = pd.DataFrame({"day": [str(there.on)[5:]]})
+    now = alt.Chart(today).mark_rule(color=_GREY).encode(x=days)
+    return alt.layer(*lines, rules, words, now).properties(height=260)
+
+
+@_in_language
+def ahead(day: str, forecast: Forecast, axes: tuple[str, str]) -> alt.LayerChart:
+    """Return the infested plants expected on the mornings after a day, with their interval."""
+    dates = [str(at.date())[5:] for at in pd.date_range(day, periods=len(forecast.expected))]
+    table = pd.DataFrame(
+        {"day": dates, "expected": forecast.expected, "low": forecast.low, "high": forecast.high}
+    )
+    base = alt.Chart(table).encode(
+        x=alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True)),
+        tooltip=[
+            alt.Tooltip("day", title=axes[0]),
+            alt.Tooltip("expected:Q", title=axes[1], format=".0f"),
+            alt.Tooltip("low", title=texts.LEAST), alt.Tooltip("high", title=texts.MOST),
+        ],
+    )  # fmt: skip
+    band = base.mark_area(opacity=0.25, color=_COLOURS[1]).encode(y="low:Q", y2="high:Q")
+    line = base.mark_line(color=_COLOURS[1], strokeWidth=2.5).encode(
         y=alt.Y("expected:Q", title=axes[1])
     )
     return alt.layer(band, line).properties(height=220)

@@ -12,6 +12,7 @@ import streamlit as st
 
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring import photos
 from fieldmon.plot.grid import plant_at, row_label
 
 from ..state import chosen_day, widget_memory
@@ -25,19 +26,20 @@ if TYPE_CHECKING:
     from .map_view import MapContent, Selected, Tapped
 
 _ROW, _PLANT, _TAPPED = "history row", "history plant", "history tapped"
+_MOST_PHOTOS = 3
 
 
 def want(
     choices: Choices, content: MapContent, selected: Selected | None = None,
-    tapped: Tapped | None = None, picked: tuple[int, ...] = (),
+    taken: Tapped | None = None, picked: tuple[int, ...] = (),
 ) -> None:  # fmt: skip
     """Want a map on which a tap chooses the plant whose history is shown, with a ring round it.
 
-    `selected` hears of the plants that are selected on it, `tapped` of what is tapped instead;
+    `selected` hears of the plants that are selected on it, `taken` of what is tapped instead;
     `picked` are the plants selected by now.
     """
     chosen = replace(content, layers=[*content.layers, *layers(choices)])
-    taking = tapped or partial(take_plant, choices)
+    taking = taken or partial(take_plant, choices)
     field_map.want(chosen, MapAnswers(taking, selected=selected, picked=picked))
 
 
@@ -50,17 +52,23 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
         st.session_state[_TAPPED] = True
 
 
-def layers(choices: Choices) -> list:
-    """Return the ring round the plant whose history is shown, if there is such a plant."""
+def tapped(choices: Choices) -> tuple[int, ...]:
+    """Return the plant that was tapped, or none."""
     if not st.session_state.get(_TAPPED):
-        return []
+        return ()
     try:
-        plant = plant_at(
-            choices.plot.grid, *(widget_memory.value(key, 1) for key in (_ROW, _PLANT))
+        return (
+            plant_at(choices.plot.grid, *(widget_memory.value(key, 1) for key in (_ROW, _PLANT))),
         )
     except FieldmonError:
-        return []  # its history says why
-    return plant_layers.chosen(choices.plot.grid, plant)
+        return ()  # its history says why
+
+
+def layers(choices: Choices) -> list:
+    """Return the ring round the plant whose history is shown, if there is such a plant."""
+    return [
+        ring for plant in tapped(choices) for ring in plant_layers.chosen(choices.plot.grid, plant)
+    ]
 
 
 def show_chosen(choices: Choices) -> None:
@@ -88,6 +96,19 @@ def show(choices: Choices) -> None:
         st.caption(texts.HISTORY_TREATED)
     for line in _inspections(choices, plant):
         st.markdown(line)
+    _show_photos(choices, plant)
+
+
+def _show_photos(choices: Choices, plant: int) -> None:
+    """Show the last photos of a plant."""
+    if choices.season is None:
+        return
+    own = [photo for photo in photos.photos_of(choices.season) if photo.plant == plant]
+    for photo in own[:_MOST_PHOTOS]:
+        found = photos.picture(choices.season, photo.id)
+        if found is not None:
+            day, who = choices.units.day(photo.on), texts.isolated(photo.scout)
+            st.image(found[1], f"{day}, {who}")
 
 
 def _on_route(choices: Choices, plant: int) -> str:

@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
 #: set where other devices may come: the address to listen on, or empty to find it
 LAN = "FIELDMON_LAN"
-#: the app's address as phones reach it
-ADDRESS = "FIELDMON_ADDRESS"
 #: the password; one is made where it is not set
 PASSWORD = "FIELDMON_PASSWORD"  # noqa: S105 - where it stands, not what it is
 #: where the authority's key is kept
@@ -97,7 +95,7 @@ def serve(app: Application, port: int, line: socket.socket, settings: dict[str, 
     made = certificates(kept, address)
     password = os.environ.get(PASSWORD) or new_password()
     own = f"https://{_host(address)}:{port}"
-    os.environ.setdefault(ADDRESS, own)
+    os.environ.setdefault(scout_page.ADDRESS, own)
     lines = [line, _listening(address, port), _listening(address, port + 1)]
     _say(own, f"http://{_host(address)}:{port + 1}", password, made)
     encrypted = {"ssl_certfile": made.chain, "ssl_keyfile": made.key, "lifespan": "off"}

@@ -256,7 +256,7 @@ def _has_screen() -> bool:
 
 def _as_reached() -> Any:  # noqa: ANN401 - an ASGI application
     """Return the app; behind a server that others reach it asks for a password."""
-    address = os.environ.get(lan.ADDRESS)
+    address = os.environ.get(scout_page.ADDRESS)
     if not address:
         return Server()
     password = os.environ.get(lan.PASSWORD) or gate.new_password()

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from shapely import MultiLineString
 
     from fieldmon.compute.units import Units
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.import_report import Imported
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
     from fieldmon.io.rasters.values import Backdrop, RasterOptions
     from fieldmon.io.readers.places import Plants
     from fieldmon.io.readers.points_and_lines import DrawnBlocks
+    from fieldmon.io.readers.weather_options import WeatherOptions
     from fieldmon.io.sources import (
         CanopySource,
         PlantingChoices,
@@ -60,6 +62,7 @@ if TYPE_CHECKING:
         RiskSource,
     )
     from fieldmon.monitoring import DayFigures, KeptMessage, Progress, Season
+    from fieldmon.pests.weather import Weather
     from fieldmon.planning.route import Route
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.field import Field
@@ -103,6 +106,12 @@ def records(
     They may name one of `_fields`, or rows and plants, the measured ones by their own labels.
     """
     return prepare.records_on(_plot, _source, lambda: _fields, _measured)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
+def weather(key: str, options: WeatherOptions, _source: Source) -> Imported[Weather]:  # noqa: ARG001
+    """Return the weather of a file."""
+    return read.read_weather(_source, options)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
@@ -294,6 +303,12 @@ def progress(path: str, revision: str, day: str, _season: Season) -> Progress:  
 def learnt(path: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:  # noqa: ARG001
     """Return what the inspections up to a day of a season tell of the insects."""
     return _season.learnt(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def forecast(path: str, revision: str, day: str, _season: Season) -> Forecast:  # noqa: ARG001
+    """Return how many plants are infested on the mornings after a day of a season."""
+    return _season.forecast(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)

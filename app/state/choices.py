@@ -7,7 +7,9 @@ from datetime import date
 from typing import TYPE_CHECKING
 
 from fieldmon.infestation.prior import PriorSettings
+from fieldmon.monitoring import photos_asked
 from fieldmon.planning.plan import PlanSettings
+from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.local_clock import LocalClock, local_clock
 from fieldmon.samplers import sampler
 
@@ -19,7 +21,6 @@ if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
     from fieldmon.monitoring import Season
     from fieldmon.planning.plan import DayPlan
-    from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
 
@@ -113,8 +114,12 @@ class Choices:
 
     @property
     def wishes(self) -> Wishes:
-        """Return what people want of the day besides."""
-        return wishes.of(self.place, self.day)
+        """Return what people want of the day besides, the plants to be photographed among it."""
+        picked = wishes.of(self.place, self.day)
+        if self.season is None or (self.today is not None and self.on < self.today):
+            return picked
+        asked = {one.plant for one in photos_asked.photos_asked(self.season)}
+        return Wishes(tuple(sorted({*picked.wanted, *asked} - {*picked.unwanted})), picked.unwanted)
 
     @property
     def team(self) -> tuple[str, ...]:

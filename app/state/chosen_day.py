@@ -15,6 +15,7 @@ from fieldmon.monitoring import day_was_worked
 from . import cached
 
 if TYPE_CHECKING:
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.observations import Observations
@@ -129,6 +130,11 @@ def progress(choices: Choices) -> Progress:
 def learnt(choices: Choices) -> tuple[Learnt, ...]:
     """Return what a season's inspections tell of the insects."""
     return cached.learnt(choices.key, choices.revision, choices.day, choices.season)
+
+
+def forecast(choices: Choices) -> Forecast:
+    """Return how many plants are infested after the day shown if nobody inspects any more."""
+    return cached.forecast(choices.key, choices.revision, choices.day, choices.season)
 
 
 def figures(choices: Choices, day: str) -> DayFigures:

@@ -1,18 +1,15 @@
-"""Where a phone finds the day's work: the one place that says it."""
+"""Where a phone finds the app and the day's work: the one place that says it."""
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from ipaddress import ip_address
-from typing import TYPE_CHECKING
 from urllib.parse import urlencode, urlsplit
 
 import streamlit as st
 
-from . import kept_files, plot_source, rooms, work_day
-
-if TYPE_CHECKING:
-    from .choices import Choices
+from . import kept_files, plot_source, scout_page, work_day
 
 
 @dataclass(frozen=True)
@@ -22,21 +19,34 @@ class PhoneAddress:
     url: str
     reachable: bool
 
+    @property
+    def works_offline(self) -> bool:
+        """Return whether phones give it their position, and keep it without a network."""
+        return self.reachable and self.url.startswith("https://")
 
-def address(choices: Choices) -> PhoneAddress:
-    """Return where a phone finds the chosen day: the next plant of a season, else the plan."""
+
+def base() -> PhoneAddress:
+    """Return where phones find the app: as it was started for them, else as it is seen here."""
+    told = os.environ.get(scout_page.ADDRESS)
+    if told:
+        return PhoneAddress(told, True)
     here = urlsplit(st.context.url or "")
+    if not here.netloc:
+        port = os.environ.get("STREAMLIT_SERVER_PORT", "8501")
+        return PhoneAddress(f"http://127.0.0.1:{port}", False)
+    return PhoneAddress(f"{here.scheme}://{here.netloc}", _is_reachable(here.hostname or ""))
+
+
+def address() -> PhoneAddress:
+    """Return where a phone finds the plan that is open here, of a plot without a season."""
     words = {
         word: st.query_params[word]
         for word in (plot_source.KEY, kept_files.KEY, work_day.KEY)
         if word in st.query_params
     }
-    if choices.season is not None:
-        words[rooms.KEY] = "scout"
     asked = f"?{urlencode(words)}" if words else ""
-    return PhoneAddress(
-        f"{here.scheme}://{here.netloc}/{asked}", _is_reachable(here.hostname or "")
-    )
+    at = base()
+    return PhoneAddress(f"{at.url}/{asked}", at.reachable)
 
 
 def _is_reachable(host: str) -> bool:

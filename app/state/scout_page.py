@@ -15,6 +15,8 @@ from urllib.parse import urlencode
 from ..words import scout_words
 from ..words.language import LANGUAGES
 
+#: where the app's address as phones reach it is said; `fieldmon app --lan` sets it
+ADDRESS = "FIELDMON_ADDRESS"
 #: where the server hands it out
 PATH = "/scouting/"
 FOLDER = Path(__file__).parents[1] / "scout_page" / "built"

@@ -8,7 +8,14 @@ import streamlit as st
 
 from fieldmon.errors import PlotError
 
-from ..actions import answering, bringing_files, drawing, laying_ground, rasters
+from ..actions import (
+    answering,
+    bringing_files,
+    choosing_pest,
+    drawing,
+    laying_ground,
+    rasters,
+)
 from ..show import field_map, plot_figures
 from ..show import records as records_shown
 from ..show.assumed import sentence
@@ -62,6 +69,7 @@ def show(choices: Choices) -> None:
         rasters.show_risk()
     else:
         st.info(texts.FIXED)
+    choosing_pest.show(choices)
     laying_ground.show(choices)
     with st.expander(texts.MESSAGES, expanded=True):
         bringing_files.show_messages(choices.messages)

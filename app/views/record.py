@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def show(choices: Choices) -> None:
     """Take in what was found."""
     content = map_layers.day_map(choices, first="state")
-    plant_history.want(choices, content, tapped=partial(recording.take_plant, choices))
+    plant_history.want(choices, content, taken=partial(recording.take_plant, choices))
     if choices.season is None:
         st.markdown(texts.NEEDS_SEASON)
         beginning.show(choices)

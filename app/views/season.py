@@ -9,7 +9,15 @@ import numpy as np
 import streamlit as st
 
 from ..actions import assuming, beginning
-from ..show import cautions, charts, learnt, map_layers, plant_history
+from ..show import (
+    cautions,
+    charts,
+    development,
+    forecast,
+    learnt,
+    map_layers,
+    plant_history,
+)
 from ..state import assumptions, chosen_day
 from ..words import texts
 from ..words.language import number
@@ -34,7 +42,9 @@ def show(choices: Choices) -> None:
     cautions.show(choices)
     cautions.show_treatments(choices)
     assuming.show(choices)
+    development.show(choices)
     _charts(choices, days, progress)
+    forecast.show(choices)
     learnt.show(choices)
 
 

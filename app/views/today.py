@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..actions import assuming, beginning, choosing, morning, picking
+from ..actions import asking_photos, assuming, beginning, choosing, morning, picking
 from ..show import cautions, day, map_layers, plant_history
 from ..state import chosen_day, wishes
 from ..state.chosen_day import DayRoute
@@ -31,6 +31,7 @@ def show(choices: Choices) -> None:
     plant_history.want(choices, content, partial(picking.take, choices), picked=picked)
     picking.show(choices, plan)
     plant_history.show_chosen(choices)
+    asking_photos.show(choices)
     day.route_figures(choices, plan)
     assuming.show(choices)
     if choices.season is None:

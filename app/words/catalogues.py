@@ -32,7 +32,7 @@ _SAME_ON_PAPER = frozenset({report_words.FOOTER})
 
 
 @dataclass(frozen=True)
-class Entry:
+class TextEntry:
     """A text to translate: where it stands, its English words, and those for one thing."""
 
     context: str
@@ -45,14 +45,14 @@ class Entry:
         return (self.one, self.words) if self.one else self.words
 
 
-def entries() -> list[Entry]:
+def entries() -> list[TextEntry]:
     """Return every text of the app and every worded sentence of the library, in order."""
     names = [name for name in vars(texts) if name.isupper() and not name.startswith("_")]
     own = [one for name in names for one in _within(name, vars(texts)[name])]
     return [*own, *of_library()]
 
 
-def _within(context: str, value: Any) -> Iterator[Entry]:  # noqa: ANN401 - a text, or many
+def _within(context: str, value: Any) -> Iterator[TextEntry]:  # noqa: ANN401 - a text, or many
     if context in SAME:
         return
     if isinstance(value, dict):
@@ -62,10 +62,10 @@ def _within(context: str, value: Any) -> Iterator[Entry]:  # noqa: ANN401 - a te
         for number, one in enumerate(value):
             yield from _within(f"{context}.{number}", one)
     elif isinstance(value, str):
-        yield Entry(context, str(value), value.one if isinstance(value, Plural) else "")
+        yield TextEntry(context, str(value), value.one if isinstance(value, Plural) else "")
 
 
-def of_library() -> list[Entry]:
+def of_library() -> list[TextEntry]:
     """Return the sentences that the library words, as its source has them."""
     found = {entry.words: entry for entry in _of_reports()}
     for path in sorted(Path(fieldmon.__file__).parent.rglob("*.py")):
@@ -76,19 +76,19 @@ def of_library() -> list[Entry]:
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.args:
                 entry = _worded(node.func.id, node.args)
             elif (many := _of_many(node)) is not None:
-                entry = Entry(LIBRARY, many)
+                entry = TextEntry(LIBRARY, many)
             if entry is not None:
                 found.setdefault(entry.words, entry)
     return list(found.values())
 
 
-def _of_reports() -> Iterator[Entry]:
+def _of_reports() -> Iterator[TextEntry]:
     """Yield what reports write without wording it: headings, units, names of samplers."""
     titles = [kind.title for kind in of_equal_times().values()]
     for value in (*report_words.TEXTS.values(), *IN_UNIT.values(), *titles):
         for entry in _within(LIBRARY, value):
             if entry.words not in _SAME_ON_PAPER and _has_letters(entry.words):
-                yield Entry(LIBRARY, entry.words)
+                yield TextEntry(LIBRARY, entry.words)
 
 
 def _has_letters(words: str) -> bool:
@@ -108,12 +108,12 @@ def _of_many(node: ast.AST) -> str | None:
     return said if isinstance(said, str) and said else None
 
 
-def _worded(function: str, arguments: list[ast.expr]) -> Entry | None:
+def _worded(function: str, arguments: list[ast.expr]) -> TextEntry | None:
     said = [_value(one) for one in arguments if isinstance(one, ast.Constant | ast.Attribute)]
     if function in _WORDING and said and isinstance(said[0], str) and _has_letters(said[0]):
-        return Entry(LIBRARY, said[0])
+        return TextEntry(LIBRARY, said[0])
     if function == "counted" and said and isinstance(said[-1], str):
-        return Entry(LIBRARY, f"{{n}} {said[-1]}s", f"{{n}} {said[-1]}")
+        return TextEntry(LIBRARY, f"{{n}} {said[-1]}s", f"{{n}} {said[-1]}")
     return None
 
 
@@ -136,7 +136,7 @@ def read(language: str) -> Catalog:
         return read_po(file, locale=language)
 
 
-def update(language: str) -> list[Entry]:
+def update(language: str) -> list[TextEntry]:
     """Write a language's file anew; return what is not translated."""
     before = read(language)
     after = Catalog(

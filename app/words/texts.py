@@ -150,6 +150,68 @@ SEASON_INTRO = (
     "neighbouring plants at night; every sampler meets the same insects. Detection is all finds "
     "so far in percent of all infestations so far."
 )
+# pests and weather
+LIVING = "Pest and weather"
+LIVING_NOTE = (
+    "Which pest is looked for, and how warm it was. The chance map then follows that pest's "
+    "nights, and the season says when its next generation is due."
+)
+WHICH_PEST, NO_PEST, OWN_PEST = "Pest", "Any pest: nights are as assumed", "From a file"
+PEST_FILE = "Pest: TOML, as the documentation says"
+WEATHER_FILE = "Weather by hours or days: CSV or Excel of a station, IPM Decisions JSON"
+LIVING_USE = "Use these in the season"
+LIVING_CHANGED = "The season's nights are believed by these from the first on."
+LIVING_KEPT = "Pest of this season: {pest}."
+WEATHER_KEPT = "Its weather: {first} to {last}."
+WEATHER_NEEDS_PEST = "Weather goes with a pest, which says what warmth does: choose one."
+PEST_TITLES = {
+    "thesis": "Two-spotted spider mite, the thesis's rule",
+    "spider-mite": "Two-spotted spider mite, by degree-days",
+    "green-peach-aphid": "Green peach aphid",
+    "plum-pox-virus": "Plum pox virus (sharka), carried by aphids",
+    "strawberry-anthracnose": "Strawberry anthracnose, carried by rain splash",
+    "western-flower-thrips": "Western flower thrips",
+    "whitefly": "Tobacco whitefly",
+}
+PEST_STAGES = {
+    "egg": "egg", "larva": "larva", "protonymph": "protonymph", "deutonymph": "deutonymph",
+    "egg to adult": "egg to adult", "adult before eggs": "adult before eggs",
+    "first instar": "first instar", "second instar": "second instar",
+    "third instar": "third instar", "fourth instar": "fourth instar",
+    "adult before young": "adult before young",
+}  # fmt: skip
+PEST_PARTS = {
+    "stages": "Stages", "generation": "A generation", "increase": "Rate of increase",
+    "movement": "How it moves", "entry": "How it enters", "detection": "How it is seen",
+    "course": "Its course in a plant",
+}  # fmt: skip
+PEST_COLUMNS = ("Stage", "Threshold (°C)", "Degree-days")
+PEST_NOT_FOUND = "Not found, or our choice"
+PEST_GENERATION = "A generation takes {degree_days} degree-days above {threshold} °C."
+PEST_INCREASE = "Rate of increase a day"
+PEST_RATE = "{rate} at {at} °C"
+PEST_MOVES = {
+    "adjacent": "It goes to each plant beside it with a chance of {per_day} a day.",
+    "exponential": "A plant sends out {per_day} a day, on average {reach} m far.",
+    "cauchy": "A plant sends out {per_day} a day, half of them farther than {reach} m.",
+}
+PEST_WITH_WIND, PEST_IN_RAIN = "It goes with the wind.", "It moves only in rain of {rain} mm on."
+DEGREE_DAYS = "Degree-days"
+NEXT_GENERATION = "Next generation around {when}."
+GATHERED = "{degree_days} degree-days above {threshold} °C since {since}, of {needed} a generation."
+STAGE_NOW = "Those of that day: {stage}."
+NO_GENERATION = "At this warmth the next generation is more than a year away."
+GENERATION_MARK = "generation {n}"
+NEEDS_WEATHER = "Bring its weather on Plot & data to see when its next generation is due."
+NO_DEVELOPMENT = "Its file does not say how warmth brings it on."
+DAYS_FILLED = Plural(
+    "{n} of the days so far is filled in from those about it: no weather is known.",
+    "{n} of the days so far are filled in from those about them: no weather is known.",
+)
+DEVELOPMENT_NOTE = (
+    "Counted from the first find, or the season's first day until there is one. Beyond the "
+    "weather's end it goes on as in its last seven days (dashed)."
+)
 DAYS, INFESTED, SPREAD, SEED = "Days", "Infested at the start (%)", "Spread a night (%)", "Seed"
 SPREAD_HELP = "Chance a night that an infested plant infests each plant next to it."
 SEED_HELP = "The same seed gives the same season."
@@ -553,6 +615,17 @@ LEARNT = {
     ),
     "length of jumps": "If so, jumps go {value} plants on average ({low} to {high}).",
 }
+AHEAD_TITLE, AHEAD_AXIS = "If nobody inspects from now on", "infested (expected)"
+AHEAD = (
+    "About {last} plants are infested after {nights} nights without inspections ({low} to {high} "
+    "with a chance of 90%); now it is about {now}."
+)
+AHEAD_BASIS = {
+    "none": "No weather is known of: every night is taken as the season's settings say.",
+    "forecast": "By the weather forecast.",
+    "partly": "By the weather forecast for {n} of the nights, and the usual of the date after it.",
+    "usual": "By the usual weather of the date: there is no forecast.",
+}
 NOT_LEARNT = "This season traces finds to the plants next to them only, as it did when it began."
 
 # -- scouting
@@ -668,6 +741,9 @@ SCOUT_PAGE = {
     "load_day": "Load the day", "old_day": "This route is of {day}: load today's",
     "loading": "Loading ...", "route_done": "The route is done.",
     "place": "Row {row}, plant {plant}", "no_position": "No position yet", "there": "You are there",
+    "photo_asked": "A photo is asked for.", "photo_asked_of": "A photo is asked for: {note}",
+    "asked": "Photos asked for: {n}", "photo_comes": "The photo is being kept ...",
+    "kept": "Kept: {what}", "keeping": "Being kept: {what}",
     "away": "{m} m away", "chance": "Chance {n} %", "off_route": "Off the route",
     "who_says": "{who}: {result}",
     "clean": "Clean", "found": "Found", "skipped": "Could not inspect",
@@ -709,8 +785,16 @@ INVITE_LOCAL = (
 INVITE_NAME, INVITE_FIRST, INVITE_LAST = "Name", "From row", "To row"
 INVITE_BUTTON, TAKE_BACK = "Make a code", "Take back"
 INVITE_CODE = "Code for {name}"
+INVITE_ALT = "Picture with a person's own address of the season, for a phone's camera."
 INVITED = "{name}, rows {low} to {high}"
 TAKEN_BACK = "{name} can no longer read or record anything of this season."
+ASK_PHOTOS = "Photos asked for: {n}"
+ASK_PHOTO, ASK_PHOTO_BUTTON = "What is to be seen on it", "Ask for a photo of {plants}"
+ASK_PHOTO_NOTE = (
+    "The route leads by, as far as the hours allow, and the scout's page shows it at the plant. It "
+    "is asked for until a photo of the plant has come."
+)
+ASKED_PHOTO, ASK_NO_MORE = "Row {row}, plant {plant}. {note}", "No more"
 SAID_OTHERWISE = "Said otherwise of the same plant on this day. Look again, and undo what is wrong:"
 SAID_BY = "Row {row}, plant {plant}: {said}"
 

@@ -86,6 +86,12 @@ def _others(lan: bool, address: str, reached_at: str) -> dict[str, str]:  # noqa
             "The address at which others reach the app must begin with https://, for phones give "
             f"no position to others, but it is {reached_at!r}."
         )
+    if reached_at.rstrip("/").count("/") > 2:  # two are those of https://
+        raise SettingError(
+            "The address at which others reach the app must be a name, and perhaps a port, without "
+            f"a path, but it is {reached_at!r}. Give the app a name of its own, as "
+            "https://field.example."
+        )
     told = {"FIELDMON_ADDRESS": reached_at.rstrip("/")} if reached_at else {}
     if lan:
         told["FIELDMON_LAN"] = "" if address == _HERE else address

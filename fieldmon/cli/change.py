@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -17,6 +17,7 @@ from fieldmon.cli.options import (
     Speed,
     WorkerOptions,
 )
+from fieldmon.cli.pest_options import PestOptions, tell_pest
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
 from fieldmon.errors import SettingError
@@ -25,6 +26,7 @@ from fieldmon.samplers.registry import SAMPLERS
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import MonitoringSettings
+    from fieldmon.plot.field import Field
 
 
 @dataclass(frozen=True)
@@ -51,14 +53,14 @@ class ChangeOptions:
             help="Trace finds beyond the plants next to them, and learn how far insects jump.",
         ),
     ] = None
-
     harvest: Annotated[
         str | None,
         typer.Option(help="First day of harvest, YYYY-MM-DD, which treatments wait for; or none."),
     ] = None
     who: Annotated[str, typer.Option(help="Who chooses so.")] = ""
+    living: PestOptions = field(default_factory=PestOptions)
 
-    def changed(self, settings: MonitoringSettings) -> MonitoringSettings:
+    def changed(self, settings: MonitoringSettings, plot: Field) -> MonitoringSettings:
         """Return a season's settings as they are to be."""
         from dataclasses import replace  # noqa: PLC0415
 
@@ -83,7 +85,27 @@ class ChangeOptions:
         if self.harvest is not None:
             none = self.harvest.casefold() == "none"
             new = replace(new, harvest=None if none else day(self.harvest, "--harvest"))
-        return new
+        return self._of_pest(new, plot)
+
+    def _of_pest(self, settings: MonitoringSettings, plot: Field) -> MonitoringSettings:
+        """Return settings with the pest and the weather told; ``none`` takes the pest out."""
+        from dataclasses import replace  # noqa: PLC0415
+
+        new, told = settings, self.living
+        if told.pest == "none":
+            new = replace(new, pest=None)
+        elif (pest := told.named()) is not None:
+            tell_pest(pest)
+            team = tuple(replace(one, robot=pest.seen_by(one.robot)) for one in new.team)
+            new = replace(new, pest=pest, robot=pest.seen_by(new.robot), team=team)
+        if (weather := told.met(plot)) is None:
+            return new
+        if new.pest is None:
+            raise SettingError(
+                "--weather goes with a pest, which says what warmth does, but this season has "
+                "none. Give one too, as --pest spider-mite."
+            )
+        return replace(new, weather=weather)
 
     def _of_several(self, settings: MonitoringSettings) -> MonitoringSettings:
         """Return settings with the team of ``--robots``; one robot is no team."""
@@ -114,13 +136,17 @@ def _every(name: str, every: int) -> dict[str, float]:
 def change(options: ChangeOptions) -> None:
     """Choose otherwise for a season; what was chosen before stays in its file.
 
+    A pest is taken out again with --pest none; a newer weather file takes the place of the one
+    before.
+
     Example: fieldmon change season.gpkg --hours 6 --sampler naive
+    Example: fieldmon change season.gpkg --pest spider-mite --weather station.csv
     """
     from fieldmon.monitoring import Season  # noqa: PLC0415
 
     season = Season(options.season)
     seen = season.settings
-    new = options.changed(seen)
+    new = options.changed(seen, season.plot.field)
     if new == seen:
         typer.echo("Nothing was changed.")
         return

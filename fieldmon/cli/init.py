@@ -24,15 +24,19 @@ from fieldmon.cli.options import (
     WorkerOptions,
     sampler_settings,
 )
+from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import WorkStart, clock, day
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from datetime import datetime, time
 
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.monitoring import MonitoringSettings
+    from fieldmon.monitoring.history import BeliefSettings
     from fieldmon.planning.members import TeamMember
 
 
@@ -57,13 +61,18 @@ class InitOptions:
         ),
     ] = False
     spread: Annotated[
-        float, typer.Option(help="Chance a night that a plant infests its neighbour, as believed.")
-    ] = 0.02
+        float | None,
+        typer.Option(
+            help="Chance a night that a plant infests its neighbour, as believed: 0.02 if neither "
+            "it nor --pest is given."
+        ),
+    ] = None
     seed: Annotated[int, typer.Option(help="For samplers that draw.")] = 1
     robots: Robots = None
     contact: Contact = 0.0
     least_gain: LeastGain = 0.5
     worker: WorkerOptions = field(default_factory=WorkerOptions)
+    living: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
 
     def team(self) -> tuple[tuple[TeamMember, ...], time]:
@@ -73,7 +82,9 @@ class InitOptions:
             return (), start
         return members_of(self.robots or "", start, self.worker)
 
-    def settings(self, begins: datetime, team: tuple[TeamMember, ...]) -> MonitoringSettings:
+    def settings(
+        self, begins: datetime, team: tuple[TeamMember, ...], living: PestInWeather | None
+    ) -> MonitoringSettings:
         """Return how the season is worked."""
         from dataclasses import replace  # noqa: PLC0415
 
@@ -81,18 +92,29 @@ class InitOptions:
         from fieldmon.monitoring.history import BeliefSettings  # noqa: PLC0415
         from fieldmon.planning.members import Teamwork  # noqa: PLC0415
 
+        if self.spread is not None and living is not None:
+            raise SettingError("--spread goes without --pest, which says how it spreads.")
         belief = BeliefSettings(treated=not self.flag_only)
         return MonitoringSettings(
             begins.date(),
             begins.time(),
-            self.worker.robot(),
+            self.living.seen(self.worker.robot()),
             self.sampler.value,
             sampler_settings(self.sampler, self.every),
-            belief=replace(belief, spread=replace(belief.spread, rate_per_day=self.spread)),
+            belief=belief if self.spread is None else _spreading(belief, self.spread),
             seed=self.seed,
-            team=team,
+            prior=prior_of(living, begins.date()),
+            pest=None if living is None else living.pest,
+            weather=None if living is None else living.weather,
+            team=tuple(replace(one, robot=self.living.seen(one.robot)) for one in team),
             teamwork=Teamwork(contact_s=60.0 * self.contact, least_gain=self.least_gain),
         )
+
+
+def _spreading(belief: BeliefSettings, rate: float) -> BeliefSettings:
+    from dataclasses import replace  # noqa: PLC0415
+
+    return replace(belief, spread=replace(belief.spread, rate_per_day=rate))
 
 
 @with_options
@@ -104,7 +126,10 @@ def init(options: InitOptions) -> None:
     With --robots each of a team has a route file of its own every day.
 
     Example: fieldmon init season.gpkg estate.zip --feature Gate --observations mites.csv
+    With --pest the chance map follows that pest's nights, with --weather as warm as they were.
+
     Example: fieldmon init season.gpkg estate.zip --feature Gate --robots 2
+    Example: fieldmon init season.gpkg estate.zip --feature Gate --pest spider-mite
     """
     import numpy as np  # noqa: PLC0415
 
@@ -114,7 +139,9 @@ def init(options: InitOptions) -> None:
     starts = WorkStart(day(options.begins, "--begins"), at)
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
-    settings = options.settings(starts.on_plot(known.plot.field), team)
+    begins = starts.on_plot(known.plot.field)
+    living = options.living.living(known.plot.field, begins.date())
+    settings = options.settings(begins, team, living)
     tell_unusable(known.records, np.datetime64(settings.begins, "D"))
     messages = [KeptMessage.of(said.source, said.message) for said in known.messages]
     season = Season.create(path, known.plot, known.records, settings, messages, known.risk)

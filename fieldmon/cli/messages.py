@@ -32,6 +32,7 @@ FLAGS = {
     "canopy": "--canopy-option",
     "risk": "--risk-option",
     "findings": "--finding-option",
+    "weather": "--weather-option",
 }
 #: questions that another file answers, not a value
 _OTHER_FILES = {

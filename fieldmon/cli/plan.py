@@ -26,6 +26,7 @@ from fieldmon.cli.options import (
     sampler_of,
 )
 from fieldmon.cli.outputs import ChanceMap, day_in_words, write_chance_map, write_routes
+from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.plan_season import plan_season
 from fieldmon.cli.plan_team import plan_team
 from fieldmon.cli.preparing import estate, prepared
@@ -68,6 +69,7 @@ class PlanOptions:
     start: StartTime = "06:00"
     now: Now = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
+    living: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
     chance_map: ChanceMap = None
     every_plot: EveryPlot = False
@@ -98,6 +100,9 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
 
     Of a whole day it is said what no other route of these hours can expect to find, whichever
     plants it visits: how much a better plan could gain at most.
+
+    With --pest, plants are looked at by that pest's chance of detection, and with --weather records
+    count half once its next generation sits on the plants.
 
     With --robots, no plant is visited twice, and no two are in one aisle at once.
 
@@ -134,12 +139,14 @@ def _plan_one(options: PlanOptions) -> None:
     from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
     from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
 
-    robot, starts = options.worker.robot(), options.starts()
-    settings = PlanSettings(robot, sampler_of(options.sampler, options.every))
+    robot, starts = options.living.seen(options.worker.robot()), options.starts()
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
     begins = starts.on_plot(known.plot.field)
     on = np.datetime64(begins.date(), "D")
+    living = options.living.living(known.plot.field, begins.date())
+    sampler, prior = sampler_of(options.sampler, options.every), prior_of(living, begins.date())
+    settings = PlanSettings(robot, sampler, prior)
     tell_unusable(known.records, on)
     today = first_day(known.plot, known.records, on, settings, known.risk)
     if not len(today.route):
@@ -167,6 +174,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
     request, folder = _request_of_all(options), _folder(options.output)
     plots = estate(request)
     begins = starts.on_plot(plots.fields[0])
+    living = options.living.living(plots.fields[0], begins.date())
     orders = Orders(
         day=np.datetime64(begins.date(), "D"),
         sampler=options.sampler.value,
@@ -175,6 +183,8 @@ def _plan_every_plot(options: PlanOptions) -> None:
         robot=worker.given(),
         planting=request.planting.given(),
         bound=options.bound,
+        prior=prior_of(living, begins.date()),
+        pest=None if living is None else living.pest,
     )
     tell_unusable(plots.records.anywhere, orders.day)
     plan_all(plots, orders, Day(plots.records, folder, begins))

@@ -27,6 +27,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     """Plan a day of a season, keep the route in its file, and write it for whoever drives."""
     from fieldmon.monitoring import Season  # noqa: PLC0415
     from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
+    from fieldmon.planning.route import with_forecast  # noqa: PLC0415
 
     _refuse_what_was_chosen(context)
     season = Season(file)
@@ -48,7 +49,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     done = f"{len(seen)} done, " if len(seen) else ""
     typer.echo(f"{on}: {done}{day_in_words(route)}")
     tell_assumed(season.assumed())
-    write_routes(route, options.output)
+    write_routes(with_forecast(route, season.forecast(on)), options.output)
     write_chance_map(options.chance_map, season.plot, today.chance)
 
 

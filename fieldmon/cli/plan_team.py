@@ -10,6 +10,7 @@ import typer
 
 from fieldmon.cli.messages import tell_assumed, tell_unusable
 from fieldmon.cli.outputs import write_chance_map
+from fieldmon.cli.pest_options import prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.team_files import files_of_each, members_of, tell_member, write_member
 from fieldmon.cli.times import WorkStart
@@ -28,7 +29,7 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     """Plan a day of a team on one plot, and write a file for each."""
     import numpy as np  # noqa: PLC0415
 
-    from fieldmon.infestation.prior import PriorSettings, prior_chance  # noqa: PLC0415
+    from fieldmon.infestation.prior import prior_chance  # noqa: PLC0415
     from fieldmon.planning import team  # noqa: PLC0415
     from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
 
@@ -40,8 +41,9 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     members, first = members_of(robots, options.starts().at, options.worker)
     starts, files = WorkStart(options.starts().on, first), files_of_each(options.output, members)
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
-    plot, prior = known.plot, PriorSettings()
-    begins = starts.on_plot(plot.field)
+    plot, begins = known.plot, starts.on_plot(known.plot.field)
+    prior = prior_of(options.living.living(plot.field, begins.date()), begins.date())
+    members = tuple(replace(one, robot=options.living.seen(one.robot)) for one in members)
     on = np.datetime64(begins.date(), "D")
     tell_unusable(known.records, on)
     chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)

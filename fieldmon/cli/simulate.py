@@ -20,13 +20,17 @@ from fieldmon.cli.options import (
     WorkerOptions,
     sampler_of,
 )
+from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import COMPARED_SAMPLERS, SamplerName
 from fieldmon.cli.times import day, day_on
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
+    from fieldmon.simulation.season import SeasonSettings
     from fieldmon.simulation.start import Start
 
 _HEADER = "sampler,day,detection_pct,visited_pct,ever_visited_pct,found,infested_left"
@@ -50,10 +54,26 @@ class SimulateOptions:
     days: Annotated[int, typer.Option(help="Working days.")] = 25
     seed: Annotated[int, typer.Option(help="Seed: the same seed, the same season.")] = 1
     infested: Annotated[float, typer.Option(help="Share of plants infested at the start.")] = 0.02
-    spread: Annotated[float, typer.Option(help="Chance a night to infest each neighbour.")] = 0.1
+    spread: Annotated[
+        float | None,
+        typer.Option(
+            help="Chance a night to infest each neighbour: 0.1 if neither it nor --pest is given."
+        ),
+    ] = None
     on: WorkDate = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
+    living: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
+
+    def season(self, living: PestInWeather | None) -> SeasonSettings:
+        """Return what happens in the season."""
+        from fieldmon.infestation.spread import Spread  # noqa: PLC0415
+        from fieldmon.simulation.season import SeasonSettings  # noqa: PLC0415
+
+        if living is not None and self.spread is not None:
+            raise SettingError("--spread goes without --pest, which says how it spreads.")
+        rate = 0.1 if self.spread is None else self.spread
+        return SeasonSettings(n_days=self.days, spread=Spread(rate), pest=living)
 
 
 @with_options
@@ -63,26 +83,31 @@ def simulate(options: SimulateOptions) -> None:
     The start is drawn from the chance map of the records; all samplers meet the same insects.
     Detection is all finds so far in percent of all infestations so far.
 
+    With --pest the insects are that pest's, in the weather of --weather, and the chance map knows.
+
+    Example: fieldmon simulate vines.zip --feature 3 --pest spider-mite --weather station.csv
     Example: fieldmon simulate vines.zip --feature 3 --sampler naive --sampler dynamic --days 10
     """
     import numpy as np  # noqa: PLC0415
 
     from fieldmon.compute.random_streams import RandomStreams  # noqa: PLC0415
-    from fieldmon.infestation.prior import PriorSettings, prior_chance  # noqa: PLC0415
+    from fieldmon.infestation.prior import prior_chance  # noqa: PLC0415
     from fieldmon.simulation.start import season_start  # noqa: PLC0415
 
-    robot, told = options.worker.robot(), day(options.on)
+    robot, told = options.living.seen(options.worker.robot()), day(options.on)
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
-    on = np.datetime64(day_on(known.plot.field, told), "D")
+    begins = day_on(known.plot.field, told)
+    on, living = np.datetime64(begins, "D"), options.living.living(known.plot.field, begins)
+    season, prior = options.season(living), prior_of(living, begins)
     tell_unusable(known.records, on)
     plot, records = known.plot, known.records
-    chance = prior_chance(plot.grid, plot.field, records, on, PriorSettings(), known.risk)
+    chance = prior_chance(plot.grid, plot.field, records, on, prior, known.risk)
     streams = RandomStreams(options.seed)
     begin = season_start(plot.grid, chance, options.infested, streams)
     rows = []
     for name in options.sampler or COMPARED_SAMPLERS:
-        rows += _season(plot, robot, name, begin, options)
+        rows += _season(plot, robot, name, begin, (options, season))
     if options.output is not None:
         from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
 
@@ -91,14 +116,17 @@ def simulate(options: SimulateOptions) -> None:
 
 
 def _season(
-    plot: Plot, robot: Robot, name: SamplerName, begin: Start, options: SimulateOptions
+    plot: Plot,
+    robot: Robot,
+    name: SamplerName,
+    begin: Start,
+    told: tuple[SimulateOptions, SeasonSettings],
 ) -> list[str]:
     """Print the days of a season with a sampler; return them as lines of the table."""
     from fieldmon.compute.random_streams import RandomStreams  # noqa: PLC0415
-    from fieldmon.infestation.spread import Spread  # noqa: PLC0415
-    from fieldmon.simulation.season import SeasonSettings, simulated_days  # noqa: PLC0415
+    from fieldmon.simulation.season import simulated_days  # noqa: PLC0415
 
-    settings = SeasonSettings(n_days=options.days, spread=Spread(options.spread))
+    options, settings = told
     decides, streams = sampler_of(name, options.every), RandomStreams(options.seed)
     walk = simulated_days(plot.aisles, robot, decides, begin, settings, streams)
     rows = []

@@ -37,6 +37,7 @@ def status(
     kept = Season(season)
     now = kept.status(day(on) or kept.last_date())
     typer.echo("\n".join(lines(kept, now)))
+    typer.echo(f"  in days to come        {kept.forecast(now.on).sentence()}")
     for line in of_treatments(kept, now):
         typer.echo(line)
     if rows:
@@ -73,6 +74,13 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         yield f"  {'' if number else 'as inspections tell':22} {learnt.sentence()}"
     if not now.learnt:
         yield "  finds are traced       to neighbours only; fieldmon change --trace goes farther"
+    if (pest := season.settings.pest) is not None:
+        yield f"  pest                   {pest.title or pest.name}"
+    if now.development is not None:
+        stage = f" ({now.development.stage})" if now.development.stage else ""
+        yield f"  its development        {now.development.sentence()}{stage}"
+        if guessed := int(now.development.guessed[: now.development.elapsed].sum()):
+            yield f"                         {guessed} of its days are filled in: no weather known"
     spots = now.hot_spots
     yield f"  hot spots              {len(spots):6d}" + "".join(
         f"; {spots.found[h]} finds where {spots.expected[h]:.1f} were expected"

@@ -11,6 +11,7 @@ from fieldmon.cli.study_prior import prior
 from fieldmon.cli.study_routes import routes
 from fieldmon.cli.study_run import study_run
 from fieldmon.cli.study_samplers import samplers
+from fieldmon.cli.study_weather import weather
 
 app = typer.Typer(
     no_args_is_help=True, help="Published experiments, made again, and studies of one's own."
@@ -20,6 +21,7 @@ app.command("calibrate")(calibrate)
 app.command("samplers")(samplers)
 app.command("beliefs")(beliefs)
 app.command("routes")(routes)
+app.command("weather")(weather)
 app.command("run")(study_run)
 app.command("no-prior")(no_prior)
 

@@ -92,7 +92,7 @@ def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
 def _length(belief: TracedPairs) -> Learnt:
     """Return how far jumps go on average, to first order in what is not known of the kernels."""
     share = belief.beyond / belief.beyond.sum()
-    means = kernel_means(belief.reach.cells.size_m)
+    means = kernel_means(belief.reach.cells.size_m, belief.reach.kernels)
     mean = float(share @ means)
     doubt = share * (means - mean) * belief.counts.doubt[JUMPED:]
     off = _SIGMAS * float(np.sqrt((doubt**2).sum()))

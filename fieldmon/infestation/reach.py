@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,7 @@ import numpy as np
 from scipy import fft
 
 from fieldmon.infestation.cells import Cells
+from fieldmon.infestation.kernels import DistanceKernel
 from fieldmon.infestation.prior import PriorSettings, edge_chance
 
 if TYPE_CHECKING:
@@ -27,6 +28,10 @@ _NEAR, _MIDDLE, _FAR = 2.0, 4.0, 3.0
 #: it; and by each kernel of :func:`kernels` (our choice)
 BESIDE = 0.5
 BEYOND = np.array([0.25, 0.05, 0.05, 0.05, 0.05, 0.05])
+#: the same of a pest whose kernel was published, its own kernel first, see :func:`pest_kernels`
+OF_PEST = np.array([0.6, 0.1, 0.1, 0.05, 0.05, 0.1])
+# a pest's kernel is followed so many of its scales, and so many plants at most
+_SCALES, _WIDEST = 3.0, 30
 
 
 def kernels(size_m: Floats) -> Floats:
@@ -53,11 +58,35 @@ def kernels(size_m: Floats) -> Floats:
     return shared
 
 
-def kernel_means(size_m: Floats) -> Floats:
-    """Return how far jumps of each kernel go on average, ``(6,)`` plants."""
-    steps = np.arange(-RADIUS, RADIUS + 1) / np.sqrt(size_m.prod())
+def pest_kernels(
+    size_m: Floats, kernel: DistanceKernel, wind_m_s: tuple[float, float] = (0.0, 0.0)
+) -> Floats:
+    """Return the candidates of a pest with a kernel of its own, ``(6, d, d)``.
+
+    Its own kernel; half and twice as far; three times as far along the rows, and across them; and
+    Cauchy, for those that go farthest. The wind turns and stretches them all.
+    """
+    plant_m = float(np.sqrt(size_m.prod()))
+    radius = int(np.ceil(_SCALES * kernel.reach_m(wind_m_s) / -np.log(0.005) / plant_m))
+    radius = min(max(radius, RADIUS), _WIDEST)
+    candidates = (
+        kernel,
+        replace(kernel, scale_m=kernel.scale_m / 2.0),
+        replace(kernel, scale_m=kernel.scale_m * 2.0),
+        replace(kernel, across=kernel.across / 3.0),
+        replace(kernel, across=kernel.across * 3.0),
+        DistanceKernel("cauchy", _FAR * plant_m),
+    )
+    return np.array([each.on_cells(size_m, (radius, radius), wind_m_s) for each in candidates])
+
+
+def kernel_means(size_m: Floats, of: Floats | None = None) -> Floats:
+    """Return how far jumps of each kernel go on average, ``(6,)`` plants; None: of `kernels`."""
+    of = kernels(size_m) if of is None else of
+    radius = of.shape[1] // 2
+    steps = np.arange(-radius, radius + 1) / np.sqrt(size_m.prod())
     away = np.hypot(steps[None, :] * size_m[1], steps[:, None] * size_m[0])
-    means: Floats = (kernels(size_m) * away).sum(axis=(1, 2))
+    means: Floats = (of * away).sum(axis=(1, 2))
     return means
 
 
@@ -78,6 +107,12 @@ class Reach:
     at_edge
         ``(n,)`` how much more arrives from outside at each plant than on average, if it comes by
         the edge.
+    beside
+        Share of what a plant sends that goes to the plants next to it.
+    beyond
+        ``(6,)`` share that goes by each kernel.
+    anywhere
+        Share that lands anywhere.
     """
 
     cells: Cells
@@ -85,6 +120,9 @@ class Reach:
     spectra: NDArray[np.complex128]
     padded: tuple[int, int]
     at_edge: Floats
+    beside: float = BESIDE
+    beyond: Floats = field(default_factory=lambda: BEYOND)
+    anywhere: float = 0.0
 
     def brought(self, values: Floats, shares: Floats, *, back: bool = False) -> Floats:
         """Return what comes to each plant of what all plants send, ``(n,)``.
@@ -123,9 +161,49 @@ def reach_of(grid: PlantGrid) -> Reach:
     """Return the kernels of a plot, made once."""
     cells = Cells.of(grid)
     made = kernels(cells.size_m)
-    across, along = (fft.next_fast_len(int(side) + 2 * RADIUS, real=True) for side in cells.shape)
+    return Reach(cells, made, *_transformed(cells, made), _at_edge(grid))
+
+
+@lru_cache(maxsize=8)
+def pest_reach_of(
+    grid: PlantGrid, kernel: DistanceKernel, wind_m_s: tuple[float, float] = (0.0, 0.0)
+) -> Reach:
+    """Return the kernels of a pest on a plot in a wind, made once.
+
+    What they bring to the cells of the plants next to it is told apart: there chances of pairs
+    know more.
+    """
+    usual = reach_of(grid)
+    cells = usual.cells
+    made = pest_kernels(cells.size_m, kernel, wind_m_s)
+    h = made.shape[1] // 2
+    shares = OF_PEST * (1.0 - kernel.long_share)
+    next_to = np.s_[:, [h - 1, h + 1, h, h], [h, h, h - 1, h + 1]]
+    near = made[next_to].sum(axis=1)
+    made[next_to] = 0.0
+    far = np.maximum(1.0 - near, 1e-12)
+    made /= far[:, None, None]
+    return Reach(
+        cells,
+        made,
+        *_transformed(cells, made),
+        usual.at_edge,
+        beside=float(shares @ near),
+        beyond=shares * far,
+        anywhere=kernel.long_share,
+    )
+
+
+def _transformed(cells: Cells, made: Floats) -> tuple[NDArray[np.complex128], tuple[int, int]]:
+    """Return the transforms of kernels ``(6, d, d)``, and the cells with room about them."""
+    d = made.shape[1]
+    across, along = (fft.next_fast_len(int(side) + d - 1, real=True) for side in cells.shape)
     room = np.zeros((len(made), across, along))
-    room[:, : made.shape[1], : made.shape[2]] = made
-    spectra = fft.rfft2(np.roll(room, (-RADIUS, -RADIUS), axis=(1, 2)))
+    room[:, :d, :d] = made
+    return fft.rfft2(np.roll(room, (-(d // 2), -(d // 2)), axis=(1, 2))), (across, along)
+
+
+def _at_edge(grid: PlantGrid) -> Floats:
     at_edge = edge_chance(grid, PriorSettings())
-    return Reach(cells, made, spectra, (across, along), at_edge / max(at_edge.mean(), 1e-9))
+    by_edge: Floats = at_edge / max(at_edge.mean(), 1e-9)
+    return by_edge

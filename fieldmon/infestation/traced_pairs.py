@@ -24,6 +24,7 @@ from fieldmon.infestation.clustering import (
     learn_clustering,
     no_evidence,
 )
+from fieldmon.infestation.cohorts import Cohorts
 from fieldmon.infestation.origins import (
     ANYWHERE,
     AT_START,
@@ -36,7 +37,8 @@ from fieldmon.infestation.origins import (
 )
 from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
-from fieldmon.infestation.reach import BESIDE, BEYOND, reach_of
+from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
+from fieldmon.infestation.reach import pest_reach_of, reach_of
 from fieldmon.infestation.tracing import Raised, Traces, trace
 
 if TYPE_CHECKING:
@@ -45,6 +47,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.belief import Learning
     from fieldmon.infestation.reach import Reach
     from fieldmon.infestation.spread import Spread
+    from fieldmon.pests.pest import Pest
     from fieldmon.plot.grid import Linked, PlantGrid
 
     Floats = NDArray[np.float64]
@@ -61,6 +64,9 @@ _KNOWN, _UNKNOWN = 0.99, 0.95
 _MOST_LOWERED = 3.0
 # two neighbours' fates never hang together more
 _MOST_DEPENDENCE = 0.9
+# the wind by which finds are traced: so much of it is that of the nights before the last, told
+# apart by metres a second
+_LATE, _WIND_M_S = 0.5, 1.0
 # what jumps were expected to bring is not made up from a chance of jumping below this
 _LEAST_JUMPS = 0.05
 
@@ -85,6 +91,11 @@ class TracedPairs:
         ``(4,)`` of how infested plants stand, see `ClusterEstimate`.
     share_at_start
         Mean chance on the first morning, as it was believed then.
+    cohorts
+        Which part of each chance is of young infestations; None: no pest was named, and all show
+        and spread at once.
+    wind_m_s
+        Where the wind has gone of late, by which finds are traced.
     """
 
     grid: PlantGrid
@@ -95,6 +106,8 @@ class TracedPairs:
     counts: OriginCounts
     evidence: Floats
     share_at_start: float
+    cohorts: Cohorts | None = None
+    wind_m_s: tuple[float, float] = (0.0, 0.0)
 
     @classmethod
     def of(cls, grid: PlantGrid, chance: Floats, clustering: float = CLUSTERING) -> TracedPairs:
@@ -107,21 +120,53 @@ class TracedPairs:
         counts = OriginCounts.none()
         return cls(grid, chance, together, shares, unseen, counts, no_evidence(), mean)
 
+    def of_pest(self, pest: Pest) -> TracedPairs:
+        """Return the same, of a plot on which this pest lives."""
+        return replace(self, cohorts=Cohorts.none(pest, len(self.chance)))
+
+    @property
+    def pest(self) -> Pest | None:
+        """The pest that lives on the plot; None: nobody named it."""
+        return None if self.cohorts is None else self.cohorts.pest
+
+    @property
+    def known_to_jump(self) -> bool:
+        """Tell whether the pest is known to go beyond the plants next to it."""
+        return self.pest is not None and self.pest.movement.kernel != "adjacent"
+
     @property
     def reach(self) -> Reach:
         """The kernels of the plot."""
-        return reach_of(self.grid)
+        return self._reach(self.wind_m_s)
+
+    def _reach(self, wind_m_s: tuple[float, float]) -> Reach:
+        if self.pest is None or not self.known_to_jump:
+            return reach_of(self.grid)
+        return pest_reach_of(self.grid, kernel_of(self.pest.movement), wind_m_s)
 
     @property
     def jumps(self) -> float:
         """Chance that the plot's insects jump beyond the plants next to them."""
-        return float(chance_apart(self.evidence))
+        return self._jumps(self.evidence)
+
+    def _jumps(self, evidence: Floats) -> float:
+        return 1.0 if self.known_to_jump else float(chance_apart(evidence))
 
     @property
     def beyond(self) -> Floats:
         """What an infested plant sends out by each kernel if insects jump, ``(6,)``."""
-        beyond: Floats = BEYOND * self.counts.scale[JUMPED:]
+        beyond: Floats = self.reach.beyond * self.counts.scale[JUMPED:]
         return beyond
+
+    @property
+    def in_sight(self) -> TracedPairs:
+        """The same of what an inspection can see: a day is planned by it."""
+        if self.cohorts is None or not self.cohorts.ages:
+            return self
+        start, other = self.grid.adjacent
+        seen = 1.0 - self.cohorts.hidden
+        both = self.pair_chance * np.repeat(seen, np.diff(start)) * seen[other]
+        return replace(self, chance=np.maximum(self.chance * seen, LEAST_CHANCE), pair_chance=both)
 
     @property
     def doubt(self) -> float:
@@ -149,13 +194,14 @@ class TracedPairs:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
         n, nothing = len(self.chance), np.zeros((2, N_ORIGINS))
         none = np.zeros((2, n))
-        inspections = plants, found, self.counts.detects(learning.detects(len(plants)))
+        told = self.counts.detects(learning.detects(len(plants)))
+        inspections = plants, found, self._shown(plants, told)
         day = _Day(self.shares.copy(), self.chance.copy(), *none, *nothing)
         clusters = ClusterEstimate.none(n, self.evidence)
         believed = self.chance.copy(), self.pair_chance.copy()
         learn_clustering(believed, self.grid.linked, inspections, clusters)
         evidence = kept_evidence(clusters.evidence)
-        jumps = float(chance_apart(evidence))
+        jumps = self._jumps(evidence)
         traces = self.traces.own()
         each = self.reach.kernels * self.beyond[:, None, None]
         room = _Room(each, Neighbourhood.of(n), Raised.of(n))
@@ -164,9 +210,16 @@ class TracedPairs:
         after = replace(
             self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
             unseen=traces.unseen, evidence=evidence,
+            cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
         )  # fmt: skip
         lowered = after.times(self._lowered(after, day, jumps * self.beyond))
         return lowered.counting(self, day)
+
+    def _shown(self, plants: NDArray[np.int32], detects: Floats) -> Floats:
+        """Return the chance that inspections find what is there, seen yet or not, ``(k,)``."""
+        if self.cohorts is None or not self.cohorts.ages:
+            return detects
+        return detects * (1.0 - self.cohorts.hidden[plants])
 
     def _lowered(self, after: TracedPairs, day: _Day, beyond: Floats) -> Floats:
         """Return how much less likely plants are as no relatives were found about them, ``(n,)``.
@@ -204,15 +257,22 @@ class TracedPairs:
     def overnight(self, spread: Spread) -> TracedPairs:
         """Return what is believed the next morning."""
         start, other = self.grid.adjacent
-        sends = spread.rate_per_day
-        if spread.to != "one":
-            sends *= float(np.diff(start).mean())
-        beside = 1.0 - self.jumps * (1.0 - BESIDE)
+        degree = float(np.diff(start).mean())
+        sends = spread.rate_per_day * (degree if spread.to != "one" else 1.0)
+        reach, moves = self.reach, self.chance
+        if isinstance(spread, PestSpread) and self.cohorts is not None:
+            moves = self.chance * (1.0 - self.cohorts.still)
+            reach = self._reach(spread.wind_m_s)
+            sends = spread.sends if self.known_to_jump else sends
+            each = spread.sends * reach.beside / max(degree, 1.0) if self.known_to_jump else None
+            spread = _moving(spread, each, float(moves.sum() / self.chance.sum()))
+        # of a pest with a kernel of its own, the rate is of the plants beside it already
+        beside = 1.0 if self.known_to_jump else 1.0 - self.jumps * (1.0 - reach.beside)
         rate = spread.rate_per_day * min(1.0, beside * self.counts.scale[BESIDE_IT])
         near = replace(spread, rate_per_day=rate, arrivals_per_day=0.0)
         pairs = self.chance, self.pair_chance
         chance, pair_chance = night_of_pairs(pairs, self.grid.linked, near)
-        brought = self._brought(sends, spread)
+        brought = self._brought(reach, moves, sends, spread)
         arrives = 1.0 - np.exp(-brought.sum(axis=0))
         gain = (1.0 - chance) * arrives
         after = np.clip(chance + gain, LEAST_CHANCE, MOST_CHANCE)
@@ -223,16 +283,34 @@ class TracedPairs:
         p, q = np.repeat(after, np.diff(start)), after[other]
         both = np.clip(p + q - 1.0 + neither, (p + q - 1.0).clip(0.0), np.minimum(p, q))
         unseen = np.minimum(self.unseen + sends, _MOST_SENT)
-        return replace(self, chance=after, pair_chance=both, shares=shares, unseen=unseen)
+        morning = replace(self, chance=after, pair_chance=both, shares=shares, unseen=unseen)
+        return self._aged(morning, spread)
 
-    def _brought(self, sends: float, spread: Spread) -> Floats:
-        """Return what a night brings each plant from farther than beside it, ``(o, n)``."""
+    def _aged(self, morning: TracedPairs, spread: Spread) -> TracedPairs:
+        """Return a morning with the young a night older, and with the wind of late."""
+        if self.cohorts is None or not isinstance(spread, PestSpread):
+            return morning
+        gain = np.maximum(morning.chance - self.chance, 0.0)
+        cohorts = self.cohorts.overnight(self.chance, gain, morning.chance, spread)
+        return replace(morning, cohorts=cohorts, wind_m_s=_of_late(self.wind_m_s, spread.wind_m_s))
+
+    def _brought(self, reach: Reach, moves: Floats, sends: float, spread: Spread) -> Floats:
+        """Return what a night brings each plant from farther than beside it, ``(o, n)``.
+
+        `moves` is the chance ``(n,)`` that a plant is infested and sends something out.
+        """
         scale = self.counts.scale
         brought = np.zeros((N_ORIGINS, len(self.chance)))
-        jumped = self.reach.brought_by_each(self.chance)
-        brought[JUMPED:] = jumped * (sends * self.jumps * self.beyond)[:, None]
+        jumped = reach.brought_by_each(moves)
+        beyond = reach.beyond * scale[JUMPED:]
+        brought[JUMPED:] = jumped * (sends * self.jumps * beyond)[:, None]
         brought[ANYWHERE] = max(spread.arrivals_per_day, ARRIVE) * scale[ANYWHERE]
-        brought[BY_EDGE] = ARRIVE_BY_EDGE * scale[BY_EDGE] * self.reach.at_edge
+        by_edge = ARRIVE_BY_EDGE
+        if isinstance(spread, PestSpread):
+            brought[ANYWHERE] += reach.anywhere * sends * float(moves.mean())
+            # told of plants at the edge
+            by_edge = max(by_edge, spread.edge_per_day / float(reach.at_edge.max()))
+        brought[BY_EDGE] = by_edge * scale[BY_EDGE] * reach.at_edge
         return brought
 
     def _shares_after(self, beside: Floats, gain: Floats, brought: Floats) -> NDArray[np.float32]:
@@ -249,6 +327,24 @@ class TracedPairs:
         chance = np.maximum(self.chance * left, LEAST_CHANCE)
         together = self.pair_chance * np.repeat(left, np.diff(start)) * left[other]
         return replace(self, chance=chance, pair_chance=together)
+
+
+def _moving(spread: PestSpread, rate: float | None, moves: float) -> PestSpread:
+    """Return a night in which a share of the infested plants sends something to each beside it.
+
+    `rate` is what each gets of one that sends, if the pest has a kernel; else as it was.
+    """
+    rate = -np.log1p(-spread.rate_per_day) if rate is None else rate
+    return replace(spread, rate_per_day=float(-np.expm1(-rate * moves)))
+
+
+def _of_late(before: tuple[float, float], now: tuple[float, float]) -> tuple[float, float]:
+    """Return the wind of the last nights, as told apart as those of nights are."""
+    x, y = (
+        float(np.rint((_LATE * a + (1.0 - _LATE) * b) / _WIND_M_S) * _WIND_M_S) + 0.0
+        for a, b in zip(before, now, strict=True)
+    )
+    return x, y
 
 
 class _Day(NamedTuple):

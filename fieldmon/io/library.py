@@ -13,9 +13,13 @@ from fieldmon.io.import_report import Severity
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.io.prepare import prepare, records_on
 from fieldmon.io.read import read_plots as read_fields
+from fieldmon.io.read import read_weather as read_weather_file
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import read_inspections as read_on_grid
+from fieldmon.io.readers.pest_file import pest_of
+from fieldmon.io.readers.weather_options import WeatherOptions
 from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources, RecordSource
+from fieldmon.plot.local_clock import utc_now
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -24,6 +28,8 @@ if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.import_report import ImportMessage
     from fieldmon.io.options import Source
+    from fieldmon.pests.pest import Pest
+    from fieldmon.pests.weather import Weather
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
 
@@ -202,6 +208,75 @@ def read_inspections(source: Source, plot: Plot, **options: str) -> Inspections:
     """
     wanted = _chosen(InspectionOptions(), options).on(plot.field)
     read = read_on_grid(source, plot.grid, wanted)
+    _warn(read.messages)
+    return read.value
+
+
+def read_pest(said: str) -> Pest:
+    """Return a pest: the name of one that comes with fieldmon, or the path of a TOML file.
+
+    Parameters
+    ----------
+    said
+        ``"spider-mite"``, ``"western-flower-thrips"``, ... or ``"mite.toml"``.
+
+    Raises
+    ------
+    FileProblem
+        If it is neither, or the file is no pest: the sentence says which line.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> mite = fm.read_pest("spider-mite")
+    >>> [stage.name for stage in mite.stages]
+    ['egg', 'larva', 'protonymph', 'deutonymph']
+    """
+    return pest_of(said)
+
+
+def read_weather(source: Source, plot: Plot, **options: str) -> Weather:
+    r"""Return the weather of a station's table, or of IPM Decisions' JSON, by hours or days.
+
+    Parameters
+    ----------
+    source
+        Path of a CSV, Excel or JSON file.
+    plot
+        Where it is: times that name no zone are its own.
+    **options
+        What the file leaves open: ``wind_unit="km/h"``, ``temperature_unit="F"``,
+        ``date_order="dmy"``, ``zone="UTC"``.
+
+    Returns
+    -------
+    Weather
+        n hours or days, an array entry each. What begins later than now is marked as forecast.
+
+    Warns
+    -----
+    ImportDoubt
+        For everything that was guessed, left out or is doubtful, gaps among it.
+
+    Raises
+    ------
+    ChoiceNeeded
+        If the file leaves a choice.
+    FileProblem
+        If it cannot be read, or its units or values make no sense.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> table = "Date,Tmin (F),Tmax (F)\n2025-11-18,50,68\n2025-11-19,50,70\n"
+    >>> with open("station.csv", "w") as file:
+    ...     _ = file.write(table)
+    >>> fm.read_weather("station.csv", plot).high_c.round(1).tolist()
+    [20.0, 21.1]
+    """
+    wanted = _chosen(WeatherOptions(now=utc_now()), options).on(plot.field)
+    read = read_weather_file(source, wanted)
     _warn(read.messages)
     return read.value
 

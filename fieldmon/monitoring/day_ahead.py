@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.monitoring.photos_asked import photos_asked
 from fieldmon.monitoring.settings import seconds
 from fieldmon.planning.route import route_of
 from fieldmon.planning.wishes import Wishes
@@ -63,7 +64,7 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     who = "" if member is None else member.name
     kept = season.kept_route(on, who)
     if not len(kept) and part.rows is None:
-        return season.plan(on, who=who or None).route
+        return season.plan(on, wishes=Wishes(_asked(season)), who=who or None).route
     scene = season.scene(on, who=who)
     left = kept[(scene.last_inspected[kept] != scene.day) & inside(season, part.rows)[kept]]
     return _through(scene, left) if len(left) else planned_again(season, on, part)
@@ -72,14 +73,15 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
 def planned_again(
     season: Season, on: date, part: Part = WHOLE, seconds_left: float | None = None
 ) -> Route:
-    """Plan what is left of a day with all that is known now.
+    """Plan what is left of a day with all that is known now, by the plants to be photographed.
 
     Where it is for the whole plot, it is kept as the route given out.
     """
-    others = np.flatnonzero(~inside(season, part.rows))
+    mine = inside(season, part.rows)
+    asked = tuple(plant for plant in _asked(season) if mine[plant])
     member = part.member(season)
     now = None if seconds_left is None else _time(season, seconds_left, member)
-    wishes = Wishes(unwanted=tuple(others.tolist()))
+    wishes = Wishes(asked, tuple(np.flatnonzero(~mine).tolist()))
     who = None if member is None else member.name
     return season.plan(on, now, keep=part.rows is None, wishes=wishes, who=who).route
 
@@ -91,6 +93,11 @@ def inside(season: Season, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
         return np.ones(len(line), np.bool_)
     part: NDArray[np.bool_] = (line >= rows[0]) & (line <= rows[1])
     return part
+
+
+def _asked(season: Season) -> tuple[int, ...]:
+    """Return the plants of which a photo is asked for."""
+    return tuple(sorted({one.plant for one in photos_asked(season)}))
 
 
 def _time(season: Season, seconds_left: float, member: TeamMember | None) -> time:

@@ -42,8 +42,8 @@ def refresh(
     history: History,
     morning: Callable[[int], Belief],
     since: int = 0,
-) -> None:
-    """Write the layers anew, as of the last day on which anything happened.
+) -> int:
+    """Write the layers anew, as of the last day on which anything happened; return that day.
 
     What is known of days before `since` did not change.
     """
@@ -59,6 +59,7 @@ def refresh(
     db.execute(f"DELETE FROM {schema.LEARNT.name}")  # noqa: S608 - ours
     learnt = history.learnt(morning(days[-1]), days[-1])
     insert(db, schema.LEARNT, [(one.name, one.value, one.low, one.high) for one in learnt])
+    return days[-1]
 
 
 def _day_row(history: History, morning: Belief, day: int) -> tuple[object, ...]:

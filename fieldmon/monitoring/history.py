@@ -12,6 +12,7 @@ import numpy as np
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.observations import PRESENT
@@ -30,7 +31,9 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.learnt import Learnt
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.plot_estimate import PlotEstimate
+    from fieldmon.pests.pest import Pest
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
@@ -61,9 +64,17 @@ class BeliefSettings:
     treated: bool = True
     traces: bool = True
 
-    def first_morning(self, grid: PlantGrid, chance: NDArray[np.float64]) -> Belief:
-        """Return what is believed at first, from a chance map ``(n,)``."""
-        return (TracedPairs if self.traces else PairApproximation).of(grid, chance)
+    def first_morning(
+        self, grid: PlantGrid, chance: NDArray[np.float64], pest: Pest | None = None
+    ) -> Belief:
+        """Return what is believed at first, from a chance map ``(n,)``, of a pest if one is named.
+
+        Only where finds are traced is anything made of the pest.
+        """
+        if not self.traces:
+            return PairApproximation.of(grid, chance)
+        traced = TracedPairs.of(grid, chance)
+        return traced if pest is None else traced.of_pest(pest)
 
     def evening(
         self,
@@ -141,6 +152,9 @@ class History:
         None: there are none.
     detection_of
         The same chance for those of a team, by their names without capitals.
+    living
+        The pest, in the weather of the season's days; None: nobody named it, and nights are as
+        `belief` says.
     """
 
     grid: PlantGrid
@@ -152,6 +166,7 @@ class History:
     detection: float = 0.84
     recorded: NDArray[np.int8] | None = None
     detection_of: Mapping[str, float] = field(default_factory=dict)
+    living: PestInWeather | None = None
 
     def __post_init__(self) -> None:
         if (np.diff(self.days) < 0).any():
@@ -177,7 +192,25 @@ class History:
 
     def night_after(self, morning: Belief, day: int) -> Belief:
         """Return what is believed the next morning, from what was on the morning of a day."""
-        return self.belief.overnight(self.evening(morning, day))
+        return self.evening(morning, day).overnight(self.night(day))
+
+    def night(self, day: int) -> Spread:
+        """Return what the insects are taken to do in the night after a day."""
+        if self.living is None:
+            return self.belief.spread
+        return self.living.spread(day, self.grid.frame)
+
+    def forecast(self, morning: Belief, day: int, nights: int = NIGHTS) -> Forecast:
+        """Return how many plants are infested on the next mornings, nobody inspecting any more.
+
+        By the weather forecast, where there is one, and by the usual of the date after it.
+        """
+        ahead = range(day, day + nights)
+        known = None
+        if self.living is not None and self.living.weather is not None:
+            known = sum(self.living.known(number) for number in ahead)
+        evening, spreads = self.evening(morning, day), [self.night(number) for number in ahead]
+        return forecast(evening, self.grid, spreads, known)
 
     def evening(self, morning: Belief, day: int) -> Belief:
         """Return what is believed after what was found and treated on a day."""
@@ -218,6 +251,12 @@ class History:
     def learnt(self, morning: Belief, day: int) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of a day tell of the insects."""
         return learnt_from(self.evening(morning, day), self.detection)
+
+    def first_find(self, on: date) -> date | None:
+        """Return the day of the first find up to a date; None: there is none yet."""
+        found = self.inspections.date[self.inspections.result == FOUND]
+        found = found[found <= np.datetime64(on, "D")]
+        return found.min().astype(object) if len(found) else None
 
     def last_inspected(self, day: int) -> NDArray[np.int32]:
         """Return ``(n,)`` the day of each plant's last inspection up to `day`, or `NEVER`."""
@@ -265,7 +304,7 @@ class History:
             Whose scene it is, of a team; None: all inspections were made by the one who works.
         """
         aisles, robot = shift.aisles, shift.robot
-        today, believed = self.on(day), self.evening(morning, day)
+        today, believed = self.on(day), in_sight(self.evening(morning, day))
         last = self.last_inspected(day)
         last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
         trail = self._trail(day, who)
@@ -291,6 +330,11 @@ class History:
         if not len(earlier):
             return earlier.plant
         return earlier.take(earlier.date == earlier.date[-1]).plant
+
+
+def in_sight(belief: Belief) -> Belief:
+    """Return what is believed of what inspections can see: a day is planned by it."""
+    return belief.in_sight if isinstance(belief, TracedPairs) else belief
 
 
 def made_by(inspections: Inspections, who: str | None) -> Inspections:

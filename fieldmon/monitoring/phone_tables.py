@@ -66,6 +66,21 @@ PHOTOS = GeoPackageTable(
     "Photos as phones sent them, byte for byte.",
     key="id",
 )
+PHOTOS_ASKED = GeoPackageTable(
+    "photos_asked",
+    (
+        "id TEXT NOT NULL UNIQUE",
+        "plant INTEGER NOT NULL",
+        "line INTEGER",
+        "number INTEGER",
+        "note TEXT NOT NULL",
+        "who TEXT NOT NULL",
+        "at TEXT NOT NULL",
+        "ended TEXT",
+    ),
+    "POINT",
+    "Photos that somebody asks for, at their plants; ended: nobody does any more.",
+)
 # a view, so that a photo may come before what it belongs to
 PHOTOS_OF = GeoPackageTable(
     "inspections_photos",
@@ -80,7 +95,8 @@ PHOTO_PLACES = GeoPackageTable(
     "Photos at the plants that they show.",
 )
 
-TABLES = (SCOUTS, TELLINGS, PHOTOS)
+_FIRST = (SCOUTS, TELLINGS, PHOTOS)
+TABLES = (*_FIRST, PHOTOS_ASKED)
 
 _VIEWS = (
     """
@@ -114,7 +130,7 @@ _STANDARD = "http://docs.opengeospatial.org/is/18-000/18-000.html"
 
 def phones_come(db: sqlite3.Connection) -> None:
     """Add what phones need to a file that knows none of it."""
-    for table in TABLES:
+    for table in _FIRST:
         create(db, table)
     for view in _VIEWS:
         db.execute(view)
@@ -164,14 +180,15 @@ def bring_together(db: sqlite3.Connection, copies: list[dict[str, Rows]]) -> Non
     """Write what phones brought to either copy, once each; what either took back is so."""
     ends: dict[str, list[str]] = {}
     for copied in copies:
-        for row in copied["scouts"]:
-            ends.setdefault(row["key_digest"], []).extend([row["ended"]] if row["ended"] else [])
+        for row in (*copied["scouts"], *copied["photos_asked"]):
+            known = row["key_digest"] if "key_digest" in row else row["id"]
+            ends.setdefault(known, []).extend([row["ended"]] if row["ended"] else [])
     wanted = f"SELECT i.fid {_OF_TELLING}digest = ? AND b.at = ? AND b.source = ? AND b.who = ?"
-    for table, known_by in zip(TABLES, ("key_digest", "id", "photo"), strict=True):
+    for table, known_by in zip(TABLES, ("key_digest", "id", "photo", "id"), strict=True):
         rows = {row[known_by]: row for copied in reversed(copies) for row in copied[table.name]}
         made = []
         for key, row in sorted(rows.items()):
-            if table is SCOUTS:
+            if table in {SCOUTS, PHOTOS_ASKED}:
                 row["ended"] = min(ends[key], default=None)
             elif table is TELLINGS and row["inspection"] is not None:
                 (row["inspection"],) = db.execute(wanted, row["inspection"]).fetchone() or (None,)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 7
+VERSION = 8
 #: files of this version and later have a log
 LOGS_SINCE = 7
 #: the first fieldmon that reads files of this version
@@ -241,6 +241,17 @@ LEARNT = GeoPackageTable(
     None,
     "What the inspections so far tell of the insects: best guess and interval of 90 %.",
 )
+MORNINGS = GeoPackageTable(
+    "mornings",
+    (
+        "day INTEGER NOT NULL UNIQUE",
+        "causes TEXT NOT NULL",
+        "content TEXT NOT NULL",
+        "chances BLOB NOT NULL",
+    ),
+    None,
+    "Late mornings as they were worked out, so that they need not be again.",
+)
 OUTSIDE_CHANGES = GeoPackageTable(
     "outside_changes",
     (
@@ -264,7 +275,7 @@ CHANCE = GeoPackageTable(
 TABLES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
     *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
-    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT, LABELS, LOG),
+    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT, LABELS, LOG, MORNINGS),
     *phone_tables.TABLES,
 )
 #: layers from which everything else follows: what must be saved from a damaged file
@@ -326,6 +337,7 @@ def lay_out(db: sqlite3.Connection) -> None:
     watch(db)
     add_styles(db)
     _phones_come(db)
+    _photos_are_asked_for(db)
 
 
 def watch(db: sqlite3.Connection) -> None:
@@ -390,6 +402,11 @@ def _phones_come(db: sqlite3.Connection) -> None:
     add_photo_styles(db)
 
 
+def _photos_are_asked_for(db: sqlite3.Connection) -> None:
+    """Version 7 did not say of which plants somebody wants a photo."""
+    create(db, phone_tables.PHOTOS_ASKED)
+
+
 def _records_come(db: sqlite3.Connection) -> None:
     """Version 6 knew of treatments only where, when, how well and the product; it had no log."""
     there = {row[1] for row in db.execute("PRAGMA table_info(treatments)")}
@@ -398,6 +415,7 @@ def _records_come(db: sqlite3.Connection) -> None:
             db.execute(f"ALTER TABLE treatments ADD COLUMN {column}")
     create(db, LABELS)
     create(db, LOG)
+    create(db, MORNINGS)
     db.execute(_INDEXES[4])
 
 
@@ -409,4 +427,5 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     4: _estimates_come,
     5: _phones_come,
     6: _records_come,
+    7: _photos_are_asked_for,
 }

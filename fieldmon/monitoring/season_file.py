@@ -44,6 +44,9 @@ from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
 from fieldmon.monitoring.merging import Merged
+from fieldmon.monitoring.mornings import Mornings
+from fieldmon.monitoring.mornings import keep as keep_mornings
+from fieldmon.monitoring.mornings import take as take_mornings
 from fieldmon.monitoring.recorded_before import (
     Contradictions,
     contradicting,
@@ -54,6 +57,7 @@ from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json,
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.transactions import Store, get_meta, set_meta
 from fieldmon.monitoring.treatments import TreatedPlace
+from fieldmon.pests.development import development
 from fieldmon.planning.assumptions import assumed_by
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
@@ -64,7 +68,7 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping
     from datetime import date, time
 
     from numpy.typing import NDArray
@@ -74,6 +78,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.monitoring.batches import Batch
@@ -82,6 +87,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.tables import KeptMessage
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
     from fieldmon.monitoring.treatments import KeptTreatment
+    from fieldmon.pests.development import Development
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
@@ -94,18 +100,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class _Contents:
-    """What the file said when it was read last; mornings are added as they are asked for."""
+    """What the file said when it was read last."""
 
     revision: str
     settings: MonitoringSettings
     history: History
-    mornings: list[Belief]
+    mornings: Mornings
 
     def morning(self, day: int) -> Belief:
-        while len(self.mornings) <= day:
-            number = len(self.mornings) - 1
-            self.mornings.append(self.history.night_after(self.mornings[number], number))
-        return self.mornings[day]
+        return self.mornings.of(day)
 
 
 class SeasonChange:
@@ -182,7 +185,7 @@ class Season:
         begins = np.datetime64(settings.begins, "D")
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
         history = _nothing_yet(plot, settings, prior, observations)
-        first = _Contents("", settings, history, [history.first_morning])
+        first = _Contents("", settings, history, Mornings(history))
         with Store.new(path) as db:
             tables.write_plot(db, plot)
             tables.write_observations(db, observations)
@@ -222,7 +225,7 @@ class Season:
         settings = self.settings
         made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
         rate = settings.belief.spread.rate_per_day
-        if rate != BeliefSettings().spread.rate_per_day:
+        if settings.pest is not None or rate != BeliefSettings().spread.rate_per_day:
             return made
         return (*made, Assumed("rate_per_day", rate))
 
@@ -474,7 +477,7 @@ class Season:
             if new:
                 self._log_seen(db, news, (batch, source, who))
                 first = _settings(db).day(inspections.date.min().item())
-                self._refresh(db, first, before.mornings[: first + 1])
+                self._refresh(db, first, before.mornings.until(first))
         return Recorded(batch if new else None, new, len(inspections) - new)
 
     def _log_seen(
@@ -761,7 +764,27 @@ class Season:
         with self._lock:
             contents = self._now()
             day = contents.settings.day(on)
-            return Status.of(contents.history, contents.morning(day), day)
+            now = Status.of(contents.history, contents.morning(day), day)
+        return replace(now, development=self.development(on))
+
+    def development(self, on: date) -> Development | None:
+        """Return how far the pest has come on a day, counted from its first find.
+
+        Until there is one, from the season's first day. None: no pest or weather was given, or
+        its development is not known.
+        """
+        now = self._now()
+        pest, weather = now.settings.pest, now.settings.weather
+        if pest is None or weather is None:
+            return None
+        return development(pest, weather, now.history.first_find(on) or now.settings.begins, on)
+
+    def forecast(self, on: date) -> Forecast:
+        """Return how many plants are infested on the mornings after a day, nobody inspecting."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.forecast(contents.morning(day), day)
 
     def learnt(self, on: date) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of a day tell of the insects."""
@@ -836,8 +859,13 @@ class Season:
         with self._lock, self.store.reading() as db:
             return self._read(db)
 
-    def _read(self, db: sqlite3.Connection) -> _Contents:
-        """Return what the file says; nothing is read again that did not change."""
+    def _read(
+        self, db: sqlite3.Connection, at_hand: Mapping[int, Belief] | None = None
+    ) -> _Contents:
+        """Return what the file says; nothing is read again that did not change.
+
+        Mornings that are at hand are still believed, and need not be worked out again.
+        """
         outside_changes.refuse(db)
         revision = _revision(db)
         if self._last is None or self._last.revision != revision:
@@ -848,7 +876,10 @@ class Season:
                 inspections=inspection_table.load(db, settings.begins),
                 treatments=treatments.load(db, self._inside),
             )
-            self._last = _Contents(revision, settings, history, [history.first_morning])
+            mornings = Mornings(history, dict(at_hand or {}))
+            if at_hand is None:
+                take_mornings(db, mornings)
+            self._last = _Contents(revision, settings, history, mornings)
         return self._last
 
     def _first_morning(self, settings: MonitoringSettings) -> Floats:
@@ -867,16 +898,13 @@ class Season:
         return inside
 
     def _refresh(
-        self, db: sqlite3.Connection, since: int = 0, mornings: Sequence[Belief] = ()
+        self, db: sqlite3.Connection, since: int = 0, at_hand: Mapping[int, Belief] | None = None
     ) -> None:
-        """Write what follows from the causes, within the transaction that changes them.
-
-        Mornings up to `since` that are still believed need not be made again.
-        """
+        """Write what follows from the causes, within the transaction that changes them."""
         self._last = None
-        now = self._read(db)
-        now.mornings.extend(mornings[1:])
-        derived_layers.refresh(db, self.plot, now.history, now.morning, since)
+        now = self._read(db, at_hand)
+        newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
+        keep_mornings(db, now.mornings, newest)
         qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
 
@@ -884,7 +912,7 @@ class Season:
 def _nothing_yet(
     plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
 ) -> History:
-    belief = settings.belief.first_morning(plot.grid, prior)
+    belief = settings.belief.first_morning(plot.grid, prior, settings.pest)
     known = usable(records, np.datetime64(settings.begins, "D")).observations
     return History(
         plot.grid,
@@ -894,6 +922,7 @@ def _nothing_yet(
         detection=settings.robot.detects,
         recorded=record_states(plot.grid, known) if len(known) else None,
         detection_of={one.name.casefold(): one.robot.detects for one in settings.team},
+        living=settings.living(),
     )
 
 

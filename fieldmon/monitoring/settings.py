@@ -11,14 +11,18 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
+from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.pest_json import kept_weather, pest_json, pest_of_json, weather_json
 from fieldmon.planning.members import TeamMember, Teamwork, must_differ
 from fieldmon.plot.robot import Robot, Viewpoints
 from fieldmon.samplers import USUAL, sampler
 
 if TYPE_CHECKING:
+    from fieldmon.pests.pest import Pest
+    from fieldmon.pests.weather import Weather
     from fieldmon.samplers.base import Sampler
 
 #: a season of a perennial crop fits into it twice; a slip in a date does not
@@ -50,6 +54,10 @@ class MonitoringSettings:
         `robot`.
     teamwork
         How they work together.
+    pest
+        What is looked for; None: nobody said, and nights are as `belief` has them.
+    weather
+        What the pest met and is forecast to meet; None: it is as the pest's figures hold.
     harvest
         The first day of harvest, which treatments have to wait for; None: not known.
     """
@@ -64,6 +72,8 @@ class MonitoringSettings:
     seed: int = 1
     team: tuple[TeamMember, ...] = ()
     teamwork: Teamwork = field(default_factory=Teamwork)
+    pest: Pest | None = None
+    weather: Weather | None = None
     harvest: date | None = None
 
     def __post_init__(self) -> None:
@@ -77,6 +87,13 @@ class MonitoringSettings:
             )
         if self.team:
             must_differ(self.team)
+        if self.pest is not None and not self.belief.traces:
+            raise SettingError(
+                worded(
+                    "A pest needs its finds traced, but this season goes without. Trace them with: "
+                    "fieldmon change --trace"
+                )
+            )
         if len(self.decides().inspection_times(self.robot).detects) > 1:
             raise SettingError(
                 worded(
@@ -86,6 +103,12 @@ class MonitoringSettings:
                     sampler=self.sampler,
                 )
             )
+
+    def living(self) -> PestInWeather | None:
+        """Return the pest in its weather, day by day; None: no pest was named."""
+        if self.pest is None:
+            return None
+        return PestInWeather(self.pest, self.weather, self.begins)
 
     def decides(self) -> Sampler:
         """Return the sampler; raise `SettingError` if there is none of that name."""
@@ -154,6 +177,10 @@ def as_json(settings: MonitoringSettings) -> dict[str, str]:
     members = [asdict(member) for member in settings.team]
     together = {"teamwork": asdict(settings.teamwork)} if members else {}
     plain["team"] = {"members": members, **together}
+    if settings.pest is not None:
+        plain["pest"] = pest_json(settings.pest)
+    if settings.weather is not None:
+        plain["weather"] = weather_json(settings.weather)
     plain["sampler"] = {"name": settings.sampler, "settings": dict(settings.sampler_settings)}
     return {name: json.dumps(part, sort_keys=True) for name, part in plain.items()}
 
@@ -161,7 +188,7 @@ def as_json(settings: MonitoringSettings) -> dict[str, str]:
 def from_json(parts: dict[str, str]) -> MonitoringSettings:
     """Return the settings that `as_json` wrote; raise `FileProblem` where it cannot be read."""
     try:
-        plain = {name: json.loads(text) for name, text in parts.items()}
+        plain = {name: json.loads(text) for name, text in parts.items() if name != "weather"}
         season, chooses = plain["season"], plain["sampler"]
         team = plain.get("team", {"members": []})
         # before finds were traced, seasons knew of neighbours only, and go on so
@@ -177,6 +204,8 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
             seed=season["seed"],
             team=tuple(_member(one) for one in team["members"]),
             teamwork=Teamwork(**team.get("teamwork", {})),
+            pest=pest_of_json(plain.get("pest")),
+            weather=kept_weather(parts.get("weather", "null")),
             harvest=date.fromisoformat(season["harvest"]) if "harvest" in season else None,
         )
     except (KeyError, TypeError, ValueError, FieldmonError) as error:

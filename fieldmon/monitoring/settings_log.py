@@ -32,7 +32,9 @@ def now(db: sqlite3.Connection) -> Parts:
 def write(db: sqlite3.Connection, parts: Parts) -> list[str]:
     """Keep what differs from what counts now; return the names of what does."""
     before, at = now(db), utc_now()
-    changed = [(name, text, at) for name, text in parts.items() if before.get(name) != text]
+    # a part that is no longer chosen, as a pest, is null
+    wanted = {**dict.fromkeys(before, "null"), **parts}
+    changed = [(name, text, at) for name, text in wanted.items() if before.get(name) != text]
     insert(db, schema.SETTINGS, changed)
     return [name for name, _, _ in changed]
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring.history import History
+    from fieldmon.pests.development import Development
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +48,8 @@ class Status:
         ``(r,)`` days since any plant of each row was inspected; NaN: never.
     hot_spots
         Where finds cluster.
+    development
+        How far the pest has come; None: no pest or weather was given, or it is not known.
     """
 
     day: int
@@ -61,6 +64,7 @@ class Status:
     learnt: tuple[Learnt, ...]
     days_since: NDArray[np.float64]
     hot_spots: HotSpots
+    development: Development | None = None
 
     @classmethod
     def of(cls, history: History, morning: Belief, day: int) -> Status:

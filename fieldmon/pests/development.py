@@ -82,10 +82,14 @@ class Development:
     next_generation: date | None
 
     @property
+    def elapsed(self) -> int:
+        """Return how many of the days have passed by the evening of `on`."""
+        return int(np.searchsorted(self.days, np.datetime64(self.on, "D"), side="right"))
+
+    @property
     def so_far(self) -> float:
         """Return the degree-days gathered until the evening of `on`."""
-        until = self.days <= np.datetime64(self.on, "D")
-        return float(self.degree_days[until][-1]) if until.any() else 0.0
+        return float(self.degree_days[self.elapsed - 1]) if self.elapsed else 0.0
 
     @property
     def generations(self) -> float:

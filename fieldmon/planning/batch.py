@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
+from fieldmon.infestation.prior import PriorSettings
 from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.robot import Robot, scout
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from fieldmon.infestation.observations import Observations
+    from fieldmon.pests.pest import Pest
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
@@ -41,6 +43,10 @@ class Orders:
         Settings of `Planting`, likewise.
     bound
         Whether each day says what no other route can expect to find.
+    prior
+        How records become chances.
+    pest
+        What is looked for; None: any.
     """
 
     day: np.datetime64
@@ -50,6 +56,8 @@ class Orders:
     robot: dict[str, float] = field(default_factory=dict)
     planting: dict[str, float] = field(default_factory=dict)
     bound: bool = True
+    prior: PriorSettings = field(default_factory=PriorSettings)
+    pest: Pest | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +92,8 @@ def plan_task(task: Task, plot: Plot, observations: Observations) -> DayPlan:
     orders = task.orders
     robot = _robot(task)
     decides = sampler(orders.sampler, **kind_of(orders.sampler).settings_for(orders.every))
-    today = first_day(plot, observations, orders.day, PlanSettings(robot, decides))
+    plans = PlanSettings(robot, decides, orders.prior)
+    today = first_day(plot, observations, orders.day, plans)
     if not len(today.route):
         raise SettingError(
             f"The working day must be long enough to reach a plant and come back, but "
@@ -99,4 +108,5 @@ def _robot(task: Task) -> Robot:
         raise SettingError(f"A plot must be worked by 'robot' or 'scout', but it is {task.who!r}.")
     base = scout() if task.orders.on_foot or who == "scout" else Robot()
     settings: dict[str, Any] = task.stated | task.orders.robot
-    return replace(base, **settings)
+    robot = replace(base, **settings)
+    return robot if task.orders.pest is None else task.orders.pest.seen_by(robot)

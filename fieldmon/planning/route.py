@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import LineString
 
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.io.writers.geojson import RouteNotes
     from fieldmon.planning.workday import Workday
     from fieldmon.plot.travel import Aisles
@@ -192,6 +193,13 @@ def route_of(scene: Scene, work: Workday) -> Route:
         line_s=line_s,
         end_s=work.end_s,
     )
+
+
+def with_forecast(route: Route, ahead: Forecast) -> Route:
+    """Return a route whose files say how many plants are infested on the next mornings."""
+    if route.notes is None:
+        return route
+    return replace(route, notes=replace(route.notes, ahead=ahead))
 
 
 def _line(scene: Scene, work: Workday) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

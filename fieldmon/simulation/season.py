@@ -13,6 +13,7 @@ from fieldmon.infestation.spread import Spread, night
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.workday import draw_detections, work_day
 from fieldmon.samplers.base import NEVER, Scene, resting_place
+from fieldmon.simulation.insects import NightInsects, PestInsects
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -21,12 +22,17 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.planning.workday import Workday
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Sampler
+    from fieldmon.simulation.insects import Insects
     from fieldmon.simulation.start import Start
+
+
+_HOUR_S, _DAY_S = 3600.0, 86400.0
 
 
 @dataclass(frozen=True)
@@ -51,6 +57,10 @@ class SeasonSettings:
     hidden_nights
         Nights for which a new infestation spreads and no inspection finds it; 0 for those of the
         first morning.
+    pest
+        The pest, in the weather of the season's days; None: as `spread` and `pests` say.
+    believed_pest
+        The pest and the weather that the chance map knows of; None: the same.
     """
 
     n_days: int = 25
@@ -60,6 +70,8 @@ class SeasonSettings:
     believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = TracedPairs.of
     pests: Callable[[PlantGrid, NDArray[np.bool_], np.uint64], NDArray[np.bool_]] | None = None
     hidden_nights: int = 0
+    pest: PestInWeather | None = None
+    believed_pest: PestInWeather | None = None
 
     def __post_init__(self) -> None:
         if self.n_days < 1:
@@ -72,6 +84,19 @@ class SeasonSettings:
         if self.pests is not None:
             return self.pests(grid, infested, key)
         return night(grid, infested, self.spread, key)
+
+    def insects(self, grid: PlantGrid, infested: NDArray[np.bool_]) -> Insects:
+        """Return what lives on a plot where plants ``(n,)`` are infested on the first morning."""
+        if self.pest is not None:
+            return PestInsects(grid, infested, self.pest)
+        return NightInsects(grid, infested, self.night, self.hidden_nights)
+
+    def believed_night(self, grid: PlantGrid) -> Callable[[int], Spread]:
+        """Return what a chance map takes the insects to do in the night after a day."""
+        pest = self.believed_pest or self.pest
+        if pest is not None and self.believed_spread is None:
+            return lambda number: pest.spread(number, grid.frame)
+        return lambda _: self.believed_spread or self.spread
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +121,9 @@ class SimulatedDay:
         Finds so far, today's included.
     each
         The working day of each of a team; of one alone it is `work`.
+    evening
+        ``(n,)`` the truth in the evening, where insects move by day; None: the morning's, but for
+        the finds.
     """
 
     number: int
@@ -106,6 +134,7 @@ class SimulatedDay:
     ever_infested: int
     ever_found: int
     each: tuple[Workday, ...] = ()
+    evening: NDArray[np.bool_] | None = None
 
     @property
     def worked_s(self) -> float:
@@ -130,6 +159,8 @@ class SimulatedDay:
     @property
     def left(self) -> int:
         """Return the number of infested plants this evening, before the night."""
+        if self.evening is not None:
+            return int(np.count_nonzero(self.evening))
         return int(np.count_nonzero(self.infested)) - self.found
 
     @property
@@ -155,7 +186,10 @@ class MorningBeliefs:
     """
 
     def __init__(
-        self, first: Callable[[], Belief], learning: Callable[[Workday], Learning], spread: Spread
+        self,
+        first: Callable[[], Belief],
+        learning: Callable[[Workday], Learning],
+        spread: Callable[[int], Spread],
     ) -> None:
         self._first, self.learning, self._spread = first, learning, spread
         self._works: list[Workday] = []
@@ -175,9 +209,9 @@ class MorningBeliefs:
         day, belief = self._last or (0, self._first())
         if day > number:
             day, belief = 0, self._first()
-        for work in self._works[day:number]:
+        for passed, work in enumerate(self._works[day:number], day):
             evening = belief.learn(work.plant, work.found, self.learning(work))
-            belief = evening.overnight(self._spread)
+            belief = evening.overnight(self._spread(passed))
         self._last = number, belief
         return belief
 
@@ -200,7 +234,10 @@ def simulated_days(
     season = SeasonOnItsWay(aisles, robot, sampler, start, settings)
     keys = zip(*(streams.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
     for number, (own, inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
-        day = season.work(number, own, inspect)
+        if season.moves_by_day:
+            day = season.work_by_hour(number, own, inspect, overnight)
+        else:
+            day = season.work(number, own, inspect)
         yield day
         season.pass_night(day.work, overnight)
 
@@ -217,7 +254,8 @@ class SeasonOnItsWay:
         settings: SeasonSettings,
     ) -> None:
         self.aisles, self.robot, self.sampler, self.settings = aisles, robot, sampler, settings
-        self.first_chance, self.infested = start.chance, start.infested.copy()
+        self.first_chance = start.chance
+        self.insects = settings.insects(aisles.grid, start.infested)
         self.detects = sampler.inspection_times(robot).detects
         self.mornings = morning_beliefs(
             aisles.grid, robot, start, settings, chooses_time=len(self.detects) > 1
@@ -225,17 +263,57 @@ class SeasonOnItsWay:
         self.last_inspected = np.full(len(self.infested), NEVER, np.int32)
         self.ever_infested, self.ever_found = int(np.count_nonzero(self.infested)), 0
         self.trail = np.empty(0, np.int32)
-        self.shows_on = np.zeros(len(self.infested), np.int32)
+        self._found_last: NDArray[np.int32] | None = None
+
+    @property
+    def infested(self) -> NDArray[np.bool_]:
+        """Who is infested now, ``(n,)``."""
+        return self.insects.infested
+
+    @property
+    def moves_by_day(self) -> bool:
+        """Tell whether insects move while the robot works."""
+        return isinstance(self.insects, PestInsects) and self.insects.by_hour
 
     def work(self, number: int, own_key: np.uint64, inspect_key: np.uint64) -> SimulatedDay:
         """Work for a day; return what came of it."""
         would_find = draw_detections(self.showing(number), self.detects, inspect_key)
         return self.worked(number, work_day(self.scene(number, own_key), self.sampler, would_find))
 
+    def work_by_hour(
+        self, number: int, own_key: np.uint64, inspect_key: np.uint64, spread_key: np.uint64
+    ) -> SimulatedDay:
+        """Work for a day in whose hours insects move; return what came of it.
+
+        A plant is as it is in the hour in which it is inspected.
+        """
+        if not isinstance(self.insects, PestInsects):
+            return self.work(number, own_key, inspect_key)
+        morning, scene = self.infested, self.scene(number, own_key)
+        would_find = draw_detections(self.showing(number), self.detects, inspect_key)
+        work, done, gone_s = work_day(scene, self.sampler, would_find), 0, 0.0
+        while gone_s + _HOUR_S <= min(work.end_s, _DAY_S):
+            gone_s += _HOUR_S
+            until = int(np.searchsorted(work.arrive_s, gone_s))
+            passed = slice(done, until)
+            found, done = work.plant[passed][work.found[passed]], until
+            self.ever_infested += self.insects.pass_hour(found, number, spread_key)
+            now = draw_detections(self.showing(number), self.detects, inspect_key)
+            # what was seen stays seen; what lies ahead may be another matter now
+            now[work.plant[:done]] = would_find[work.plant[:done]]
+            ahead = work.plant[done:]
+            changed = bool((now[ahead] != would_find[ahead]).any())
+            would_find = now
+            if changed:
+                work = work_day(scene, self.sampler, would_find)
+        self._found_last = work.plant[done:][work.found[done:]]
+        evening = self.infested.copy()
+        evening[self._found_last] = False
+        return replace(self.worked(number, work), infested=morning, evening=evening)
+
     def showing(self, number: int) -> NDArray[np.bool_]:
         """Return where an inspection may find something on a day, ``(n,)``."""
-        showing: NDArray[np.bool_] = self.infested & (self.shows_on <= number)
-        return showing
+        return self.insects.showing(number)
 
     def worked(self, number: int, work: Workday, each: tuple[Workday, ...] = ()) -> SimulatedDay:
         """Note what was done on a day; return it."""
@@ -255,19 +333,19 @@ class SeasonOnItsWay:
 
     def pass_night(self, work: Workday, key: np.uint64) -> None:
         """Destroy what was found, and let the others spread."""
+        number = self.mornings.known
         self.mornings.add(work)
-        day_after = self.mornings.known
-        evening = self.infested.copy()
-        evening[work.plant[work.found]] = False
-        self.infested = self.settings.night(self.aisles.grid, evening, key)
-        self.shows_on[self.infested & ~evening] = day_after + self.settings.hidden_nights
-        # nobody recovers at night
-        self.ever_infested += int(np.count_nonzero(self.infested) - np.count_nonzero(evening))
+        # what was found in an hour that has passed is destroyed; insects may have come since
+        found = work.plant[work.found] if self._found_last is None else self._found_last
+        self._found_last = None
+        self.ever_infested += self.insects.pass_night(found, number, key)
         self.trail = work.plant if len(work) else self.trail
 
     def scene(self, number: int, key: np.uint64) -> Scene:
         """Return the scene of a morning."""
         belief = self.mornings.on(number) if self.sampler.reads_chance else None
+        if isinstance(belief, TracedPairs):
+            belief = belief.in_sight
         return Scene(
             aisles=self.aisles,
             robot=self.robot,
@@ -295,12 +373,15 @@ def morning_beliefs(
     usual = settings.learning or Learning(detection=robot.detects)
 
     def first() -> Belief:
-        return settings.believe(grid, start.chance)
+        belief, pest = settings.believe(grid, start.chance), settings.believed_pest or settings.pest
+        if pest is not None and isinstance(belief, TracedPairs):
+            return belief.of_pest(pest.pest)
+        return belief
 
     def learning(work: Workday) -> Learning:
         return replace(usual, detection=work.detects) if chooses_time else usual
 
-    return MorningBeliefs(first, learning, settings.believed_spread or settings.spread)
+    return MorningBeliefs(first, learning, settings.believed_night(grid))
 
 
 def check_start(aisles: Aisles, start: Start) -> None:

@@ -3,6 +3,7 @@
 import asyncio
 import io
 import os
+import random
 import socket
 import threading
 from contextlib import suppress
@@ -48,6 +49,60 @@ class Line:
             self.server.should_exit = self.server.force_exit = True
             self.thread.join(30)
             self.server = None
+
+
+_ENDLESS = 1 << 40
+
+
+class BrokenLine:
+    """A line to a port that breaks after a random number of bytes, whatever is being said."""
+
+    def __init__(self, port, seed):
+        self.to, self.chance, self.cuts, self.is_broken = port, random.Random(seed), 0, False
+        self.ear = socket.create_server(("127.0.0.1", 0), backlog=64)
+        self.address = f"http://127.0.0.1:{self.ear.getsockname()[1]}"
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    def _listen(self):
+        with suppress(OSError):
+            while True:
+                here, _ = self.ear.accept()
+                threading.Thread(target=self._serve, args=(here,), daemon=True).start()
+
+    def _serve(self, here):
+        left = [self._bytes() if self.is_broken else _ENDLESS]
+        with here:
+            try:
+                there = socket.create_connection(("127.0.0.1", self.to))
+            except OSError:  # the server is gone
+                self.cuts += self.is_broken
+                return
+            with there:
+                ways = [threading.Thread(target=self._pass_on, args=(a, b, left), daemon=True)
+                        for a, b in ((here, there), (there, here))]  # fmt: skip
+                for way in ways:
+                    way.start()
+                for way in ways:
+                    way.join()
+        self.cuts += left[0] <= 0
+
+    def _bytes(self):
+        """From a few bytes of a request to all of it and half the answer; now and then a photo."""
+        return int(10 ** self.chance.uniform(*((0, 3.5) if self.chance.random() < 0.8 else (3, 6))))
+
+    def _pass_on(self, source, to, left):
+        with suppress(OSError):
+            while left[0] > 0 and (said := source.recv(4096)):
+                if self.is_broken and left[0] > _ENDLESS / 2:
+                    left[0] = self._bytes()
+                to.sendall(said[: max(0, left[0])])
+                left[0] -= len(said)
+        for end in (source, to):
+            with suppress(OSError):
+                end.shutdown(socket.SHUT_RDWR)
+
+    def close(self):
+        self.ear.close()
 
 
 class PhoneBrowser:

@@ -6,28 +6,40 @@
 import hashlib
 import os
 import random
+import shutil
 
 import pytest
 
 from app.state.scout_page import invitation
 from fieldmon.monitoring import Season, photos, scouts
 from fieldmon.monitoring.day_ahead import route_ahead
+from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
 from fieldmon.plot.grid import row_label
-from tests.app.scouting import Line, PhoneBrowser, a_picture, kept
+from tests.app.scouting import BrokenLine, Line, PhoneBrowser, a_picture, kept
 from tests.monitoring.rules import keeps_the_rules
 from tests.monitoring.seasons import BEGINS, a_season
 from tests.monitoring.telling import told
 
 PLANTS = int(os.environ.get("FIELDMON_DAY", "12"))
 PHOTOS = int(os.environ.get("FIELDMON_PHOTOS", "3"))
+CUTS = int(os.environ.get("FIELDMON_CUTS", "12"))
+KILLS = int(os.environ.get("FIELDMON_KILLS", "2"))
 SENT = "#sync[data-state=sent][data-left='0']"
 
 
 @pytest.fixture(scope="module")
-def season(tmp_path_factory):
-    season = a_season(tmp_path_factory.mktemp("scouted") / "Gate 2026.gpkg")
+def planned_file(tmp_path_factory):
+    season = a_season(tmp_path_factory.mktemp("planned") / "Gate 2026.gpkg")
     season.plan(BEGINS)
-    return season
+    return season.path
+
+
+@pytest.fixture
+def season(planned_file, tmp_path):
+    """Return a season of its own: a whole day of tapping leaves nothing to the next test."""
+    folder = tmp_path / "seasons"
+    folder.mkdir()
+    return Season(shutil.copy(planned_file, folder))
 
 
 @pytest.fixture
@@ -71,6 +83,7 @@ def told_now(page, result, count=None):
     else:
         page.locator(f"#{result}").click()
     page.locator(f"#place:not([data-plant='{plant}'])").wait_for()
+    page.locator(f"#last[data-plant='{plant}'][data-kept=true]").wait_for()
     return plant, result
 
 
@@ -106,6 +119,84 @@ def test_a_day_without_a_network_among_kills_loses_and_doubles_nothing(season, l
     phone.page.locator(SENT).wait_for(timeout=120_000)
     holds(season, there, said)
     assert kept(phone.page).photos == {}, "what the season has needs no room on the phone"
+
+
+def test_killed_in_the_moment_of_a_tap_it_is_whole_or_asked_for_again(season, line, phone):
+    invited(phone, line, season, "Dan")
+    line.go()
+    said = []
+    for k in range(KILLS):
+        before = plant_of(phone.page)
+        at_once = phone.page.evaluate(
+            "() => { document.querySelector('#clean').click();"
+            " return Number(document.querySelector('#place').dataset.plant); }"
+        )
+        assert at_once != before, "the next plant is there with the tap"
+        if k % 2:  # the disk may have it by then, or not
+            phone.page.evaluate("() => new Promise((done) => requestAnimationFrame(done))")
+        phone.kill()
+        phone.page.goto(f"{line.address}/scouting/")
+        phone.page.locator("#clean").wait_for()
+        records = [one["plant"] for one in kept(phone.page).records]
+        if before in records:
+            said.append(before)
+        else:
+            assert plant_of(phone.page) == before, "what was not kept is asked for again"
+        assert sorted(records) == sorted(said)
+
+
+# a network comes, so often; each time until the page says how it went
+_SENT_AGAIN = """async (times) => {
+  for (let k = 0; k < times; k++) {
+    let began = false;
+    const over = new Promise((done) => {
+      const look = () => {
+        const { state } = document.querySelector("#sync").dataset;
+        if (state === "sending") began = true;
+        else if (began) { watching.disconnect(); done(); }
+      };
+      const watching = new MutationObserver(look);
+      watching.observe(document.body, { subtree: true, childList: true });
+    });
+    dispatchEvent(new Event("online"));
+    await over;
+  }
+}"""
+
+
+@pytest.mark.timeout(3600)
+def test_a_line_that_breaks_at_any_byte_loses_and_doubles_nothing(season, line, phone):
+    broken, said = BrokenLine(line.port, seed=5), []
+    line.address = broken.address
+    invited(phone, line, season, "Eve")
+    page, rng = phone.page, random.Random(6)
+    broken.is_broken, photos_taken = True, 0
+    while broken.cuts < CUTS:
+        if page.locator("#sync[data-left='0']").count() or rng.random() < CUTS / 4000:
+            if rng.random() < 0.3:
+                page.locator("#camera").set_input_files(a_picture(len(said)))
+                page.locator("#photos").wait_for()
+                photos_taken += 1
+            said.append(told_now(page, "clean"))
+        if rng.random() < 0.05:  # and the server is stopped and comes again
+            line.go()
+            line.come()
+        page.evaluate(_SENT_AGAIN, min(10, CUTS // 4))
+    there = kept(page)
+    broken.is_broken = False
+    page.evaluate("() => { dispatchEvent(new Event('online')); }")
+    page.locator(SENT).wait_for(timeout=120_000)
+    ids, rows = told(Season(season.path))
+    mine = {one["id"] for one in there.records}
+    assert len(ids) == len(set(ids))
+    assert mine <= set(ids)
+    assert sorted((plant, result) for one, plant, result in rows if one in mine) == sorted(said)
+    for name, (_, _, digest) in there.photos.items():
+        assert hashlib.sha256(photos.picture(season, name)[1]).hexdigest() == digest
+    assert kept(page).photos == {}
+    own = [one for one in photos.photos_of(Season(season.path)) if one.scout == "Eve"]
+    assert len(own) == photos_taken
+    broken.close()
 
 
 def holds(season, there, said):
@@ -159,11 +250,30 @@ def _in_the_field(phone, line, season):
     page.locator(SENT).wait_for(timeout=60_000)
     rows = [row for row in told(Season(season.path))[1] if row[1] == other]
     assert [row[2] for row in rows] == ["found"]
+    _brings_a_photo_asked_for(page, season)
     # the key is taken back: nothing goes in, nothing is lost
     scouts.take_back(season, "Ben")
     told_now(page, "clean")
     page.locator("#sync[data-state=ended][data-left='1']").wait_for(timeout=60_000)
     assert key not in page.url
+
+
+def _brings_a_photo_asked_for(page, season):
+    plants = set(range(len(season.plot.grid)))
+    plant = min(plants - {*season.plan(BEGINS, keep=False).route.plant.tolist(), plant_of(page)})
+    ask_photo(season, plant, "webs under the leaf?")
+    page.locator("#open_menu").click()
+    page.locator("#load_day").click()
+    page.locator("#asked").click()
+    page.locator(f"dialog [data-plant='{plant}']").click()
+    page.locator(f"#place[data-plant='{plant}'] .asked", has_text="webs under the leaf?").wait_for()
+    page.locator("#camera").set_input_files(a_picture(1))
+    page.locator(".asked[data-taken=true]").wait_for()
+    told_now(page, "clean")
+    assert page.locator("#asked").count() == 0
+    page.locator(SENT).wait_for(timeout=60_000)
+    assert photos_asked(Season(season.path)) == ()
+    assert photos.photos_of(Season(season.path))[0].plant == plant
 
 
 def _neighbours(plot, plant):

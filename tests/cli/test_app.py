@@ -53,10 +53,14 @@ def test_other_devices_come_only_where_it_is_said(run, started):
         assert named == wanted
 
 
-def test_others_come_to_an_encrypted_address_only(run, started):
-    code, _, err, _ = run("app", "--port", free_port(), "--reached-at", "http://a.example")
+@pytest.mark.parametrize(
+    ("address", "said"),
+    [("http://a.example", "must begin with https://"), ("https://a.example/field", "a path")],
+)
+def test_others_come_to_an_encrypted_address_of_its_own_only(address, said, run, started):
+    code, _, err, _ = run("app", "--port", free_port(), "--reached-at", address)
     assert code == 2
-    assert "must begin with https://" in err
+    assert said in " ".join(err.split())
     assert started == []
 
 

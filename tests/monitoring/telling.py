@@ -50,7 +50,7 @@ def without_records(path):
         triggers = db.execute("SELECT name FROM sqlite_master WHERE type = 'trigger'").fetchall()
         for (name,) in triggers:
             db.execute(f"DROP TRIGGER {name}")
-        for name in ("labels", "log"):
+        for name in ("labels", "log", "mornings"):
             db.execute(f"DROP TABLE {name}")
             db.execute("DELETE FROM gpkg_contents WHERE table_name = ?", (name,))
         db.execute("DROP INDEX inspections_batch")

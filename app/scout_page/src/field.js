@@ -1,26 +1,82 @@
-// What a scout does in the field. Every step is on the phone's disk before it is shown as done.
+// What a scout does in the field. A step is seen at once; it is said to be kept when it is on the phone's disk.
 
 import { laidOut, metres, offered, rings } from "./geo.js";
-import { afterFind, results, secondsAhead, secondsLeft } from "./plan.js";
+import { afterFind, results, secondsAhead, secondsLeft, withAsked } from "./plan.js";
 import { fetchDay, fetchRest } from "./sync.js";
+import { wayAhead } from "./way.js";
+
+const KEPT = ["season", "plot", "day", "ahead", "draft", "begun", "last"];
+// a record that is on no disk yet
+const WRITING = "writing";
 
 export class Field {
+  #written = Promise.resolve();
+  #failures = 0;
+  #way = null;
+  #pending = 0;
+
   constructor(store, { ask = (...all) => fetch(...all), clock = () => new Date(), id = () => crypto.randomUUID() } = {}) {
     Object.assign(this, { store, ask, clock, id });
     this.position = null;
+    this.records = [];
+  }
+
+  /**
+   * Take a step: it holds at once, and is on the disk when this resolves. Steps are written in their
+   * order. Where one cannot be written, it is taken back, and those after it with it.
+   */
+  #step(changes, write, record = null) {
+    const before = Object.fromEntries(KEPT.map((name) => [name, this[name]]));
+    const failures = this.#failures;
+    Object.assign(this, changes);
+    if (record) this.records = [...this.records, { ...record, state: WRITING }];
+    this.#work();
+    this.#pending += 1;
+    const written = this.#written.then(async () => {
+      if (failures !== this.#failures) throw new Error("the step before it was not kept");
+      try {
+        await write();
+      } catch (error) {
+        this.#failures += 1;
+        Object.assign(this, before, { records: this.records.filter((one) => one.state !== WRITING) });
+        this.#work();
+        throw error;
+      }
+      if (!record) return;
+      this.records = this.records.map((one) => (one.id === record.id ? { ...one, state: "waiting" } : one));
+      this.#work();
+    }).finally(() => { this.#pending -= 1; });
+    this.#written = written.catch(() => {});
+    return written;
+  }
+
+  /** Resolves when nothing is being written. */
+  async settled() {
+    while (this.#pending) await this.#written;
   }
 
   /** Bring back what was there when the page was closed, or killed. */
   async open(access) {
-    const names = ["season", "plot", "day", "ahead", "draft", "begun", "last"];
-    const kept = await Promise.all(names.map((name) => this.store.get(name)));
-    Object.assign(this, Object.fromEntries(names.map((name, k) => [name, kept[k]])));
+    let kept;
+    do {
+      await this.settled();
+      kept = await Promise.all(KEPT.map((name) => this.store.get(name)));
+    } while (this.#pending);
+    Object.assign(this, Object.fromEntries(KEPT.map((name, k) => [name, kept[k]])));
     if (access) {
       await this.store.allow(access);
       if (access.season !== this.season) this.#empty(access.season);
     }
     this.access = this.season ? await this.store.access(this.season) : null;
     await this.reread();
+    await this.#countPhotos();
+  }
+
+  /** A photo may be on the disk, and the page was killed before it was counted. */
+  async #countPhotos() {
+    if (!this.draft) return;
+    const photos = await this.store.drafts(this.draft.id);
+    if (photos !== (this.draft.photos ?? 0)) this.draft = { ...this.draft, photos };
   }
 
   #empty(season) {
@@ -28,21 +84,26 @@ export class Field {
   }
 
   async reread() {
-    this.records = this.season ? await this.store.records(this.season) : [];
+    const before = new Set(this.records.filter((one) => one.state !== WRITING).map((one) => one.id));
+    const kept = this.season ? await this.store.records(this.season) : [], ids = new Set(kept.map((one) => one.id));
+    // what was told while the disk was read
+    const newer = this.records.filter((one) => one.season === this.season && !ids.has(one.id) && !before.has(one.id));
+    this.records = [...kept, ...newer];
     this.#work();
   }
 
   /** Load plot, plants, route, chances and hot spots, while there is a network. */
   async load() {
     const { day, plot } = await fetchDay(this.ask, this.access, this.plot?.digest);
+    await this.settled();
     if (plot) this.plot = laidOut(plot, day.plot);
     if (this.coords) this.moved(this.coords);
     this.#take(day);
-    this.ahead = day.route.plants.filter((one) => !this.done.has(one));
     this.begun = null;
     this.last = null;
+    this.ahead = this.#withAsked(day.route.plants);
     this.draft = this.#keepDraft();
-    await this.#keep("season", "plot", "day", "ahead", "draft", "begun", "last");
+    await this.#keep(...KEPT);
     await this.store.tidy(this.season, day.day);
     await this.reread();
   }
@@ -53,8 +114,10 @@ export class Field {
     const { day } = await fetchDay(this.ask, this.access, this.day.plot);
     if (day.day !== this.day.day || day.plot !== this.day.plot) return;
     const { route, seconds_left } = this.day;
+    const asked = new Set(this.asked().map((one) => one.id));
     this.#take({ ...day, route, seconds_left });
-    this.ahead = this.ahead.filter((one) => !this.done.has(one));
+    const isNew = this.asked().some((one) => !asked.has(one.id));
+    this.ahead = isNew ? this.#withAsked(this.ahead) : this.ahead.filter((one) => !this.done.has(one));
     this.draft = this.#keepDraft();
     await this.#keep("day", "ahead", "draft");
   }
@@ -63,8 +126,9 @@ export class Field {
   async planRest() {
     const on = this.day.live ? null : this.day.day;
     const route = await fetchRest(this.ask, this.access, on, this.secondsLeft());
+    await this.settled();
     this.day = { ...this.day, route };
-    this.ahead = route.plants.filter((one) => !this.done.has(one));
+    this.ahead = this.#withAsked(route.plants);
     this.last = null;
     this.draft = this.#keepDraft();
     await this.#keep("day", "ahead", "draft", "last");
@@ -90,7 +154,23 @@ export class Field {
   }
 
   #keep(...names) {
-    return this.store.put(Object.fromEntries(names.map((name) => [name, this[name] ?? null])));
+    const values = Object.fromEntries(names.map((name) => [name, this[name] ?? null]));
+    return this.#step({}, () => this.store.put(values));
+  }
+
+  // -- photos asked for
+
+  /** The photos asked for that are not taken yet, those of one plant if one is named. */
+  asked(plant = null) {
+    const taken = new Set([...this.own.values()].filter((one) => one.photos).map((one) => one.plant));
+    return (this.day?.photos_asked ?? []).filter((one) => !taken.has(one.plant) && (plant === null || one.plant === plant));
+  }
+
+  /** The plants ahead, with those among them of which a photo is asked for. */
+  #withAsked(plants) {
+    const ahead = plants.filter((one) => !this.done.has(one));
+    const wanted = this.asked().map((one) => one.plant).filter((one) => !this.done.has(one));
+    return withAsked(this.plot, this.day, this.lastRecord()?.plant ?? -1, ahead, wanted, this.secondsLeft());
   }
 
   // -- the next plant
@@ -108,18 +188,17 @@ export class Field {
   }
 
   /** Go to another plant than the next; whatever was noted goes along. */
-  async goTo(plant) {
-    this.draft = { ...(this.draft ?? this.#fresh([])), plant, chosen: plant !== this.ahead[0] };
-    await this.#keep("draft");
+  goTo(plant) {
+    return this.note({ ...(this.draft ?? this.#fresh([])), plant, chosen: plant !== this.ahead[0] });
   }
 
   /** Back to the route. */
   goBack() { return this.goTo(this.ahead[0] ?? -1); }
 
   /** Note something of the plant before saying what was found. */
-  async note(changes) {
-    this.draft = { ...this.draft, ...changes };
-    await this.#keep("draft");
+  note(changes) {
+    const draft = { ...this.draft, ...changes };
+    return this.#step({ draft }, () => this.store.put({ draft }));
   }
 
   /** The plant that the position offers: within its accuracy, or none. */
@@ -160,12 +239,12 @@ export class Field {
       at: this.clock().toISOString(), on: this.day.live ? null : this.day.day };
   }
 
-  /** Say what was found at the plant; resolves once it is on the disk. */
-  async tell(result) {
-    const { id, plant, count, stage, leaves, notes } = this.draft;
-    if (plant < 0) return;
+  /** Say what was found at the plant: the next one is there at once; resolves when it is on the disk. */
+  tell(result) {
+    const { id, plant, count, stage, leaves, notes, photos } = this.draft;
+    if (plant < 0) return Promise.resolve();
     const of = result === "found" ? { count: count ?? null, stage: stage ?? "", leaves: leaves ?? null } : {};
-    const record = { ...this.#common(id), ...this.#where(), plant, result, ...of, notes: notes ?? "", off_route: this.offRoute };
+    const record = { ...this.#common(id), ...this.#where(), plant, result, ...of, notes: notes ?? "", off_route: this.offRoute, photos: photos ?? 0 };
     const begun = this.begun ?? this.clock().getTime();
     let ahead = this.ahead.filter((one) => one !== plant);
     if (result === "found") {
@@ -173,10 +252,7 @@ export class Field {
       ahead = afterFind(this.plot, this.day, ahead, plant, done, secondsLeft(this.day, begun, this.clock().getTime()));
     }
     const follows = { ahead, begun, draft: this.#fresh(ahead), last: { id, plant, ahead: this.ahead } };
-    await this.store.record(record, follows);
-    Object.assign(this, follows);
-    this.records.push({ ...record, state: "waiting" });
-    this.#work();
+    return this.#step(follows, () => this.store.record(record, follows), record);
   }
 
   /** The last record that can be taken back, or undefined. */
@@ -186,34 +262,54 @@ export class Field {
   }
 
   /** Take the last record back; nothing is deleted. */
-  async undo() {
+  undo() {
     const one = this.lastRecord();
-    if (!one) return;
+    if (!one) return Promise.resolve();
     const record = { ...this.#common(this.id()), undoes: one.id };
     const ahead = this.last?.id === one.id ? this.last.ahead : [one.plant, ...this.ahead.filter((p) => p !== one.plant)];
     const draft = { ...this.#fresh(ahead), plant: one.plant, chosen: one.plant !== ahead[0] };
     const follows = { ahead, draft, last: null };
-    await this.store.record(record, follows);
-    Object.assign(this, follows);
-    this.records.push({ ...record, state: "waiting" });
+    return this.#step(follows, () => this.store.record(record, follows), record);
+  }
+
+  /** Begin a photo of the plant: it belongs to this plant, though the next one may be there when it is ready. */
+  photoOf() {
+    return { id: this.id(), finding: this.draft.id, season: this.season, key: this.access.key,
+      order: this.#order(), at: this.clock().toISOString(), ...this.#where() };
+  }
+
+  /** Keep a photo that was begun; it is on the disk before it is counted. */
+  async addPhoto(photo, { bytes, type }) {
+    await this.store.addPhoto({ ...photo, bytes, type });
+    if (this.draft?.id === photo.finding) return this.note({ photos: (this.draft.photos ?? 0) + 1 });
+    this.records = this.records.map((one) => (one.id === photo.finding ? { ...one, photos: (one.photos ?? 0) + 1 } : one));
     this.#work();
   }
 
-  async addPhoto({ bytes, type }) {
-    const photo = { id: this.id(), finding: this.draft.id, season: this.season, key: this.access.key,
-      order: this.#order(), at: this.clock().toISOString(), ...this.#where(), bytes, type };
-    await this.store.addPhoto(photo);
-    await this.note({ photos: (this.draft.photos ?? 0) + 1 });
-  }
-
   async dropPhotos() {
+    await this.settled();
     await this.store.dropDraft(this.draft.id);
     await this.note({ photos: 0 });
   }
 
   // -- how far it is
 
+  /** How many records are on no disk yet. */
+  unwritten() { return this.records.filter((one) => one.state === WRITING).length; }
+
+  /** How many plants are done and on the disk. */
+  kept() { return [...this.own.values()].filter((one) => one.state !== WRITING).length; }
+
   secondsLeft() { return secondsLeft(this.day, this.begun, this.clock().getTime()); }
+
+  /** The line ahead as it is gone, metres. */
+  way() {
+    const from = this.lastRecord()?.plant ?? -1, known = this.#way;
+    if (known?.ahead !== this.ahead || known.from !== from || known.route !== this.day.route) {
+      this.#way = { ahead: this.ahead, from, route: this.day.route, line: wayAhead(this.plot, this.day, from, this.ahead) };
+    }
+    return this.#way.line;
+  }
 
   secondsAhead() { return secondsAhead(this.plot, this.day, this.lastRecord()?.plant ?? -1, this.ahead); }
 

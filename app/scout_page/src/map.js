@@ -4,11 +4,13 @@
 const CLASSES = [10, 50, 150, 400, 1001]; // of a chance, in thousandths, as in the app
 const PAINT = {
   sun: { ground: "#ffffff", classes: ["#d5d9d0", "#f5d76e", "#f08c1e", "#c8500a", "#7d1f02"], edge: "#555", route: "#000",
-    found: "#d55e00", clean: "#0067a5", ring: "#000", next: "#ffbe00", here: "#0a5bd6", spot: "#d55e00", ink: "#000" },
+    found: "#d55e00", clean: "#0067a5", ring: "#000", next: "#ffbe00", here: "#0a5bd6", spot: "#d55e00", asked: "#6a1b9a", ink: "#000" },
   dark: { ground: "#101214", classes: ["#3a423a", "#8a7420", "#b5650f", "#dd5a12", "#ff7a45"], edge: "#889", route: "#fff",
-    found: "#ff8a3c", clean: "#56b4e9", ring: "#fff", next: "#ffd54a", here: "#7db4ff", spot: "#ff8a3c", ink: "#fff" },
+    found: "#ff8a3c", clean: "#56b4e9", ring: "#fff", next: "#ffd54a", here: "#7db4ff", spot: "#ff8a3c", asked: "#e0b0ff", ink: "#fff" },
 };
 const FINGER = 26;
+// plants along the side of a square in which they are looked up
+const SQUARE = 16;
 
 export class PlotMap {
   constructor(canvas, { picked }) {
@@ -17,7 +19,7 @@ export class PlotMap {
     this.theme = "sun";
     this.scale = 1; // pixels of the screen per metre
     this.middle = [0, 0];
-    this.shown = { ahead: [], found: new Set(), clean: new Set(), skipped: new Set(), next: -1, position: null };
+    this.shown = { ahead: [], way: [], asked: [], found: new Set(), clean: new Set(), skipped: new Set(), next: -1, position: null };
     this.touches = new Map();
     this.#listen();
     new ResizeObserver(() => this.#resize()).observe(canvas);
@@ -31,13 +33,16 @@ export class PlotMap {
     const n = plot.x.length;
     this.klass = new Uint8Array(n);
     for (let i = 0; i < n; i++) { let c = 0; while (chance[i] >= CLASSES[c]) c++; this.klass[i] = c; }
+    this.squares = inSquares(plot, this.klass);
     if (!this.laid) { this.laid = true; this.fit(); }
     this.draw();
   }
 
-  show(changes) {
+  /** Show this with the next picture, or with the one after it where something else comes first. */
+  show(changes, late = false) {
     Object.assign(this.shown, changes);
-    this.draw();
+    if (late) requestAnimationFrame(() => setTimeout(() => this.draw()));
+    else this.draw();
   }
 
   fit() {
@@ -53,11 +58,11 @@ export class PlotMap {
   }
 
   /** Bring a plant into the middle, close enough to be told from its neighbours. */
-  look(plant) {
+  look(plant, late = false) {
     if (plant < 0 || !this.plot) return;
     this.middle = [this.plot.x[plant], this.plot.y[plant]];
     this.scale = Math.max(this.scale, 22 / this.plot.plantSpacing);
-    this.draw();
+    this.show({}, late);
   }
 
   zoom(by, px = this.width / 2, py = this.height / 2) {
@@ -104,6 +109,7 @@ export class PlotMap {
     this.#outlines(ink, paint);
     this.#way(ink, paint);
     this.#known(ink, paint);
+    this.#asked(ink, paint);
     this.#next(ink, paint);
     this.#here(ink, paint);
     this.canvas.dataset.drawn = (Number(this.canvas.dataset.drawn) || 0) + 1;
@@ -117,15 +123,14 @@ export class PlotMap {
     const colours = paint.classes.map(packed);
     const by = this.scale * dense, side = Math.max(1, Math.round(Math.min(this.plot.plantSpacing * 0.6 * by, 14 * dense)));
     const x0 = width / 2 - this.middle[0] * by, y0 = height / 2 + this.middle[1] * by, half = side >> 1;
+    const paintOne = (i, colour) => {
+      const left = Math.round(x0 + x[i] * by) - half, top = Math.round(y0 - y[i] * by) - half;
+      if (left < 0 || top < 0 || left + side > width || top + side > height) return;
+      for (let row = top; row < top + side; row++) pixels.fill(colour, row * width + left, row * width + left + side);
+    };
     // the likeliest last: they must not vanish under others where plants are smaller than pixels
-    for (let klass = 0; klass < CLASSES.length; klass++) {
-      for (let i = 0; i < x.length; i++) {
-        if (this.klass[i] !== klass) continue;
-        const left = Math.round(x0 + x[i] * by) - half, top = Math.round(y0 - y[i] * by) - half;
-        if (left < 0 || top < 0 || left + side > width || top + side > height) continue;
-        for (let row = top; row < top + side; row++) pixels.fill(colours[klass], row * width + left, row * width + left + side);
-      }
-    }
+    const [west, north] = this.#metres(0, 0), [east, south] = this.#metres(this.width, this.height);
+    for (let klass = 0; klass < CLASSES.length; klass++) this.squares.each(klass, [west, south, east, north], (i) => paintOne(i, colours[klass]));
     ink.putImageData(image, 0, 0);
   }
 
@@ -147,12 +152,21 @@ export class PlotMap {
   }
 
   #way(ink, paint) {
-    const { ahead } = this.shown, at = (i) => [this.plot.x[i], this.plot.y[i]];
     ink.strokeStyle = paint.route;
     ink.lineWidth = 2;
-    this.#line(ink, ahead.map(at));
+    this.#line(ink, this.shown.way);
     ink.fillStyle = paint.route;
-    for (const plant of ahead) this.#dot(ink, plant, 3);
+    for (const plant of this.shown.ahead) this.#dot(ink, plant, 3);
+  }
+
+  /** A square where a photo is asked for. */
+  #asked(ink, paint) {
+    ink.strokeStyle = paint.asked;
+    ink.lineWidth = 4;
+    for (const plant of this.shown.asked) {
+      const [px, py] = this.#pixels(this.plot.x[plant], this.plot.y[plant]);
+      ink.strokeRect(px - 11, py - 11, 22, 22);
+    }
   }
 
   #dot(ink, plant, r) {
@@ -279,6 +293,33 @@ export class PlotMap {
     if (plant >= 0 && this.scale * this.plot.plantSpacing < 7) { this.middle = [x, y]; this.zoom(14 / this.plot.plantSpacing / this.scale); return; }
     if (plant >= 0) this.picked(plant);
   }
+}
+
+/** Plants by their class and by the square that they stand in: what is in sight is found without the rest. */
+function inSquares({ x, y, plantSpacing, rowSpacing }, klass) {
+  const n = x.length, size = SQUARE * Math.max(plantSpacing, rowSpacing);
+  let [x0, x1, y0, y1] = [Infinity, -Infinity, Infinity, -Infinity];
+  for (let i = 0; i < n; i++) {
+    if (x[i] < x0) x0 = x[i]; if (x[i] > x1) x1 = x[i];
+    if (y[i] < y0) y0 = y[i]; if (y[i] > y1) y1 = y[i];
+  }
+  const across = Math.floor((x1 - x0) / size) + 1, up = Math.floor((y1 - y0) / size) + 1;
+  const square = (i) => (klass[i] * up + Math.floor((y[i] - y0) / size)) * across + Math.floor((x[i] - x0) / size);
+  const first = new Int32Array(CLASSES.length * across * up + 1), plants = new Int32Array(n);
+  for (let i = 0; i < n; i++) first[square(i) + 1] += 1;
+  for (let k = 1; k < first.length; k++) first[k] += first[k - 1];
+  const next = first.slice();
+  for (let i = 0; i < n; i++) plants[next[square(i)]++] = i;
+  const within = (value, most) => Math.min(Math.max(Math.floor(value / size), 0), most - 1);
+  return {
+    each(wanted, [west, south, east, north], work) {
+      const from = within(west - x0, across), to = within(east - x0, across);
+      for (let k = within(south - y0, up); k <= within(north - y0, up); k++) {
+        const line = (wanted * up + k) * across;
+        for (let j = first[line + from]; j < first[line + to + 1]; j++) work(plants[j]);
+      }
+    },
+  };
 }
 
 function packed(colour) {

@@ -80,20 +80,30 @@ export class Page {
     this.#drawMap();
   }
 
-  /** Do something, and say so where it could not be kept. */
+  /** Take a step: it is seen at once, and said to be kept when it is on the disk, or that it could not be. */
   async #act(work, beat) {
+    let kept;
+    try { kept = work(); } catch (error) { kept = Promise.reject(error); }
+    this.#say("");
+    this.#draw();
     try {
-      await work();
+      await kept;
       if (beat) navigator.vibrate?.(beat);
-      this.#say("");
     } catch (error) {
       navigator.vibrate?.([200, 100, 200]);
       this.#say(say(error?.name === "QuotaExceededError" ? "phone_full" : "not_kept", { why: error?.message ?? "" }), true);
+      this.#draw();
     }
+    this.#drawLast();
+    this.#drawBar();
+    this.left = await this.store.left();
+    this.#drawBar();
+  }
+
+  #draw() {
     this.#drawBar();
     this.#drawSheet();
-    this.#drawMap();
-    this.store.left().then((left) => { this.left = left; this.#drawBar(); });
+    this.#drawMap(true);
   }
 
   #say(text, bad = false) {
@@ -103,11 +113,12 @@ export class Page {
 
   // -- map
 
-  #drawMap() {
+  #drawMap(late = false) {
     const { field } = this;
     if (!field.plot || !field.day) return;
     if (this.#laidOut !== field.day) { this.#laidOut = field.day; this.map.lay(field.plot, field.day.chance, field.day.spots); }
-    this.map.show({ ...field.known(), ahead: field.ahead, next: field.plant, position: field.position });
+    const asked = field.asked().map((one) => one.plant);
+    this.map.show({ ...field.known(), ahead: field.ahead, way: field.way(), asked, next: field.plant, position: field.position }, late);
   }
 
   moved() {
@@ -120,10 +131,10 @@ export class Page {
   #drawBar() {
     const { field } = this;
     const said = field.day ? [
-      h("b", {}, say("progress", { done: field.own.size, left: field.ahead.length })),
+      h("b", {}, say("progress", { done: field.kept(), left: field.ahead.length })),
       h("span", { id: "hours" }, this.#hours()),
     ] : [h("b", {}, "fieldmon")];
-    const n = this.left.records + this.left.photos;
+    const n = this.left.records + this.left.photos + field.unwritten();
     const ended = this.state === "ended", signs = { offline: "⏸", ended: "⚠", sending: "↑", sent: "✓", idle: "" };
     const text = n ? say("waiting", { n }) : this.left.refused.length ? say("some_refused", { n: this.left.refused.length }) : say("all_sent");
     this.bar.replaceChildren(h("div", { class: "said" }, ...said),
@@ -138,7 +149,16 @@ export class Page {
 
   // -- the next plant
 
+  /** The sheet anew; a keyboard stays where it was, or comes to what is asked next. */
   #drawSheet() {
+    const was = this.sheet.contains(document.activeElement) ? document.activeElement.id : null;
+    this.#layOut();
+    if (was === null) return;
+    const again = [was, "save", "clean"].filter(Boolean).map((id) => document.getElementById(id)).find((one) => this.sheet.contains(one));
+    again?.focus({ preventScroll: true });
+  }
+
+  #layOut() {
     const { field } = this;
     if (!field.access) return this.sheet.replaceChildren(h("p", { class: "large" }, say("scan")));
     if (!field.day) {
@@ -147,11 +167,29 @@ export class Page {
     }
     const { draft } = field;
     if (draft.plant < 0) {
-      return this.sheet.replaceChildren(...this.#old(), h("p", { class: "large", id: "place", "data-plant": -1 }, say("route_done")), this.#others(), this.#back());
+      return this.sheet.replaceChildren(...this.#old(), h("p", { class: "large", id: "place", "data-plant": -1 }, say("route_done")), this.#lastSaid(), this.#others(), this.#back());
     }
     this.place = h("div", { id: "place", "data-plant": draft.plant });
     this.#drawPlace();
-    this.sheet.replaceChildren(...this.#old(), this.place, draft.open ? this.#details() : this.#buttons(), this.#others());
+    this.sheet.replaceChildren(...this.#old(), this.place, draft.open ? this.#details() : this.#buttons(), this.#lastSaid(), this.#others());
+  }
+
+  /** What was told last, and whether it is on the disk. */
+  #lastSaid() {
+    this.last = h("p", { id: "last", class: "small" });
+    this.#drawLast();
+    return this.last;
+  }
+
+  #drawLast() {
+    const one = this.field.day && this.field.lastRecord();
+    if (!this.last) return;
+    this.last.hidden = !one;
+    if (!one) return this.last.replaceChildren();
+    const isKept = one.state !== "writing", { plot } = this.field;
+    const what = `${say("place", { row: rowOf(plot, one.plant), plant: plot.number[one.plant] })}: ${say(one.result)}`;
+    Object.assign(this.last.dataset, { plant: one.plant, kept: isKept });
+    this.last.textContent = say(isKept ? "kept" : "keeping", { what });
   }
 
   #old() {
@@ -170,6 +208,10 @@ export class Page {
       h("p", {}, h("span", { class: field.isThere() ? "good" : "" }, where), h("span", {}, say("chance", { n: (field.day.chance[plant] / 10).toFixed(field.day.chance[plant] < 100 ? 1 : 0) })),
         field.offRoute && h("span", { class: "tag" }, say("off_route"))),
     );
+    for (const one of field.asked(plant)) {
+      const taken = field.draft.photos > 0;
+      place.append(h("p", { class: "asked", "data-taken": String(taken) }, `${taken ? "✓" : "▣"} ${one.note ? say("photo_asked_of", { note: one.note }) : say("photo_asked")}`));
+    }
     const contradicting = (field.day.contradicting ?? []).filter((one) => one.plant === plant);
     if (contradicting.length) place.append(h("p", { class: "bad" }, contradicting.map((one) => say("who_says", { who: one.who, result: say(one.result) })).join(", ")));
     const known = (field.day.today ?? []).filter((one) => one.plant === plant && !contradicting.length);
@@ -183,14 +225,15 @@ export class Page {
   }
 
   async #tell(result, beat) {
-    await this.#act(() => this.field.tell(result), beat);
-    this.map.look(this.field.plant);
+    const kept = this.#act(() => this.field.tell(result), beat);
+    this.map.look(this.field.plant, true);
+    await kept;
     this.onTold?.();
   }
 
   /** Count, stage, leaves and a note of a find. */
   #details() {
-    const { draft } = this.field, save = (changes) => this.field.note(changes).catch((error) => this.#act(() => Promise.reject(error)));
+    const { draft } = this.field, save = (changes) => { const kept = this.field.note(changes); kept.catch(() => this.#act(() => kept)); };
     const number = (name) => {
       const input = h("input", { type: "number", inputmode: "numeric", min: "0", max: "1000000", id: name, value: draft[name] ?? "",
         oninput: () => save({ [name]: input.value === "" ? null : Math.max(0, Number(input.value)) }) });
@@ -216,11 +259,12 @@ export class Page {
     const small = (name, act, more = {}) => h("button", { type: "button", id: name, onclick: act, ...more }, say(name));
     const last = field.lastRecord(), offers = field.offered();
     return h("div", { id: "others" }, input,
-      draft.plant >= 0 && small("photo", () => input.click()),
+      draft.plant >= 0 && small("photo", () => input.click(), field.asked(draft.plant).length > 0 && !draft.photos ? { class: "main" } : {}),
       draft.plant >= 0 && small("note_button", () => this.#note(), { "aria-pressed": String(Boolean(draft.notes)) }),
       last && h("button", { type: "button", id: "undo", onclick: () => this.#act(() => this.field.undo(), 30).then(() => this.onTold?.()) }, `↶ ${say("undo")}`),
       offers >= 0 && offers !== draft.plant && small("here", () => this.#act(() => field.goTo(offers))),
       small("other_plant", () => this.#other()),
+      field.asked().length > 0 && h("button", { type: "button", id: "asked", onclick: () => this.#asked() }, `▣ ${say("asked", { n: field.asked().length })}`),
       field.offRoute && field.ahead.length > 0 && small("back_to_route", () => this.#act(() => field.goBack())),
       draft.photos > 0 && h("button", { type: "button", class: "tag", id: "photos", onclick: () => confirm(say("drop_photos")) && this.#act(() => field.dropPhotos()) }, say("photos", { n: draft.photos })),
       draft.notes ? h("p", { class: "noted" }, draft.notes) : null);
@@ -230,9 +274,25 @@ export class Page {
 
   async #photo(file) {
     if (!file) return;
+    const photo = this.field.photoOf();
+    this.#say(say("photo_comes"));
     let made;
     try { made = await scaled(file); } catch { return this.#say(say("no_picture"), true); }
-    await this.#act(() => this.field.addPhoto(made), 30);
+    await this.#act(() => this.field.addPhoto(photo, made), 30);
+    this.#draw();
+  }
+
+  /** The photos asked for: a button leads to each. */
+  #asked() {
+    const { field } = this;
+    const lead = (one) => h("button", { type: "button", class: "wide", "data-plant": one.plant, onclick: () => {
+      this.menu.close();
+      this.#act(() => field.goTo(one.plant));
+      this.map.look(one.plant, true);
+    } }, `${say("place", { row: rowOf(field.plot, one.plant), plant: field.plot.number[one.plant] })}${one.note ? `: ${one.note}` : ""}`);
+    const title = say("asked", { n: field.asked().length });
+    this.#show(h("div", {}, h("h2", {}, title), ...field.asked().map(lead),
+      h("button", { type: "button", class: "wide main", onclick: () => this.menu.close() }, say("close"))), title, "asked");
   }
 
   #note() {
@@ -248,7 +308,7 @@ export class Page {
     this.#ask(say("other_plant"), h("div", { class: "pair" }, h("label", {}, say("row"), row), h("label", {}, say("plant"), plant)), () => {
       const found = plantAt(this.field.plot, Number(row.value), Number(plant.value));
       if (found < 0) this.#say(say("no_such_plant"), true);
-      else this.#act(() => this.field.goTo(found)).then(() => this.map.look(found));
+      else { this.#act(() => this.field.goTo(found)); this.map.look(found, true); }
     });
     row.focus();
   }

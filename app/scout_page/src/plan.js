@@ -2,21 +2,55 @@
 
 import { apart, neighbours, walkSeconds } from "./geo.js";
 
+const legsSaid = new WeakMap();
+
 /** Seconds that the plants ahead take from where one stands; what the server said of a leg holds. */
 export function secondsAhead(plot, day, at, ahead) {
-  const said = legs(day);
+  const leg = legs(plot, day);
   let total = 0, here = at;
   for (const plant of ahead) {
-    total += (said.get(`${here} ${plant}`) ?? walkSeconds(plot, day.robot, here, plant)) + day.robot.visit_s;
+    total += leg(here, plant) + day.robot.visit_s;
     here = plant;
   }
   return total;
 }
 
-function legs(day) {
-  const said = new Map(), { plants, walk_s } = day.route;
-  plants.forEach((plant, k) => said.set(`${k ? plants[k - 1] : -1} ${plant}`, walk_s[k]));
-  return said;
+/** Returns what tells the seconds of a way between two plants. */
+function legs(plot, day) {
+  if (!legsSaid.has(day.route)) {
+    const said = new Map(), { plants, walk_s } = day.route;
+    plants.forEach((plant, k) => said.set(`${k ? plants[k - 1] : -1} ${plant}`, walk_s[k]));
+    legsSaid.set(day.route, said);
+  }
+  const said = legsSaid.get(day.route);
+  return (a, b) => said.get(`${a} ${b}`) ?? walkSeconds(plot, day.robot, a, b);
+}
+
+/**
+ * The plants ahead with those of which a photo is asked for, each where it is the least way round.
+ * Where the hours do not do, what nobody asked for is left out at the end.
+ */
+export function withAsked(plot, day, at, ahead, asked, left) {
+  const leg = legs(plot, day), all = [...ahead], wanted = new Set(asked);
+  for (const plant of wanted) {
+    if (all.includes(plant)) continue;
+    let least = Infinity, place = 0;
+    // where nobody knows where the way begins, it begins as it did
+    for (let k = at < 0 && all.length ? 1 : 0; k <= all.length; k++) {
+      const before = k ? all[k - 1] : at, after = all[k];
+      const more = leg(before, plant) + (after === undefined ? 0 : leg(plant, after) - leg(before, after));
+      if (more < least) { least = more; place = k; }
+    }
+    all.splice(place, 0, plant);
+  }
+  if (all.length === ahead.length) return all;
+  const most = Math.max(left, secondsAhead(plot, day, at, ahead));
+  while (secondsAhead(plot, day, at, all) > most) {
+    const out = all.findLastIndex((plant) => !wanted.has(plant));
+    if (out < 0) break;
+    all.splice(out, 1);
+  }
+  return all;
 }
 
 /** What is left of the working day; it begins with the first record. */
@@ -45,10 +79,10 @@ export function afterFind(plot, day, ahead, plant, done, left) {
 
 /** As many of the plants ahead as fit, at least `least`. */
 function fitting(plot, day, at, ahead, left, least) {
-  const said = legs(day);
+  const leg = legs(plot, day);
   let total = 0, here = at, k = 0;
   for (; k < ahead.length; k++) {
-    total += (said.get(`${here} ${ahead[k]}`) ?? walkSeconds(plot, day.robot, here, ahead[k])) + day.robot.visit_s;
+    total += leg(here, ahead[k]) + day.robot.visit_s;
     if (total > left && k >= least) break;
     here = ahead[k];
   }

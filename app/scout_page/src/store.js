@@ -35,11 +35,12 @@ export class Store {
     const change = this.db.transaction(["records", "photos", "kept"], "readwrite", STRICT);
     const done = change.done;
     done.catch(() => {}); // said below
-    change.objectStore("records").add({ ...one, state: WAITING });
     const photos = change.objectStore("photos");
+    let n = 0;
     for (let at = await photos.index("state").openCursor(DRAFT); at; at = await at.continue()) {
-      if (at.value.finding === one.id) await at.update({ ...at.value, state: WAITING });
+      if (at.value.finding === one.id) { n += 1; await at.update({ ...at.value, state: WAITING }); }
     }
+    change.objectStore("records").add({ ...one, photos: n, state: WAITING });
     for (const [name, value] of Object.entries(follows)) change.objectStore("kept").put(value, name);
     await done;
   }
@@ -89,14 +90,19 @@ export class Store {
     }
   }
 
+  /** Keep a photo; it waits at once where what it belongs to was told while it was made ready. */
   async addPhoto(photo) {
-    const change = this.db.transaction("photos", "readwrite", STRICT);
-    change.store.add({ ...photo, state: DRAFT });
-    await change.done;
+    const change = this.db.transaction(["records", "photos"], "readwrite", STRICT), done = change.done;
+    done.catch(() => {}); // said below
+    const records = change.objectStore("records"), told = await records.get(photo.finding);
+    change.objectStore("photos").add({ ...photo, state: told ? WAITING : DRAFT });
+    if (told) records.put({ ...told, photos: (told.photos ?? 0) + 1 });
+    await done;
   }
 
-  photosOf(finding) {
-    return this.db.getAll("photos").then((all) => all.filter((one) => one.finding === finding));
+  /** How many photos there are of what is not told yet. */
+  async drafts(finding) {
+    return (await this.db.getAllFromIndex("photos", "state", DRAFT)).filter((one) => one.finding === finding).length;
   }
 
   async dropDraft(finding) {

@@ -11,12 +11,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, cast
 
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.io.options import Upload, source_name
 from fieldmon.io.packaged import packaged_names, packaged_text
 from fieldmon.pests.pest import Citation, Entry, Increase, Movement, Pest, Stage
 from fieldmon.plot.robot import Viewpoints
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    from fieldmon.io.options import Source
 
 _FOLDER = "fieldmon/pests"
 _WORDS = ("name", "title", "species", "cutoff", "count_means", "not_found")
@@ -79,15 +82,19 @@ def shipped_pest(name: str) -> Pest:
     return pest_from_text(packaged_text(f"{_FOLDER}/{name}.toml"), f"{name}.toml")
 
 
-def read_pest(path: Path) -> Pest:
+def read_pest(source: Source) -> Pest:
     """Return the pest of a TOML file; raise `FileProblem` with the line where it is none."""
+    name = source_name(source)
+    if isinstance(source, tuple):
+        raise FileProblem(f"A pest must be one file, but there are {len(source)}: {name}.")
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        data = source.data if isinstance(source, Upload) else Path(source).read_bytes()
+        text = data.decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise FileProblem(
-            f"{path.name}: a pest must be text in UTF-8, but it cannot be read ({error})."
+            f"{name}: a pest must be text in UTF-8, but it cannot be read ({error})."
         ) from error
-    return pest_from_text(text, path.name)
+    return pest_from_text(text, name)
 
 
 def pest_from_text(text: str, name: str) -> Pest:

@@ -16,6 +16,7 @@ from fieldmon.pests.weather import DAY_S, HOUR_S, MEASURED, Weather, weather_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.pests.weather import Floats, Times
 
 # 23 to 25 hours are a day where clocks change
@@ -197,12 +198,11 @@ def _about_gaps(weather: Weather) -> list[ImportMessage]:
     known = weather.at[~np.isnan(weather.temperature_c)]
     jumps = np.diff(known).astype(np.int64)
     at = int(np.argmax(jumps))
-    thing = "hour" if weather.hourly else "day"
     longest = round(int(jumps[at]) / weather.step_s) - 1
     said = worded(
         "{n} without a temperature; the longest gap, {longest}, begins after {after} UTC.",
-        n=counted(n, thing),
-        longest=counted(longest, thing),
+        n=_so_many(n, weather),
+        longest=_so_many(longest, weather),
         after=str(known[at]).replace("T", " ")[:16],
     )
     return [dropped(said)]
@@ -212,5 +212,9 @@ def _about_forecast(weather: Weather) -> list[ImportMessage]:
     n = int(np.count_nonzero(weather.forecast))
     if not n:
         return []
-    thing = "hour" if weather.hourly else "day"
-    return [seen(worded("{n} are taken as forecast.", n=counted(n, thing)))]
+    return [seen(worded("{n} are taken as forecast.", n=_so_many(n, weather)))]
+
+
+def _so_many(n: int, weather: Weather) -> Worded:
+    """Return so many hours or days in words."""
+    return counted(n, "hour") if weather.hourly else counted(n, "day")

@@ -15,10 +15,12 @@ from fieldmon.plot.grid import block_label, row_label
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.io.writers.day_file import DrivenRoute, HandoffPlan
 
 # RFC 7946 positions are degrees; 8 decimals are about a millimetre
 _DECIMALS = 8
+_AHEAD = ("expected", "low", "high")
 
 
 @dataclass(frozen=True)
@@ -35,12 +37,15 @@ class RouteNotes:
         Local date and time of the start, or None: only seconds are given then.
     who
         Who of a team drives it; None: it is the only one.
+    ahead
+        How many plants are infested on the next mornings; None: it is not known.
     """
 
     plot: str
     sampler: str
     start: datetime | None = None
     who: str | None = None
+    ahead: Forecast | None = None
 
 
 def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
@@ -57,7 +62,14 @@ def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
         **_bound(route),
         **({} if notes.start is None else {"start": _clock(notes.start, 0.0)}),
         **({} if notes.start is None else {"end": _clock(notes.start, route.end_s)}),
+        **({} if notes.ahead is None else {"forecast": _ahead(notes.ahead)}),
     }
+
+
+def _ahead(ahead: Forecast) -> dict[str, Any]:
+    """Return the infested plants of the next mornings, this evening's first."""
+    columns = {name: getattr(ahead, name).round(1).tolist() for name in _AHEAD}
+    return {**columns, "chance": 0.9, "basis": ahead.basis()}
 
 
 def _bound(route: DrivenRoute) -> dict[str, Any]:

@@ -2,6 +2,8 @@
 
 from datetime import date
 
+import pytest
+
 from app.words import texts
 from tests.app.driving import go, opened, tap, texts_of
 
@@ -20,10 +22,12 @@ def test_the_plan_is_kept_once_it_is_used(season_app, season):
     assert texts.PLAN_USED.format(day="2026-11-16") in season_app.success[0].value
 
 
-def test_the_route_goes_along_as_a_file_where_no_phone_reaches_this_machine(season_app):
-    tap(season_app, "do_send")
-    assert texts.SEND_ALONE in texts_of(season_app)
-    assert season_app.selectbox(key="format").value == "gpx"
+@pytest.mark.parametrize("begun", [True, False], ids=["season", "plan"])
+def test_the_route_goes_along_as_a_file_where_no_phone_reaches_this_machine(begun, request):
+    here = request.getfixturevalue("season_app" if begun else "app")
+    tap(here, "do_send")
+    assert (texts.INVITE_LOCAL if begun else texts.SEND_ALONE) in texts_of(here)
+    assert here.selectbox(key="format").value == "gpx"
 
 
 def test_recording_is_one_button_away(season_app):

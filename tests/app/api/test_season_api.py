@@ -25,6 +25,8 @@ WAYS = {
     ("POST", "findings"): {"body": as_sent(a_telling(3, on=BEGINS))},
     ("PUT", f"photos/{PHOTO}"): {"body": JPEG, "query": ABOUT},
     ("GET", f"photos/{PHOTO}"): {},
+    ("PUT", f"photos_asked/{PHOTO}"): {"body": {"plant": 3, "note": "webs?"}},
+    ("DELETE", f"photos_asked/{PHOTO}"): {},
 }
 
 
@@ -125,6 +127,30 @@ def test_a_photo_comes_back_byte_for_byte(served):
     assert ask("PUT", address, **sent).json == {"new": False}
     answer = ask("GET", address, key=served.key)
     assert (answer.body, answer.headers["content-type"]) == (JPEG, "image/jpeg")
+
+
+def test_a_photo_is_asked_for_until_it_has_come(served):
+    def asked():
+        day = ask("GET", of_season("day"), key=served.key, query="on=2026-04-06").json
+        return [(one["plant"], one["note"], one["who"]) for one in day["photos_asked"]]
+
+    address, sent = of_season(f"photos_asked/{PHOTO}"), {"plant": 3, "note": "webs?"}
+    for _ in range(2):  # an answer may be lost
+        assert ask("PUT", address, key=served.key, body=sent).status == 200
+    assert asked() == [(3, "webs?", "Ann")]
+    other = ask("PUT", address, key=served.key, body={"plant": 4})
+    assert (other.status, asked()) == (422, [(3, "webs?", "Ann")])
+    assert ask("PUT", address, key=served.key, body={"plant": 10**6}).status == 422
+    ask("PUT", of_season(f"photos/{PHOTO}"), key=served.key, body=JPEG, query=ABOUT)
+    assert asked(), "a photo of a plant that nobody told yet"
+    one = a_telling(3, id=str(uuid.UUID(int=8)), on=BEGINS)
+    ask("POST", of_season("findings"), key=served.key, body=as_sent(one))
+    assert asked() == []
+    again = of_season(f"photos_asked/{uuid.UUID(int=9)}")
+    ask("PUT", again, key=served.key, body=sent)
+    assert len(asked()) == 1, "one that came before does not do"
+    assert ask("DELETE", again, key=served.key).status == 200
+    assert asked() == []
 
 
 def test_what_did_not_arrive_as_it_was_sent_is_not_taken(served):

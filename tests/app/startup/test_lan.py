@@ -12,6 +12,7 @@ import uvicorn
 
 from app.startup import lan
 from app.startup.certificates import certificates
+from app.state import scout_page
 from fieldmon.errors import SettingError
 from tests.app.driving import until
 
@@ -56,7 +57,7 @@ def served(tmp_path_factory):
         patch.setenv(lan.LAN, HERE)
         patch.setenv(lan.FOLDER, str(folder))
         patch.setenv(lan.PASSWORD, "secret-word")
-        patch.delenv(lan.ADDRESS, raising=False)
+        patch.delenv(scout_page.ADDRESS, raising=False)
         patch.setattr(uvicorn.Server, "__init__", noted)
         patch.setattr(lan, "_print", said.append)
         line = socket.create_server(("127.0.0.1", 0))
@@ -66,7 +67,7 @@ def served(tmp_path_factory):
         until(lambda: len(servers) == 3 and all(one.started for one in servers))
         made = certificates(folder, HERE)
         patch.undo()
-        address = lan.os.environ.pop(lan.ADDRESS)
+        address = lan.os.environ.pop(scout_page.ADDRESS)
         yield SimpleNamespace(port=port, own=line.getsockname()[1], made=made, folder=folder,
                               said="\n".join(said), address=address)  # fmt: skip
         servers[0].should_exit = True

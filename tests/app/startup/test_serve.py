@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
+from app.startup import addresses
 from app.startup.serve import Server, page_files
 from app.state import map_file, map_store, map_tiles
 from fieldmon.io.rasters.tiles import read_tiles
@@ -181,3 +182,13 @@ def test_an_upload_without_a_length_is_refused_with_a_sentence():
     status, _, body = asked(Server(), "/_stcore/upload_file/a/b", "PUT")
     assert status == 413
     assert b"how long it is" in body
+
+
+def test_behind_a_server_of_ones_own_it_answers_by_that_name_and_by_no_other(monkeypatch):
+    monkeypatch.setenv(addresses.NAMES, "field.example")
+    server = Server()
+    for path, status in (("/scouting/", 200), ("/api/v1/openapi.json", 200), ("/", 200)):
+        told = [(b"host", b"field.example:9443"), (b"origin", b"https://field.example:9443"),
+                (b"sec-fetch-site", b"same-origin"), (b"x-forwarded-proto", b"https")]  # fmt: skip
+        assert asked(server, path, headers=told)[0] == status, path
+        assert asked(server, path, headers=[(b"host", b"elsewhere.example")])[0] == 403, path

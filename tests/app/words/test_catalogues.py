@@ -21,7 +21,7 @@ def test_catalogues_are_as_the_command_writes_them(tmp_path, monkeypatch):
 def test_a_new_text_waits_for_its_translation(tmp_path, monkeypatch):
     (tmp_path / "he.po").write_bytes(catalogues.path_of("he").read_bytes())
     monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
-    known, new = entries(), catalogues.Entry("NEW", "A new text")
+    known, new = entries(), catalogues.TextEntry("NEW", "A new text")
     monkeypatch.setattr(catalogues, "entries", lambda: [*known, new])
     assert catalogues.update("he") == [new]
     assert catalogues.read("he").get(new.id, new.context).string == ""

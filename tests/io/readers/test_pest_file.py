@@ -13,6 +13,7 @@ from fieldmon.io.readers.pest_file import (
     shipped_pest,
 )
 from fieldmon.plot.robot import Robot
+from tests.docs.pages import PAGES, the_fence
 
 #: a year, a page, or that nobody published it
 FOUND_AGAIN = re.compile(r"\b(19|20)\d\d\b|our choice|article_|two-sex life table", re.IGNORECASE)
@@ -176,3 +177,13 @@ def test_the_thesiss_pest_is_the_thesiss_rule_and_its_robot_the_same():
     assert (pest.movement.kernel, pest.movement.per_day) == ("adjacent", 0.5)
     assert float(pest.infests_per_day(5.0)) == 0.5
     assert pest.seen_by(Robot()) == Robot()
+
+
+def test_the_example_of_the_documentation_is_a_pest():
+    example = the_fence(PAGES["docs/pests.md"], "toml", "[[stages]]")
+    pest = pest_from_text(example, "example.toml")
+    assert pest.movement.hours == (8, 18)
+    assert pest.entry.anywhere_per_day == 0.0002
+    assert {one.part for one in pest.citations} == {
+        "stages", "generation", "increase", "movement", "entry", "detection", "course"
+    }  # fmt: skip

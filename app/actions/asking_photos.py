@@ -1,0 +1,68 @@
+"""Asking for photos of plants that were picked or tapped on the map, until they have come."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.monitoring import photos_asked
+
+from ..show import plant_history
+from ..state import notices, wishes
+from ..words import texts
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring.photos_asked import AskedPhoto
+
+    from ..state.choices import Choices
+
+_NOTE = "ask_photo_note"
+# shown, the last ones
+_MOST = 20
+
+
+def show(choices: Choices) -> None:
+    """Show what can be asked for, and what is."""
+    if choices.season is None:
+        return
+    plants = wishes.picked(choices.place) or plant_history.tapped(choices)
+    asked = photos_asked.photos_asked(choices.season)
+    if not plants and not asked:
+        return
+    with st.expander(texts.ASK_PHOTOS.format(n=len(asked)), expanded=bool(plants)):
+        if plants:
+            _show_asking(choices, plants)
+        for one in asked[: -_MOST - 1 : -1]:
+            _show_one(choices, one)
+
+
+def _show_asking(choices: Choices, plants: tuple[int, ...]) -> None:
+    st.text_input(texts.ASK_PHOTO, key=_NOTE, max_chars=photos_asked.LONGEST_NOTE)
+    counted = texts.PLANTS_COUNTED.format(n=len(plants))
+    st.button(texts.ASK_PHOTO_BUTTON.format(plants=counted), key="ask_photo", on_click=_ask,
+              args=(choices, plants), help=texts.ASK_PHOTO_NOTE)  # fmt: skip
+
+
+def _show_one(choices: Choices, one: AskedPhoto) -> None:
+    label = choices.season.label
+    said, ends = st.columns([3, 1], vertical_alignment="center")
+    row, plant = label.line[one.plant], label.number[one.plant]
+    note = texts.isolated(one.note)
+    said.markdown(texts.ASKED_PHOTO.format(row=row, plant=plant, note=note))
+    ends.button(texts.ASK_NO_MORE, key=f"no photo {one.id}", on_click=_ask_no_more,
+                args=(choices, one.id))  # fmt: skip
+
+
+@notices.reporting
+def _ask(choices: Choices, plants: tuple[int, ...]) -> str:
+    for plant in plants:
+        photos_asked.ask_photo(choices.season, plant, st.session_state[_NOTE])
+    wishes.pick(choices.place, ())
+    return ""
+
+
+@notices.reporting
+def _ask_no_more(choices: Choices, name: str) -> str:
+    photos_asked.ask_no_more(choices.season, name)
+    return ""

@@ -1,0 +1,48 @@
+"""How many plants will be infested if nobody inspects any more: a line with its interval."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from ..state import chosen_day
+from ..words import texts
+from ..words.language import number
+from . import charts
+
+if TYPE_CHECKING:
+    from fieldmon.infestation.forecast import Forecast
+
+    from ..state.choices import Choices
+
+
+def show(choices: Choices) -> None:
+    """Show what is expected on the mornings after the day shown, and by what weather."""
+    ahead = chosen_day.forecast(choices)
+    st.markdown(f"**{texts.AHEAD_TITLE}**")
+    axes = (texts.DATE_AXIS, texts.AHEAD_AXIS)
+    chart = charts.ahead(_day(choices), ahead, axes)
+    st.altair_chart(chart, alt=texts.AHEAD_TITLE)
+    last, low, high, now = (
+        number(value, ",.0f")
+        for value in (ahead.expected[-1], ahead.low[-1], ahead.high[-1], ahead.expected[0])
+    )
+    nights = number(ahead.nights, "d")
+    st.markdown(texts.AHEAD.format(last=last, low=low, high=high, now=now, nights=nights))
+    st.caption(_basis(ahead))
+
+
+def _day(choices: Choices) -> str:
+    return choices.day
+
+
+def _basis(ahead: Forecast) -> str:
+    """Return what weather it is made from."""
+    if ahead.weather is None:
+        return texts.AHEAD_BASIS["none"]
+    if ahead.weather >= ahead.nights:
+        return texts.AHEAD_BASIS["forecast"]
+    if ahead.weather == 0:
+        return texts.AHEAD_BASIS["usual"]
+    return texts.AHEAD_BASIS["partly"].format(n=number(ahead.weather, "d"))

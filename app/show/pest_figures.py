@@ -1,0 +1,80 @@
+"""A pest's figures with their sources, as its file has them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pandas as pd
+import streamlit as st
+
+from ..words import texts
+from ..words.language import number
+
+if TYPE_CHECKING:
+    from fieldmon.pests.pest import Pest
+
+
+def title(pest: Pest) -> str:
+    """Return what a pest is called: by the page's words, or its file's."""
+    return texts.PEST_TITLES.get(pest.name) or texts.isolated(pest.title or pest.name)
+
+
+def stage_name(name: str) -> str:
+    """Return what a stage is called."""
+    return texts.PEST_STAGES.get(name) or texts.isolated(name)
+
+
+def show(pest: Pest) -> None:
+    """Show what a pest's file says, each part with its source and its doubt."""
+    if pest.species:
+        st.caption(f"*{texts.isolated(pest.species)}*")
+    for line in _figures(pest):
+        st.markdown(f"- {line}")
+    if pest.stages:
+        st.dataframe(_stages(pest), hide_index=True, width="stretch")
+    for citation in pest.citations:
+        part = texts.PEST_PARTS.get(citation.part, citation.part)
+        st.caption(f"**{part}**: {texts.isolated(citation.source)}")
+        if citation.doubt:
+            st.caption(f"⚠️ {texts.isolated(citation.doubt)}")
+    if pest.not_found:
+        said = texts.isolated(pest.not_found.strip())
+        st.caption(f"**{texts.PEST_NOT_FOUND}**: {said}")
+
+
+def _figures(pest: Pest) -> list[str]:
+    """Return the figures in words."""
+    made, moves = [], pest.movement
+    if pest.generation is not None:
+        made.append(
+            texts.PEST_GENERATION.format(
+                degree_days=number(pest.generation.degree_days, "g"),
+                threshold=number(pest.generation.threshold_c, "g"),
+            )
+        )
+    if pest.increase is not None:
+        pairs = zip(pest.increase.at_c, pest.increase.per_day, strict=True)
+        rates = [
+            texts.PEST_RATE.format(rate=number(rate, "g"), at=number(at, "g")) for at, rate in pairs
+        ]
+        made.append(f"{texts.PEST_INCREASE}: {', '.join(rates)}")
+    form = texts.PEST_MOVES[moves.kernel]
+    made.append(
+        form.format(per_day=number(moves.per_day, "g"), reach=number(moves.reach_m or 0.0, "g"))
+    )
+    if moves.wind == "with":
+        made.append(texts.PEST_WITH_WIND)
+    if moves.least_rain_mm > 0:
+        made.append(texts.PEST_IN_RAIN.format(rain=number(moves.least_rain_mm, "g")))
+    return made
+
+
+def _stages(pest: Pest) -> pd.DataFrame:
+    columns = texts.PEST_COLUMNS
+    return pd.DataFrame(
+        {
+            columns[0]: [stage_name(stage.name) for stage in pest.stages],
+            columns[1]: [stage.threshold_c for stage in pest.stages],
+            columns[2]: [stage.degree_days for stage in pest.stages],
+        }
+    )

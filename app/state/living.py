@@ -1,0 +1,100 @@
+"""The pest that is looked for and the weather that it meets, as this session was told."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, time
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.errors import FieldmonError
+from fieldmon.infestation.pest_prior import prior_for
+from fieldmon.io.readers.pest_file import read_pest, shipped_names, shipped_pest
+from fieldmon.io.readers.weather_options import WeatherOptions
+
+from . import cached, widget_memory
+from .brought_files import brought, messages_of, settled
+
+if TYPE_CHECKING:
+    from datetime import date
+
+    from fieldmon.infestation.prior import PriorSettings
+    from fieldmon.io.import_report import Imported
+    from fieldmon.pests.pest import Pest
+    from fieldmon.pests.weather import Weather
+    from fieldmon.plot.plot import Plot
+
+    from .brought_files import FileMessage
+    from .choices import Choices
+
+#: what its files are kept as
+PEST, WEATHER = "pest", "weather"
+#: the box that says which pest; no pest, and one from a file
+WHICH, NONE, OWN = "which_pest", "", "own"
+
+
+def options() -> tuple[str, ...]:
+    """Return what can be chosen: no pest, those that come along, one from a file."""
+    return (NONE, *shipped_names(), OWN)
+
+
+def pest() -> Pest | None:
+    """Return the pest that was chosen; None: none was, or its file cannot be used."""
+    which = widget_memory.value(WHICH, NONE)
+    if which != OWN:
+        return shipped_pest(which) if which in shipped_names() else None
+    file = brought().get(PEST)
+    if file is None:
+        return None
+    _note(PEST, None)
+    try:
+        return read_pest(file.source)
+    except FieldmonError as error:
+        _note(PEST, error)
+        return None
+
+
+def weather(plot: Plot, today: date) -> Imported[Weather] | None:
+    """Return the weather that was brought; None: none was, or it cannot be used."""
+    file = brought().get(WEATHER)
+    if file is None:
+        return None
+    _note(WEATHER, None)
+    ends = datetime.combine(today, time.max, UTC)
+    try:
+        wanted = settled(file, WeatherOptions(now=ends)).on(plot.field)
+        return cached.weather(file.key, wanted, file.source)
+    except FieldmonError as error:
+        _note(WEATHER, error)
+        return None
+
+
+def messages(plot: Plot, today: date) -> tuple[FileMessage, ...]:
+    """Return what the weather's import had to say."""
+    read = weather(plot, today)
+    return () if read is None else messages_of(brought()[WEATHER], read)
+
+
+def met(choices: Choices) -> Weather | None:
+    """Return the weather for what is chosen."""
+    read = weather(choices.plot, choices.today or choices.on)
+    return None if read is None else read.value
+
+
+def prior(settings: PriorSettings, plot: Plot, today: date, on: date) -> PriorSettings:
+    """Return how records become chances, as the pest and its weather have it."""
+    chosen = pest()
+    if chosen is None:
+        return settings
+    read = weather(plot, today)
+    return prior_for(settings, chosen, None if read is None else read.value, on)
+
+
+def problem(kind: str) -> FieldmonError | None:
+    """Return why a file could not be used when it was last read."""
+    found: FieldmonError | None = st.session_state.get(f"{kind} problem")
+    return found
+
+
+def _note(kind: str, error: FieldmonError | None) -> None:
+    st.session_state[f"{kind} problem"] = error

@@ -1,0 +1,128 @@
+"""What is looked for, and the weather that it meets, as options. Heavy imports wait."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fieldmon.cli.messages import FLAGS, Terminal
+from fieldmon.cli.named_values import chosen
+from fieldmon.errors import ChoiceNeeded, SettingError
+
+if TYPE_CHECKING:
+    from datetime import date
+
+    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.prior import PriorSettings
+    from fieldmon.pests.pest import Pest
+    from fieldmon.pests.weather import Weather
+    from fieldmon.plot.field import Field
+    from fieldmon.plot.robot import Robot
+
+PestName = Annotated[
+    str | None,
+    typer.Option(
+        "--pest",
+        help="What is looked for: a file (TOML), or thesis, spider-mite, green-peach-aphid, "
+        "plum-pox-virus, strawberry-anthracnose, western-flower-thrips, whitefly.",
+    ),
+]
+WeatherFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--weather",
+        help="Weather by hours or days: CSV or Excel of a station, or IPM Decisions' JSON.",
+    ),
+]
+WeatherChoices = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--weather-option",
+        help="What the weather file leaves open, as NAME=VALUE: zone=Asia/Jerusalem, "
+        "wind_unit=km/h, temperature_unit=F, rain_unit=in, date_order=dmy, location=1.",
+    ),
+]
+
+
+@dataclass(frozen=True)
+class PestOptions:
+    """The pest, and the file of its weather."""
+
+    pest: PestName = None
+    weather: WeatherFile = None
+    weather_option: WeatherChoices = None
+
+    def named(self) -> Pest | None:
+        """Return the pest that was named; None: none was."""
+        from fieldmon.io.readers.pest_file import pest_of  # noqa: PLC0415
+
+        return None if self.pest is None else pest_of(self.pest)
+
+    def met(self, field: Field) -> Weather | None:
+        """Return the weather that was given, and print what there is to say of it."""
+        if self.weather is None:
+            if self.weather_option:
+                raise SettingError("--weather-option goes with --weather. Give the file too.")
+            return None
+        from fieldmon.io.read import read_weather  # noqa: PLC0415
+        from fieldmon.io.readers.weather_options import WeatherOptions  # noqa: PLC0415
+        from fieldmon.plot.local_clock import utc_now  # noqa: PLC0415
+
+        options = chosen(WeatherOptions(now=utc_now()), self.weather_option).on(field)
+        with Terminal().answering():
+            try:
+                read = read_weather(self.weather, options)
+            except ChoiceNeeded as asked:
+                raise ChoiceNeeded(asked.args[0], asked.option, asked.choices, "weather") from None
+        for message in read.messages:
+            typer.echo(message.line(FLAGS["weather"]), err=True)
+        return read.value
+
+    def seen(self, robot: Robot) -> Robot:
+        """Return the robot with the pest's own chance of detection, if it has one."""
+        pest = self.named()
+        return robot if pest is None else pest.seen_by(robot)
+
+    def living(self, field: Field, begins: date) -> PestInWeather | None:
+        """Return the pest in its weather from a day on; None: no pest was named."""
+        from fieldmon.infestation.pest_in_weather import PestInWeather  # noqa: PLC0415
+
+        pest, weather = self.named(), self.met(field)
+        if pest is None:
+            if weather is not None:
+                raise SettingError(
+                    "--weather goes with --pest, which says what warmth does. Give a pest too, "
+                    "as --pest spider-mite."
+                )
+            return None
+        tell_pest(pest)
+        return PestInWeather(pest, weather, begins)
+
+
+def prior_of(living: PestInWeather | None, on: date) -> PriorSettings:
+    """Return how records become chances for a day, as the pest and its weather have it."""
+    from fieldmon.infestation.pest_prior import prior_for  # noqa: PLC0415
+    from fieldmon.infestation.prior import PriorSettings  # noqa: PLC0415
+
+    usual = PriorSettings()
+    if living is None:
+        return usual
+    made = prior_for(usual, living.pest, living.weather, on)
+    if made.half_life_days != usual.half_life_days:
+        typer.echo(
+            f"Records count half after {made.half_life_days:g} days: the last generation took so "
+            "long in this weather.",
+            err=True,
+        )
+    return made
+
+
+def tell_pest(pest: Pest) -> None:
+    """Print the pest, and which of its figures to doubt."""
+    typer.echo(f"pest: {pest.title or pest.name}", err=True)
+    for citation in pest.citations:
+        if citation.doubt:
+            typer.echo(f"doubtful: {citation.part}: {citation.doubt}", err=True)

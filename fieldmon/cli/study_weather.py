@@ -1,0 +1,30 @@
+"""`fieldmon study weather`: what knowing the weather brings. Heavy imports wait."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+
+def weather(
+    seeds: Annotated[int, typer.Option(min=1, help="Seasons of each, on the same insects.")] = 100,
+    shape: Annotated[
+        str, typer.Option(help="One shape of the weather, as 'heat wave'; empty: all of them.")
+    ] = "",
+    pest: Annotated[
+        str, typer.Option(help="A pest's name or file; empty: a mite that the wind carries.")
+    ] = "",
+    days: Annotated[int, typer.Option(min=1, help="Days of a season.")] = 20,
+) -> None:
+    """Compare Adaptive that knows temperature and wind with one that believes averages.
+
+    Example: fieldmon study weather --seeds 20 --shape "steady wind"
+    """
+    from fieldmon.io.readers.pest_file import pest_of  # noqa: PLC0415
+    from fieldmon.studies.weather_known import CARRIED, SHAPES, worth_of_weather  # noqa: PLC0415
+
+    lives = pest_of(pest) if pest else CARRIED
+    for name in [shape] if shape else SHAPES:
+        for each in worth_of_weather(range(seeds), [name], lives, days):
+            typer.echo(each.sentence())

@@ -1,0 +1,168 @@
+"""What is believed on each morning: worked out once, and kept in the file for the next command."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+import zlib
+from dataclasses import dataclass, field, replace
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import fieldmon.infestation
+from fieldmon.compute.digest import digest
+from fieldmon.infestation.origins import OriginCounts
+from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.monitoring import history as causes_of_a_morning
+from fieldmon.monitoring import schema
+from fieldmon.monitoring.geopackage import insert
+
+if TYPE_CHECKING:
+    import sqlite3
+
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.belief import Belief
+    from fieldmon.monitoring.history import History
+
+    Arrays = dict[str, NDArray[np.generic]]
+
+# every so many days a morning stays at hand, and the last two of these in the file: of a plot of
+# 100 000 plants each is 4 MB
+_EVERY, _IN_FILE = 8, 2
+
+
+@dataclass(eq=False)
+class Mornings:
+    """The mornings of a season, worked out from one another as they are asked for.
+
+    Parameters
+    ----------
+    history
+        What happened.
+    known
+        Mornings that are worked out already, by their days; the first is known without.
+    """
+
+    history: History
+    known: dict[int, Belief] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.known[0] = self.history.first_morning
+
+    def of(self, day: int) -> Belief:
+        """Return what is believed on the morning of a day."""
+        last = max(known for known in self.known if known <= day)
+        morning = self.known[last]
+        for number in range(last, day):
+            morning = self.history.night_after(morning, number)
+            self._know(number + 1, morning)
+        return morning
+
+    def until(self, day: int) -> dict[int, Belief]:
+        """Return those that are at hand, up to a day."""
+        return {known: morning for known, morning in self.known.items() if known <= day}
+
+    def _know(self, day: int, morning: Belief) -> None:
+        self.known[day] = morning
+        passing = [known for known in self.known if known % _EVERY]
+        for known in passing[:-_EVERY]:
+            del self.known[known]
+
+
+def take(db: sqlite3.Connection, mornings: Mornings) -> None:
+    """Add the mornings that the file keeps, where they are those of what happened."""
+    if mornings.history.living is not None:
+        return
+    rows = db.execute("SELECT day, causes, content, chances FROM mornings").fetchall()
+    for day, causes, content, chances in rows:
+        if causes == _causes(mornings.history, day) and content == digest(chances):
+            kept = _unpacked(mornings.history.first_morning, chances)
+            if kept is not None:
+                mornings.known[day] = kept
+
+
+def keep(db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
+    """Keep the latest mornings in the file, within the transaction that changes it."""
+    last = 0 if mornings.history.living is not None else newest - newest % _EVERY
+    wanted = {day for day in range(last, 0, -_EVERY)[:_IN_FILE] if day in mornings.known}
+    causes = {day: _causes(mornings.history, day) for day in wanted}
+    for day, of_kept in db.execute("SELECT day, causes FROM mornings").fetchall():
+        if causes.get(day) == of_kept:
+            wanted.discard(day)
+        else:
+            db.execute("DELETE FROM mornings WHERE day = ?", (day,))
+    for day in sorted(wanted):
+        chances = _packed(mornings.known[day])
+        if chances is not None:
+            insert(db, schema.MORNINGS, [(day, causes[day], digest(chances), chances)])
+
+
+def _causes(history: History, day: int) -> str:
+    """Return a name for all from which the morning of a day follows, our own rules among it."""
+    done = history.until(day - 1)
+    first = history.first_morning
+    said = history.belief, history.detection, dict(history.detection_of), history.begins
+    treated = [
+        digest(one.day, one.plants, one.efficacy) for one in history.treatments if one.day < day
+    ]
+    who = "\n".join(map(str, done.who)) if history.detection_of else ""
+    return digest(
+        *(_rules(), first.chance, first.pair_chance, said, day, treated),
+        *(done.plant, done.result, done.date, who),
+    )
+
+
+@cache
+def _rules() -> str:
+    """Return a name for the program that works mornings out: another one begins at the first."""
+    folder = Path(fieldmon.infestation.__file__).parent
+    files = [*sorted(folder.glob("*.py")), Path(causes_of_a_morning.__file__)]
+    return digest(*(file.read_bytes() for file in files))
+
+
+def _packed(morning: Belief) -> bytes | None:
+    """Return a morning as bytes; None: it holds more than these arrays."""
+    arrays = _arrays(morning)
+    if arrays is None:
+        return None
+    file = io.BytesIO()
+    np.savez(file, **arrays)  # type: ignore[arg-type] - names of ours
+    return zlib.compress(file.getvalue(), 1)
+
+
+def _arrays(morning: Belief) -> Arrays | None:
+    if isinstance(morning, PairApproximation):
+        return {"chance": morning.chance, "pair_chance": morning.pair_chance}
+    if not isinstance(morning, TracedPairs) or morning.cohorts is not None:
+        return None
+    return {
+        "chance": morning.chance,
+        "pair_chance": morning.pair_chance,
+        "shares": morning.shares,
+        "unseen": morning.unseen,
+        "evidence": morning.evidence,
+        "counts": np.array([morning.counts.found, morning.counts.expected]),
+    }
+
+
+def _unpacked(first: Belief, chances: bytes) -> Belief | None:
+    """Return a kept morning of the season that began with `first`, or None: it is of another."""
+    try:
+        with np.load(io.BytesIO(zlib.decompress(chances)), allow_pickle=False) as file:
+            arrays = dict(file)
+    except (zlib.error, zipfile.BadZipFile, ValueError, OSError, EOFError):
+        return None
+    wanted = _arrays(first)
+    if wanted is None or wanted.keys() != arrays.keys():
+        return None
+    if any(wanted[name].shape != arrays[name].shape for name in wanted):
+        return None
+    counts = arrays.pop("counts", None)
+    if counts is not None:
+        arrays["counts"] = OriginCounts(*counts)
+    return replace(first, **arrays)  # type: ignore[type-var]

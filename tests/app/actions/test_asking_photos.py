@@ -1,0 +1,51 @@
+"""A photo is asked for on the map, the route leads by, and it is there once it has come."""
+
+import numpy as np
+
+from app.words import texts
+from fieldmon.monitoring import photos, scouts, tellings
+from fieldmon.monitoring.photos_asked import photos_asked
+from tests.app.actions.test_picking import select, stops
+from tests.app.driving import press, texts_of
+from tests.monitoring.telling import JPEG, NOW, a_telling
+
+PLANT = 39 * 85
+
+
+def asked(season):
+    return [(one.plant, one.note) for one in photos_asked(season())]
+
+
+def test_a_photo_of_a_picked_plant_is_asked_for_and_taken_back(season_app, season):
+    before = stops(season_app)
+    select(season_app, [PLANT])
+    season_app.text_input(key="ask_photo_note").set_value("webs?").run()
+    press(season_app, texts.ASK_PHOTO_BUTTON.format(plants=texts.PLANTS_COUNTED.format(n=1)))
+    assert asked(season) == [(PLANT, "webs?")]
+    assert (40, 1) in set(zip(stops(season_app)["row"], stops(season_app)["plant"], strict=True))
+    assert "Row 40, plant 1." in texts_of(season_app)
+    press(season_app, texts.ASK_NO_MORE)
+    assert asked(season) == []
+    assert stops(season_app).equals(before)
+
+
+def test_a_photo_that_has_come_is_shown_with_its_plant(season_app, season, monkeypatch):
+    monkeypatch.setattr("streamlit.image", lambda data, said: shown.append((data, said)))
+    shown, key, one = (
+        [],
+        scouts.let_in(season(), "Ann"),
+        a_telling(PLANT, on=season().settings.begins),
+    )
+    tellings.take(season(), key, [one], NOW)
+    photos.keep(season(), key, photos.Photo("one", one.id, JPEG, NOW))
+    season_app.session_state["history row"], season_app.session_state["history plant"] = 40, 1
+    season_app.session_state["history tapped"] = True
+    season_app.run()
+    assert not season_app.exception
+    assert [data for data, _ in shown] == [JPEG]
+    assert np.char.find(shown[0][1], "Ann") >= 0
+
+
+def test_without_a_season_nothing_is_asked_for(app):
+    select(app, [PLANT])
+    assert [one for one in app.button if one.key == "ask_photo"] == []

@@ -1,0 +1,51 @@
+"""What is ahead, in a sentence with its interval, and the weather that it is made from."""
+
+import numpy as np
+import pytest
+import streamlit as st
+
+from app.show import forecast
+from app.words import texts
+from fieldmon.infestation.forecast import Forecast
+
+DAYS = np.linspace(10.0, 40.0, 15)
+
+
+@pytest.fixture
+def shown(monkeypatch):
+    """Return what is shown of a forecast."""
+
+    def show(weather):
+        lines, made = [], Forecast(DAYS, DAYS // 2, DAYS * 3, weather)
+        monkeypatch.setattr(st, "markdown", lines.append)
+        monkeypatch.setattr(st, "caption", lines.append)
+        monkeypatch.setattr(st, "altair_chart", lambda chart, alt: lines.append(chart.to_dict()))
+        monkeypatch.setattr(forecast.chosen_day, "forecast", lambda _: made)
+        monkeypatch.setattr(forecast, "_day", lambda _: "2026-12-25")
+        forecast.show(None)
+        return lines[1:]
+
+    return show
+
+
+def test_the_last_morning_is_said_with_its_interval_and_drawn_by_date(shown):
+    chart, said, _ = shown(None)
+    assert said == (
+        "About 40 plants are infested after 14 nights without inspections (20 to 120 with a "
+        "chance of 90%); now it is about 10."
+    )
+    (rows,) = chart["datasets"].values()
+    assert (rows[0]["day"], rows[-1]["day"]) == ("12-25", "01-08")
+
+
+@pytest.mark.parametrize(
+    ("weather", "said"),
+    [
+        (None, texts.AHEAD_BASIS["none"]),
+        (14, texts.AHEAD_BASIS["forecast"]),
+        (0, texts.AHEAD_BASIS["usual"]),
+        (5, texts.AHEAD_BASIS["partly"].format(n="5")),
+    ],
+)
+def test_the_weather_that_it_is_made_from_is_said(shown, weather, said):
+    assert shown(weather)[-1] == said

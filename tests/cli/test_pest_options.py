@@ -1,0 +1,123 @@
+"""A pest and its weather are named alike in every command that spreads insects."""
+
+import csv
+from datetime import date, timedelta
+
+import pytest
+from typer import main as typer_main
+
+from fieldmon.cli.main import app
+from fieldmon.cli.pest_options import PestName
+from fieldmon.cli.status import lines
+from fieldmon.io.readers.pest_file import shipped_names
+from fieldmon.monitoring import Season
+from tests.cli.estate import BEGINS, MITES, ZIP
+
+PLOT = (ZIP, "--feature", "Nursery", "--observations", MITES)
+
+
+@pytest.fixture
+def station(tmp_path):
+    """Write 40 warm days about the season's first: 10 degree-days a day above 12.5 °C."""
+    path, first = tmp_path / "station.csv", date.fromisoformat(BEGINS) - timedelta(days=20)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(["Date", "Tmin (F)", "Tmax (F)", "Wind (km/h)"])
+        for day in range(40):
+            table.writerow([first + timedelta(days=day), 72.5, 72.5, 9])
+    return path
+
+
+def test_a_season_believes_its_pests_nights_and_says_its_next_generation(run, tmp_path, station):
+    words = ["init", "s.gpkg", *PLOT, "--begins", BEGINS, "--hours", "1"]
+    code, _, err, _ = run(*words, "--pest", "spider-mite", "--weather", station)
+    assert code == 0, err
+    assert "pest: Two-spotted spider mite, by degree-days" in err
+    assert "doubtful: movement" in err
+    assert "Columns of weather: Tmin (F), Tmax (F), Wind (km/h)" in err
+    # 146.48 degree-days of 10 a day
+    assert "Records count half after 15 days" in err
+    kept = Season(tmp_path / "s.gpkg")
+    settings = kept.settings
+    assert settings.pest.name == "spider-mite"
+    assert len(settings.weather) == 40
+    assert settings.prior.half_life_days == 15
+    on = settings.begins + timedelta(days=2)
+    said = "\n".join(lines(kept, kept.status(on)))
+    comes = settings.begins + timedelta(days=14)
+    assert f"30 degree-days above 12.5 °C since {BEGINS} of 146.48 a generation" in said
+    assert f"the next around {comes}. (egg)" in said
+    warm = kept.morning(on)
+    code, _, err, _ = run("change", "s.gpkg", "--pest", "none")
+    assert code == 0, err
+    without = Season(tmp_path / "s.gpkg")
+    assert without.settings.pest is None
+    assert "next around" not in "\n".join(lines(without, without.status(on)))
+    # 22.5 °C is warmer than the settings of any pest
+    assert warm.sum() > without.morning(on).sum()
+    code, _, err, _ = run("undo", "s.gpkg", "--change")
+    assert code == 0, err
+    assert Season(tmp_path / "s.gpkg").settings.pest == settings.pest
+
+
+def test_insects_are_simulated_and_days_planned_by_the_pest(run, tmp_path, station):
+    words = [*PLOT, "--pest", "whitefly", "--weather", station, "--date", BEGINS, "--hours", "1"]
+    code, out, err, _ = run("simulate", *words, "--days", 2, "--sampler", "naive")
+    assert code == 0, err
+    assert "naive" in out
+    code, _, err, _ = run("plan", *words, "--no-bound")
+    assert code == 0, err
+    assert "Records count half after" in err
+    pest = tmp_path / "seen.toml"
+    pest.write_text(
+        'name = "seen"\n[detection]\nchance = 0.25\n[sources]\ndetection = "A test, 2026"\n',
+        encoding="utf-8",
+    )
+    code, _, err, _ = run("plan", *PLOT, "--pest", pest, "--date", BEGINS, "--hours", "1")
+    assert code == 0, err
+    # its own chance of detection is no assumption
+    assert "chance to find what is there" not in err
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["--pest", "mote"], "A pest must be a file, or one of thesis, spider-mite"),
+        (["--weather", "STATION"], "--weather goes with --pest"),
+        (["--pest", "thesis", "--weather-option", "zone=UTC"], "--weather-option goes with"),
+        (["--pest", "thesis", "--spread", "0.1"], "--spread goes without --pest"),
+        (["--pest", "thesis", "--weather", "STATION", "--weather-option", "zone=Mars"],
+         "A time zone must be named"),
+    ],
+)  # fmt: skip
+def test_what_does_not_go_together_is_a_sentence_and_no_file(run, station, words, says):
+    told = [str(station) if word == "STATION" else word for word in words]
+    code, _, err, made = run("init", "s.gpkg", *PLOT, *told)
+    assert (code, made) == (2, set())
+    assert says in err
+
+
+def test_what_the_weather_leaves_open_is_asked_with_the_option_that_answers(run, tmp_path):
+    (tmp_path / "w.csv").write_text("date,temp (C)\n03/04/2026,20\n04/04/2026,21\n")
+    code, _, err, made = run("init", "s.gpkg", *PLOT, "--pest", "thesis", "--weather", "w.csv")
+    assert (code, made) == (2, set())
+    assert '--weather-option date_order="dmy"' in err
+
+
+def test_weather_of_a_season_without_a_pest_is_refused(run, season, station):
+    code, _, err, _ = run("change", season, "--weather", station)
+    assert (code, "this season has none" in err) == (2, True)
+    code, _, err, _ = run("change", season, "--no-trace", "--pest", "thesis")
+    assert (code, "needs its finds traced" in err) == (2, True)
+
+
+def test_the_help_names_every_pest_that_comes_along():
+    (told,) = PestName.__metadata__
+    assert all(name in told.help for name in shipped_names())
+
+
+def test_every_command_that_believes_or_simulates_nights_takes_a_pest():
+    commands = typer_main.get_command(app).commands
+    for name in ("plan", "init", "change", "simulate"):
+        flags = {flag for one in commands[name].params for flag in one.opts}
+        assert {"--pest", "--weather"} <= flags, name

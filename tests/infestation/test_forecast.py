@@ -1,0 +1,71 @@
+"""What is ahead grows as it is believed to, and its interval holds what comes."""
+
+import numpy as np
+import pytest
+
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.colonies import Colonies
+from fieldmon.infestation.forecast import Forecast, forecast
+from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.plot_estimate import draw_fields
+from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.pests.pest import Movement, Pest
+from fieldmon.plot.layout import rectangle
+
+GRID = rectangle(28, 28)
+
+
+def test_where_nothing_spreads_little_is_added():
+    belief = TracedPairs.of(GRID, np.full(784, 0.02))
+    ahead = forecast(belief, GRID, [Spread(0.0)] * 14)
+    assert ahead.expected[0] == pytest.approx(15.7, abs=0.1)
+    # the chance map believes in arrivals from outside
+    assert ahead.expected[0] < ahead.expected[-1] < ahead.expected[0] + 6.0
+
+
+def test_each_morning_is_that_of_the_chance_map():
+    belief = TracedPairs.of(GRID, np.full(784, 0.02))
+    ahead = forecast(belief, GRID, [Spread(0.1)] * 3)
+    for expected in ahead.expected:
+        assert expected == pytest.approx(belief.chance.sum())
+        belief = belief.overnight(Spread(0.1))
+    assert (ahead.low <= ahead.expected).all()
+    assert (ahead.expected <= ahead.high).all()
+
+
+def test_the_interval_holds_the_number_after_fourteen_nights():
+    """Plots drawn from the chance map itself, then simulated: nine in ten, give or take."""
+    pest = Pest("mite", movement=Movement("exponential", 0.15, reach_m=6.0))
+    living = PestInWeather(pest)
+    belief = TracedPairs.of(GRID, np.full(784, 0.02)).of_pest(pest)
+    ahead = forecast(belief, GRID, [living.spread(k, GRID.frame) for k in range(14)])
+    plots = np.zeros((60, 784), bool)
+    believed = belief.chance, belief.pair_chance
+    draw_fields(believed, GRID.adjacent, RandomStreams(1).key("fields"), plots)
+    held = []
+    for seed, infested in enumerate(plots):
+        colonies = Colonies.grown(GRID, pest, infested)
+        for k in range(14):
+            key = RandomStreams(seed).key("spread", k)
+            colonies = colonies.after(living.night(k, GRID.frame), key)
+        held.append(ahead.low[-1] <= colonies.infested.sum() <= ahead.high[-1])
+    assert 0.8 <= np.mean(held) <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("weather", "basis"),
+    [
+        (None, "no weather is known of"),
+        (14, "by the weather forecast"),
+        (0, "by the usual weather of the date"),
+        (3, "by the weather forecast for 3 nights, then the usual"),
+    ],
+)
+def test_it_says_what_weather_it_is_made_from(weather, basis):
+    made = np.linspace(10.0, 40.0, 15)
+    ahead = Forecast(made, made / 2, made * 2, weather)
+    assert ahead.sentence() == (
+        "40 plants infested after 14 nights without inspections (20 to 80 with a chance of 90 %), "
+        f"now 10; {basis}"
+    )

@@ -1,0 +1,141 @@
+"""A chance map that knows the pest and the weather, beside what the simulator makes of them."""
+
+from dataclasses import replace
+from datetime import date
+
+import numpy as np
+import pytest
+
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.colonies import Colonies
+from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.pests.pest import Increase, Movement, Pest, Stage
+from fieldmon.pests.weather import weather_of
+from fieldmon.plot.layout import rectangle
+
+GRID = rectangle(24, 24)
+N = len(GRID)
+EGG = Stage("egg", 12.5, 40.0, visible=False, mobile=False)
+
+
+def pest(**movement):
+    given = {"kernel": "exponential", "per_day": 0.6, "reach_m": 6.0, "at_c": 30.0, **movement}
+    increase = Increase((12.5, 30.0), (0.0, 0.32))
+    return Pest("mite", stages=(EGG,), increase=increase, movement=Movement(**given))
+
+
+def weather(temperature=30.0, wind=0.0):
+    days = np.arange("2026-06-01", "2026-06-21", dtype="datetime64[D]").astype("datetime64[s]")
+    k = len(days)
+    return weather_of(
+        days, 86_400, temperature_c=np.full(k, temperature),
+        wind_speed_m_s=np.full(k, wind), wind_from_deg=np.full(k, 270.0),
+    )  # fmt: skip
+
+
+def believed(living, infested, nights):
+    belief = TracedPairs.of(GRID, np.where(infested, 0.98, 1e-6)).of_pest(living.pest)
+    for number in range(nights):
+        belief = belief.overnight(living.spread(number, GRID.frame))
+    return belief
+
+
+def simulated(living, infested, nights, runs=150):
+    total = np.zeros(N)
+    for seed in range(runs):
+        colonies = Colonies.grown(GRID, living.pest, infested)
+        for number in range(nights):
+            key = RandomStreams(seed).key("spread", number)
+            colonies = colonies.after(living.night(number, GRID.frame), key)
+        total += colonies.infested
+    return total / runs
+
+
+def some():
+    infested = np.zeros(N, bool)
+    infested[[5 * 24 + 6, 12 * 24 + 12, 18 * 24 + 9]] = True
+    return infested
+
+
+@pytest.mark.parametrize(
+    ("kernel", "eggs"),
+    [("exponential", True), ("exponential", False), ("cauchy", True), ("adjacent", False)],
+)
+def test_the_chance_map_expects_as_many_as_are_simulated(kernel, eggs):
+    living = PestInWeather(pest(kernel=kernel, per_day=0.3), None)
+    if not eggs:
+        living = replace(living, pest=replace(living.pest, stages=()))
+    said, made = believed(living, some(), 4).chance.sum(), simulated(living, some(), 4).sum()
+    # arrivals, and the candidates beside the pest's own kernel, are the chance map's own
+    assert said == pytest.approx(made, rel=0.15, abs=0.5)
+
+
+def test_of_adjacent_plants_it_expects_a_quarter_too_many_while_there_are_eggs():
+    """It takes them to send as much beside grown plants as elsewhere; see docs/pests."""
+    living = PestInWeather(pest(kernel="adjacent", per_day=0.3), None)
+    said, made = believed(living, some(), 4).chance.sum(), simulated(living, some(), 4).sum()
+    assert made < said < 1.3 * made
+
+
+def test_eggs_send_nothing_out_in_the_chance_map_either():
+    """Three nights of eggs grow by sums, not by powers; without stages all send at once."""
+    living = PestInWeather(pest(), None)
+    grown = PestInWeather(Pest("grown", movement=Movement("exponential", 0.6, reach_m=6.0)), None)
+    slow, fast = (believed(each, some(), 3).chance.sum() for each in (living, grown))
+    assert slow < 0.85 * fast
+    assert slow == pytest.approx(simulated(living, some(), 3).sum(), rel=0.15, abs=0.5)
+
+
+def test_nights_are_as_warm_as_they_were():
+    cold, hot = (
+        believed(PestInWeather(pest(), weather(t), date(2026, 6, 1)), some(), 3).chance.sum()
+        for t in (14.0, 30.0)
+    )
+    assert cold < 0.6 * hot
+
+
+def test_the_wind_carries_the_chance_map_where_it_goes():
+    living = PestInWeather(pest(wind="with"), weather(wind=4.0), date(2026, 6, 1))
+    chance = believed(living, some(), 2).chance
+    made = simulated(living, some(), 2)
+    x = GRID.xy_m[:, 0]
+    west, east = x < x[12 * 24 + 12], x > x[12 * 24 + 12]
+    near = np.abs(GRID.xy_m - GRID.xy_m[12 * 24 + 12]).max(axis=1) < 13.0
+    for values in (chance, made):
+        assert values[east & near].sum() > 2.0 * values[west & near].sum()
+
+
+def test_a_clean_look_says_less_of_what_cannot_be_seen_yet():
+    living = PestInWeather(pest(), None)
+    morning = believed(living, some(), 2)
+    beside = np.array([12 * 24 + 13], np.int32)
+    after = morning.learn(beside, np.array([False]), Learning(0.84))
+    usual = TracedPairs.of(GRID, np.where(some(), 0.98, 1e-6))
+    for _ in range(2):
+        usual = usual.overnight(Spread(0.15, "each"))
+    seen = usual.learn(beside, np.array([False]), Learning(0.84))
+    kept = after.chance[beside] / morning.chance[beside]
+    assert kept > 3.0 * seen.chance[beside] / usual.chance[beside]
+
+
+def test_finds_far_from_others_are_explained_by_the_pest_s_kernel():
+    """A find raises plants within the kernel's reach, downwind more than upwind."""
+    living = PestInWeather(pest(wind="with", reach_m=9.0), weather(wind=6.0), date(2026, 6, 1))
+    belief = TracedPairs.of(GRID, np.full(N, 0.01)).of_pest(living.pest)
+    for number in range(2):
+        belief = belief.overnight(living.spread(number, GRID.frame))
+    find = 12 * 24 + 12
+    after = belief.learn(np.array([find], np.int32), np.array([True]), Learning(0.84))
+    gain = after.chance - belief.chance
+    assert gain[find + 3] > 0.0
+    assert gain[find + 3] + gain[find - 3] > 2.0 * abs(gain[find + 4 * 24])
+
+
+def test_without_a_pest_nothing_is_different():
+    belief = TracedPairs.of(GRID, np.full(N, 0.02))
+    assert belief.cohorts is None
+    assert belief.overnight(Spread(0.1)).wind_m_s == (0.0, 0.0)
+    assert not belief.known_to_jump

@@ -1,0 +1,124 @@
+"""Weather becomes warmth, movement and wind along the rows, hour by hour and night by night."""
+
+from datetime import date
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.pest_in_weather import (
+    PestInWeather,
+    along_rows,
+    hours_of_movement,
+    kernel_of,
+)
+from fieldmon.pests.pest import Entry, Increase, Movement, Pest, Stage
+from fieldmon.pests.weather import weather_of
+from fieldmon.plot.projection import Frame
+
+FRAME = Frame(35.0, 31.0, 90.0)
+MITE = Pest(
+    "mite",
+    stages=(Stage("egg", 12.5, 50.0, visible=False, mobile=False),),
+    increase=Increase((12.5, 15.0, 30.0), (0.0, 0.08, 0.321)),
+    movement=Movement("exponential", 0.5, reach_m=6.0, at_c=30.0, wind="with", hours=(8, 18)),
+    entry=Entry(anywhere_per_day=1e-4),
+)
+BEGINS = date(2026, 6, 1)
+
+
+def hourly(days=2, zone="", **measured):
+    at = np.arange(days * 24) * 3600 + np.datetime64("2026-06-01T00:00:00")
+    return weather_of(at, 3600, zone, **{k: np.resize(v, len(at)) for k, v in measured.items()})
+
+
+def daily(first="2026-06-01", days=3, **measured):
+    at = np.datetime64(first, "D") + np.arange(days)
+    values = {k: np.resize(np.asarray(v, float), days) for k, v in measured.items()}
+    return weather_of(at.astype("datetime64[s]"), 86_400, **values)
+
+
+def test_an_hour_s_degree_days_add_up_to_the_day_s():
+    living = PestInWeather(MITE, hourly(temperature_c=np.linspace(10.0, 30.0, 24)), BEGINS)
+    day = living.night(0, FRAME)
+    hours = living.hours(0, FRAME, starts=0)
+    assert sum(hour.warmth[0] for hour in hours) == pytest.approx(day.warmth[0])
+    by_hand = np.maximum(np.linspace(10.0, 30.0, 24) - 12.5, 0.0).sum() / 24
+    assert day.warmth[0] == pytest.approx(by_hand)
+    assert sum(hour.sends for hour in hours) == pytest.approx(day.sends)
+
+
+def test_a_warm_night_sends_more_than_a_cold_one():
+    warm, cold = (
+        PestInWeather(MITE, daily(low_c=[t], high_c=[t]), BEGINS).night(0, FRAME).sends
+        for t in (30.0, 15.0)
+    )
+    assert warm == pytest.approx(0.5)
+    assert cold == pytest.approx(0.5 * 0.08 / 0.321)
+
+
+def test_insects_move_in_their_hours_only():
+    living = PestInWeather(MITE, None, BEGINS)
+    moving = [hour.sends > 0 for hour in living.hours(0, FRAME, starts=6)]
+    assert moving == [False] * 2 + [True] * 10 + [False] * 12
+    night = hours_of_movement(Movement(hours=(22.5, 2.0)))
+    assert night[[22, 23, 0, 1]] == pytest.approx(np.array([0.5, 1.0, 1.0, 1.0]) / 3.5)
+    assert hours_of_movement(Movement()) == pytest.approx(np.full(24, 1 / 24))
+
+
+def test_a_wind_from_the_west_goes_along_rows_that_run_east():
+    west = daily(temperature_c=[25.0], wind_speed_m_s=[4.0], wind_from_deg=[270.0])
+    assert PestInWeather(MITE, west, BEGINS).night(0, FRAME).wind_m_s == (4.0, 0.0)
+    assert along_rows(4.0, 0.0, FRAME.turned(0.0)) == (0.0, -4.0)
+    assert along_rows(0.0, 3.0, FRAME) == (0.0, 3.0)
+
+
+def test_rows_of_weather_are_of_local_hours():
+    """Ten in the morning in Israel's summer is seven by UTC."""
+    wind = np.where(np.arange(24) == 7, 6.0, 0.0)
+    weather = hourly(zone="Asia/Jerusalem", temperature_c=[25.0], wind_speed_m_s=wind,
+                     wind_from_deg=[270.0])  # fmt: skip
+    hours = PestInWeather(MITE, weather, BEGINS).hours(0, FRAME, starts=0)
+    assert [k for k, hour in enumerate(hours) if hour.wind_m_s != (0.0, 0.0)] == [10]
+
+
+def test_without_weather_a_pest_does_what_its_figures_say():
+    spell = PestInWeather(MITE).night(3, FRAME)
+    assert spell.sends == pytest.approx(0.5)
+    assert spell.warmth == pytest.approx((17.5,))
+    assert spell.wind_m_s == (0.0, 0.0)
+
+
+def test_days_beyond_the_file_are_the_usual_of_their_date():
+    lastly = PestInWeather(MITE, daily(days=3, temperature_c=[20.0, 22.0, 24.0]), BEGINS)
+    assert lastly.day(9).temperature_c == pytest.approx(np.full(24, 22.0))
+    assert lastly.known(2)
+    assert not lastly.known(3)
+    years = daily("2025-06-01", 400, temperature_c=np.arange(400.0) / 20)
+    usual = PestInWeather(MITE, years, date(2026, 8, 1)).day(0).temperature_c
+    # the first of August of the year before is day 61, and those about it even out
+    assert usual == pytest.approx(np.full(24, 61 / 20))
+
+
+def test_a_disease_of_splashes_moves_in_rain_only_and_unmeasured_rain_holds_nothing_back():
+    splash = Pest("splash", movement=Movement("adjacent", 0.3, least_rain_mm=2.0))
+    wet = daily(days=2, temperature_c=[20.0], rain_mm=[5.0, 0.0])
+    living = PestInWeather(splash, wet, BEGINS)
+    assert living.night(0, FRAME).sends == pytest.approx(-np.log(0.7))
+    assert living.night(1, FRAME).sends == 0.0
+    dry = PestInWeather(splash, daily(temperature_c=[20.0]), BEGINS)
+    assert dry.night(0, FRAME).sends > 0.0
+
+
+def test_the_chance_map_is_told_the_same_rate_wind_and_warmth():
+    windy = daily(temperature_c=[25.0], wind_speed_m_s=[4.0], wind_from_deg=[270.0])
+    living = PestInWeather(MITE, windy, BEGINS)
+    spread, spell = living.spread(0, FRAME), living.night(0, FRAME)
+    assert (spread.warmth, spread.sends, spread.wind_m_s) == spell[1:]
+    assert spread.arrivals_per_day == 1e-4
+    beside = Pest("beside", movement=Movement("adjacent", 0.3))
+    assert PestInWeather(beside).spread(0, FRAME).rate_per_day == pytest.approx(0.3)
+
+
+def test_a_movement_s_reach_is_its_mean_or_its_median_jump():
+    assert kernel_of(Movement("exponential", reach_m=6.0, along_over_across=2.0)).across == 0.5
+    assert kernel_of(Movement("cauchy", reach_m=np.sqrt(3.0))).scale_m == pytest.approx(1.0)

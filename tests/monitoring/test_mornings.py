@@ -1,0 +1,143 @@
+"""Mornings: the same whether worked out from the first, from those at hand, or from the file's."""
+
+import shutil
+import sqlite3
+from contextlib import closing
+from datetime import timedelta
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.mornings import Mornings
+from tests.monitoring.seasons import BEGINS
+
+LAST = 21
+
+
+def found_on(day, season):
+    plants = np.arange(12, dtype=np.int32) * 7 % len(season.plot.grid) + day % 5
+    found = (plants % 4 == day % 4).astype(np.int8)
+    return Inspections.of(plants, found, np.datetime64(BEGINS + timedelta(days=day), "D"))
+
+
+@pytest.fixture(scope="module")
+def long_season(recorded, tmp_path_factory):
+    """Give a season of three weeks, recorded day by day by one who never left."""
+    path = shutil.copy(recorded, tmp_path_factory.mktemp("long") / "season.gpkg")
+    season = Season(path)
+    for day in range(2, LAST + 1):
+        season.record(found_on(day, season), f"day {day}")
+    return path
+
+
+@pytest.fixture
+def path(long_season, tmp_path):
+    return shutil.copy(long_season, tmp_path / "season.gpkg")
+
+
+def all_over(season):
+    """Return the mornings of a season, each worked out from the first."""
+    history = season.history
+    morning, mornings = history.first_morning, []
+    for day in range(LAST + 2):
+        mornings.append(morning)
+        morning = history.night_after(morning, day)
+    return mornings
+
+
+def kept(path):
+    with closing(sqlite3.connect(path)) as db:
+        return [day for (day,) in db.execute("SELECT day FROM mornings ORDER BY day")]
+
+
+def change(path, statement, *values):
+    with closing(sqlite3.connect(path)) as db:
+        db.execute(statement, values)
+        db.commit()
+
+
+def the_same(one, other):
+    return np.array_equal(one.chance, other.chance) and np.array_equal(
+        one.pair_chance, other.pair_chance
+    )
+
+
+def of_day(season, day):
+    return season._now().morning(day)
+
+
+def test_the_file_keeps_the_last_two_of_every_eighth_morning(path):
+    assert kept(path) == [8, 16]
+
+
+def test_mornings_from_the_file_are_those_from_the_first_to_the_last_bit(path):
+    season = Season(path)
+    for day, morning in enumerate(all_over(season)):
+        assert the_same(of_day(season, day), morning), day
+
+
+def test_a_command_begins_at_the_morning_that_the_file_keeps(path, monkeypatch):
+    nights = []
+    from fieldmon.monitoring.history import History
+
+    slept = History.night_after
+    monkeypatch.setattr(
+        History, "night_after", lambda self, m, day: nights.append(day) or slept(self, m, day)
+    )
+    Season(path).status(BEGINS + timedelta(days=LAST))
+    assert min(nights) == 16
+
+
+def test_what_is_recorded_of_an_early_day_reaches_the_mornings_after_it(path):
+    season = Season(path)
+    before = season.status(BEGINS + timedelta(days=LAST))
+    season.record(
+        Inspections.of(np.array([3]), np.array([1]), np.datetime64(BEGINS + timedelta(days=4), "D"))
+    )
+    for day, morning in enumerate(all_over(season)):
+        assert the_same(of_day(Season(path), day), morning), day
+    assert Season(path).status(BEGINS + timedelta(days=LAST)) != before
+    assert Season(path).verify() == ()
+    assert kept(path) == [8, 16]
+
+
+def test_a_treatment_taken_back_leaves_the_mornings_of_before(path):
+    season = Season(path)
+    before = of_day(season, LAST)
+    season.treat(BEGINS + timedelta(days=6), 0.9)
+    assert not the_same(of_day(Season(path), LAST), before)
+    season.undo()
+    assert the_same(of_day(Season(path), LAST), before)
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        "UPDATE mornings SET chances = X'00'",
+        "UPDATE mornings SET content = 'none'",
+        "UPDATE mornings SET causes = 'none'",
+        "DELETE FROM mornings",
+    ],
+)
+def test_a_kept_morning_that_is_not_what_it_was_is_worked_out_again(path, damage):
+    change(path, damage)
+    season = Season(path)
+    assert the_same(of_day(season, LAST), all_over(season)[LAST])
+
+
+def test_another_program_version_does_not_believe_the_kept_ones(path, monkeypatch):
+    from fieldmon.monitoring import mornings
+
+    monkeypatch.setattr(mornings, "_rules", lambda: "of another version")
+    contents = Season(path)._now()
+    assert set(contents.mornings.known) == {0}
+
+
+def test_few_mornings_of_a_long_season_are_at_hand(path):
+    season = Season(path)
+    mornings = Mornings(season.history)
+    mornings.of(LAST)
+    assert len(mornings.known) <= 2 + LAST // 8 + 8
+    assert the_same(mornings.of(3), all_over(season)[3])

@@ -62,6 +62,7 @@ if TYPE_CHECKING:
         RiskSource,
     )
     from fieldmon.monitoring import DayFigures, KeptMessage, Progress, Season
+    from fieldmon.monitoring.advice import Advice, AdviceSettings
     from fieldmon.pests.weather import Weather
     from fieldmon.planning.route import Route
     from fieldmon.planning.wishes import Wishes
@@ -303,6 +304,18 @@ def progress(path: str, revision: str, day: str, _season: Season) -> Progress:  
 def learnt(path: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:  # noqa: ARG001
     """Return what the inspections up to a day of a season tell of the insects."""
     return _season.learnt(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
+def advice(
+    path: str,  # noqa: ARG001
+    revision: str,  # noqa: ARG001
+    day: str,
+    settings: AdviceSettings,
+    _season: Season,
+) -> Advice:
+    """Return what a season advises on a day, by these settings."""
+    return _season.advice(np.datetime64(day).item(), settings)
 
 
 @st.cache_resource(max_entries=_MAPS)

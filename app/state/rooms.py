@@ -18,7 +18,7 @@ class Room:
 #: by their addresses, in the order in which they stand at the top
 ROOMS = {
     "plots": Room("grid_view", ("plots",)),
-    "today": Room("route", ("today", "scout", "record")),
+    "today": Room("route", ("today", "scout", "record", "decide")),
     "season": Room("calendar_month", ("season", "field", "report")),
     "ahead": Room("balance", ("compare", "simulate")),
     "plot": Room("polyline", ("plot",)),

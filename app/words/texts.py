@@ -30,7 +30,7 @@ PARTS_OF = "What to see here"
 PARTS = {
     "plots": "Plots", "plot": "Plot & data",
     "today": "Plan", "scout": "Scout", "record": "Record",
-    "season": "How it goes", "field": "Plants & hot spots", "report": "Report",
+    "season": "How it goes", "decide": "Decide", "field": "Plants & hot spots", "report": "Report",
     "compare": "Compare", "simulate": "Simulate",
 }  # fmt: skip
 RESEARCH, REPORT, STUDY = "Research", "Report", "The thesis, without records"
@@ -196,6 +196,12 @@ PEST_MOVES = {
     "cauchy": "A plant sends out {per_day} a day, half of them farther than {reach} m.",
 }
 PEST_WITH_WIND, PEST_IN_RAIN = "It goes with the wind.", "It moves only in rain of {rain} mm on."
+PEST_ENTERS = (
+    "It comes in with a chance of {edge} a day at the edge, {paths} beside a path, {anywhere} "
+    "anywhere."
+)
+PEST_COURSE = "A plant shows it after {hidden} days and infects others after {latency}."
+PEST_COUNT = "What is counted: {what}."
 DEGREE_DAYS = "Degree-days"
 NEXT_GENERATION = "Next generation around {when}."
 GATHERED = "{degree_days} degree-days above {threshold} °C since {since}, of {needed} a generation."
@@ -458,6 +464,55 @@ SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspe
 MAP_LAYERS = {"before": "as it was before", "route": "route", "numbers": "stop numbers",
               "hot": "hot spots", "records": "records", "rows": "row numbers",
               "plan": "plan of the plot", "ground": "ground"}  # fmt: skip
+
+# -- to treat or not
+DECIDE_NEEDS_SEASON = (
+    "**To treat or not** is answered from what was inspected. Begin a season and record a day."
+)
+DECIDE_AREA, DECIDE_LIQUID, DECIDE_LITRES = "To be sprayed", "Liquid", "{value} l"
+DECIDE_INSIDE, DECIDE_OUTSIDE = "Infested in the zones", "Infested elsewhere"
+DECIDE_SAVING, DECIDE_ENOUGH = "Saved against the whole plot", "Chance that it is enough"
+DECIDE_ENOUGH_HELP = "That the plot is below the threshold once the zones are treated."
+DECIDE_ZONES = Plural("{n} zone", "{n} zones")
+DECIDE_ZONE, DECIDE_ROWS, DECIDE_PLANTS = "zone", "rows", "plants of the row"
+DECIDE_INFESTED, DECIDE_ITSELF, DECIDE_WRONG = "infested", "by itself", "wrong in"
+DECIDE_WRONG_HELP = (
+    "By itself: whether the zone alone is above the threshold. Wrong in: the chance that this is "
+    "wrong, on fields drawn from the chance map, neighbours together; where it is not clear, that "
+    "treating would be."
+)
+DECIDE_VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}
+DECIDE_NUMBERS = "numbers of the zones"
+DECIDE_ON_MAP, DECIDE_TIP = "zones to treat", "Zone {zone}: {share:.0%} infested; {verdict}"
+DECIDE_SPRAYER, DECIDE_COSTS, DECIDE_PRODUCT = "Sprayer", "Costs, in any currency", "Product"
+DECIDE_BOXES = {
+    "level": "Treat from, % of the plants infested", "sure": "Sure of it, %",
+    "rate": "Rate, l/ha", "rows": "Rows of a section (0: knapsack)",
+    "on": "Least length of a zone, m", "off": "Least gap between two, m",
+    "ring": "Knapsack: plants around each", "per_ha": "A hectare: product, water, work",
+    "per_zone": "Each zone", "loss": "An infested plant, a day",
+    "days": "Days that it stays infested", "works": "Treating cleans, %",
+    "reserve": "Never sprayed, for predators, %",
+}  # fmt: skip
+DECIDE_LEAVES, DECIDE_THRESHOLD = "By leaves that were counted", "Threshold"
+DECIDE_THRESHOLDS = {
+    "almond": "almond", "almond with predators": "almond with predators",
+    "strawberry before fruit": "strawberry before fruit",
+    "strawberry in fruit": "strawberry in fruit", "peppermint": "peppermint",
+}  # fmt: skip
+DECIDE_LOOKED_AT, DECIDE_COUNTED = "Leaves looked at", "Animals counted on them"
+DECIDE_PRESENCE, DECIDE_LEAVES_INFESTED = "Only infested leaves were counted", "Infested leaves"
+DECIDE_FILE, DECIDE_DOWNLOAD, DECIDE_PDF = "Zones as a file", "Download the zones", "Page to print"
+DECIDE_FILES = {
+    "xml.zip": "terminal: ISOXML 4, areas", "grid1.xml.zip": "terminal: ISOXML 4, grid of zones",
+    "grid2.xml.zip": "terminal: ISOXML 4, grid of rates",
+    "v3.xml.zip": "older terminal: ISOXML 3, areas",
+    "v3.grid1.xml.zip": "older terminal: ISOXML 3, grid of zones",
+    "v3.grid2.xml.zip": "older terminal: ISOXML 3, grid of rates",
+    "shp.zip": "farm program: shapefile", "gpkg": "farm program: GeoPackage",
+    "kml": "phone: KML", "tif": "map of rates: GeoTIFF",
+}  # fmt: skip
+
 HOT_TITLE = "Hot spots"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
 HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
@@ -572,8 +627,8 @@ TREAT_UNSAID = (
 )
 TREAT_RECORD = "What a certifier asks: dose, waiting period, who and why"
 TREAT_DOSE, TREAT_UNIT, TREAT_WATER = "Dose of the product", "Unit of the dose", "Water, l/ha"
-TREAT_GROUP, TREAT_GROUP_HELP = "Mode-of-action group (IRAC)", "Such as 6, or 4A+28."
-TREAT_WAIT, TREAT_ENTRY = "Waiting days until harvest", "Hours until re-entry"
+TREAT_GROUP, TREAT_GROUP_HELP = "IRAC group", "The mode of action, such as 6, or 4A+28."
+TREAT_WAIT, TREAT_ENTRY = "Days until harvest", "Hours until re-entry"
 TREAT_BY_LABEL = "Empty: as the season's label table says, where it does."
 TREAT_BEGAN, TREAT_ENDED = "Began at", "Ended at"
 TREAT_ENDED_HELP = "Empty: waiting periods count from the end of the day."
@@ -592,6 +647,13 @@ TREAT_DOSE_UNSAID = (
 HARVEST, HARVEST_KEPT = "First day of harvest", "The first day of harvest was changed."
 HARVEST_HELP = "Treatments whose waiting period is not over by then are warned of."
 HARVEST_FROM = "After the treatments so far, harvest is allowed from **{day}** on."
+LABELS, LABELS_IN = "What labels allow", "Your label table (CSV)"
+LABELS_NOTE = (
+    "A table of yours: product, crop, pest, max dose, unit, waiting days, re-entry hours, IRAC "
+    "group, max uses, source. Treatments are held to it; no law is made up."
+)
+LABELS_BUTTON = "Take these labels"
+LABELS_KEPT = Plural("{n} label is kept.", "{n} labels are kept.")
 EFFECTS = "Whether treatments worked"
 EFFECTS_TREATED = (
     "Plants found infested are taken as treated at once in this season: what that did is in these "

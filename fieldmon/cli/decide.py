@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.decisions.thresholds import Threshold
-    from fieldmon.decisions.zones import Sprayer, TreatmentCosts, Zones
     from fieldmon.monitoring import Season
+    from fieldmon.monitoring.advice import Advice
 
 Level = Annotated[
     str, typer.Option(help="Treat from here on: a share of the plants, 5%, or a published name.")
@@ -33,9 +33,19 @@ Rate = Annotated[float, typer.Option(help="Litres a hectare in the zones, for th
 Product = Annotated[str, typer.Option(help="What is sprayed, for the files.")]
 Outputs = Annotated[
     list[Path] | None,
-    typer.Option("-o", "--output", help="Zones to write: .xml.zip, .shp.zip, .gpkg or .kml."),
+    typer.Option(
+        "-o", "--output",
+        help="Zones to write: .xml.zip, .grid1.xml.zip, .shp.zip, .gpkg, .kml, .tif; or .pdf.",
+    ),
+]  # fmt: skip
+Presence = Annotated[
+    bool, typer.Option("--presence", help="Of a mean: what was counted are leaves infested.")
 ]
-Rows = Annotated[int, typer.Option(help="Rows that a section covers; 0: plant by plant.", min=0)]
+Boom = Annotated[float, typer.Option(help="Width of the boom, metres; with --sections.", min=0)]
+Sections = Annotated[int, typer.Option(help="Sections of the boom.", min=1)]
+Ring = Annotated[int, typer.Option(help="Knapsack: plants around each that go with it.", min=0)]
+Reserve = Annotated[float, typer.Option(help="Share never sprayed, for predators, 0 to 1.")]
+Rows = Annotated[int, typer.Option(help="Rows that a section covers; 0: a knapsack.", min=0)]
 LeastOn = Annotated[float, typer.Option(help="Least length of a zone along the rows, metres.")]
 LeastOff = Annotated[float, typer.Option(help="Least gap between two, metres.")]
 PerHa = Annotated[float, typer.Option(help="Product, water and work for a hectare.")]
@@ -53,39 +63,57 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
     sure: Sure = 0.9,
     leaves: Leaves = 0,
     counted: Counted = 0.0,
+    presence: Presence = False,  # noqa: FBT002 - a flag of the command
     rate: Rate = 300.0,
     product: Product = "",
     output: Outputs = None,
     section_rows: Rows = 2,
     least_on: LeastOn = 6.0,
     least_off: LeastOff = 6.0,
+    boom: Boom = 0.0,
+    sections: Sections = 1,
+    ring: Ring = 0,
     per_ha: PerHa = 100.0,
     per_zone: PerZone = 0.5,
     loss: Loss = 0.1,
     days: Days = 14.0,
     works: Works = 0.9,
+    reserve: Reserve = 0.0,
 ) -> None:
     """Say whether to spray, and where it pays; write the zones for the sprayer.
 
     Example: fieldmon decide season.gpkg --threshold 5% --per-ha 120 -o zones.xml.zip
     """
+    from fieldmon.decisions.leaves import of_leaves  # noqa: PLC0415
     from fieldmon.decisions.thresholds import threshold_of  # noqa: PLC0415
     from fieldmon.decisions.zones import Sprayer, TreatmentCosts  # noqa: PLC0415
     from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.monitoring.advice import AdviceSettings  # noqa: PLC0415
 
     asked = threshold_of(threshold, _own(thresholds))
     kept = Season(season)
     when = day(on) or kept.last_date()
+    rows_m = kept.plot.grid.row_spacing_m
+    rows = Sprayer.of_boom(boom, sections, rows_m).rows if boom else section_rows
+    level = {"level": asked.level} if asked.measure == "share of plants" else {}
+    advice = kept.advice(
+        when,
+        AdviceSettings(
+            sure=sure,
+            sprayer=Sprayer(rows, least_on, least_off, ring),
+            costs=TreatmentCosts(per_ha, per_zone, loss, days, works, reserve),
+            rate_l_ha=rate,
+            **level,
+        ),
+    )
     typer.echo(asked.sentence())
-    if asked.measure == "share of plants":
-        typer.echo(kept.verdict(when, asked.level, sure).sentence())
+    if level:
+        typer.echo("\n".join(advice.said_of_plot()))
     else:
-        typer.echo(_of_leaves(asked, leaves, counted))
-    sprayer = Sprayer(section_rows, least_on, least_off)
-    costs = TreatmentCosts(per_ha, per_zone, loss, days, works)
-    zones = _where(kept, when, sprayer, costs)
+        typer.echo(of_leaves(asked, leaves, counted, presence=presence))
+    typer.echo("\n".join(advice.said_of_zones(above=bool(level))))
     if output:
-        _write(kept, zones, _Files(tuple(output), rate, product))
+        _write(_Asked(kept, when, advice, product), output)
 
 
 def _own(path: Path | None) -> tuple[Threshold, ...] | None:
@@ -94,57 +122,24 @@ def _own(path: Path | None) -> tuple[Threshold, ...] | None:
     return None if path is None else (*published(), *read_thresholds(path))
 
 
-def _of_leaves(asked: Threshold, leaves: int, counted: float) -> str:
-    """Return what leaves say, which the season knows nothing of."""
-    from fieldmon.decisions.sequential import IwaoPlan, after, least_more  # noqa: PLC0415
-    from fieldmon.decisions.taylor import TaylorLaw  # noqa: PLC0415
-
-    plan = IwaoPlan(asked.level, None if asked.is_share else TaylorLaw())
-    if not leaves:
-        return (
-            f"The season holds plants, and this threshold is of leaves: look at "
-            f"{least_more(plan, 0, 0)} leaves or more, and say --leaves and --counted."
-        )
-    verdict = after(plan, leaves, counted)
-    said = f"{leaves} leaves, {counted:g} counted: {verdict}"
-    if verdict == "look on":
-        said += f"; after {least_more(plan, leaves, counted)} more you can decide at the earliest"
-    return f"{said} (Iwao's plan, 90 % sure)."
-
-
-def _where(kept: Season, when: date, sprayer: Sprayer, costs: TreatmentCosts) -> Zones:
-    from fieldmon.decisions.zones import best_zones  # noqa: PLC0415
-
-    zones = best_zones(kept.plot.grid, kept.evening(when), sprayer, costs)
-    typer.echo(zones.sentence())
-    typer.echo(
-        f"Assumed: {costs.per_ha:g} a hectare and {costs.per_zone:g} a zone to treat, "
-        f"{costs.infested_plant_day:g} lost a day by an infested plant over {costs.days:g} days, "
-        f"treating cleans {costs.works:.0%}."
-    )
-    return zones
-
-
-@dataclass(frozen=True)
-class _Files:
-    paths: tuple[Path, ...]
-    rate_l_ha: float
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    kept: Season
+    when: date
+    advice: Advice
     product: str
 
 
-def _write(kept: Season, zones: Zones, files: _Files) -> None:
-    from fieldmon.decisions.zones import outlines  # noqa: PLC0415
-    from fieldmon.io.writers.treatment_map import (  # noqa: PLC0415
-        TreatmentMap,
-        write_treatment_map,
-    )
+def _write(asked: _Asked, paths: list[Path]) -> None:
+    from fieldmon.compute.units import Units  # noqa: PLC0415
+    from fieldmon.io.writers.treatment_map import write_treatment_map  # noqa: PLC0415
+    from fieldmon.reports.advice import advice_report  # noqa: PLC0415
+    from fieldmon.reports.write import write_report  # noqa: PLC0415
 
-    of = TreatmentMap(
-        kept.plot.field.name,
-        kept.plot.field.boundary,
-        outlines(kept.plot.grid, zones),
-        files.rate_l_ha,
-        files.product,
-    )
-    for path in files.paths:
+    for path in paths:
+        if path.suffix.lower() in {".pdf", ".html"}:
+            made = advice_report(asked.kept, asked.when, asked.advice, Units(), asked.product)
+            typer.echo(f"Advice written to {write_report(made, path)}")
+            continue
+        of = asked.advice.treatment_map(asked.kept.plot.field, asked.product)
         typer.echo(f"Zones written to {write_treatment_map(of, path)}")

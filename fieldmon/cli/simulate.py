@@ -27,11 +27,13 @@ from fieldmon.cli.times import day, day_on
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from fieldmon.decisions.zones import TreatmentCosts, Zones
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.simulation.season import SeasonSettings
     from fieldmon.simulation.start import Start
+    from fieldmon.simulation.treating import TreatmentRule
 
 _HEADER = "sampler,day,detection_pct,visited_pct,ever_visited_pct,found,infested_left"
 
@@ -60,6 +62,12 @@ class SimulateOptions:
             help="Chance a night to infest each neighbour: 0.1 if neither it nor --pest is given."
         ),
     ] = None
+    treat_from: Annotated[
+        float | None, typer.Option(help="Treat in the evening from this share infested on.")
+    ] = None
+    treat: Annotated[
+        str, typer.Option(help="What is treated then: zones above it, or the whole plot.")
+    ] = "zones"
     on: WorkDate = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
     living: PestOptions = field(default_factory=PestOptions)
@@ -73,7 +81,9 @@ class SimulateOptions:
         if living is not None and self.spread is not None:
             raise SettingError("--spread goes without --pest, which says how it spreads.")
         rate = 0.1 if self.spread is None else self.spread
-        return SeasonSettings(n_days=self.days, spread=Spread(rate), pest=living)
+        return SeasonSettings(
+            n_days=self.days, spread=Spread(rate), pest=living, treating=_treating(self)
+        )
 
 
 @with_options
@@ -129,9 +139,11 @@ def _season(
     options, settings = told
     decides, streams = sampler_of(name, options.every), RandomStreams(options.seed)
     walk = simulated_days(plot.aisles, robot, decides, begin, settings, streams)
-    rows = []
+    rows, plant_days, sprayed = [], 0, []
     typer.echo(f"\n{name}\n day  detection %  visited %  found  infested left")
     for each in walk:
+        plant_days += each.left
+        sprayed += [] if each.sprayed is None else [each.sprayed.zones]
         typer.echo(
             f"{each.number + 1:4d}  {each.detection_pct:11.1f}  {each.visited_pct:9.1f}  "
             f"{each.found:5d}  {each.left:13d}"
@@ -140,4 +152,25 @@ def _season(
             f"{name},{each.number + 1},{each.detection_pct:.4f},{each.visited_pct:.4f},"
             f"{each.ever_visited_pct:.4f},{each.found},{each.left}"
         )
+    if settings.treating is not None:
+        typer.echo(_cost(settings.treating.costs, plant_days, sprayed))
     return rows
+
+
+def _treating(options: SimulateOptions) -> TreatmentRule | None:
+    """Return the rule by which seasons are treated, if they are."""
+    if options.treat_from is None:
+        return None
+    from fieldmon.simulation.treating import TreatmentRule  # noqa: PLC0415
+
+    return TreatmentRule(options.treat_from, options.treat, seed=options.seed)
+
+
+def _cost(costs: TreatmentCosts, plant_days: int, sprayed: list[Zones]) -> str:
+    """Return what a season came to, in plants, hectares and money."""
+    area, spent = (sum(getattr(one, name) for one in sprayed) for name in ("m2", "cost"))
+    lost = plant_days * costs.infested_plant_day
+    return (
+        f"{plant_days} infested plant-days, {area / 10_000:.2f} ha sprayed on {len(sprayed)} "
+        f"evenings: {spent:.2f} spent and {lost:.2f} lost, {spent + lost:.2f} altogether"
+    )

@@ -6,17 +6,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import csc_array
 
 from fieldmon.compute.arrays import read_only
-from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
+from fieldmon.compute.wording import counted, joined, worded
+from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT, Verdict
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import pair_chances
-from fieldmon.infestation.plot_estimate import draw_fields
+from fieldmon.infestation.plot_estimate import doubted, draw_fields
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.decisions.sequential import Verdict
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]
@@ -52,19 +53,28 @@ class MapVerdict:
     high: float
     sure: float
 
+    @property
+    def wrong(self) -> float:
+        """Return the chance that the verdict is wrong; of "look on", that "treat" would be."""
+        return self.chance_above if self.verdict == LEAVE else 1.0 - self.chance_above
+
     def sentence(self) -> str:
         """Return it as an answer to "do I have to spray?"."""
-        believed = (
-            f"{self.share:.1%} of the plants are believed infested ({self.low:.1%} to "
-            f"{self.high:.1%}), treating pays from {self.level:.1%} on"
-        )
-        chance = f"the chance that it is so much is {self.chance_above:.0%}"
-        answer = {
-            TREAT: "Treat",
-            LEAVE: "Do not treat",
-            LOOK_ON: "Look on before you decide",
-        }[self.verdict]
-        return f"{answer}: {believed}; {chance}."
+        answer = (
+            worded("Treat:") if self.verdict == TREAT
+            else worded("Do not treat:") if self.verdict == LEAVE
+            else worded("Look on before you decide:")
+        )  # fmt: skip
+        return joined(" ", (answer, self.believed()))
+
+    def believed(self) -> str:
+        """Return what the answer rests on."""
+        return worded(
+            "{share:.1%} of the plants are believed infested ({low:.1%} to {high:.1%}), treating "
+            "pays from {level:.1%} on; the chance that it is so much is {chance:.0%}.",
+            share=self.share, low=self.low, high=self.high, level=self.level,
+            chance=self.chance_above,
+        )  # fmt: skip
 
 
 def map_verdict(  # noqa: PLR0913 - two of them have to be named
@@ -76,6 +86,7 @@ def map_verdict(  # noqa: PLR0913 - two of them have to be named
     plants: NDArray[np.bool_] | None = None,
     sure: float = 0.9,
     key: np.uint64 = np.uint64(0),  # noqa: B008 - a number, not a call with effects
+    doubt: float = 0.0,
 ) -> MapVerdict:
     """Return whether a plot, or a part of it, has to be treated.
 
@@ -98,6 +109,8 @@ def map_verdict(  # noqa: PLR0913 - two of them have to be named
         A verdict needs this chance of being right, between 0.5 and 1.
     key
         Which fields are drawn: the same key, the same answer.
+    doubt
+        How far the expected share may be off beyond that, as a share of it (`Belief.doubt`).
 
     Raises
     ------
@@ -112,6 +125,88 @@ def map_verdict(  # noqa: PLR0913 - two of them have to be named
     >>> map_verdict(plot.grid, chance, 0.05).verdict
     'do not treat'
     """
+    _check(level, sure)
+    asked = np.ones(len(grid), bool) if plants is None else plants
+    if not asked.any():
+        raise SettingError("A verdict must be about a plant or more, but the area holds none.")
+    pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
+    weights = csc_array(asked[:, None] / np.count_nonzero(asked))
+    shares = _drawn(grid, (chance, pairs), weights, (key, doubt))
+    return _verdict(shares[:, 0], float(chance[asked].mean()), level, sure)
+
+
+@dataclass(frozen=True, eq=False)
+class ZoneVerdicts:
+    """What is said of each zone by itself, and of the plot once they are treated.
+
+    Parameters
+    ----------
+    zones
+        The verdict of each zone, in their order.
+    enough
+        Chance that the plot is below the level after all of them are treated.
+    """
+
+    zones: tuple[MapVerdict, ...]
+    enough: float
+
+    def __repr__(self) -> str:
+        return f"<ZoneVerdicts: {counted(len(self.zones), 'zone')}, enough: {self.enough:.0%}>"
+
+
+def zone_verdicts(
+    grid: PlantGrid,
+    believed: tuple[Floats, Floats | None],
+    zones: NDArray[np.int64],
+    asked: tuple[float, float, float],
+    doubt: float = 0.0,
+) -> ZoneVerdicts:
+    """Return the verdict of each zone, and the chance that treating them all is enough.
+
+    Parameters
+    ----------
+    grid
+        The plants.
+    believed
+        ``(n,)`` chance of each plant, and ``(e,)`` of two neighbours, None: as records have it.
+    zones
+        ``(n,)`` the zone of each plant, from 0; -1: none.
+    asked
+        Share of the plants from which on treating pays, of a zone and of the plot; how sure a
+        verdict must be; and the chance that treating cleans an infested plant.
+    doubt
+        As of `map_verdict`.
+
+    Raises
+    ------
+    SettingError
+        If the level or `sure` cannot be.
+    """
+    level, sure, works = asked
+    _check(level, sure)
+    chance, pair_chance = believed
+    pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
+    n, count = len(grid), int(zones.max(initial=-1)) + 1
+    inside = np.flatnonzero(zones >= 0)
+    each = np.bincount(zones[inside], minlength=max(count, 1)).clip(1)
+    left = np.where(zones >= 0, 1.0 - works, 1.0) / n
+    weights = csc_array(
+        (
+            np.concatenate([1.0 / each[zones[inside]], left]),
+            (
+                np.concatenate([inside, np.arange(n)]),
+                np.concatenate([zones[inside], np.full(n, count)]),
+            ),
+        ),
+        (n, count + 1),
+    )
+    shares = _drawn(grid, (chance, pairs), weights, (np.uint64(0), doubt))
+    expected = chance @ weights
+    made = [_verdict(shares[:, k], float(expected[k]), level, sure) for k in range(count)]
+    return ZoneVerdicts(tuple(made), float(np.mean(shares[:, count] < level)))
+
+
+def _check(level: float, sure: float) -> None:
     if not 0.0 < level < 1.0:
         raise SettingError(
             f"The share of plants from which treating pays must lie between 0 and 1, but it is "
@@ -122,31 +217,37 @@ def map_verdict(  # noqa: PLR0913 - two of them have to be named
             f"A verdict must be asked to be right with a chance between 0.5 and 1, but it is "
             f"{sure:g}."
         )
-    asked = np.ones(len(grid), bool) if plants is None else plants
-    if not asked.any():
-        raise SettingError("A verdict must be about a plant or more, but the area holds none.")
-    pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
-    shares = _drawn_shares(grid, (chance, pairs), asked, key)
+
+
+def _verdict(shares: Floats, share: float, level: float, sure: float) -> MapVerdict:
+    """Return the verdict on drawn shares ``(draws,)``."""
     above = float(np.mean(shares >= level))
     verdict: Verdict = TREAT if above >= sure else LEAVE if above <= 1 - sure else LOOK_ON
     low, high = np.quantile(shares, [0.5 - sure / 2, 0.5 + sure / 2])
-    share = float(chance[asked].mean())
     return MapVerdict(verdict, level, above, share, float(low), float(high), sure)
 
 
-def _drawn_shares(
+def _drawn(
     grid: PlantGrid,
     believed: tuple[Floats, Floats],
-    asked: NDArray[np.bool_],
-    key: np.uint64,
+    weights: csc_array,
+    which: tuple[np.uint64, float],
 ) -> Floats:
-    """Return the share of the asked plants that is infested in each drawn field, ``(draws,)``."""
+    """Return sums over the infested plants of each drawn field, ``(draws, k)``.
+
+    `weights` ``(n, k)`` is what each plant counts in each sum; `which` names the fields, and says
+    how far the expected numbers may be off.
+    """
+    key, doubt = which
     at_once = int(np.clip(_CELLS_AT_ONCE // len(grid), 1, _DRAWS))
-    shares = np.empty(_DRAWS)
+    sums = np.empty((_DRAWS, weights.shape[1]))
     for first in range(0, _DRAWS, at_once):
         fields = np.empty((min(at_once, _DRAWS - first), len(grid)), bool)
         draw_fields(believed, grid.adjacent, key + np.uint64(first), fields)
-        shares[first : first + len(fields)] = fields[:, asked].mean(axis=1)
+        sums[first : first + len(fields)] = fields @ weights
     # round the loops of a lattice the drawn fields are a little off the map: put right together
-    right = float(believed[0][asked].mean())
-    return read_only(np.minimum(shares * (right / max(float(shares.mean()), 1e-12)), 1.0))
+    right = believed[0] @ weights
+    sums *= right / np.maximum(sums.mean(axis=0), 1e-12)
+    if doubt > 0.0:
+        sums *= doubted(doubt)[:, None]
+    return read_only(np.minimum(sums, 1.0))

@@ -10,11 +10,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, Protocol
 
 import numpy as np
+from scipy.special import betaincc, gammaincc
 
 from fieldmon.compute.arrays import read_only
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.decisions.taylor import TaylorLaw
@@ -65,6 +68,20 @@ class Plan(Protocol):
     def lines(self, n: int) -> StopLines:
         """Return the stop lines for 1 to n looks."""
         ...
+
+
+def _check_threshold(threshold: float, *, is_share: bool) -> None:
+    if not 0.0 < threshold < (1.0 if is_share else np.inf):
+        raise SettingError(
+            "The threshold of a plan must be above 0"
+            + (" and below 1" if is_share else "")
+            + f", but it is {threshold:g}."
+        )
+
+
+def _check_clustering(k: float) -> None:
+    if not 0.0 < k < np.inf:
+        raise SettingError(f"The clustering k of counts must be a number above 0, but it is {k:g}.")
 
 
 @dataclass(frozen=True)
@@ -118,10 +135,8 @@ class WaldPlan:
                     f"The chance that a plan {name} wrongly must lie between 0 and 0.5, but it is "
                     f"{chance:g}."
                 )
-        if self.counts == "negative binomial" and not 0.0 < self.k < np.inf:
-            raise SettingError(
-                f"The clustering k of counts must be a number above 0, but it is {self.k:g}."
-            )
+        if self.counts == "negative binomial":
+            _check_clustering(self.k)
 
     @property
     def most_per_look(self) -> float:
@@ -243,13 +258,7 @@ class IwaoPlan:
     z: float = 1.645
 
     def __post_init__(self) -> None:
-        most = 1.0 if self.law is None else np.inf
-        if not 0.0 < self.threshold < most:
-            raise SettingError(
-                "The threshold of a plan must be above 0"
-                + (" and below 1" if most == 1.0 else "")
-                + f", but it is {self.threshold:g}."
-            )
+        _check_threshold(self.threshold, is_share=self.law is None)
         if not self.z > 0.0:
             raise SettingError(f"A plan's z must be above 0, but it is {self.z:g}.")
 
@@ -265,6 +274,91 @@ class IwaoPlan:
         variance = level * (1 - level) if self.law is None else float(self.law.variance(level))
         wide = self.z * np.sqrt(looks * variance)
         return StopLines(read_only(looks * level - wide), read_only(looks * level + wide))
+
+
+@dataclass(frozen=True)
+class BayesPlan:
+    """Stop once the mean is above the threshold, or below it, with a chance asked for.
+
+    Before the first look every mean of counts is as likely as any other (Rincon, McCabe & Crowder
+    2025, Methods Ecol. Evol., doi:10.1111/2041-210X.70053). A share is above the threshold with a
+    chance of one half: were all shares as likely, the first clean look would say "treat". It has
+    one threshold, as Iwao's.
+
+    Parameters
+    ----------
+    threshold
+        Mean or share from which on treating pays.
+    counts
+        What one look gives, see `WaldPlan`.
+    k
+        Clustering of the negative binomial.
+    sure
+        The chance at which it stops, above 0.5 and below 1.
+
+    Raises
+    ------
+    SettingError
+        If the threshold, k or `sure` cannot be.
+
+    Examples
+    --------
+    The example of the R package sequential.pops:
+
+    >>> round(BayesPlan(2, "poisson").chance_above(3, 6), 8)
+    0.60630278
+    """
+
+    threshold: float
+    counts: Counts = "presence"
+    k: float = np.inf
+    sure: float = 0.9
+
+    def __post_init__(self) -> None:
+        _check_threshold(self.threshold, is_share=self.counts == "presence")
+        if not 0.5 < self.sure < 1.0:
+            raise SettingError(
+                f"A plan must stop at a chance between 0.5 and 1, but it is {self.sure:g}."
+            )
+        if self.counts == "negative binomial":
+            _check_clustering(self.k)
+
+    @property
+    def most_per_look(self) -> float:
+        """Return the most that one look can count: 1 for presence."""
+        return 1.0 if self.counts == "presence" else np.inf
+
+    def chance_above(self, looks: Any, total: Any) -> Any:  # noqa: ANN401 - arrays or numbers
+        """Return the chance that the mean is above the threshold, `total` counted in `looks`."""
+        looks, total = np.asarray(looks, float), np.asarray(total, float)
+        level = self.threshold
+        if self.counts == "presence":
+            above = betaincc(total + 1.0, np.maximum(looks - total, 0.0) + 1.0, level)
+            return above * level / (above * level + (1.0 - above) * (1.0 - level))
+        if self.counts == "poisson":
+            return gammaincc(total + 1.0, looks * level)
+        # until this is above 0 the counts say nothing: any mean, however high, explains them
+        told = looks * self.k - 1.0
+        above = betaincc(total + 1.0, np.maximum(told, 1e-9), level / (level + self.k))
+        return np.where(told > 0.0, above, 0.5)
+
+    def lines(self, n: int) -> StopLines:
+        """Return the stop lines for 1 to n looks."""
+        looks = np.arange(1.0, n + 1.0)
+        return StopLines(
+            read_only(self._total_at(looks, 1.0 - self.sure)),
+            read_only(self._total_at(looks, self.sure)),
+        )
+
+    def _total_at(self, looks: Floats, chance: float) -> Floats:
+        """Return the total ``(n,)`` at which the mean is above the threshold with that chance."""
+        low = np.full(len(looks), -1.0 + 1e-9)
+        high = looks * self.threshold + 60.0 * (1.0 + np.sqrt(looks)) * (1.0 + self.threshold)
+        for _ in range(_STEPS // 2):
+            middle = (low + high) / 2
+            below = self.chance_above(looks, middle) < chance
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        return high
 
 
 def decided(plan: Plan, counts: Any) -> tuple[Verdict, int]:  # noqa: ANN401 - whatever is a list
@@ -336,6 +430,32 @@ def tried(plan: Plan, counts: NDArray[Any]) -> Trials:
     """
     verdict, looks = _first(plan, np.asarray(counts, float))
     return Trials(float(np.mean(verdict == 2)), float(np.mean(verdict == 1)), read_only(looks))
+
+
+def simulated_curve(
+    plan: Plan,
+    means: Any,  # noqa: ANN401 - a list of them
+    draw: Callable[[float], NDArray[Any]],
+) -> OperatingCurve:
+    """Return what a plan does at true means ``(k,)`` on looks that are drawn, clustered or not.
+
+    Parameters
+    ----------
+    draw
+        ``draw(mean)`` returns counts ``(trials, n)`` in the order in which they are seen.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(1)
+    >>> clustered = lambda share: rng.random((500, 400)) < rng.beta(share, 1 - share, (500, 1))
+    >>> bool(simulated_curve(WaldPlan(0.05, 0.2), [0.2], clustered).leaves_it[0] > 0.5)
+    True
+    """
+    mean = np.atleast_1d(np.asarray(means, float))
+    trials = [tried(plan, draw(one)) for one in mean.tolist()]
+    leaves = np.array([one.leaves for one in trials])
+    looks = np.array([one.looks.mean() for one in trials])
+    return OperatingCurve(read_only(mean), read_only(leaves), read_only(looks))
 
 
 def _first(plan: Plan, counts: Floats) -> tuple[NDArray[np.intp], NDArray[np.int64]]:

@@ -4,6 +4,8 @@ A sprayer's section covers some rows side by side. Along them it is on or off, a
 that is on, or off between two that are, has a least length. Which stretches cost least is found
 exactly, section by section: plants stand in order along the rows, so that the best of all
 switchings up to a plant follows from the best up to the one before.
+
+With a knapsack plants are chosen one by one, each with the ring of plants around it.
 """
 
 from __future__ import annotations
@@ -13,19 +15,26 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
 
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import routine
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+
+# the price at which zones keep within the ground allowed is halved so often
+_STEPS = 50
 
 
 @dataclass(frozen=True)
@@ -38,6 +47,8 @@ class Sprayer:
         Rows that one section covers; 0: plants are sprayed one by one, with a knapsack.
     least_on_m, least_off_m
         Least length along the rows of a stretch that is sprayed, and of a gap between two.
+    ring
+        With a knapsack: how many plants around each chosen one are sprayed with it.
 
     Raises
     ------
@@ -48,6 +59,7 @@ class Sprayer:
     rows: int = 2
     least_on_m: float = 6.0
     least_off_m: float = 6.0
+    ring: int = 0
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
@@ -55,6 +67,30 @@ class Sprayer:
                 raise SettingError(
                     f"A sprayer's {name.replace('_', ' ')} must be 0 or more, but it is {value:g}."
                 )
+
+    @classmethod
+    def of_boom(
+        cls, boom_m: float, sections: int, row_spacing_m: float, least_on_m: float = 6.0
+    ) -> Sprayer:
+        """Return the sprayer of a boom: as many rows a section as stand under one, at least one.
+
+        Raises
+        ------
+        SettingError
+            If the boom has no width or no section.
+
+        Examples
+        --------
+        >>> Sprayer.of_boom(12.0, 4, row_spacing_m=1.5).rows
+        2
+        """
+        if not (boom_m > 0.0 and sections >= 1):
+            raise SettingError(
+                "A boom must have a width above 0 and a section or more, but it has "
+                f"{boom_m:g} m and {sections}."
+            )
+        rows = max(1, int(boom_m / sections / row_spacing_m + 1e-9))
+        return cls(rows, least_on_m, least_on_m)
 
 
 @dataclass(frozen=True)
@@ -73,6 +109,9 @@ class TreatmentCosts:
         How long an infested plant stays so if it is not treated.
     works
         Chance that an infested plant is clean after the treatment.
+    reserve
+        Share of the plot that is never sprayed, from which predators and mites that no product
+        was tried on come back (resistance).
 
     Raises
     ------
@@ -85,8 +124,14 @@ class TreatmentCosts:
     infested_plant_day: float = 0.1
     days: float = 14.0
     works: float = 0.9
+    reserve: float = 0.0
 
     def __post_init__(self) -> None:
+        if not 0.0 <= self.reserve < 1.0:
+            raise SettingError(
+                "The share that is never sprayed must be 0 or more and below 1, but it is "
+                f"{self.reserve:g}."
+            )
         for name, value in vars(self).items():
             if not 0.0 <= value < np.inf:
                 raise SettingError(
@@ -120,6 +165,8 @@ class Zones:
         Infested plants expected where it is sprayed, and elsewhere.
     cost, saved
         What spraying costs, and what it is expected to save.
+    whole_cost
+        What spraying the whole plot would cost.
     """
 
     treated: NDArray[np.bool_]
@@ -130,6 +177,7 @@ class Zones:
     outside: float
     cost: float
     saved: float
+    whole_cost: float = 0.0
 
     def __post_init__(self) -> None:
         for value in vars(self).values():
@@ -143,19 +191,28 @@ class Zones:
         """Return the number of zones."""
         return int(self.zone.max(initial=-1)) + 1
 
+    def only(
+        self, grid: PlantGrid, chance: Floats, kept: NDArray[np.bool_], costs: TreatmentCosts
+    ) -> Zones:
+        """Return some of the zones, ``(zones,)`` whether each is kept, numbered anew."""
+        number = np.append(np.where(kept, np.cumsum(kept) - 1, -1), -1)
+        return _zones(number[self.zone], chance, _Plants.of(grid, chance, costs), costs)
+
     def sentence(self) -> str:
         """Return it in words, beside treating the whole plot."""
         if not len(self):
-            return (
-                f"Treat nowhere: {self.outside:.1f} infested plants are expected, and nowhere "
-                "would spraying save more than it costs."
+            return worded(
+                "Treat nowhere: {outside:.1f} infested plants are expected, and nowhere would "
+                "spraying save more than it costs.",
+                outside=self.outside,
             )
-        share = self.m2 / self.plot_m2
-        return (
-            f"Treat {self.m2 / 10_000:.2f} ha in {counted(len(self), 'zone')}, "
-            f"{share:.0%} of the plot: {self.inside:.1f} infested plants are expected there and "
-            f"{self.outside:.1f} elsewhere. It costs {self.cost:.2f} and saves {self.saved:.2f}."
-        )
+        return worded(
+            "Treat {area:.2f} ha in {zones}, {share:.0%} of the plot: {inside:.1f} infested plants "
+            "are expected there and {outside:.1f} elsewhere. It costs {cost:.2f} and saves "
+            "{saved:.2f}.",
+            area=self.m2 / 10_000, zones=counted(len(self), "zone"), share=self.m2 / self.plot_m2,
+            inside=self.inside, outside=self.outside, cost=self.cost, saved=self.saved,
+        )  # fmt: skip
 
 
 def best_zones(
@@ -185,34 +242,145 @@ def best_zones(
     1
     """
     sprayer, costs = sprayer or Sprayer(), costs or TreatmentCosts()
-    once = grid.vine == np.arange(len(grid))
-    m2 = grid.row_spacing_m * grid.plant_spacing_m
-    gain = np.where(once, chance * costs.per_infested_plant - costs.per_ha * m2 / 10_000, 0.0)
+    plants = _Plants.of(grid, chance, costs)
+    choose = _knapsack if sprayer.rows == 0 else _switched
+    zone = choose(grid, plants, sprayer, costs)
+    most = (1.0 - costs.reserve) * plants.area_m2
+    if costs.reserve > 0.0 and plants.m2 * np.count_nonzero(plants.once & (zone >= 0)) > most:
+        zone = _within(lambda dearer: choose(grid, dearer, sprayer, costs), plants, most)
+    return _zones(zone, chance, plants, costs)
+
+
+def whole_plot(grid: PlantGrid, chance: Floats, costs: TreatmentCosts | None = None) -> Zones:
+    """Return the plot as one zone, which is what most growers treat.
+
+    Examples
+    --------
+    >>> import numpy as np, fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> len(whole_plot(plot.grid, np.full(plot.n_plants, 0.1)))
+    1
+    """
+    costs = costs or TreatmentCosts()
+    return _zones(np.zeros(len(grid), np.int64), chance, _Plants.of(grid, chance, costs), costs)
+
+
+class _Plants(NamedTuple):
+    """What spraying each plant gains ``(n,)``, which are counted once, and the ground of each."""
+
+    gain: Floats
+    once: NDArray[np.bool_]
+    m2: float
+
+    @classmethod
+    def of(cls, grid: PlantGrid, chance: Floats, costs: TreatmentCosts) -> _Plants:
+        once = grid.vine == np.arange(len(grid))
+        m2 = grid.row_spacing_m * grid.plant_spacing_m
+        gain = chance * costs.per_infested_plant - costs.per_ha * m2 / 10_000
+        return cls(np.where(once, gain, 0.0), once, m2)
+
+    @property
+    def area_m2(self) -> float:
+        """Return the ground of all plants."""
+        return float(self.once.sum()) * self.m2
+
+    def dearer(self, by: float) -> _Plants:
+        """Return the same, each plant by so much less worth spraying."""
+        return self._replace(gain=np.where(self.once, self.gain - by, 0.0))
+
+
+def _zones(zone: Ints, chance: Floats, plants: _Plants, costs: TreatmentCosts) -> Zones:
+    """Return zones with all that is said of them."""
+    treated, n_zones = zone >= 0, int(zone.max(initial=-1)) + 1
+    sprayed = plants.once & treated
+    inside, area_m2 = float(chance[sprayed].sum()), float(sprayed.sum()) * plants.m2
+    return Zones(
+        treated,
+        zone,
+        area_m2,
+        plants.area_m2,
+        inside,
+        float(chance[plants.once & ~treated].sum()),
+        area_m2 / 10_000 * costs.per_ha + n_zones * costs.per_zone,
+        inside * costs.per_infested_plant,
+        plants.area_m2 / 10_000 * costs.per_ha + costs.per_zone,
+    )
+
+
+def _within(choose: Callable[[_Plants], Ints], plants: _Plants, most_m2: float) -> Ints:
+    """Return the best zones of at most so much ground: spraying is made dearer until they are."""
+    low, high = 0.0, float(np.max(plants.gain, initial=0.0)) * len(plants.gain) + 1.0
+    best = np.full(len(plants.gain), -1)
+    for _ in range(_STEPS):
+        middle = (low + high) / 2
+        zone = choose(plants.dearer(middle))
+        if np.count_nonzero(plants.once & (zone >= 0)) * plants.m2 > most_m2:
+            low = middle
+        else:
+            high, best = middle, zone
+    return best
+
+
+def _switched(grid: PlantGrid, plants: _Plants, sprayer: Sprayer, costs: TreatmentCosts) -> Ints:
+    """Return the zone of each plant ``(n,)``, -1: none, as sections are switched."""
     strips = _strips(grid, sprayer.rows)
     on = np.zeros(len(strips.start_m), bool)
-    per_step = np.bincount(strips.step, gain, len(on)).astype(np.float64)
+    per_step = np.bincount(strips.step, plants.gain, len(on)).astype(np.float64)
     _switch(
         (strips.first, strips.start_m, per_step),
         (sprayer.least_on_m, sprayer.least_off_m, costs.per_zone),
         strips.step_m,
         on,
     )
-    treated = on[strips.step]
     new = on & ~np.concatenate([[False], on[:-1] & ~strips.begins[1:]])
-    zone = np.where(treated, (np.cumsum(new) - 1)[strips.step], -1)
-    sprayed = once & treated
-    n_zones = int(new.sum())
-    inside, area_m2 = float(chance[sprayed].sum()), float(sprayed.sum()) * m2
-    return Zones(
-        treated,
-        zone,
-        area_m2,
-        float(once.sum()) * m2,
-        inside,
-        float(chance[once & ~treated].sum()),
-        area_m2 / 10_000 * costs.per_ha + n_zones * costs.per_zone,
-        inside * costs.per_infested_plant,
-    )
+    zone: Ints = np.where(on[strips.step], (np.cumsum(new) - 1)[strips.step], -1)
+    return zone
+
+
+def _knapsack(grid: PlantGrid, plants: _Plants, sprayer: Sprayer, costs: TreatmentCosts) -> Ints:
+    """Return the zone of each plant ``(n,)``, -1: none: plants with their rings that pay.
+
+    The most suspected first; a ring costs only what no other has sprayed yet. Rings that touch are
+    one zone. Without a ring that is the best choice, with one a good one.
+    """
+    treated = np.zeros(len(grid), bool)
+    worth = np.flatnonzero(plants.gain > 0.0)
+    for i in worth[np.argsort(-plants.gain[worth], kind="stable")].tolist():
+        around = _around(grid, i, sprayer.ring)
+        new = around[~treated[around]]
+        if float(plants.gain[new].sum()) > costs.per_zone * (len(new) == len(around)):
+            treated[around] = True
+    treated = treated[grid.vine]
+    if sprayer.ring == 0:
+        alone = np.cumsum(treated & plants.once) - 1
+        return np.where(treated, alone[grid.vine], -1)
+    return _touching(grid, treated)
+
+
+def _around(grid: PlantGrid, plant: int, ring: int) -> NDArray[np.intp]:
+    """Return a plant and those up to so many steps from it, by neighbours."""
+    start, other = grid.adjacent
+    reached = np.array([plant])
+    for _ in range(ring):
+        beside = [other[start[i] : start[i + 1]] for i in reached.tolist()]
+        reached = np.unique(np.concatenate([reached, *beside]))
+    return np.unique(grid.vine[reached])
+
+
+def _touching(grid: PlantGrid, treated: NDArray[np.bool_]) -> Ints:
+    """Return the number of the piece that each treated plant is in ``(n,)``, -1: not treated."""
+    start, other = grid.adjacent
+    own = np.repeat(np.arange(len(grid)), np.diff(start))
+    both = treated[own] & treated[other]
+    # the two faces of a plant are one
+    rows = np.concatenate([own[both], np.flatnonzero(treated)])
+    columns = np.concatenate([other[both], grid.vine[treated]])
+    links = csr_array((np.ones(len(rows)), (rows, columns)), (len(grid), len(grid)))
+    piece = connected_components(links, directed=False)[1]
+    _, number = np.unique(piece[treated], return_inverse=True)
+    zone = np.full(len(grid), -1)
+    zone[treated] = number
+    return zone
 
 
 def outlines(grid: PlantGrid, zones: Zones) -> list[shapely.MultiPolygon]:
@@ -253,9 +421,6 @@ class _Strips(NamedTuple):
 
 def _strips(grid: PlantGrid, rows: int) -> _Strips:
     """Cut the plot into sections of so many lines, and those into steps of a plant's spacing."""
-    if rows == 0:
-        n, alone = len(grid), grid.vine.astype(np.int64)
-        return _Strips(np.arange(n + 1), np.zeros(n), alone, np.ones(n, bool), 0.0)
     step_m = grid.plant_spacing_m
     line = grid.row_line[grid.row].astype(np.int64)
     block = np.zeros(len(grid), np.int64) if grid.block is None else grid.block[grid.row]

@@ -91,12 +91,12 @@ def estimate_plot(
     # round the loops of a lattice the drawn fields are a little off the map: put right together
     counts = drawn * (expected / max(float(drawn.mean()), 1e-9))
     if doubt > 0.0:
-        counts = counts * _doubted(doubt)
+        counts = counts * doubted(doubt)
     low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
     return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), clean)
 
 
-def _doubted(doubt: float) -> Floats:
+def doubted(doubt: float) -> Floats:
     """Return what the number in each drawn field is multiplied by: even draws of a gamma."""
     places = ((np.arange(_DRAWS) + 1) * _GOLDEN) % 1.0
     factors: Floats = gammaincinv(doubt**-2.0, places) * doubt**2.0

@@ -39,6 +39,7 @@ from fieldmon.monitoring import (
     treatment_effect,
     treatments,
 )
+from fieldmon.monitoring.advice import AdviceSettings, advice
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
@@ -81,6 +82,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.learnt import Learnt
+    from fieldmon.monitoring.advice import Advice
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.cautions import Caution
     from fieldmon.monitoring.season_log import LogEntry
@@ -746,18 +748,39 @@ class Season:
             day = contents.settings.day(on)
             return contents.history.evening(contents.morning(day), day).chance
 
-    def verdict(self, on: date, level: float, sure: float = 0.9) -> MapVerdict:
+    def verdict(
+        self, on: date, level: float, sure: float = 0.9, plants: NDArray[np.bool_] | None = None
+    ) -> MapVerdict:
         """Return whether treating pays after a day's work; see `fieldmon.decisions`.
 
-        Plants that were found and not treated count: they are infested.
+        Plants that were found and not treated count: they are infested. `plants` ``(n,)`` is the
+        part of the plot that is asked about; None: all.
         """
         with self._lock:
             contents = self._now()
             day = contents.settings.day(on)
             evening = contents.history.evening(contents.morning(day), day)
         return map_verdict(
-            contents.history.grid, evening.chance, level, evening.pair_chance, sure=sure
-        )
+            contents.history.grid, evening.chance, level, evening.pair_chance,
+            plants=plants, sure=sure, doubt=evening.doubt,
+        )  # fmt: skip
+
+    def advice(self, on: date, asked: AdviceSettings | None = None) -> Advice:
+        """Return whether to treat after a day's work, where, and how many looks decide.
+
+        Parameters
+        ----------
+        on
+            The day.
+        asked
+            The threshold, the sprayer and the costs; None: the defaults.
+        """
+        scene = self.scene(on)
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            evening = contents.history.evening(contents.morning(day), day)
+        return advice(contents.history.grid, evening, asked or AdviceSettings(), scene)
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""

@@ -26,6 +26,7 @@ from fieldmon.reports.drawing import (
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+    from shapely import MultiPolygon
 
     from fieldmon.compute.units import Units
     from fieldmon.infestation.hotspots import HotSpots
@@ -46,6 +47,8 @@ _PAGE_MM = 186.0
 _TURNED_GAINS = 1.25
 # plants this far apart on paper stand alone; closer ones of one colour run together
 _ALONE_MM = 1.2
+# more zones would hide each other
+_MOST_NUMBERS = 60
 _ARROWS_MM, _MOST_STOPS = 24.0, 400
 
 
@@ -69,6 +72,8 @@ class PlotMap:
         The way that is shown; None: none.
     by_state
         Whether plants are coloured by what was found there instead of by chance.
+    zones_m
+        Areas to be sprayed, metres of the plot.
     """
 
     grid: PlantGrid
@@ -79,6 +84,7 @@ class PlotMap:
     units: Units
     route: Route | None = None
     by_state: bool = False
+    zones_m: tuple[MultiPolygon, ...] = ()
 
     @property
     def rank(self) -> NDArray[np.intp]:
@@ -103,6 +109,7 @@ class PlotMap:
             *_ground(self.grid, placed),
             *_plants(self, placed, size),
             *_hot(self, placed),
+            *_sprayed(self, placed),
             *([] if self.route is None else _way(self.route, placed)),
             *_finds(self, placed),
             *_gate(self.gate_m, placed),
@@ -240,6 +247,28 @@ def _hot(what: PlotMap, placed: _Placed) -> list[Part]:
     )
     lines = Strokes(rings, colours.PAPER, 1.3), Strokes(rings, colours.INK, 0.55)
     return [*lines] if rings else []
+
+
+def _sprayed(what: PlotMap, placed: _Placed) -> list[Part]:
+    """Return the outlines of the zones, each with its number in its middle."""
+    rings = tuple(
+        placed(shapely.get_coordinates(part.exterior))
+        for area in what.zones_m
+        for part in shapely.get_parts(area)
+    )
+    if not rings:
+        return []
+    parts: list[Part] = [
+        Strokes(rings, colours.PAPER, 1.3),
+        Strokes(rings, colours.INK, 0.7, dashed=True),
+    ]
+    for number, area in enumerate(what.zones_m[:_MOST_NUMBERS], start=1):
+        ((x, y),) = placed(shapely.get_coordinates(area.representative_point())).tolist()
+        parts += [
+            Discs(np.array([[x, y]]), 2.0, fill=colours.PAPER, edge=colours.INK, width=0.3),
+            Lettering(x, y, f"{number}", 7.5, colours.INK, "middle", bold=True),
+        ]
+    return parts
 
 
 def _hot_numbers(what: PlotMap, placed: _Placed) -> list[Part]:

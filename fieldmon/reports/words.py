@@ -118,6 +118,16 @@ TREATED, TREATED_VALUES = "Plants found are", {True: "treated", False: "flagged"
 GUESSED = "Guessed when the plot was read"
 FROM_CHOSEN, FROM_USUAL, FROM_FILE = "chosen", "the usual", "of the plot's file"
 FROM_NOBODY = "assumed"
+ADVICE_TITLE = "Advice of {day}"
+ADVICE_SHEET = "Treat, or not, and where"
+ADVICE_ALT = "Map of the zones to treat."
+AREA_SPRAYED, OF_PLOT = "To be sprayed", "{share:.0%} of the plot"
+PRODUCT, PRODUCT_OPEN, RATE = "Product", "not said", "{rate:g} l/ha"
+LIQUID, INFESTED_INSIDE = "Liquid", "Infested plants inside"
+AND_ELSEWHERE, ENOUGH = "{n:.1f} elsewhere", "Chance that it is enough"
+ZONES, ZONES_REST = "Zones", "... and {n} more zones; the files for the sprayer hold all."
+ZONES_COLUMNS = ("zone", "rows", "plants of the row", "plants", "infested", "by itself")
+VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}
 MEANING = "How the numbers are meant"
 MEANINGS = (
     "Unknown is not clean: a plant was found infested, or looked clean, or was never inspected.",
@@ -137,9 +147,13 @@ CERT_CAUTIONS, CERT_CAUTIONS_NONE = "To beware of", "Nothing."
 CERT_PLOTS = "Plots"
 CERT_PLOT_COLUMNS = ("plot", "area", "from", "to", "treatments", "inspected", "found")
 CERT_UNSAID, CERT_UNSAID_NONE = "Asked for and not said", "Nothing: every application is complete."
-CERT_MISSING = "{plot}, {day}: {what}."
+# a name at the head of a line would turn the line's direction where it is read from the right
+CERT_ON_PLOT, CERT_TITLE_OF = "On {plot}: {said}", "{number}. Treatment of {plot}, {day}"
+CERT_MISSING = "On {plot}, {day}: {what}."
 CERT_LOG = "Log"
-CERT_LOG_HOLDS = "{plot}: {n} entries since {since}, the chain holds. The last digest is {digest}."
+CERT_LOG_HOLDS = (
+    "On {plot}: {n} entries since {since}, the chain holds. The last digest is {digest}."
+)
 CERT_MEANINGS = (
     "Each entry of the log has a digest of itself and of all before it: keep the last one.",
     "Whoever keeps it can tell later whether the past was changed: the log must still hold it.",

@@ -80,6 +80,10 @@ SAMPLERS = {
         settings={"chooses_time": True},
         reads_chance=True, chooses_time=True, s_per_plant_day=2.5e-6,
     ),
+    "decide": SamplerKind(
+        "decide:Decide", "Decide", "the looks that tell soonest whether treating pays",
+        reads_chance=True, s_per_plant_day=4e-7,
+    ),
     "snake": SamplerKind(
         "without_prior:Snake", "Snake", "up one side of an aisle, down the other", every=1
     ),

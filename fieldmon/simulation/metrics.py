@@ -39,6 +39,8 @@ class SeasonMetrics:
         Infested plants after each day's work.
     worked_h
         Hours worked on each day, of all who work.
+    sprayed_m2, spent
+        Area sprayed on each evening, and what that cost.
     """
 
     detection_pct: NDArray[np.float64]
@@ -48,6 +50,8 @@ class SeasonMetrics:
     new: NDArray[np.int64]
     left: NDArray[np.int64]
     worked_h: NDArray[np.float64]
+    sprayed_m2: NDArray[np.float64]
+    spent: NDArray[np.float64]
 
     def __repr__(self) -> str:
         days, finds = counted(len(self.left), "day"), counted(int(self.found.sum()), "find")
@@ -78,11 +82,16 @@ def season_metrics(days: Iterable[SimulatedDay]) -> SeasonMetrics:
             day.ever_infested,
             day.left,
             day.worked_s / 3600.0,
+            *(
+                (0.0, 0.0)
+                if day.sprayed is None
+                else (day.sprayed.zones.m2, day.sprayed.zones.cost)
+            ),
         )
         for day in days
     ]
-    columns = np.array(rows, dtype=np.float64).reshape(-1, 7).T
+    columns = np.array(rows, dtype=np.float64).reshape(-1, 9).T
     found, ever, left = columns[3:6].astype(np.int64)
     new = np.diff(ever, prepend=0)
     detection, visited, ever_visited = columns[:3]
-    return SeasonMetrics(detection, visited, ever_visited, found, new, left, columns[6])
+    return SeasonMetrics(detection, visited, ever_visited, found, new, left, *columns[6:])

@@ -14,6 +14,7 @@ from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.workday import draw_detections, work_day
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 from fieldmon.simulation.insects import NightInsects, PestInsects
+from fieldmon.simulation.treating import Sprayed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -28,8 +29,9 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Sampler
-    from fieldmon.simulation.insects import Insects
+    from fieldmon.simulation.insects import PlotInsects
     from fieldmon.simulation.start import Start
+    from fieldmon.simulation.treating import TreatmentRule
 
 
 _HOUR_S, _DAY_S = 3600.0, 86400.0
@@ -61,6 +63,8 @@ class SeasonSettings:
         The pest, in the weather of the season's days; None: as `spread` and `pests` say.
     believed_pest
         The pest and the weather that the chance map knows of; None: the same.
+    treating
+        By what rule it is treated in the evening, see `TreatmentRule`; None: never.
     """
 
     n_days: int = 25
@@ -72,6 +76,7 @@ class SeasonSettings:
     hidden_nights: int = 0
     pest: PestInWeather | None = None
     believed_pest: PestInWeather | None = None
+    treating: TreatmentRule | None = None
 
     def __post_init__(self) -> None:
         if self.n_days < 1:
@@ -85,7 +90,7 @@ class SeasonSettings:
             return self.pests(grid, infested, key)
         return night(grid, infested, self.spread, key)
 
-    def insects(self, grid: PlantGrid, infested: NDArray[np.bool_]) -> Insects:
+    def insects(self, grid: PlantGrid, infested: NDArray[np.bool_]) -> PlotInsects:
         """Return what lives on a plot where plants ``(n,)`` are infested on the first morning."""
         if self.pest is not None:
             return PestInsects(grid, infested, self.pest)
@@ -124,6 +129,8 @@ class SimulatedDay:
     evening
         ``(n,)`` the truth in the evening, where insects move by day; None: the morning's, but for
         the finds.
+    sprayed
+        What was treated in the evening; None: nothing.
     """
 
     number: int
@@ -135,6 +142,7 @@ class SimulatedDay:
     ever_found: int
     each: tuple[Workday, ...] = ()
     evening: NDArray[np.bool_] | None = None
+    sprayed: Sprayed | None = None
 
     @property
     def worked_s(self) -> float:
@@ -159,9 +167,17 @@ class SimulatedDay:
     @property
     def left(self) -> int:
         """Return the number of infested plants this evening, before the night."""
-        if self.evening is not None:
-            return int(np.count_nonzero(self.evening))
-        return int(np.count_nonzero(self.infested)) - self.found
+        return int(np.count_nonzero(self.in_the_evening))
+
+    @property
+    def in_the_evening(self) -> NDArray[np.bool_]:
+        """Return who is infested before the night, ``(n,)``: not found, not cleaned by spraying."""
+        evening = self.infested.copy() if self.evening is None else self.evening.copy()
+        if self.evening is None:
+            evening[self.work.plant[self.work.found]] = False
+        if self.sprayed is not None:
+            evening &= ~self.sprayed.cleaned
+        return evening
 
     @property
     def detection_pct(self) -> float:
@@ -193,6 +209,7 @@ class MorningBeliefs:
     ) -> None:
         self._first, self.learning, self._spread = first, learning, spread
         self._works: list[Workday] = []
+        self._left: dict[int, NDArray[np.float64]] = {}
         self._last: tuple[int, Belief] | None = None
 
     @property
@@ -200,9 +217,15 @@ class MorningBeliefs:
         """Return the number of the first day whose work it has not heard of."""
         return len(self._works)
 
-    def add(self, work: Workday) -> None:
-        """Hear of the next day's work."""
+    def add(self, work: Workday, left: NDArray[np.float64] | None = None) -> None:
+        """Hear of the next day's work, and which share of each chance outlived its treatment."""
+        if left is not None:
+            self._left[self.known] = left
         self._works.append(work)
+
+    def evening(self, number: int, work: Workday) -> Belief:
+        """Return what is believed after a day's work, before any treatment."""
+        return self.on(number).learn(work.plant, work.found, self.learning(work))
 
     def on(self, number: int) -> Belief:
         """Return the belief of a morning, from the last one asked for if that was before."""
@@ -211,6 +234,8 @@ class MorningBeliefs:
             day, belief = 0, self._first()
         for passed, work in enumerate(self._works[day:number], day):
             evening = belief.learn(work.plant, work.found, self.learning(work))
+            if passed in self._left:
+                evening = evening.treated(self._left[passed])
             belief = evening.overnight(self._spread(passed))
         self._last = number, belief
         return belief
@@ -239,7 +264,7 @@ def simulated_days(
         else:
             day = season.work(number, own, inspect)
         yield day
-        season.pass_night(day.work, overnight)
+        season.pass_night(day, overnight)
 
 
 class SeasonOnItsWay:
@@ -263,6 +288,7 @@ class SeasonOnItsWay:
         self.last_inspected = np.full(len(self.infested), NEVER, np.int32)
         self.ever_infested, self.ever_found = int(np.count_nonzero(self.infested)), 0
         self.trail = np.empty(0, np.int32)
+        self.last_treated: int | None = None
         self._found_last: NDArray[np.int32] | None = None
 
     @property
@@ -329,16 +355,30 @@ class SeasonOnItsWay:
             self.ever_infested,
             self.ever_found,
             each,
+            sprayed=self._treat(number, work),
         )
 
-    def pass_night(self, work: Workday, key: np.uint64) -> None:
-        """Destroy what was found, and let the others spread."""
-        number = self.mornings.known
-        self.mornings.add(work)
+    def _treat(self, number: int, work: Workday) -> Sprayed | None:
+        """Return what is treated on an evening by the season's rule."""
+        rule, last = self.settings.treating, self.last_treated
+        if rule is None or (last is not None and number - last < rule.every_days):
+            return None
+        zones = rule.treated(self.aisles.grid, self.mornings.evening(number, work).chance)
+        if zones is None:
+            return None
+        self.last_treated = number
+        return Sprayed(zones, rule.cleaned(zones, number), rule.costs.works)
+
+    def pass_night(self, day: SimulatedDay, key: np.uint64) -> None:
+        """Destroy what was found or sprayed, and let the others spread."""
+        work, number = day.work, self.mornings.known
+        self.mornings.add(work, None if day.sprayed is None else day.sprayed.left)
         # what was found in an hour that has passed is destroyed; insects may have come since
-        found = work.plant[work.found] if self._found_last is None else self._found_last
+        gone = work.plant[work.found] if self._found_last is None else self._found_last
         self._found_last = None
-        self.ever_infested += self.insects.pass_night(found, number, key)
+        if day.sprayed is not None:
+            gone = np.union1d(gone, np.flatnonzero(day.sprayed.cleaned)).astype(np.int32)
+        self.ever_infested += self.insects.pass_night(gone, number, key)
         self.trail = work.plant if len(work) else self.trail
 
     def scene(self, number: int, key: np.uint64) -> Scene:

@@ -91,7 +91,7 @@ def simulated_team_days(
     for number, (inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
         day = season.day(number, streams, inspect)
         yield day
-        season.pass_night(day.work, overnight)
+        season.pass_night(day, overnight)
 
 
 class _TeamSeason(SeasonOnItsWay):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from fieldmon.decisions.map_verdict import map_verdict
+from fieldmon.decisions.map_verdict import map_verdict, zone_verdicts
 from fieldmon.errors import SettingError
 from fieldmon.plot.layout import Planting, rectangle
 
@@ -71,3 +71,32 @@ def test_the_same_question_has_the_same_answer():
 def test_questions_without_an_answer_are_refused(more, said):
     with pytest.raises(SettingError, match=said):
         map_verdict(GRID, np.full(len(GRID), 0.1), **more)
+
+
+def test_doubt_about_the_number_makes_it_less_sure():
+    chance = np.full(len(GRID), 0.05)
+    sure, doubted = (map_verdict(GRID, chance, 0.04, doubt=doubt) for doubt in (0.0, 0.5))
+    assert doubted.high - doubted.low > 1.5 * (sure.high - sure.low)
+    assert doubted.chance_above < sure.chance_above
+
+
+def test_a_zones_verdict_is_that_of_its_plants_alone():
+    chance = np.where(np.arange(len(GRID)) < 100, 0.4, 0.001)
+    zone = np.full(len(GRID), -1)
+    zone[:50], zone[200:260] = 0, 1
+    said = zone_verdicts(GRID, (chance, None), zone, (0.1, 0.9, 0.9))
+    for k, one in enumerate(said.zones):
+        alone = map_verdict(GRID, chance, 0.1, plants=zone == k)
+        assert one.verdict == alone.verdict
+        assert one.share == pytest.approx(alone.share)
+        assert one.wrong <= 0.1
+    assert [one.verdict for one in said.zones] == ["treat", "do not treat"]
+
+
+def test_treating_is_enough_if_what_is_left_stays_below():
+    chance = np.where(np.arange(len(GRID)) < 100, 0.4, 0.001)
+    zone = np.where(np.arange(len(GRID)) < 100, 0, -1)
+    assert zone_verdicts(GRID, (chance, None), zone, (0.03, 0.9, 0.9)).enough > 0.95
+    assert zone_verdicts(GRID, (chance, None), zone, (0.03, 0.9, 0.05)).enough < 0.05
+    nowhere = np.full(len(GRID), -1)
+    assert zone_verdicts(GRID, (chance, None), nowhere, (0.03, 0.9, 0.9)).enough < 0.05

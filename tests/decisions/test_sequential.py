@@ -9,11 +9,13 @@ from fieldmon.decisions.sequential import (
     LEAVE,
     LOOK_ON,
     TREAT,
+    BayesPlan,
     IwaoPlan,
     WaldPlan,
     after,
     decided,
     least_more,
+    simulated_curve,
     tried,
 )
 from fieldmon.decisions.taylor import TaylorLaw
@@ -176,9 +178,56 @@ def test_iwaos_lines_are_a_confidence_interval_round_the_threshold():
     assert decided(IwaoPlan(0.22), [0, 1, 0, 0] * 4) == (LOOK_ON, 16)
 
 
+def test_the_bayesian_plan_says_the_published_chances():
+    """The tests of the R package sequential.pops 0.1.1: counts 1, 2, 3 and a threshold of 2."""
+    assert BayesPlan(2, "poisson").chance_above(3, 6) == pytest.approx(0.60630278, abs=1e-8)
+    clustered = BayesPlan(2, "negative binomial", k=2)
+    assert clustered.chance_above(3, 6) == pytest.approx(0.72558593, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    "plan",
+    [BayesPlan(0.22), BayesPlan(2, "poisson"), BayesPlan(5, "negative binomial", k=0.8)],
+    ids=["presence", "poisson", "negative binomial"],
+)
+def test_on_its_lines_the_bayesian_plan_is_as_sure_as_asked(plan):
+    looks, lines = np.arange(1, 61), plan.lines(60)
+    told = looks * (plan.k if plan.counts == "negative binomial" else 1.0) > 1.0
+    reached = told & (lines.low >= 0.0) & (lines.high <= looks * plan.most_per_look)
+    high, low = (plan.chance_above(looks, line)[reached] for line in (lines.high, lines.low))
+    assert high == pytest.approx(plan.sure, abs=1e-6)
+    assert low == pytest.approx(1 - plan.sure, abs=1e-6)
+    assert (lines.low < lines.high).all()
+
+
+def test_before_the_first_look_a_share_is_as_likely_above_as_below():
+    assert BayesPlan(0.05).chance_above(0, 0) == pytest.approx(0.5)
+    assert decided(BayesPlan(0.05), [0])[0] == LOOK_ON
+
+
+def test_a_simulated_curve_shows_what_clustered_finds_do():
+    """The curve of clustered looks is flatter: more mistakes at both levels."""
+    rng = np.random.default_rng(6)
+
+    def alone(share):
+        return rng.random((1500, 200)) < share
+
+    def together(share):
+        return np.repeat(rng.random((1500, 20)) < share, 10, axis=1)
+
+    levels = [LEAVES.low, LEAVES.high]
+    apart, clustered = (simulated_curve(LEAVES, levels, draw) for draw in (alone, together))
+    assert apart.leaves_it == pytest.approx(LEAVES.operating_curve(levels).leaves_it, abs=0.06)
+    assert clustered.leaves_it[0] < apart.leaves_it[0] - 0.03
+    assert clustered.leaves_it[1] > apart.leaves_it[1]
+
+
 @pytest.mark.parametrize(
     ("made", "said"),
     [
+        (lambda: BayesPlan(1.2), "below 1"),
+        (lambda: BayesPlan(0.2, sure=0.4), "between 0.5 and 1"),
+        (lambda: BayesPlan(2, "negative binomial"), "clustering k"),
         (lambda: WaldPlan(0.2, 0.1), "must rise from above 0 to below 1"),
         (lambda: WaldPlan(0.2, 1.1), "must rise"),
         (lambda: WaldPlan(2, 4, "negative binomial"), "clustering k"),

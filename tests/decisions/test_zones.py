@@ -8,7 +8,14 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.decisions.zones import Sprayer, TreatmentCosts, Zones, best_zones, outlines
+from fieldmon.decisions.zones import (
+    Sprayer,
+    TreatmentCosts,
+    Zones,
+    best_zones,
+    outlines,
+    whole_plot,
+)
 from fieldmon.errors import SettingError
 from fieldmon.plot.layout import Planting, rectangle
 from tests.crooked import crooked_grids
@@ -108,6 +115,49 @@ def test_a_knapsack_treats_the_plants_that_are_worth_it_one_by_one():
     assert len(zones) == 3
 
 
+@given(crooked_grids(50), st.integers(0, 3), st.integers(0, 2), st.floats(0.0, 0.95))
+def test_the_share_for_predators_is_never_sprayed(grid, rows, ring, reserve):
+    chance = np.random.default_rng(rows).random(len(grid)) ** 2
+    costs = TreatmentCosts(per_ha=10.0, per_zone=0.0, reserve=reserve)
+    zones = best_zones(grid, chance, Sprayer(rows, 0.0, 0.0, ring), costs)
+    assert zones.m2 <= (1 - reserve) * zones.plot_m2 + 1e-6
+    assert ((zones.zone >= 0) == zones.treated).all()
+    assert zones.cost <= zones.whole_cost + costs.per_zone * len(zones)
+
+
+def test_a_knapsack_sprays_the_ring_around_a_plant_and_rings_that_touch_are_one_zone():
+    grid = rectangle(7, 9, Planting(90.0, 4.0, 2.0))
+    chance = np.zeros(63)
+    chance[[10, 30]] = 0.9
+    cheaper = TreatmentCosts(per_ha=100.0, infested_plant_day=0.2, works=1.0)
+    zones = best_zones(grid, chance, Sprayer(0, ring=1), cheaper)
+    beside = [10, 9, 11, 1, 19, 30, 29, 31, 21, 39]
+    assert set(np.flatnonzero(zones.treated)) == set(beside)
+    assert len(zones) == 2
+    chance[20] = 0.9
+    assert len(best_zones(grid, chance, Sprayer(0, ring=1), cheaper)) == 1
+
+
+def test_a_booms_section_covers_whole_rows():
+    assert Sprayer.of_boom(12.0, 4, 1.5).rows == 2
+    assert Sprayer.of_boom(3.0, 4, 4.0).rows == 1
+    with pytest.raises(SettingError, match="A boom must have"):
+        Sprayer.of_boom(0.0, 4, 4.0)
+
+
+def test_the_whole_plot_is_one_zone_and_some_zones_may_be_left_out():
+    chance = np.array([0.9, 0.9, 0, 0, 0, 0, 0, 0.9, 0.9])
+    sprayer = Sprayer(1, 0.0, 0.0)
+    zones = best_zones(ROW, chance, sprayer, CHEAP)
+    assert len(zones) == 2
+    kept = zones.only(ROW, chance, np.array([False, True]), CHEAP)
+    assert np.flatnonzero(kept.treated).tolist() == [7, 8]
+    assert (len(kept), kept.zone.max()) == (1, 0)
+    whole = whole_plot(ROW, chance, CHEAP)
+    assert (whole.m2, whole.outside) == (whole.plot_m2, 0.0)
+    assert zones.whole_cost == pytest.approx(whole.cost)
+
+
 def test_where_nothing_is_worth_it_nothing_is_treated():
     zones = best_zones(ROW, np.full(9, 1e-6))
     assert len(zones) == 0
@@ -131,7 +181,12 @@ def test_outlines_hold_their_plants_and_no_other():
 
 @pytest.mark.parametrize(
     "made",
-    [lambda: Sprayer(-1), lambda: TreatmentCosts(per_ha=-2.0), lambda: TreatmentCosts(works=0.0)],
+    [
+        lambda: Sprayer(-1),
+        lambda: TreatmentCosts(per_ha=-2.0),
+        lambda: TreatmentCosts(works=0.0),
+        lambda: TreatmentCosts(reserve=1.0),
+    ],
 )
 def test_what_cannot_be_is_refused(made):
     with pytest.raises(SettingError, match="must be"):

@@ -9,7 +9,7 @@ from tests.simulation.test_season import season
 
 def by_hand(detection):
     zeros = np.zeros(len(detection), int)
-    return SeasonMetrics(np.array(detection), zeros, zeros, zeros, zeros, zeros, zeros)
+    return SeasonMetrics(np.array(detection), *[zeros] * 8)
 
 
 @pytest.mark.parametrize(("level", "day"), [(30, 2), (50, 3), (80, None), (100, None)])

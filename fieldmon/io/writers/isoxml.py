@@ -1,4 +1,7 @@
-"""A treatment as ISO 11783-10 task data (ISOXML), as terminals of tractors read it."""
+"""A treatment as ISO 11783-10 task data (ISOXML), as terminals of tractors read it.
+
+Where to spray is said by polygons, or by a grid of cells in a binary file beside the XML.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,11 @@ import zipfile
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
+import numpy as np
 import shapely
 
 from fieldmon.errors import SettingError
+from fieldmon.io.writers.zone_cells import ZoneCells
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -22,19 +27,20 @@ _PARTFIELD, _ZONE = "1", "2"
 _OUTER, _INNER = "1", "2"
 _MINOR = {3: "3", 4: "3"}
 _EPOCH = (1980, 1, 1, 0, 0, 0)
+_GRID = "GRD00001"
 _MOST_LETTERS = 32  # of a designator, as the standard has it
 
 
 def isoxml_taskdata(
     title: str,
     boundary: MultiPolygon,
-    zones: Iterable[MultiPolygon],
+    zones: Iterable[MultiPolygon] | ZoneCells,
     rate_l_ha: float,
     product: str,
     *,
     version: int = 4,
 ) -> bytes:
-    """Return a zip with ``TASKDATA/TASKDATA.XML``: a planned task with polygon treatment zones.
+    """Return a zip with ``TASKDATA/TASKDATA.XML``: a planned task with treatment zones.
 
     Zone 1 has the rate, zone 0 nothing; where the position is lost or outside the plot the rate
     is 0 too.
@@ -43,8 +49,10 @@ def isoxml_taskdata(
     ----------
     title, product
         Names of the plot and of what is sprayed; cut to 32 letters, as the standard has it.
-    boundary, zones
+    boundary
         Lon/lat.
+    zones
+        Areas, lon/lat, which become polygons; or cells, which become a grid.
     rate_l_ha
         Litres a hectare.
     version
@@ -73,17 +81,46 @@ def isoxml_taskdata(
     task = ET.SubElement(root, "TSK", A="TSK1", B=name, E="PFD1", G="1", H="0", I="0", J="0")
     _rate(ET.SubElement(task, "TZN", A="0", B="not sprayed"), 0.0)
     treated = ET.SubElement(task, "TZN", A="1", B="zones")
-    for zone in zones:
+    cells = zones if isinstance(zones, ZoneCells) else None
+    for zone in [] if isinstance(zones, ZoneCells) else zones:
         _polygons(treated, zone, _ZONE)
-    _rate(treated, rate_l_ha)
+    if cells is None or cells.kind == 1:
+        _rate(treated, rate_l_ha)
+    else:
+        # which number is which: the cells themselves hold the rates
+        _rate(treated, 0.0)
+    binary = {} if cells is None else {f"{_GRID}.bin": _grid(task, cells, rate_l_ha)}
     scale = f"{1 / _PER_L_HA:.9f}"
     ET.SubElement(root, "VPN", A="VPN1", B="0", C=scale, D="1", E="l/ha")
     written = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return _zipped({"TASKDATA.XML": written, **binary})
+
+
+def _zipped(files: dict[str, bytes]) -> bytes:
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w") as archive:
-        info = zipfile.ZipInfo("TASKDATA/TASKDATA.XML", _EPOCH)
-        archive.writestr(info, written, zipfile.ZIP_DEFLATED)
+        for name, data in files.items():
+            info = zipfile.ZipInfo(f"TASKDATA/{name}", _EPOCH)
+            archive.writestr(info, data, zipfile.ZIP_DEFLATED)
     return packed.getvalue()
+
+
+def _grid(task: ET.Element, cells: ZoneCells, rate_l_ha: float) -> bytes:
+    """Add the grid to a task; return its binary file, the southernmost row first."""
+    high, wide = cells.sprayed.shape
+    if cells.kind == 1:
+        data = cells.sprayed.astype(np.uint8).tobytes()
+    else:
+        rates = np.where(cells.sprayed, round(rate_l_ha * _PER_L_HA), 0)
+        data = rates.astype("<i4").tobytes()
+    grid = ET.SubElement(
+        task, "GRD", A=f"{cells.south:.9f}", B=f"{cells.west:.9f}", C=f"{cells.north_size:.12f}",
+        D=f"{cells.east_size:.12f}", E=str(wide), F=str(high), G=_GRID, H=str(len(data)),
+        I=str(cells.kind),
+    )  # fmt: skip
+    if cells.kind == 2:
+        grid.set("J", "1")
+    return data
 
 
 def _rate(zone: ET.Element, rate_l_ha: float) -> None:

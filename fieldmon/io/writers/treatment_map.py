@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.writers.isoxml import isoxml_taskdata
+from fieldmon.io.writers.zone_cells import ZoneCells, narrowest_m, rates_geotiff, zone_cells
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from shapely import MultiPolygon
 
 _WGS84 = "EPSG:4326"
+_LEAST_CELL_M = 0.1
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can name: equal maps make equal files
 
 
@@ -71,8 +73,10 @@ class TreatmentMap:
 def write_treatment_map(of: TreatmentMap, to: str | Path) -> Path:
     """Write a treatment map as the ending of its name tells, whole or not at all.
 
-    ``.xml.zip`` is ISO 11783-10 TASKDATA version 4, ``.v3.xml.zip`` version 3; ``.shp.zip``,
-    ``.gpkg`` and ``.kml`` have a column ``RATE`` and ``UNIT``, ``l/ha``.
+    ``.xml.zip`` is ISO 11783-10 TASKDATA version 4 with polygons, ``.v3.xml.zip`` version 3;
+    ``.grid1.xml.zip`` and ``.grid2.xml.zip``, likewise with ``.v3`` before them, have a grid of
+    zones or of rates instead. ``.tif`` is a GeoTIFF of rates; ``.shp.zip``, ``.gpkg`` and ``.kml``
+    have a column ``RATE`` and ``UNIT``, ``l/ha``.
 
     Raises
     ------
@@ -82,12 +86,23 @@ def write_treatment_map(of: TreatmentMap, to: str | Path) -> Path:
         If the file cannot be written.
     """
     path = Path(to)
-    for ending, make in _FORMATS.items():
-        if path.name.lower().endswith(ending):
-            write_whole(path, make(of))
-            return path
+    write_whole(path, treatment_map_bytes(of, path.name))
+    return path
+
+
+def treatment_map_bytes(of: TreatmentMap, name: str) -> bytes:
+    """Return a treatment map as the ending of a file's name tells, see `write_treatment_map`.
+
+    Raises
+    ------
+    SettingError
+        If the ending tells no format.
+    """
+    for ending, make in FORMATS.items():
+        if name.lower().endswith(ending):
+            return make(of)
     raise SettingError(
-        f"A treatment map must be called *{', *'.join(_FORMATS)}, but it is {path.name!r}."
+        f"A treatment map must be called *{', *'.join(FORMATS)}, but it is {name!r}."
     )
 
 
@@ -156,20 +171,35 @@ def _write(frame: gpd.GeoDataFrame, path: Path, driver: str, **more: str) -> Non
         ) from error
 
 
-def _taskdata(version: int) -> Callable[[TreatmentMap], bytes]:
+def _taskdata(version: int, grid: int | None = None) -> Callable[[TreatmentMap], bytes]:
     def make(of: TreatmentMap) -> bytes:
+        zones = of.zones if grid is None else _cells(of, grid)
         return isoxml_taskdata(
-            of.title, of.boundary, of.zones, of.rate_l_ha, of.product, version=version
+            of.title, of.boundary, zones, of.rate_l_ha, of.product, version=version
         )
 
     return make
 
 
+def _cells(of: TreatmentMap, kind: int = 1) -> ZoneCells:
+    return zone_cells(of.boundary, of.zones, max(narrowest_m(of.zones), _LEAST_CELL_M), kind)
+
+
+def _geotiff(of: TreatmentMap) -> bytes:
+    return rates_geotiff(_cells(of), of.rate_l_ha)
+
+
 #: by ending; one whose ending ends another's comes later
-_FORMATS: dict[str, Callable[[TreatmentMap], bytes]] = {
+FORMATS: dict[str, Callable[[TreatmentMap], bytes]] = {
+    **{
+        f"{of}.grid{kind}.xml.zip": _taskdata(version, kind)
+        for of, version in ((".v3", 3), ("", 4))
+        for kind in (1, 2)
+    },
     ".v3.xml.zip": _taskdata(3),
     ".xml.zip": _taskdata(4),
     ".shp.zip": _shapefile,
     ".gpkg": _gpkg,
     ".kml": _kml,
+    ".tif": _geotiff,
 }

@@ -129,8 +129,8 @@ class Scenario:
         if self.world:
             infested = _grown(grid, WORLDS[self.world], streams.of("start"))
         else:
-            infested = _infested(grid, self.start, streams.of("start"))
-        return Start(infested, _known(grid, self, infested, streams.of("records")))
+            infested = infested_at_start(grid, self.start, _SHARE, streams.of("start"))
+        return Start(infested, known_chance(grid, self, infested, streams.of("records")))
 
 
 @cache
@@ -173,14 +173,17 @@ def all_scenarios() -> list[Scenario]:
     return list(dict.fromkeys([*usual_scenarios(), *crossed]))
 
 
-def _infested(grid: PlantGrid, start: str, rng: np.random.Generator) -> NDArray[np.bool_]:
-    wanted = max(1, round(_SHARE * len(grid)))
+def infested_at_start(
+    grid: PlantGrid, start: str, share: float, rng: np.random.Generator
+) -> NDArray[np.bool_]:
+    """Draw who is infested on a first morning, ``(n,)``: a share of the plants, see `Scenario`."""
+    wanted = max(1, round(share * len(grid)))
     if start == "scattered":
         infested = np.zeros(len(grid), np.bool_)
         infested[rng.choice(len(grid), wanted, replace=False)] = True
         return infested
     if start == "edge":
-        return start_infested(edge_chance(grid, PriorSettings()), _SHARE, rng)
+        return start_infested(edge_chance(grid, PriorSettings()), share, rng)
     infested = np.zeros(len(grid), np.bool_)
     while np.count_nonzero(infested) < wanted:
         _grow(grid, infested, min(_TOGETHER, wanted - int(np.count_nonzero(infested))), rng)
@@ -226,21 +229,25 @@ def _grow(
         infested[members[-1]] = True
 
 
-def _known(
-    grid: PlantGrid, scenario: Scenario, infested: NDArray[np.bool_], rng: np.random.Generator
+def known_chance(
+    grid: PlantGrid,
+    scenario: Scenario,
+    infested: NDArray[np.bool_],
+    rng: np.random.Generator,
+    share: float = _SHARE,
 ) -> NDArray[np.float64]:
-    """Return the chance map of the first morning, ``(n,)``."""
-    flat = np.full(len(grid), _SHARE)
+    """Return the chance map of the first morning, ``(n,)``, where so much is thought infested."""
+    flat = np.full(len(grid), share)
     if scenario.prior == "edge":
-        return scaled(1.0 - (1.0 - 0.002) * (1.0 - edge_chance(grid, PriorSettings())), _SHARE)
+        return scaled(1.0 - (1.0 - 0.002) * (1.0 - edge_chance(grid, PriorSettings())), share)
     if scenario.prior == "wrong":
         x, y = grid.xy_m.T
         suspected = (x < np.median(x)) & (y < np.median(y))
-        return scaled(np.where(suspected, 0.1, 0.01), _SHARE)
+        return scaled(np.where(suspected, 0.1, 0.01), share)
     if not scenario.prior.startswith("records"):
         return flat
-    share = 0.05 if scenario.prior == "records 5 %" else 0.01
-    at = rng.choice(len(grid), round(share * len(grid)), replace=False)
+    looked_at = 0.05 if scenario.prior == "records 5 %" else 0.01
+    at = rng.choice(len(grid), round(looked_at * len(grid)), replace=False)
     found = infested[at] & (rng.random(len(at)) < Robot().detects)
     if scenario.flaw == "records":
         away = grid.xy_m[at] + rng.normal(0.0, _GPS_M, (len(at), 2))

@@ -1,17 +1,23 @@
 """Task data as the PyPI package isoxml reads it, whose classes are made from the standard."""
 
 import io
+import re
 import zipfile
+from dataclasses import fields, is_dataclass
+from decimal import Decimal
 from xml.etree import ElementTree as ET
 
+import numpy as np
 import pytest
 import shapely
+from isoxml.converter.np_grid import to_numpy_array
 from isoxml.converter.shapely_geom import ShapelyConverterV3, ShapelyConverterV4
 from isoxml.util.isoxml_io import isoxml_from_path
 from shapely import MultiPolygon, Point
 
 from fieldmon.errors import SettingError
 from fieldmon.io.writers.isoxml import isoxml_taskdata
+from fieldmon.io.writers.zone_cells import zone_cells
 
 PLOT = MultiPolygon([shapely.box(35.15, 30.36, 35.152, 30.362)])
 RING = shapely.difference(
@@ -40,6 +46,83 @@ def test_another_reader_finds_the_zones_with_their_holes_and_the_rate(tmp_path, 
     assert partfield.designator == "כרם"
     assert convert.to_shapely_polygon(partfield.polygons[0]).equals_exact(PLOT.geoms[0], 1e-8)
     assert data.products[0].designator == "soap"
+
+
+def read(made, folder):
+    """Return task data and its binary files, as the package reads them."""
+    with zipfile.ZipFile(io.BytesIO(made)) as archive:
+        archive.extractall(folder)
+    return isoxml_from_path(folder / "TASKDATA" / "TASKDATA.XML")
+
+
+@pytest.mark.parametrize("version", [3, 4])
+@pytest.mark.parametrize("kind", [1, 2])
+def test_another_reader_finds_the_grid_and_each_cell_of_it(tmp_path, version, kind):
+    cells = zone_cells(PLOT, ZONES, 4.0, kind)
+    data, files = read(isoxml_taskdata("a", PLOT, cells, 250.5, "soap", version=version), tmp_path)
+    (task,) = data.tasks
+    (grid,) = task.grids
+    values = to_numpy_array(files[grid.filename], grid)
+    assert grid.filelength == len(files[grid.filename])
+    rate = 1 if kind == 1 else 2_505_000
+    assert (values == np.where(cells.sprayed, rate, 0)).all()
+    # its first cell is the south-western one
+    lon = float(grid.minimum_east_position) + (np.arange(values.shape[1]) + 0.5) * float(
+        grid.cell_east_size
+    )
+    lat = float(grid.minimum_north_position) + (np.arange(values.shape[0]) + 0.5) * float(
+        grid.cell_north_size
+    )
+    inside = shapely.contains_xy(shapely.union_all(ZONES), *np.meshgrid(lon, lat))
+    assert (inside == (values > 0)).mean() > 0.999
+    of_zone = {zone.code: zone for zone in task.treatment_zones}
+    if kind == 1:
+        assert of_zone[1].process_data_variables[0].process_data_value == 2_505_000
+    else:
+        assert grid.treatment_zone_code == 1
+        assert of_zone[1].process_data_variables[0].process_data_ddi == b"\x00\x01"
+
+
+def breaches(element):
+    """Yield what of an element the standard's schema forbids, as the classes made of it say."""
+    for one in fields(element):
+        value, where = getattr(element, one.name), f"{type(element).__name__}.{one.name}"
+        if value is None and one.metadata.get("required"):
+            yield f"{where} is missing"
+        for part in value if isinstance(value, list) else [value]:
+            if is_dataclass(part):
+                yield from breaches(part)
+            elif part is not None and not allowed(part, one.metadata):
+                yield f"{where} is {part!r}, not {dict(one.metadata)}"
+
+
+def allowed(value, rule):
+    """Return whether a value keeps the rules of its attribute."""
+    if isinstance(value, str):
+        short = len(value) <= rule.get("max_length", len(value))
+        return short and ("pattern" not in rule or re.fullmatch(rule["pattern"], value))
+    if not isinstance(value, int | float | Decimal):
+        return True
+    digits = rule.get("fraction_digits", 99)
+    exact = not isinstance(value, Decimal) or -value.as_tuple().exponent <= digits
+    return rule.get("min_inclusive", value) <= value <= rule.get("max_inclusive", value) and exact
+
+
+@pytest.mark.parametrize("version", [3, 4])
+@pytest.mark.parametrize("kind", [None, 1, 2])
+def test_all_attributes_are_as_the_schemas_classes_demand(tmp_path, version, kind):
+    """The package's classes are made from the standard's schema and hold its rules."""
+    zones = ZONES if kind is None else zone_cells(PLOT, ZONES, 4.0, kind)
+    made = isoxml_taskdata("x" * 60, PLOT, zones, 99_999.0, "y" * 60, version=version)
+    data, _ = read(made, tmp_path)
+    assert list(breaches(data)) == []
+
+
+def test_a_breach_of_the_schema_would_be_seen(tmp_path):
+    made, _ = read(isoxml_taskdata("a", PLOT, ZONES, 1.0, ""), tmp_path)
+    made.partfields[0].designator = "z" * 40
+    made.tasks[0].id = "T1"
+    assert len(list(breaches(made))) == 2
 
 
 def test_where_the_tractor_does_not_know_where_it_is_nothing_is_sprayed():

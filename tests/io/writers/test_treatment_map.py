@@ -34,11 +34,17 @@ def test_the_rates_are_read_back_where_they_are(tmp_path, name):
     assert by_zone[0].intersection(shapely.union_all(ZONES)).area < 1e-15
 
 
-@pytest.mark.parametrize(("name", "version"), [("t.xml.zip", b'"4"'), ("t.v3.xml.zip", b'"3"')])
-def test_terminals_get_the_version_that_the_name_says(tmp_path, name, version):
-    path = write_treatment_map(MAP, tmp_path / name)
+@pytest.mark.parametrize("grid", ["", ".grid1", ".grid2"])
+@pytest.mark.parametrize(("name", "version"), [("t", b'"4"'), ("t.v3", b'"3"')])
+def test_terminals_get_the_version_and_the_grid_that_the_name_says(tmp_path, name, version, grid):
+    path = write_treatment_map(MAP, tmp_path / f"{name}{grid}.xml.zip")
     with zipfile.ZipFile(io.BytesIO(path.read_bytes())) as archive:
-        assert b"VersionMajor=" + version in archive.read("TASKDATA/TASKDATA.XML")
+        task = archive.read("TASKDATA/TASKDATA.XML")
+        assert b"VersionMajor=" + version in task
+        assert (b"<GRD " in task) == bool(grid)
+        if grid:
+            assert b'I="%c"' % grid[-1].encode() in task
+            assert "TASKDATA/GRD00001.bin" in archive.namelist()
 
 
 def test_a_plot_that_is_all_zone_has_no_rest(tmp_path):
@@ -47,7 +53,7 @@ def test_a_plot_that_is_all_zone_has_no_rest(tmp_path):
 
 
 def test_what_cannot_be_written_is_refused(tmp_path):
-    with pytest.raises(SettingError, match=r"must be called \*\.v3\.xml\.zip"):
+    with pytest.raises(SettingError, match=r"must be called \*\.v3\.grid1\.xml\.zip"):
         write_treatment_map(MAP, tmp_path / "t.pdf")
     with pytest.raises(SettingError, match="pays nowhere"):
         TreatmentMap("a", PLOT, [], 1.0)

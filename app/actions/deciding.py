@@ -1,0 +1,135 @@
+"""Deciding: what is assumed, changed there; leaves that were counted; the files that follow."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.decisions.leaves import of_leaves
+from fieldmon.decisions.thresholds import published, threshold_of
+from fieldmon.errors import FieldmonError
+from fieldmon.io.writers.treatment_map import treatment_map_bytes
+from fieldmon.reports.advice import advice_report
+from fieldmon.reports.html import html_text
+from fieldmon.reports.pdf import pdf_bytes
+
+from ..state import deciding, widget_memory
+from ..words import language, texts
+from ..words.language import in_words, of_error
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring.advice import Advice
+
+    from ..state.choices import Choices
+
+# least, most and step of each box
+_LIMITS: dict[str, tuple[float, float, float]] = {
+    "decide level": (0.1, 99.0, 0.5), "decide sure": (51.0, 99.0, 1.0),
+    "decide rate": (1.0, 10_000.0, 10.0), "decide rows": (0.0, 50.0, 1.0),
+    "decide on": (0.0, 500.0, 1.0), "decide off": (0.0, 500.0, 1.0),
+    "decide ring": (0.0, 10.0, 1.0), "decide per_ha": (0.0, 1e6, 10.0),
+    "decide per_zone": (0.0, 1e5, 0.5), "decide loss": (0.0, 1e5, 0.1),
+    "decide days": (0.0, 365.0, 1.0), "decide works": (1.0, 100.0, 1.0),
+    "decide reserve": (0.0, 99.0, 1.0),
+}  # fmt: skip
+_ASKED = ("decide level", "decide sure")
+_SPRAYER = ("decide rows", "decide on", "decide off", "decide ring", "decide rate")
+#: what a decision is handed out as: endings of files, the first one offered first
+_ENDINGS = (
+    ".xml.zip", ".grid1.xml.zip", ".grid2.xml.zip", ".v3.xml.zip", ".v3.grid1.xml.zip",
+    ".v3.grid2.xml.zip", ".shp.zip", ".gpkg", ".kml", ".tif",
+)  # fmt: skip
+
+
+def threshold() -> None:
+    """Offer the threshold and how sure a verdict must be; they stand beside the answer."""
+    with st.container(horizontal=True):
+        for key in _ASKED:
+            _box(key)
+
+
+def assumed(advice: Advice) -> None:
+    """Say what the answer assumes, with the way to say otherwise."""
+    st.caption(in_words(advice.asked.assumed()))
+    with st.popover(texts.ASSUMED_CHANGE):
+        st.markdown(f"**{texts.DECIDE_SPRAYER}**")
+        for key in _SPRAYER:
+            _box(key)
+        widget_memory.show(st.text_input, texts.DECIDE_PRODUCT, key=deciding.PRODUCT, default="",
+                           max_chars=80)  # fmt: skip
+        st.markdown(f"**{texts.DECIDE_COSTS}**")
+        for key in deciding.BEGINS:
+            if key not in (*_ASKED, *_SPRAYER):
+                _box(key)
+
+
+def _box(key: str) -> None:
+    low, high, step = _LIMITS[key]
+    widget_memory.show(
+        st.number_input, texts.DECIDE_BOXES[key.partition(" ")[2]], low, high, step=step, key=key,
+        default=float(deciding.BEGINS[key]),
+    )  # fmt: skip
+
+
+def leaves() -> None:
+    """Offer a verdict by leaves for the thresholds that count leaves, with their sources."""
+    with st.expander(texts.DECIDE_LEAVES):
+        names = [one.name for one in published()]
+        name = widget_memory.show(
+            st.selectbox, texts.DECIDE_THRESHOLD, names, key="decide leaves of", default=names[0],
+            format_func=lambda one: texts.DECIDE_THRESHOLDS.get(one, one),
+        )  # fmt: skip
+        asked = threshold_of(name)
+        st.caption(asked.source)
+        looked_at = widget_memory.show(st.number_input, texts.DECIDE_LOOKED_AT, 0, 10_000,
+                                       key="decide leaves", default=0)  # fmt: skip
+        presence = asked.is_share or widget_memory.show(
+            st.toggle, texts.DECIDE_PRESENCE, key="decide presence", default=False
+        )
+        label = texts.DECIDE_LEAVES_INFESTED if presence else texts.DECIDE_COUNTED
+        counted = widget_memory.show(st.number_input, label, 0, 1_000_000,
+                                     key="decide counted", default=0)  # fmt: skip
+        try:
+            said = of_leaves(asked, int(looked_at), float(counted), presence=presence)
+        except FieldmonError as error:
+            st.warning(of_error(error))
+        else:
+            st.markdown(in_words(said))
+
+
+def files(choices: Choices, advice: Advice) -> None:
+    """Hand out the zones for sprayers, farm programs and phones, and a page to print."""
+    product = deciding.product()
+    report = partial(_report, choices, advice, product)
+    with st.container(horizontal=True):
+        st.download_button(
+            texts.DECIDE_PDF,
+            lambda: pdf_bytes(report(), "a4"),
+            f"advice_{choices.day}.pdf",
+            "application/pdf",
+            on_click="ignore",
+        )
+        st.download_button(
+            texts.REPORT_HTML,
+            lambda: html_text(report()),
+            f"advice_{choices.day}.html",
+            "text/html",
+            on_click="ignore",
+        )
+    if not len(advice.zones):
+        return
+    ending = st.selectbox(texts.DECIDE_FILE, _ENDINGS, key="decide file",
+                          format_func=lambda one: texts.DECIDE_FILES[one[1:]])  # fmt: skip
+    name = f"zones_{choices.day}{ending}"
+    of = partial(advice.treatment_map, choices.plot.field, product)
+    st.download_button(
+        texts.DECIDE_DOWNLOAD, lambda: treatment_map_bytes(of(), name), name, type="primary",
+        key="decide download", on_click="ignore",
+    )  # fmt: skip
+
+
+def _report(choices: Choices, advice: Advice, product: str):  # noqa: ANN202 - a report
+    made = advice_report(choices.season, choices.on, advice, choices.units.of_library, product)
+    return made.said_in(language.tongue(language.current()))

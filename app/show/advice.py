@@ -1,0 +1,141 @@
+"""What a season advises: in one sentence, in figures, zone by zone, and on the map."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+import shapely
+import streamlit as st
+from pydeck import Layer
+
+from fieldmon.plot.grid import row_label
+
+from ..state import cached
+from ..words import texts
+from ..words.language import in_words, number
+from . import map_layers
+from .map_view import Switch
+from .maps import colours, legends
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring.advice import Advice
+
+    from ..state.choices import Choices
+    from .map_view import MapContent
+    from .maps.labels import Label
+
+# more numbers than these have no room beside each other
+_MOST_NUMBERS = 200
+
+
+def headline(advice: Advice) -> None:
+    """Answer the daily question in one sentence, and say what the answer rests on."""
+    with st.container(key="lead"):
+        st.markdown(f"**{in_words(advice.headline())}**")
+    for sentence in advice.reasons():
+        st.markdown(in_words(sentence))
+
+
+def figures(choices: Choices, advice: Advice, product: str) -> None:
+    """Show what treating the zones comes to."""
+    if not len(advice.zones):
+        st.markdown(in_words(advice.zones.sentence()))
+        return
+    zones, units = advice.zones, choices.units
+    share = number(zones.m2 / zones.plot_m2, ".0%")
+    with st.container(horizontal=True):
+        st.metric(texts.DECIDE_AREA, f"{units.square(zones.m2)} ({share})", width="content")
+        liquid = texts.DECIDE_LITRES.format(value=number(advice.litres, ",.0f"))
+        st.metric(product or texts.DECIDE_LIQUID, liquid, width="content")
+        st.metric(texts.DECIDE_INSIDE, number(zones.inside, ".1f"), width="content")
+        st.metric(texts.DECIDE_OUTSIDE, number(zones.outside, ".1f"), width="content")
+        st.metric(texts.DECIDE_SAVING, number(advice.saving, ",.2f"), width="content")
+        st.metric(texts.DECIDE_ENOUGH, number(advice.said.enough, ".0%"), width="content",
+                  help=texts.DECIDE_ENOUGH_HELP)  # fmt: skip
+
+
+def zones(advice: Advice) -> None:
+    """Show each zone with its own verdict and how often such a verdict is wrong."""
+    if not len(advice.zones):
+        return
+    with st.expander(texts.DECIDE_ZONES.format(n=len(advice.zones))):
+        st.dataframe(table(advice), hide_index=True)
+        st.caption(texts.DECIDE_WRONG_HELP)
+
+
+def table(advice: Advice) -> pd.DataFrame:
+    """Return a row a zone."""
+    label, zone = row_label(advice.grid), advice.zones.zone
+    mine = [np.flatnonzero(zone == k) for k in range(len(advice.zones))]
+    said = advice.said.zones
+    return pd.DataFrame(
+        {
+            texts.DECIDE_ZONE: [k + 1 for k in range(len(mine))],
+            texts.DECIDE_ROWS: [_span(label.line[plants]) for plants in mine],
+            texts.DECIDE_PLANTS: [_span(label.number[plants]) for plants in mine],
+            texts.DECIDE_INFESTED: [number(one.share, ".0%") for one in said],
+            texts.DECIDE_ITSELF: [texts.DECIDE_VERDICTS[one.verdict] for one in said],
+            texts.DECIDE_WRONG: [number(one.wrong, ".0%") for one in said],
+        }
+    )
+
+
+def _span(numbers: np.ndarray) -> str:
+    low, high = int(numbers.min()), int(numbers.max())
+    return f"{low}" if low == high else f"{low}-{high}"
+
+
+def zone_map(choices: Choices, advice: Advice) -> MapContent:
+    """Return the map of the chosen day with the zones on it, each with its number."""
+    day = map_layers.day_map(choices, off=("records", "route", "hot"))
+    places = [one for one in day.labels if one["k"] not in {"stop", "leg"}]
+    content = replace(day, labels=places, play=None)
+    key = f"zones {choices.key} {choices.revision} {choices.day} {choices.dark} {advice.asked}"
+    layers = cached.layers(key, partial(_layers, advice, dark=choices.dark))
+    if not layers:
+        return content
+    own = Switch("zones", texts.DECIDE_ON_MAP, tuple(layer.id for layer in layers))
+    numbers = Switch("numbers", texts.DECIDE_NUMBERS, ())
+    others = [one for one in content.switches if one.key not in {"numbers", "route"}]
+    edge = colours.ZONE_IN_DARK if choices.dark else colours.ZONE
+    sign = legends.part("", [("outline", edge, texts.DECIDE_ON_MAP)], "zones")
+    labels = [*_numbers(advice), *places]
+    return replace(
+        content, layers=[*content.layers, *layers], switches=(own, numbers, *others),
+        legend=[*content.legend, sign], labels=labels,
+    )  # fmt: skip
+
+
+def _layers(advice: Advice, *, dark: bool) -> list[Layer]:
+    """Return the zones: their tint, and their outlines."""
+    edge = list(colours.ZONE_IN_DARK if dark else colours.ZONE)
+    rows = []
+    for k, area in enumerate(advice.outlines):
+        said = advice.said.zones[k]
+        verdict = texts.DECIDE_VERDICTS[said.verdict]
+        text = texts.DECIDE_TIP.format(zone=k + 1, share=said.share, verdict=verdict)
+        rows += [
+            {"p": np.round(shapely.get_coordinates(part.exterior), 7).tolist(), "t": text}
+            for part in shapely.get_parts(area)
+        ]
+    if not rows:
+        return []
+    return [
+        Layer("PolygonLayer", rows, id="zones", get_polygon="p", get_fill_color=[*edge, 40],
+              stroked=False),
+        Layer("PathLayer", rows, id="zones-edge", get_path="p", get_color=edge,
+              width_min_pixels=3, get_width=0.4),
+    ]  # fmt: skip
+
+
+def _numbers(advice: Advice) -> list[Label]:
+    """Return each zone's number in its middle."""
+    inner = [area.representative_point() for area in advice.outlines[:_MOST_NUMBERS]]
+    return [
+        {"p": [round(point.x, 7), round(point.y, 7)], "t": f"{k}", "k": "leg"}
+        for k, point in enumerate(inner, start=1)
+    ]

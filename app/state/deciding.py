@@ -1,0 +1,61 @@
+"""What is asked of a season's advice, from the boxes of the page, and its answer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fieldmon.decisions.zones import Sprayer, TreatmentCosts
+from fieldmon.monitoring.advice import AdviceSettings
+
+from . import cached, widget_memory
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring.advice import Advice
+
+    from .choices import Choices
+
+_USUAL = AdviceSettings()
+#: boxes of numbers by their keys: what they begin with
+BEGINS: dict[str, float] = {
+    "decide level": 100 * _USUAL.level,
+    "decide sure": 100 * _USUAL.sure,
+    "decide rate": _USUAL.rate_l_ha,
+    "decide rows": _USUAL.sprayer.rows,
+    "decide on": _USUAL.sprayer.least_on_m,
+    "decide off": _USUAL.sprayer.least_off_m,
+    "decide ring": _USUAL.sprayer.ring,
+    "decide per_ha": _USUAL.costs.per_ha,
+    "decide per_zone": _USUAL.costs.per_zone,
+    "decide loss": _USUAL.costs.infested_plant_day,
+    "decide days": _USUAL.costs.days,
+    "decide works": 100 * _USUAL.costs.works,
+    "decide reserve": 100 * _USUAL.costs.reserve,
+}
+#: the box of the product's name
+PRODUCT = "decide product"
+
+
+def asked() -> AdviceSettings:
+    """Return what the boxes say; an empty one says what it began with."""
+    said = {
+        key: begins if (now := widget_memory.value(key)) is None else float(now)
+        for key, begins in BEGINS.items()
+    }
+    box = {key.partition(" ")[2]: value for key, value in said.items()}
+    return AdviceSettings(
+        box["level"] / 100, box["sure"] / 100,
+        Sprayer(int(box["rows"]), box["on"], box["off"], int(box["ring"])),
+        TreatmentCosts(box["per_ha"], box["per_zone"], box["loss"], box["days"],
+                       box["works"] / 100, box["reserve"] / 100),
+        box["rate"],
+    )  # fmt: skip
+
+
+def product() -> str:
+    """Return what is to be sprayed, as it was called; empty: not said."""
+    return str(widget_memory.value(PRODUCT) or "").strip()
+
+
+def advice(choices: Choices) -> Advice:
+    """Return what the season advises on the chosen day."""
+    return cached.advice(choices.key, choices.revision, choices.day, asked(), choices.season)

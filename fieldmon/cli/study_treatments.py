@@ -1,0 +1,92 @@
+"""`fieldmon study treatments`: seasons treated by zones, whole, or not at all."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fieldmon.cli.study_output import must_be_folder
+from fieldmon.cli.waiting import counting
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fieldmon.studies.verdicts.treated_seasons import TreatedSeason
+
+_LOOKED_AT = (0.25, 0.5, 1.0)
+
+
+def treatments(
+    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons a scenario.")] = 10,
+    sampler: Annotated[
+        list[str] | None, typer.Option(help="Who looks; repeat. Every one if left out.")
+    ] = None,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder for the table (CSV).")
+    ] = Path(),
+) -> None:
+    """Compare treating zones above the threshold with treating whole plots, and with nothing.
+
+    By infested plant-days, hectares and money, over seasons of 25 days; and by the area of zones
+    that leave about as many infested plants as treating the whole plot would. A study that was
+    stopped goes on where its table ends.
+
+    Example: fieldmon study treatments --seeds 5 --sampler adaptive -o study
+    """
+    from fieldmon.samplers import kind_of  # noqa: PLC0415
+    from fieldmon.simulation import executor  # noqa: PLC0415
+    from fieldmon.simulation.experiment import run  # noqa: PLC0415
+    from fieldmon.studies.outcome_table import OutcomeTable  # noqa: PLC0415
+    from fieldmon.studies.verdicts.treated_seasons import (  # noqa: PLC0415
+        TreatedSeason,
+        known_samplers,
+        study_of_treatments,
+        treated_scenarios,
+    )
+
+    must_be_folder(output)
+    names = tuple(sampler or known_samplers())
+    for name in names:
+        kind_of(name)
+    study = study_of_treatments(treated_scenarios(), range(seeds), names)
+    file = output / "treatments.csv"
+    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], TreatedSeason)
+    with counting("Seasons") as count, table, executor.threads() as workers:
+        run(study, workers, table, count)
+    _tell(table.asked())
+    _tell_areas(seeds)
+    typer.echo(f"Written: {file}")
+
+
+def _tell(made: Sequence[TreatedSeason]) -> None:
+    """Print the means by scenario, sampler and rule."""
+    typer.echo(f"{'scenario':42} {'sampler':15} {'rule':8} plant-days  ha sprayed   money")
+    for key in dict.fromkeys((one.scenario, one.sampler, one.rule) for one in made):
+        mine = [one for one in made if (one.scenario, one.sampler, one.rule) == key]
+        days, area, money = (
+            sum(getattr(one, name) for one in mine) / len(mine)
+            for name in ("plant_days", "sprayed_ha", "cost")
+        )
+        typer.echo(f"{key[0]:42} {key[1]:15} {key[2]:8} {days:10.0f} {area:11.2f} {money:7.0f}")
+
+
+def _tell_areas(seeds: int) -> None:
+    """Print what zones spray where they leave about as much as the whole plot's treatment."""
+    from fieldmon.studies.verdicts.treated_seasons import (  # noqa: PLC0415
+        area_at_equal_left,
+        treated_scenarios,
+    )
+
+    typer.echo("\nZones that leave about as many infested plants as treating the whole plot:")
+    for share in _LOOKED_AT:
+        for scenario in treated_scenarios():
+            made = [area_at_equal_left(scenario, seed, share) for seed in range(seeds)]
+            area, left = (
+                sum(getattr(one, name) for one in made) / seeds for name in ("share", "left")
+            )
+            typer.echo(
+                f"{scenario.start:10} {share:4.0%} looked at: {1 - area:4.0%} less area, "
+                f"{left:.1f} times as many left"
+            )

@@ -1,0 +1,53 @@
+"""`fieldmon study verdicts`: looks until a verdict, and how often it is right."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fieldmon.cli.study_output import must_be_folder
+from fieldmon.cli.waiting import counting
+
+
+def verdicts(
+    seeds: Annotated[int, typer.Option(min=2, help="Simulated plots a question.")] = 100,
+    maps: Annotated[
+        Path | None, typer.Option(help="Folder with the public plant maps, asked about too.")
+    ] = None,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder for the table (CSV).")
+    ] = Path(),
+) -> None:
+    """Compare Decide with a W walk, with Wald's test alone and with Adaptive.
+
+    By looks until a verdict, and by how often it is right. A study that was stopped goes on where
+    its table ends; 100 seeds take some minutes.
+
+    Example: fieldmon study verdicts --seeds 20 -o study
+    """
+    from fieldmon.simulation import executor  # noqa: PLC0415
+    from fieldmon.simulation.experiment import run  # noqa: PLC0415
+    from fieldmon.studies.outcome_table import OutcomeTable  # noqa: PLC0415
+    from fieldmon.studies.verdicts.looks import (  # noqa: PLC0415
+        VerdictOutcome,
+        real_questions,
+        study_of_verdicts,
+        summaries,
+        usual_questions,
+    )
+
+    must_be_folder(output)
+    questions = usual_questions() + ([] if maps is None else real_questions(maps))
+    study, file = study_of_verdicts(questions, range(seeds)), output / "verdicts.csv"
+    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], VerdictOutcome)
+    with counting("Plots") as count, table, executor.threads() as workers:
+        run(study, workers, table, count)
+    typer.echo(f"{'question':34} {'contender':26} looks  of W  right  apart  none")
+    for one in summaries(table.asked()):
+        typer.echo(
+            f"{one.question[:34]:34} {one.contender:26} {one.looks:5.0f} {one.of_w:5.2f} "
+            f"{one.right:6.2f} {one.right_apart:6.2f} {one.undecided:5.2f}"
+        )
+    typer.echo(f"Written: {file}")

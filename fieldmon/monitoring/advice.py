@@ -1,0 +1,312 @@
+"""What a season advises on a day: treat, do not, or look on; where; and how many looks more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.wording import counted, worded
+from fieldmon.decisions.map_verdict import map_verdict, zone_verdicts
+from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
+from fieldmon.decisions.zones import Sprayer, TreatmentCosts, best_zones, outlines
+from fieldmon.errors import SettingError
+from fieldmon.infestation.belief import Learning
+from fieldmon.io.writers.treatment_map import TreatmentMap
+from fieldmon.samplers.decide import Decide
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from shapely import MultiPolygon
+
+    from fieldmon.decisions.map_verdict import MapVerdict, ZoneVerdicts
+    from fieldmon.decisions.sequential import Verdict
+    from fieldmon.decisions.zones import Zones
+    from fieldmon.infestation.belief import Belief
+    from fieldmon.plot.field import Field
+    from fieldmon.plot.grid import PlantGrid
+    from fieldmon.samplers.base import Scene
+
+# nobody looks at more plants than this for a verdict
+_MOST_LOOKS = 1000
+_LONG_DAY_S = 1e7
+# zones of so much of a plot are called the plot
+_WHOLE = 0.995
+
+
+@dataclass(frozen=True)
+class AdviceSettings:
+    """What is asked of the season, and what is assumed for the answer.
+
+    Parameters
+    ----------
+    level
+        Share of the plants from which on treating pays.
+    sure
+        How sure a verdict must be, between 0.5 and 1.
+    sprayer, costs
+        What can be switched, and what it costs.
+    rate_l_ha
+        Litres a hectare where it is sprayed.
+    """
+
+    level: float = 0.05
+    sure: float = 0.9
+    sprayer: Sprayer = field(default_factory=Sprayer)
+    costs: TreatmentCosts = field(default_factory=TreatmentCosts)
+    rate_l_ha: float = 300.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.rate_l_ha < 100_000.0:
+            raise SettingError(
+                "The rate in the zones must lie between 0 and 100 000 litres a hectare, but it is "
+                f"{self.rate_l_ha:g}."
+            )
+
+    def assumed(self) -> str:
+        """Return in words what nobody measured here."""
+        costs = self.costs
+        return worded(
+            "Assumed: {per_ha:g} a hectare and {per_zone:g} a zone to treat, {loss:g} lost a day "
+            "by an infested plant over {days:g} days, treating cleans {works:.0%}.",
+            per_ha=costs.per_ha, per_zone=costs.per_zone, loss=costs.infested_plant_day,
+            days=costs.days, works=costs.works,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class MoreLooks:
+    """After how many looks more a verdict can come, at the earliest.
+
+    Parameters
+    ----------
+    if_clean
+        Looks after which it need not be treated if all of them are clean; None: too many.
+    if_found
+        Looks after which it must be treated if all of them find something; None: too many.
+    """
+
+    if_clean: int | None
+    if_found: int | None
+
+    @property
+    def least(self) -> int | None:
+        """Return the fewer of the two; None: neither is in sight."""
+        known = [looks for looks in (self.if_clean, self.if_found) if looks is not None]
+        return min(known) if known else None
+
+
+@dataclass(frozen=True, eq=False)
+class Advice:
+    """The answer to "do I have to spray, and where?".
+
+    Parameters
+    ----------
+    grid
+        The plants.
+    asked
+        What was asked, and what was assumed.
+    plot
+        The verdict of the plot.
+    zones
+        Where spraying is expected to lose least.
+    said
+        What is said of each of them.
+    more
+        Looks to a verdict; None: there is one.
+    """
+
+    grid: PlantGrid
+    asked: AdviceSettings
+    plot: MapVerdict
+    zones: Zones
+    said: ZoneVerdicts
+    more: MoreLooks | None = None
+
+    def __repr__(self) -> str:
+        return f"<Advice: {self.verdict}, {counted(len(self.zones), 'zone')}>"
+
+    @property
+    def verdict(self) -> Verdict:
+        """Return the verdict of the plot."""
+        return self.plot.verdict
+
+    @property
+    def above(self) -> int:
+        """Return how many zones are above the threshold by themselves."""
+        return sum(one.verdict == TREAT for one in self.said.zones)
+
+    @property
+    def litres(self) -> float:
+        """Return what is sprayed in the zones altogether."""
+        return self.zones.m2 / 10_000 * self.asked.rate_l_ha
+
+    @property
+    def saving(self) -> float:
+        """Return what treating the zones costs less than treating the whole plot."""
+        return self.zones.whole_cost - self.zones.cost
+
+    @cached_property
+    def outlines(self) -> list[MultiPolygon]:
+        """Return the area of each zone, lon/lat."""
+        return outlines(self.grid, self.zones)
+
+    def headline(self) -> str:
+        """Return the daily question's answer in one sentence."""
+        if self.verdict == LOOK_ON:
+            return self._look_on()
+        area = {
+            "area": self.zones.m2 / 10_000, "zones": counted(len(self.zones), "zone"),
+            "share": self.zones.m2 / self.zones.plot_m2,
+        }  # fmt: skip
+        if self.verdict == TREAT and self.zones.m2 >= _WHOLE * self.zones.plot_m2:
+            return worded("Treat the whole plot, {area:.2f} ha.", area=area["area"])
+        if self.verdict == TREAT and len(self.zones):
+            return worded("Treat {area:.2f} ha in {zones}, {share:.0%} of the plot.", **area)
+        if self.verdict == TREAT:
+            return worded("Treat: so much is infested, though nowhere it pays by these costs.")
+        if self.above:
+            return worded(
+                "Do not treat the whole plot, but {area:.2f} ha of it in {zones}, {share:.0%}.",
+                **area,
+            )
+        return worded("Do not treat today.")
+
+    def _look_on(self) -> str:
+        least = self.more.least if self.more else None
+        if least is None:
+            return worded("Look on: the plot is near the threshold, no few looks decide.")
+        return worded(
+            "Look on: look at {plants} more, then you can decide at the earliest.",
+            plants=counted(least, "plant"),
+        )
+
+    def sentences(self) -> list[str]:
+        """Return the answer and what it rests on, in sentences."""
+        return [self.headline(), *self.reasons(), *self.said_of_zones()]
+
+    def reasons(self) -> list[str]:
+        """Return what the answer rests on, and the looks that it lacks."""
+        return [self.plot.believed(), *self._looks_said()]
+
+    def said_of_plot(self) -> list[str]:
+        """Return the verdict of the plot, and the looks that it lacks."""
+        return [self.plot.sentence(), *self._looks_said()]
+
+    def _looks_said(self) -> list[str]:
+        more = self.more
+        if more is None or more.if_clean is None:
+            return []
+        return [
+            worded(
+                "If nothing is found on {plants} more, it need not be treated.",
+                plants=counted(more.if_clean, "plant"),
+            )
+        ]
+
+    def said_of_zones(self, *, above: bool = True) -> list[str]:
+        """Return where it pays, and what was assumed; `above` compares with the threshold."""
+        said = [self.zones.sentence()]
+        if len(self.zones):
+            said += (
+                [self._zones_said()] * above + [self._worth_said()] + [self._enough_said()] * above
+            )
+        return [*said, self.asked.assumed()]
+
+    def _zones_said(self) -> str:
+        verdicts = [one.verdict for one in self.said.zones]
+        return worded(
+            "Of the zones {treat} are above the threshold by themselves, {leave} are not, and of "
+            "{open} it is not clear.",
+            treat=verdicts.count(TREAT), leave=verdicts.count(LEAVE),
+            open=verdicts.count(LOOK_ON),
+        )  # fmt: skip
+
+    def _worth_said(self) -> str:
+        return worded(
+            "It takes {litres:.0f} l and saves {saving:.2f} against treating the whole plot.",
+            litres=self.litres, saving=self.saving,
+        )  # fmt: skip
+
+    def _enough_said(self) -> str:
+        return worded("The chance that it is enough is {enough:.0%}.", enough=self.said.enough)
+
+    def treatment_map(self, field: Field, product: str = "") -> TreatmentMap:
+        """Return what the sprayer needs.
+
+        Raises
+        ------
+        SettingError
+            If there is no zone.
+        """
+        return TreatmentMap(
+            field.name, field.boundary, self.outlines, self.asked.rate_l_ha, product
+        )
+
+
+def advice(
+    grid: PlantGrid, evening: Belief, asked: AdviceSettings, scene: Scene | None = None
+) -> Advice:
+    """Return what is advised on what is believed after a day's work.
+
+    Parameters
+    ----------
+    grid
+        The plants.
+    evening
+        What is believed.
+    asked
+        What is asked and assumed.
+    scene
+        The day, for the looks to a verdict; None: they are not asked for.
+    """
+    plot = map_verdict(
+        grid, evening.chance, asked.level, evening.pair_chance, sure=asked.sure, doubt=evening.doubt
+    )
+    zones = best_zones(grid, evening.chance, asked.sprayer, asked.costs)
+    said = zone_verdicts(
+        grid, (evening.chance, evening.pair_chance), zones.zone,
+        (asked.level, asked.sure, asked.costs.works), evening.doubt,
+    )  # fmt: skip
+    more = None
+    if scene is not None and plot.verdict == LOOK_ON:
+        more = looks_to_verdict(evening, scene, asked)
+    return Advice(grid, asked, plot, zones, said, more)
+
+
+def looks_to_verdict(evening: Belief, scene: Scene, asked: AdviceSettings) -> MoreLooks:
+    """Return after how many looks, driven as Decide drives, a verdict can come at the earliest."""
+    n = len(scene.chance)
+    day = replace(scene, seconds_left=min(_LONG_DAY_S, 1e4 * n))
+    order = Decide().walk(day, np.zeros(n, np.bool_)).plant[:_MOST_LOOKS]
+    learning = Learning(scene.robot.detects, treated=False)
+
+    def verdict(looks: int, *, found: bool) -> Verdict:
+        after = evening.learn(order[:looks], np.full(looks, found), learning)
+        return map_verdict(
+            scene.grid, after.chance, asked.level, after.pair_chance, sure=asked.sure,
+            doubt=after.doubt,
+        ).verdict  # fmt: skip
+
+    return MoreLooks(
+        _first(lambda looks: verdict(looks, found=False) == LEAVE, len(order)),
+        _first(lambda looks: verdict(looks, found=True) == TREAT, len(order)),
+    )
+
+
+def _first(clear: Callable[[int], bool], most: int) -> int | None:
+    """Return the fewest looks at which it is clear, by doubling and halving; None: not within."""
+    high = 1
+    while high < most and not clear(high):
+        high *= 2
+    high = min(high, most)
+    if most == 0 or not clear(high):
+        return None
+    low = high // 2
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if clear(middle) else (middle, high)
+    return high

@@ -1,0 +1,104 @@
+"""The advice of a day on one page: treat or not, where, how much, and what is assumed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.wording import figure, worded
+from fieldmon.infestation.hotspots import hot_spots
+from fieldmon.infestation.observations import PRESENT
+from fieldmon.plot.grid import row_label
+from fieldmon.reports import words
+from fieldmon.reports.content import (
+    Block,
+    Illustration,
+    KeyFigure,
+    KeyFigures,
+    NoteLines,
+    Paragraph,
+    Report,
+    Sheet,
+    Table,
+)
+from fieldmon.reports.day import legend_block, map_alt
+from fieldmon.reports.maps import PlotMap
+
+if TYPE_CHECKING:
+    from datetime import date
+
+    from fieldmon.compute.units import Units
+    from fieldmon.monitoring import Season
+    from fieldmon.monitoring.advice import Advice
+
+_MOST_ZONES = 25
+
+
+def advice_report(
+    season: Season, on: date, advice: Advice, units: Units, product: str = ""
+) -> Report:
+    """Return the report of what is advised after a day's work."""
+    lead, *sentences = advice.sentences()
+    blocks: list[Block] = [
+        Paragraph(lead, lead=True),
+        *map(Paragraph, sentences),
+        _figures(advice, product),
+        *_map(season, on, advice, units),
+        *([_zones(advice)] if len(advice.zones) else []),
+        NoteLines(words.NOTES),
+    ]
+    title = worded(words.ADVICE_TITLE, day=units.day(on))
+    name = season.plot.field.name
+    return Report(name, title, on, (Sheet(words.ADVICE_SHEET, tuple(blocks)),))
+
+
+def _figures(advice: Advice, product: str) -> KeyFigures:
+    zones = advice.zones
+    share = worded(words.OF_PLOT, share=zones.m2 / zones.plot_m2)
+    rate = worded(words.RATE, rate=advice.asked.rate_l_ha)
+    return KeyFigures(
+        (
+            KeyFigure(words.AREA_SPRAYED, figure(zones.m2 / 10_000, ".2f", " ha"), share),
+            KeyFigure(words.PRODUCT, product or words.PRODUCT_OPEN, rate),
+            KeyFigure(words.LIQUID, figure(advice.litres, ".0f", " l")),
+            KeyFigure(words.INFESTED_INSIDE, figure(zones.inside, ".1f"),
+                      worded(words.AND_ELSEWHERE, n=zones.outside)),
+            KeyFigure(words.ENOUGH, figure(advice.said.enough, ".0%")),
+        )
+    )  # fmt: skip
+
+
+def _map(season: Season, on: date, advice: Advice, units: Units) -> list[Block]:
+    state = season.history.known(season.settings.day(on))
+    grid = season.plot.grid
+    what = PlotMap(
+        grid, season.evening(on), state, hot_spots(grid, np.full(len(grid), -1, np.int8)),
+        season.plot.aisles.gate_m, units,
+        zones_m=tuple(grid.frame.geometry_m(area) for area in advice.outlines),
+    )  # fmt: skip
+    found = int(np.count_nonzero(state == PRESENT))
+    alt = map_alt(season.plot.field.name, state, 0) if found else words.ADVICE_ALT
+    return [Illustration("", alt, what.draw, what.heights(80.0, 150.0)), legend_block()]
+
+
+def _zones(advice: Advice) -> Table:
+    label = row_label(advice.grid)
+    rows = []
+    for k, verdict in enumerate(advice.said.zones):
+        mine = advice.zones.zone == k
+        line, number = label.line[mine], label.number[mine]
+        rows.append(
+            (
+                f"{k + 1}",
+                worded(words.FROM_TO, start=line.min(), end=line.max()),
+                worded(words.FROM_TO, start=number.min(), end=number.max()),
+                figure(int(np.count_nonzero(mine)), ","),
+                figure(verdict.share, ".0%"),
+                words.VERDICTS[verdict.verdict],
+            )
+        )
+    return Table(
+        words.ZONES, words.ZONES_COLUMNS, tuple(rows[:_MOST_ZONES] if rows else ()),
+        (0.1, 0.15, 0.2, 0.15, 0.15, 0.25), rest=words.ZONES_REST, left=(5,),
+    )  # fmt: skip

@@ -1,0 +1,171 @@
+"""Decide: the looks that tell soonest whether so much of the plot is infested that treating pays.
+
+Which share is infested is told best by looks that are spread over the whole plot, and denser
+where a look is less foreseen (Neyman's allocation, J. R. Stat. Soc. 97 (1934) 558). A find tells
+where its neighbours stand, not how much is infested elsewhere: it draws no more looks to it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.compute.jit import loop, part
+from fieldmon.compute.random_streams import coin
+from fieldmon.errors import SettingError
+from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
+from fieldmon.plot.travel import Clock, in_time, travel_s
+from fieldmon.samplers.base import Sampler, Scene, Stops
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.grid import Linked
+    from fieldmon.plot.travel import TravelTable
+    from fieldmon.samplers.base import WouldFind
+
+    Floats = NDArray[np.float64]
+
+# passes of a low-discrepancy sequence: each goes between the stops of those before
+_GOLDEN = 0.6180339887498949
+# a day ends after so many passes in which nothing fitted into what is left of it
+_TRIES = 3
+_LEAST = 1e-6
+
+
+class _Believed(NamedTuple):
+    """Chances of plants ``(n,)`` and pairs ``(e,)`` now, those of the morning, and room."""
+
+    chance: Floats
+    pair_chance: Floats
+    morning: Floats
+    near: Neighbourhood
+
+
+class _Pass(NamedTuple):
+    """Room for a pass, ``(n,)`` each: what plants weigh, the chosen, and who is seen."""
+
+    weight: Floats
+    chosen: NDArray[np.int64]
+    seen: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Decide(Sampler):
+    """Look where a look changes the verdict most: spread over the plot, denser where unforeseen.
+
+    It drives the plot in passes of some looks each, up and down in the order of the rows. The
+    looks of a pass stand as far apart as the chances of the plants between them say; each pass
+    goes between the looks of those before it. So there is a fair picture of the whole plot early,
+    and it becomes finer until the day is over or a verdict is clear.
+
+    Parameters
+    ----------
+    looks_a_pass
+        Looks in one pass over the plot (our choice: about as many as the fewest that decide).
+    """
+
+    looks_a_pass: int = 25
+
+    def __post_init__(self) -> None:
+        if self.looks_a_pass < 1:
+            raise SettingError(
+                f"Decide's looks_a_pass must be 1 or more, but it is {self.looks_a_pass}."
+            )
+
+    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
+        """Return the stops of the rest of the day."""
+        n, grid = len(scene.chance), scene.grid
+        chance = np.maximum(scene.chance, _LEAST)
+        pairs = scene.pair_chance
+        pairs = pair_chances(scene.chance, grid) if pairs is None else pairs.copy()
+        return scene.walked(
+            _walk,
+            (grid.linked, grid.snake, would_find.view(np.uint8)),
+            (
+                _Believed(chance, pairs, chance.copy(), Neighbourhood.of(n)),
+                _Pass(np.empty(n), np.empty(n, np.int64), scene.last_inspected == scene.day),
+            ),
+            (scene.at, self.looks_a_pass, scene.robot.detects, scene.key),
+        )
+
+
+@loop
+def _walk(
+    travel: TravelTable,
+    clock: Clock,
+    plants: tuple[Linked, NDArray[np.int32], NDArray[np.uint8]],
+    work: tuple[_Believed, _Pass],
+    start: tuple[int, int, float, np.uint64],
+    stops: Stops,
+) -> int:
+    believed, room = work
+    at, looks, detects, key = start
+    linked, snake, would_find = plants
+    now_s, k, tries, number = 0.0, 0, 0, 0
+    first = coin(key, 0)
+    while k < stops.plant.size and tries < _TRIES:
+        place = (first + number * _GOLDEN) % 1.0
+        n = _choose(believed, snake, room, (looks, place, detects))
+        if n == 0:
+            break
+        _turn(travel, clock, room.chosen, (at, n))
+        number, before = number + 1, k
+        for t in range(n):
+            plant = room.chosen[t]
+            arrive_s = now_s + travel_s(travel, clock, at, plant)
+            if k == stops.plant.size or not in_time(travel, clock, plant, arrive_s):
+                continue
+            stops.plant[k], stops.arrive_s[k] = plant, arrive_s
+            now_s, at, k = arrive_s + clock.visit_s, plant, k + 1
+            room.seen[plant] = True
+            result = (plant, would_find[plant] > 0)
+            chances = believed.chance, believed.pair_chance
+            update_neighbourhood(chances, linked, result, (detects, True), believed.near)
+        tries = tries + 1 if k == before else 0
+    return k
+
+
+@part
+def _choose(
+    believed: _Believed,
+    snake: NDArray[np.int32],
+    room: _Pass,
+    wishes: tuple[int, float, float],
+) -> int:
+    """Choose the plants of a pass in the order of the rows; return how many.
+
+    One at each equal share of the weights, from a place that moves from pass to pass.
+    """
+    looks, place, detects = wishes
+    total = 0.0
+    for j in range(snake.size):
+        i = snake[j]
+        # what today's finds beside it tell of a plant is no news about the plot
+        p = min(believed.chance[i], believed.morning[i])
+        q = detects * p
+        told = q * (1.0 - p) ** 2 * detects * p / max(q * (1.0 - q), _LEAST * _LEAST)
+        room.weight[j] = 0.0 if room.seen[i] else np.sqrt(told)
+        total += room.weight[j]
+    n, so_far, ahead = 0, 0.0, place
+    for j in range(snake.size):
+        so_far += room.weight[j]
+        if room.weight[j] > 0.0 and so_far * looks > ahead * total:
+            room.chosen[n] = snake[j]
+            n += 1
+            ahead = max(ahead + 1.0, np.floor(so_far * looks / total - place) + 1.0 + place)
+    return n
+
+
+@part
+def _turn(
+    travel: TravelTable, clock: Clock, chosen: NDArray[np.int64], state: tuple[int, int]
+) -> None:
+    """Begin a pass at the end that is nearer."""
+    at, n = state
+    if travel_s(travel, clock, at, chosen[0]) <= travel_s(travel, clock, at, chosen[n - 1]):
+        return
+    for t in range(n // 2):
+        chosen[t], chosen[n - 1 - t] = chosen[n - 1 - t], chosen[t]

@@ -1,0 +1,1 @@
+"""How many looks a verdict takes, and how often it is right."""

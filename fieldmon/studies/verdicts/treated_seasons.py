@@ -1,0 +1,183 @@
+"""Seasons treated by a rule: zones above the threshold, the whole plot, or nothing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.decisions.zones import Sprayer, TreatmentCosts, best_zones, whole_plot
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.planning.workday import work_day
+from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.simulation.experiment import Experiment
+from fieldmon.simulation.metrics import season_metrics
+from fieldmon.simulation.season import simulated_days
+from fieldmon.simulation.treating import WHOLE, ZONES, TreatmentRule
+from fieldmon.studies.samplers.scenarios import Scenario
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fieldmon.infestation.belief import Belief
+
+NOTHING = "nothing"
+RULES = (NOTHING, WHOLE, ZONES)
+#: a plot is treated from so much on (our choice: what 4 hours a day no longer hold down)
+LEVEL = 0.02
+_COSTS = TreatmentCosts(per_ha=100.0, per_zone=0.5)
+_HOURS, _DAYS = 4.0, 25
+
+
+@dataclass(frozen=True)
+class TreatedSeason:
+    """What a season came to by a rule: infested plant-days, hectares, and money."""
+
+    scenario: str
+    seed: int
+    sampler: str
+    rule: str
+    plant_days: float
+    sprayed_ha: float
+    spent: float
+    cost: float
+
+    columns: ClassVar[tuple[str, ...]] = (
+        "scenario", "seed", "sampler", "rule", "plant_days", "sprayed_ha", "spent", "cost"
+    )  # fmt: skip
+    kinds: ClassVar[tuple[type[Any], ...]] = (str, int, str, str, float, float, float, float)
+
+    @property
+    def key(self) -> tuple[str, int]:
+        """Return the chunk that it is of."""
+        return self.scenario, self.seed
+
+
+def treated_scenarios() -> list[Scenario]:
+    """Return 5 ha with clusters, with infested edges, and with scattered infested plants."""
+    return [Scenario("B", start=start, hours=_HOURS) for start in ("clusters", "edge", "scattered")]
+
+
+def study_of_treatments(
+    scenarios: Sequence[Scenario], seeds: range, samplers: Sequence[str]
+) -> Experiment[Scenario, list[TreatedSeason]]:
+    """Return the study: each sampler meets the same insects by every rule."""
+    return Experiment(
+        settings=scenarios,
+        seeds=seeds,
+        simulate=lambda scenario, seeds: treated_seasons(scenario, seeds.start, samplers),
+        chunk_size=lambda _: 1,
+        key=lambda scenario, seeds: (scenario.name, seeds.start),
+        seed_by_seed=True,
+    )
+
+
+def treated_seasons(
+    scenario: Scenario, seed: int, samplers: Sequence[str], n_days: int = _DAYS
+) -> list[TreatedSeason]:
+    """Return what a season comes to, by each rule with each sampler."""
+    streams = RandomStreams(seed)
+    start = scenario.draw_start(streams)
+    made = []
+    for name in samplers:
+        for rule in RULES:
+            treating = None if rule == NOTHING else TreatmentRule(
+                LEVEL, rule, costs=_COSTS, seed=seed
+            )  # fmt: skip
+            settings = replace(scenario.settings, n_days=n_days, treating=treating)
+            days = simulated_days(
+                scenario.aisles, scenario.robot, sampler(name), start, settings, streams
+            )
+            of = season_metrics(days)
+            lost, spent = of.infested_plant_days, float(of.spent.sum())
+            money = spent + lost * _COSTS.infested_plant_day
+            area = float(of.sprayed_m2.sum()) / 10_000
+            made.append(
+                TreatedSeason(scenario.name, seed, name, rule, float(lost), area, spent, money)
+            )
+    return made
+
+
+def known_samplers() -> tuple[str, ...]:
+    """Return the samplers that take part: all that look equally long at every plant."""
+    return tuple(name for name, kind in SAMPLERS.items() if not kind.chooses_time)
+
+
+@dataclass(frozen=True)
+class AreaAtEqualLeft:
+    """What zones spray beside the whole plot where both leave as many infested plants.
+
+    Parameters
+    ----------
+    start
+        Where infested plants stand.
+    share
+        Area of the zones over the plot's.
+    left
+        Infested plants that zones leave, over those that the whole plot's treatment leaves.
+    """
+
+    start: str
+    share: float
+    left: float
+
+
+def area_at_equal_left(
+    scenario: Scenario, seed: int, looked_at: float = 0.25, works: float = 0.9
+) -> AreaAtEqualLeft:
+    """Return how much less zones spray, once a share of the plot was looked at.
+
+    The zones are those of the least area that the map believes to leave no more than half as much
+    again as treating the whole plot does; what they really leave is counted on the truth.
+
+    Parameters
+    ----------
+    scenario, seed
+        The plot and its insects.
+    looked_at
+        Share of the plants that were looked at, as Adaptive drives.
+    works
+        Chance that treating cleans an infested plant.
+    """
+    streams = RandomStreams(seed)
+    start, grid = scenario.draw_start(streams), scenario.aisles.grid
+    evening = _looked(scenario, streams, looked_at)
+    costs = TreatmentCosts(per_zone=0.0, works=works)
+    whole = whole_plot(grid, evening.chance, costs)
+    low, high = 1e-6, 1e6
+    zones = whole
+    for _ in range(60):
+        middle = float(np.sqrt(low * high))
+        dear = replace(costs, per_ha=middle)
+        tried = best_zones(grid, evening.chance, Sprayer(), dear)
+        left = tried.outside + (1 - works) * tried.inside
+        if left <= 1.5 * (1 - works) * (tried.inside + tried.outside):
+            low, zones = middle, tried
+        else:
+            high = middle
+    truth = start.infested
+    really = float(np.count_nonzero(truth & ~zones.treated)) + (1 - works) * float(
+        np.count_nonzero(truth & zones.treated)
+    )
+    of_whole = (1 - works) * float(np.count_nonzero(truth))
+    return AreaAtEqualLeft(scenario.start, zones.m2 / whole.m2, really / max(of_whole, 1e-9))
+
+
+def _looked(scenario: Scenario, streams: RandomStreams, share: float) -> Belief:
+    """Return what is believed once Adaptive looked at a share of the plants; finds are flagged."""
+    start, aisles = scenario.draw_start(streams), scenario.aisles
+    n, robot = len(start.infested), replace(scenario.robot, hours=24.0, returns=False)
+    shows = start.infested & (streams.of("looked at").random(n) < robot.detects)
+    belief: Belief = TracedPairs.of(aisles.grid, start.chance)
+    scene = Scene(
+        aisles, robot, belief.chance, np.full(n, NEVER, np.int32), seconds_left=1e3 * n,
+        pair_chance=belief.pair_chance, traces=belief.traces,
+    )  # fmt: skip
+    work, most = work_day(scene, Adaptive(), shows), round(share * n)
+    learning = Learning(detection=robot.detects, treated=False)
+    return belief.learn(work.plant[:most], work.found[:most], learning)

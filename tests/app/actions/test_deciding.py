@@ -1,0 +1,26 @@
+"""What can be done on the page Decide: leaves, and the files."""
+
+import re
+
+from app.actions import deciding as acting
+from app.words import texts
+from fieldmon.decisions.thresholds import published
+from fieldmon.io.writers.treatment_map import FORMATS
+from tests.app.driving import go, texts_of
+
+
+def test_every_file_that_the_library_writes_is_offered_by_name():
+    assert {ending[1:] for ending in acting._ENDINGS} == {ending[1:] for ending in FORMATS}
+    assert set(texts.DECIDE_FILES) == {ending[1:] for ending in FORMATS}
+    assert set(texts.DECIDE_THRESHOLDS) == {one.name for one in published()}
+
+
+def test_leaves_that_were_counted_have_a_verdict_with_its_source(season_app):
+    go(season_app, "decide")
+    season_app.number_input(key="decide leaves").set_value(40).run()
+    season_app.number_input(key="decide counted").set_value(20).run()
+    assert not season_app.exception
+    assert re.search(r"40 leaves, 20 counted: treat", texts_of(season_app))
+    assert "Zalom" in texts_of(season_app)
+    season_app.number_input(key="decide counted").set_value(50).run()
+    assert "No more leaves can be infested" in season_app.warning[0].value

@@ -1,0 +1,43 @@
+"""What is shown of advice: a row a zone, an outline a zone on the map, each with its number."""
+
+import numpy as np
+import pytest
+
+from app.show import advice as shown
+from app.words import texts
+from fieldmon.decisions.zones import Sprayer, TreatmentCosts
+from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.monitoring.advice import AdviceSettings, advice
+from fieldmon.plot.layout import Planting, rectangle
+
+GRID = rectangle(12, 30, Planting(90.0, 4.0, 2.0))
+
+
+@pytest.fixture(scope="module")
+def made():
+    chance = np.full(len(GRID), 1e-4)
+    chance[[31, 32, 33, 34, 200, 201, 202, 203]] = 0.9
+    belief = PairApproximation.of(GRID, chance)
+    costs = TreatmentCosts(per_ha=50.0, per_zone=0.1)
+    return advice(GRID, belief, AdviceSettings(0.05, sprayer=Sprayer(1), costs=costs))
+
+
+def test_each_zone_has_a_row_with_its_place_and_how_often_it_is_wrong(made):
+    table = shown.table(made)
+    assert table[texts.DECIDE_ZONE].tolist() == [1, 2]
+    assert table[texts.DECIDE_ROWS].tolist() == ["2", "7"]
+    assert table[texts.DECIDE_PLANTS].tolist() == ["2-5", "21-24"]
+    assert set(table[texts.DECIDE_ITSELF]) == {"treat"}
+    assert set(table[texts.DECIDE_WRONG]) == {"0%"}
+
+
+def test_each_zone_is_outlined_and_numbered_on_the_map(made):
+    tint, edge = shown._layers(made, dark=False)
+    assert (tint.id, edge.id) == ("zones", "zones-edge")
+    assert len(edge.data) == 2
+    numbers = shown._numbers(made)
+    assert [one["t"] for one in numbers] == ["1", "2"]
+    for number, zone in zip(numbers, edge.data, strict=True):
+        corners = np.array(zone["p"])
+        assert (corners.min(axis=0) <= number["p"]).all()
+        assert (corners.max(axis=0) >= number["p"]).all()

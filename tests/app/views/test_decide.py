@@ -1,0 +1,51 @@
+"""The page Decide: the answer in one sentence at its top, and what follows from it."""
+
+import numpy as np
+import pytest
+
+from app.words import texts
+from fieldmon.infestation.inspections import Inspections
+from tests.app.driving import go, map_of, metric, texts_of
+
+
+@pytest.fixture
+def recorded(season_app, season):
+    """Return the app on a season in which a corner was found infested."""
+    of = season()
+    near = of.plot.grid.xy_m - of.plot.grid.xy_m.min(axis=0)
+    plants = np.flatnonzero((near < 40).all(axis=1))[::2]
+    found = (near[plants] < 14).all(axis=1)
+    of.record(Inspections.of(plants, found.astype(int), np.datetime64("2026-11-16")), "day")
+    for name, value in (("works", 60.0), ("per_ha", 1.0), ("per_zone", 0.0)):
+        season_app.session_state[f"decide {name}"] = value
+    return season_app
+
+
+def test_without_a_season_it_says_what_it_needs(app):
+    go(app, "decide")
+    assert not app.exception
+    assert texts.DECIDE_NEEDS_SEASON in texts_of(app)
+
+
+def test_the_answer_stands_at_the_top_and_the_zones_on_the_map(recorded):
+    go(recorded, "decide")
+    assert not recorded.exception
+    said = texts_of(recorded)
+    assert said.startswith("**Treat the whole plot")
+    assert "treating pays from 5.0% on" in said.split("\n")[1]
+    ids = {layer["id"] for layer in map_of(recorded)["layers"]}
+    assert {"zones", "zones-edge"} <= ids
+    assert metric(recorded, texts.DECIDE_ENOUGH).endswith("%")
+
+
+def test_costs_are_changed_there_and_the_answer_follows(recorded):
+    go(recorded, "decide")
+    recorded.number_input(key="decide per_ha").set_value(0.0).run()
+    assert not recorded.exception
+    before = metric(recorded, texts.DECIDE_AREA)
+    assert "(100%)" in before
+    recorded.number_input(key="decide reserve").set_value(50.0).run()
+    assert metric(recorded, texts.DECIDE_AREA) != before
+    recorded.number_input(key="decide level").set_value(0.1).run()
+    assert "Treat" in texts_of(recorded)
+    assert not recorded.exception

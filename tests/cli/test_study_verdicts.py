@@ -1,0 +1,14 @@
+"""`fieldmon study verdicts`, as a person runs it."""
+
+
+def test_its_folder_must_be_there(run):
+    code, _, err, made = run("study", "verdicts", "-o", "none")
+    assert (code, made) == (2, set())
+    assert "must exist" in err
+
+
+def test_a_table_that_is_another_studys_is_not_gone_on_with(run, tmp_path):
+    (tmp_path / "verdicts.csv").write_text("a,b\n", encoding="utf-8")
+    code, _, err, _ = run("study", "verdicts", "--seeds", 2)
+    assert code == 2
+    assert "must be a table of this study" in err

@@ -1,0 +1,40 @@
+"""What leaves say, in a sentence."""
+
+import pytest
+
+from fieldmon.decisions.leaves import of_leaves
+from fieldmon.decisions.thresholds import threshold_of
+from fieldmon.errors import SettingError
+
+ALMOND, MINT = threshold_of("almond"), threshold_of("peppermint")
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ((ALMOND, 40, 20), "treat (Iwao"),
+        ((ALMOND, 40, 1), "do not treat"),
+        ((ALMOND, 5, 1), "look on; after"),
+        ((ALMOND, 0, 0), "look at"),
+        ((MINT, 30, 600), "treat (Iwao"),
+    ],
+)
+def test_the_sentence_has_the_verdict(asked, said):
+    assert said in of_leaves(*asked)
+
+
+@pytest.mark.parametrize(
+    ("infested", "said"),
+    [(49, "treat."), (2, "do not treat."), (35, "look on, or count the animals.")],
+)
+def test_presence_is_a_band_of_means_and_not_one(infested, said):
+    sentence = of_leaves(MINT, 50, infested, presence=True)
+    assert sentence.endswith(said)
+    assert " to " in sentence
+
+
+def test_more_infested_leaves_than_leaves_are_refused():
+    with pytest.raises(SettingError, match="No more leaves can be infested"):
+        of_leaves(ALMOND, 4, 5)
+    with pytest.raises(SettingError, match="some must be infested and some clean"):
+        of_leaves(MINT, 4, 4, presence=True)

@@ -1,0 +1,73 @@
+"""Advice: one answer in one sentence, the looks that it lacks, and zones that can be written."""
+
+from datetime import timedelta
+
+import numpy as np
+import pytest
+
+from fieldmon.decisions.zones import Sprayer, TreatmentCosts
+from fieldmon.errors import SettingError
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring.advice import AdviceSettings
+from fieldmon.monitoring.history import BeliefSettings
+from tests.monitoring.seasons import BEGINS, a_season
+
+CHEAP = TreatmentCosts(per_ha=20.0, per_zone=0.1)
+
+
+@pytest.fixture(scope="module")
+def season(tmp_path_factory):
+    """Return a season in which a corner of the plot was found infested, and nothing else."""
+    path = tmp_path_factory.mktemp("advice") / "season.gpkg"
+    made = a_season(path, belief=BeliefSettings(treated=False))
+    plants = np.arange(0, len(made.plot.grid), 3)
+    corner = made.plot.grid.xy_m[plants] - made.plot.grid.xy_m.min(axis=0)
+    found = (corner < 16).all(axis=1)
+    made.record(Inspections.of(plants, found.astype(int), np.datetime64(BEGINS)), "day")
+    return made
+
+
+def test_a_corner_is_treated_and_not_the_plot(season):
+    asked = AdviceSettings(0.2, costs=CHEAP)
+    advice = season.advice(BEGINS, asked)
+    assert advice.verdict == season.verdict(BEGINS, 0.2).verdict == "do not treat"
+    assert advice.above >= 1
+    assert advice.headline().startswith("Do not treat the whole plot, but ")
+    corner = season.plot.grid.xy_m[advice.zones.treated] - season.plot.grid.xy_m.min(axis=0)
+    assert np.median(corner.max(axis=1)) < 24
+    assert advice.saving > 0.0
+    assert "The chance that it is enough is" in " ".join(advice.sentences())
+
+
+@pytest.mark.parametrize(("level", "said"), [(0.01, "Treat "), (0.9, "Do not treat")])
+def test_the_headline_is_the_answer(season, level, said):
+    asked = AdviceSettings(level, costs=CHEAP)
+    assert season.advice(BEGINS, asked).headline().startswith(said)
+
+
+def test_when_nobody_can_say_it_tells_how_many_looks_decide(season):
+    level = float(season.evening(BEGINS).mean())
+    advice = season.advice(BEGINS, AdviceSettings(level, costs=CHEAP))
+    assert advice.verdict == "look on"
+    assert advice.more is not None
+    assert f"look at {advice.more.least} plant" in advice.headline()
+    # so many clean looks are enough, and one less is not
+    order = advice.more.if_clean
+    assert order is None or order >= 1
+
+
+def test_zones_become_what_the_sprayer_needs(season):
+    advice = season.advice(BEGINS, AdviceSettings(0.2, costs=CHEAP, sprayer=Sprayer(1)))
+    of = advice.treatment_map(season.plot.field, "soap")
+    assert len(of.zones) == len(advice.zones)
+    assert advice.litres == pytest.approx(advice.zones.m2 / 10_000 * 300.0)
+    dear = season.advice(BEGINS, AdviceSettings(0.2, costs=TreatmentCosts(per_ha=1e7)))
+    with pytest.raises(SettingError, match="pays nowhere"):
+        dear.treatment_map(season.plot.field)
+
+
+def test_a_rate_that_cannot_be_is_refused(season):
+    with pytest.raises(SettingError, match="litres a hectare"):
+        AdviceSettings(rate_l_ha=0.0)
+    with pytest.raises(SettingError, match="between 0 and 1"):
+        season.advice(BEGINS + timedelta(days=1), AdviceSettings(0.0))

@@ -1,0 +1,50 @@
+"""The study of verdicts: what each contender answers, and the sums."""
+
+import pytest
+
+from fieldmon.decisions.sequential import WaldPlan
+from fieldmon.errors import SettingError
+from fieldmon.studies.verdicts.looks import (
+    CONTENDERS,
+    DECIDE,
+    W_FIXED,
+    Question,
+    answers,
+    fixed_looks,
+    summaries,
+)
+
+
+@pytest.fixture(scope="module")
+def answered():
+    question = Question("clusters")
+    return [one for seed in range(3) for one in answers(question, seed)]
+
+
+def test_every_contender_answers_and_the_same_seed_gives_the_same(answered):
+    assert [one.contender for one in answered[: len(CONTENDERS)]] == list(
+        dict.fromkeys(one.contender for one in answered)
+    )
+    assert {one.contender for one in answered} == set(CONTENDERS)
+    assert answers(Question("clusters"), 1) == [one for one in answered if one.seed == 1]
+
+
+def test_a_verdict_is_right_where_the_truth_is_on_its_side(answered):
+    for one in answered:
+        says = {"treat": True, "do not treat": False}.get(one.verdict)
+        assert one.right == float(says is (one.share >= 1.0))
+
+
+def test_the_whole_w_is_as_long_as_its_two_levels_need(answered):
+    """By the normal law: (z (s1 + s2) / (p2 - p1))^2."""
+    assert fixed_looks(WaldPlan(0.025, 0.1)) == 61
+    assert {one.looks for one in answered if one.contender == W_FIXED} == {74.0}
+
+
+def test_sums_are_means_over_seeds_and_over_the_whole_w(answered):
+    of = {one.contender: one for one in summaries(answered)}
+    assert of[W_FIXED].of_w == 1.0
+    mine = [one.looks for one in answered if one.contender == DECIDE]
+    assert of[DECIDE].looks == pytest.approx(sum(mine) / 3)
+    with pytest.raises(SettingError, match="an outcome or more"):
+        summaries([])

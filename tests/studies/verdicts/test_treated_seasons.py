@@ -1,0 +1,30 @@
+"""Treated seasons, and the area at which zones leave about as much as treating all."""
+
+import pytest
+
+from fieldmon.studies.samplers.scenarios import Scenario
+from fieldmon.studies.verdicts.treated_seasons import (
+    NOTHING,
+    RULES,
+    area_at_equal_left,
+    treated_scenarios,
+    treated_seasons,
+)
+
+
+def test_every_rule_meets_the_same_insects_and_money_is_what_was_spent_and_lost():
+    made = treated_seasons(Scenario("A", hours=0.4), 1, ["naive"], n_days=5)
+    assert [one.rule for one in made] == list(RULES)
+    nothing = made[0]
+    assert (nothing.rule, nothing.sprayed_ha, nothing.spent) == (NOTHING, 0.0, 0.0)
+    for one in made:
+        assert one.cost == pytest.approx(one.spent + 0.1 * one.plant_days)
+        assert one.plant_days <= nothing.plant_days
+
+
+@pytest.mark.parametrize("scenario", treated_scenarios(), ids=lambda one: one.start)
+def test_once_all_was_looked_at_zones_spray_at_least_60_percent_less(scenario):
+    """The goal, where the map is as good as looking can make it: a whole round of the plot."""
+    made = [area_at_equal_left(scenario, seed, looked_at=1.0) for seed in range(2)]
+    assert max(one.share for one in made) < 0.4
+    assert max(one.left for one in made) < 3.0

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import streamlit as st
 
 from fieldmon.decisions.doses import Dose
-from fieldmon.decisions.labels import irac_groups
+from fieldmon.decisions.labels import irac_groups, read_labels
 from fieldmon.errors import SettingError
+from fieldmon.io.options import Upload
 from fieldmon.monitoring import Application
 
 from ..state import notices
@@ -42,6 +43,8 @@ def show(choices: Choices, area: MultiPolygon | None = None) -> None:
             _boxes()
         st.form_submit_button(texts.TREAT_BUTTON, on_click=_treat, args=(choices, area))
     _harvest(choices)
+    with st.expander(texts.LABELS):
+        _labels(choices)
 
 
 def _boxes() -> None:
@@ -121,3 +124,26 @@ def _change_harvest(choices: Choices, key: str) -> str:
         replace(settings, harvest=st.session_state[key]), settings, choices.who or ""
     )
     return texts.HARVEST_KEPT
+
+
+# -- the label table
+
+
+def _labels(choices: Choices) -> None:
+    """Show the products of the season's label table, and take in another table."""
+    st.caption(texts.LABELS_NOTE)
+    known = choices.season.labels()
+    if known:
+        st.markdown(", ".join(dict.fromkeys(texts.isolated(one.product) for one in known)))
+    brought = st.file_uploader(texts.LABELS_IN, type=["csv"], key="labels_file")
+    if brought is not None:
+        st.button(texts.LABELS_BUTTON, key="take_labels", on_click=_take_labels,
+                  args=(choices, Upload(brought.name, brought.getvalue())))  # fmt: skip
+
+
+@notices.reporting
+def _take_labels(choices: Choices, table: Upload) -> str:
+    read = read_labels(table)
+    n = choices.season.keep_labels(read.value, table.name, choices.who or "")
+    said = "".join(f"\n- {in_words(message.sentence)}" for message in read.messages)
+    return texts.LABELS_KEPT.format(n=n) + said

@@ -23,6 +23,13 @@ def show(choices: Choices, kinds: tuple[str, ...] = ()) -> None:
         st.warning("\n".join(f"- {sentence}" for sentence in dict.fromkeys(said)))
 
 
+def show_today(choices: Choices) -> None:
+    """Show what counts on the day itself: where not to enter, and a harvest that is to come."""
+    harvest = None if choices.season is None else choices.season.settings.harvest
+    is_ahead = harvest is not None and choices.on <= harvest
+    show(choices, ("entry", "harvest") if is_ahead else ("entry",))
+
+
 def show_treatments(choices: Choices) -> None:
     """Show when harvest may begin, and what inspections tell of each treatment."""
     season, units = choices.season, choices.units.of_library

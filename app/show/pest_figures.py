@@ -66,6 +66,21 @@ def _figures(pest: Pest) -> list[str]:
         made.append(texts.PEST_WITH_WIND)
     if moves.least_rain_mm > 0:
         made.append(texts.PEST_IN_RAIN.format(rain=number(moves.least_rain_mm, "g")))
+    return [*made, *_rest(pest)]
+
+
+def _rest(pest: Pest) -> list[str]:
+    """Return how it enters, how it goes on in a plant, and what is counted, in words."""
+    made, entry = [], pest.entry
+    ways = entry.edge_per_day, entry.paths_per_day, entry.anywhere_per_day
+    if any(ways):
+        edge, paths, anywhere = (number(chance, "g") for chance in ways)
+        made.append(texts.PEST_ENTERS.format(edge=edge, paths=paths, anywhere=anywhere))
+    if pest.hidden_days or pest.latency_days:
+        hidden, latency = number(pest.hidden_days, "g"), number(pest.latency_days, "g")
+        made.append(texts.PEST_COURSE.format(hidden=hidden, latency=latency))
+    if pest.count_means:
+        made.append(texts.PEST_COUNT.format(what=texts.isolated(pest.count_means)))
     return made
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime, time
+from datetime import time
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -11,6 +11,7 @@ from fieldmon.errors import FieldmonError
 from fieldmon.infestation.pest_prior import prior_for
 from fieldmon.io.readers.pest_file import read_pest, shipped_names, shipped_pest
 from fieldmon.io.readers.weather_options import WeatherOptions
+from fieldmon.plot.local_clock import local_clock
 
 from . import cached, widget_memory
 from .brought_files import brought, messages_of, settled
@@ -60,7 +61,7 @@ def weather(plot: Plot, today: date) -> Imported[Weather] | None:
     if file is None:
         return None
     _note(WEATHER, None)
-    ends = datetime.combine(today, time.max, UTC)
+    ends = local_clock(plot.field).moment(today, time(23, 59))
     try:
         wanted = settled(file, WeatherOptions(now=ends)).on(plot.field)
         return cached.weather(file.key, wanted, file.source)

@@ -9,15 +9,7 @@ import numpy as np
 import streamlit as st
 
 from ..actions import assuming, beginning
-from ..show import (
-    cautions,
-    charts,
-    development,
-    forecast,
-    learnt,
-    map_layers,
-    plant_history,
-)
+from ..show import cautions, charts, development, forecast, learnt, map_layers, plant_history
 from ..state import assumptions, chosen_day
 from ..words import texts
 from ..words.language import number

@@ -24,7 +24,7 @@ def show(choices: Choices) -> None:
     with st.container(key="lead"):
         st.markdown(day.headline(choices, plan))
     day.said_of_day(choices, plan)
-    cautions.show(choices, ("entry", "harvest"))
+    cautions.show_today(choices)
     morning.show(choices, plan)
     content = map_layers.day_map(choices, above=picking.layers(choices))
     picked = wishes.picked(choices.place)

@@ -196,6 +196,12 @@ PEST_MOVES = {
     "cauchy": "A plant sends out {per_day} a day, half of them farther than {reach} m.",
 }
 PEST_WITH_WIND, PEST_IN_RAIN = "It goes with the wind.", "It moves only in rain of {rain} mm on."
+PEST_ENTERS = (
+    "It comes in with a chance of {edge} a day at the edge, {paths} beside a path, {anywhere} "
+    "anywhere."
+)
+PEST_COURSE = "A plant shows it after {hidden} days and infects others after {latency}."
+PEST_COUNT = "What is counted: {what}."
 DEGREE_DAYS = "Degree-days"
 NEXT_GENERATION = "Next generation around {when}."
 GATHERED = "{degree_days} degree-days above {threshold} °C since {since}, of {needed} a generation."
@@ -621,8 +627,8 @@ TREAT_UNSAID = (
 )
 TREAT_RECORD = "What a certifier asks: dose, waiting period, who and why"
 TREAT_DOSE, TREAT_UNIT, TREAT_WATER = "Dose of the product", "Unit of the dose", "Water, l/ha"
-TREAT_GROUP, TREAT_GROUP_HELP = "Mode-of-action group (IRAC)", "Such as 6, or 4A+28."
-TREAT_WAIT, TREAT_ENTRY = "Waiting days until harvest", "Hours until re-entry"
+TREAT_GROUP, TREAT_GROUP_HELP = "IRAC group", "The mode of action, such as 6, or 4A+28."
+TREAT_WAIT, TREAT_ENTRY = "Days until harvest", "Hours until re-entry"
 TREAT_BY_LABEL = "Empty: as the season's label table says, where it does."
 TREAT_BEGAN, TREAT_ENDED = "Began at", "Ended at"
 TREAT_ENDED_HELP = "Empty: waiting periods count from the end of the day."
@@ -641,6 +647,13 @@ TREAT_DOSE_UNSAID = (
 HARVEST, HARVEST_KEPT = "First day of harvest", "The first day of harvest was changed."
 HARVEST_HELP = "Treatments whose waiting period is not over by then are warned of."
 HARVEST_FROM = "After the treatments so far, harvest is allowed from **{day}** on."
+LABELS, LABELS_IN = "What labels allow", "Your label table (CSV)"
+LABELS_NOTE = (
+    "A table of yours: product, crop, pest, max dose, unit, waiting days, re-entry hours, IRAC "
+    "group, max uses, source. Treatments are held to it; no law is made up."
+)
+LABELS_BUTTON = "Take these labels"
+LABELS_KEPT = Plural("{n} label is kept.", "{n} labels are kept.")
 EFFECTS = "Whether treatments worked"
 EFFECTS_TREATED = (
     "Plants found infested are taken as treated at once in this season: what that did is in these "

@@ -11,6 +11,7 @@ from fieldmon.cli.study_prior import prior
 from fieldmon.cli.study_routes import routes
 from fieldmon.cli.study_run import study_run
 from fieldmon.cli.study_samplers import samplers
+from fieldmon.cli.study_spread import spread
 from fieldmon.cli.study_treatments import treatments
 from fieldmon.cli.study_verdicts import verdicts
 from fieldmon.cli.study_weather import weather
@@ -24,6 +25,7 @@ app.command("samplers")(samplers)
 app.command("beliefs")(beliefs)
 app.command("routes")(routes)
 app.command("weather")(weather)
+app.command("spread")(spread)
 app.command("run")(study_run)
 app.command("no-prior")(no_prior)
 app.command("verdicts")(verdicts)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,9 +10,11 @@ import typer
 
 from fieldmon.cli.messages import Terminal
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.preparing import estate
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -49,11 +51,14 @@ class StudyOptions:
     scheduler: Annotated[
         str | None, typer.Option(help="A Dask cluster's scheduler: tcp://host:8786.")
     ] = None
+    living: PestOptions = field(default_factory=PestOptions)
 
     def design(self) -> Design:
         """Return what is compared."""
         from fieldmon.simulation.design import Design  # noqa: PLC0415
 
+        if self.living.pest is not None and self.spread:
+            raise SettingError("--spread goes without --pest, which says how it spreads.")
         told = {
             "samplers": self.sampler,
             "hours": self.hours,
@@ -77,10 +82,11 @@ class StudyOptions:
         records = None if self.observations is None else RecordSource(self.observations)
         sources = PlotSources(self.plot, PlotOptions(feature=self.feature))
         known = estate(PlotRequest(sources, records=records), Terminal(flags={}))
-        on = np.datetime64(day_on(known.fields[0], told), "D")
+        begins = day_on(known.fields[0], told)
+        on, living = np.datetime64(begins, "D"), self.living.living(known.fields[0], begins)
         return tuple(
-            StudyPlot(field, planting_of(field), known.records.on(field), on)
-            for field in known.fields
+            StudyPlot(one, planting_of(one), known.records.on(one), on, living)
+            for one in known.fields
         )
 
 
@@ -91,6 +97,9 @@ def study_run(options: StudyOptions) -> None:
     Every combination of the options' values meets the same insects, seed by seed. Seasons are
     added to the folder as they come (Parquet, one row a season). Stopped or killed, the same
     command goes on; the outcome does not depend on the number of workers.
+
+    With --pest the insects are that pest's in the weather of --weather, and the table's spread says
+    nothing.
 
     Example: fieldmon study run vines.zip --feature 3 --hours 6 --hours 12 --seeds 200 -o study
     """

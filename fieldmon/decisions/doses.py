@@ -77,7 +77,7 @@ class Dose:
                 one * (water_l_ha if kind == "water" else 1.0)
                 for one, kind in ((size, per), (their_size, their_per))
             )
-        return round(size / their_size, 9)
+        return float(f"{size / their_size:.9g}")  # 0.1 + 0.2 is no more than 0.3
 
     def _sized(self) -> tuple[str, str, float]:
         """Return litres or kilograms, of area or water, and how many by hectare or litre."""

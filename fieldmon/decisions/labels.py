@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from fieldmon.decisions.doses import Dose
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.import_report import Imported, seen
+from fieldmon.io.options import Upload, source_name
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.text import decode
 from fieldmon.io.parse.values import could_be_thousands, number
@@ -154,7 +155,7 @@ def label_for(
     )  # fmt: skip
 
 
-def read_labels(path: Path) -> Imported[tuple[ProductLabel, ...]]:
+def read_labels(source: Path | Upload) -> Imported[tuple[ProductLabel, ...]]:
     """Return the labels of a table that the user filled in: CSV with a header, see `COLUMNS`.
 
     Raises
@@ -163,35 +164,37 @@ def read_labels(path: Path) -> Imported[tuple[ProductLabel, ...]]:
         If the file cannot be read, has no column for the product, or a line is no label: which
         line, and why.
     """
+    name = source_name(source)
     try:
-        text, messages = decode(path.read_bytes())
+        data = source.data if isinstance(source, Upload) else source.read_bytes()
     except OSError as error:
-        raise FileProblem(f"{path} must be readable, but it is not ({error.strerror}).") from error
+        raise FileProblem(f"{name} must be readable, but it is not ({error.strerror}).") from error
+    text, messages = decode(data)
     lines = [line for line in text.splitlines() if not line.startswith("#")]
     head = lines[0] if lines else ""
     delimiter = max(",;\t", key=head.count)
     table = csv.reader(lines, delimiter=delimiter)
     names = next(table, [])
-    at = _columns(path, names)
-    unread = [name for k, name in enumerate(names) if k not in at.values() and name.strip()]
+    at = _columns(name, names)
+    unread = [own for k, own in enumerate(names) if k not in at.values() and own.strip()]
     if unread:
         messages = [*messages, seen(f"Columns that say nothing of labels: {', '.join(unread)}.")]
     made: list[ProductLabel] = []
     for line, cells in enumerate(table, 2):
         said = {role: cells[k].strip() for role, k in at.items() if k < len(cells)}
         if any(said.values()):
-            made.append(_label(said, f"{path.name}, line {line}"))
+            made.append(_label(said, f"{name}, line {line}"))
     if not made:
-        raise FileProblem(f"{path.name} must hold a label or more, but it holds none.")
+        raise FileProblem(f"{name} must hold a label or more, but it holds none.")
     if len(made) > _MOST_LINES:
-        raise FileProblem(f"{path.name} may hold {_MOST_LINES} labels, but it holds {len(made)}.")
-    _refuse_two_of_one(path, made)
+        raise FileProblem(f"{name} may hold {_MOST_LINES} labels, but it holds {len(made)}.")
+    _refuse_two_of_one(name, made)
     return Imported(tuple(dict.fromkeys(made)), tuple(messages))
 
 
-def _columns(path: Path, names: list[str]) -> dict[str, int]:
+def _columns(name: str, names: list[str]) -> dict[str, int]:
     """Return which column says what."""
-    called = {plain(name): k for k, name in reversed(list(enumerate(names)))}
+    called = {plain(column): k for k, column in reversed(list(enumerate(names)))}
     at = {
         role: called[word]
         for role, words in _CALLED.items()
@@ -200,7 +203,7 @@ def _columns(path: Path, names: list[str]) -> dict[str, int]:
     }
     if "product" not in at:
         raise FileProblem(
-            f"{path.name}: a label table must have a column product, and may have "
+            f"{name}: a label table must have a column product, and may have "
             f"{', '.join(list(COLUMNS)[1:])}; but it has {', '.join(names) or 'none'}."
         )
     return at
@@ -249,7 +252,7 @@ def _whole(said: Mapping[str, str], role: str) -> int | None:
     return None if value is None else int(value)
 
 
-def _refuse_two_of_one(path: Path, made: list[ProductLabel]) -> None:
+def _refuse_two_of_one(name: str, made: list[ProductLabel]) -> None:
     """Raise `FileProblem` where two lines say different things of one product, crop and pest."""
     first: dict[tuple[str, str, str], ProductLabel] = {}
     for one in made:
@@ -258,7 +261,7 @@ def _refuse_two_of_one(path: Path, made: list[ProductLabel]) -> None:
             differ = [f.name for f in fields(one) if getattr(one, f.name) != getattr(known, f.name)]
             of = " on ".join(part for part in (one.product, one.crop) if part)
             raise FileProblem(
-                f"{path.name}: two lines are about {of}, and differ in {', '.join(differ)}. Which "
+                f"{name}: two lines are about {of}, and differ in {', '.join(differ)}. Which "
                 "holds? Leave one of them, or name the crop or the pest of each."
             )
 

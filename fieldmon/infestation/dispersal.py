@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 # seconds a cell of a sending plant's kernel, and a row of it; and of the transforms a cell and
-# doubling (measured, see docs/benchmarks: only which way is quicker hangs on it)
-_CELL_S, _ROW_S, _FFT_S = 0.22e-9, 5e-9, 0.5e-9
+# doubling, and at least (measured, see docs/benchmarks: only which way is quicker hangs on it)
+_CELL_S, _ROW_S, _FFT_S, _FFTS_S = 0.22e-9, 5e-9, 0.5e-9, 7e-5
 # kernels of a plot that are kept: winds change
 _KEPT = 64
 
@@ -82,7 +82,8 @@ class Dispersal:
         rows, columns = np.minimum(self.shares.shape, self.cells.shape)
         room = self._padded[0] * self._padded[1]
         sum_s = np.count_nonzero(sent) * rows * (_ROW_S + _CELL_S * columns)
-        near = self.by_sum(sent) if sum_s < _FFT_S * room * np.log2(room) else self.by_fft(sent)
+        fft_s = _FFTS_S + _FFT_S * room * np.log2(room)
+        near = self.by_sum(sent) if sum_s < fft_s else self.by_fft(sent)
         if self.long_share == 0.0:
             return near
         anywhere = self.long_share * sent.sum() / len(sent)
@@ -181,9 +182,10 @@ def settle(
 def _settle(landed: Floats, key: np.uint64, turn: int, after: NDArray[np.bool_]) -> None:
     n = after.size
     for i in range(n):
-        # a coin is drawn only where something lands
-        if landed[i] > 0.0 and not after[i]:
-            after[i] = coin(key, turn * n + i) < -np.expm1(-landed[i])
+        if not after[i]:
+            # 1 - exp(-x) is never above x, and most coins are: few have to ask for it
+            drawn = coin(key, turn * n + i)
+            after[i] = drawn < landed[i] and drawn < -np.expm1(-landed[i])
 
 
 @loop

@@ -203,8 +203,8 @@ def _groups_in_a_row(said: list[_Said], units: Units) -> Iterator[Caution]:
                 if (uses := int(plants.max(initial=0))) > MOST_IN_A_ROW:
                     n = int(np.count_nonzero(plants > MOST_IN_A_ROW))
                     sentence = worded(
-                        "{product} on {day} is use {n} of mode-of-action group {group} in a row "
-                        "on {plants}: take another group, or mites become resistant.",
+                        "Use {n} of mode-of-action group {group} in a row on {plants}: {product} "
+                        "on {day}. Take another group, or mites become resistant.",
                         n=uses, group=group, plants=counted(n, "plant"), **_named(one, units),
                     )  # fmt: skip
                     yield Caution("group", sentence, one.batch)
@@ -229,8 +229,7 @@ def _uses(said: list[_Said], units: Units) -> Iterator[Caution]:
         most, n = label.max_uses, int(count[plants].max(initial=0))
         if most is not None and n > most:
             sentence = worded(
-                "{product} on {day} is use {n} in this season on {plants}, but its label allows "
-                "{most}.",
+                "Use {n} in this season on {plants}: {product} on {day}. Its label allows {most}.",
                 n=n, plants=counted(int(np.count_nonzero(count[plants] > most)), "plant"),
                 most=figure(most), **_named(one, units),
             )  # fmt: skip

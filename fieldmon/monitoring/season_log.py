@@ -193,11 +193,14 @@ def _plot_state(db: sqlite3.Connection) -> str:
 
 def _batch_state(db: sqlite3.Connection, number: int) -> str:
     """Return the digest of a batch: what was recorded, by whom, and what of it was undone."""
-    inspected = "SELECT digest, undone, coalesce(who, '') FROM inspections WHERE batch = ?"
-    treated = "SELECT digest, undone, '' FROM treatments WHERE batch = ?"
     own = db.execute("SELECT at, kind, source, who FROM batches WHERE fid = ?", (number,))
-    rows = [row for sql in (inspected, treated) for row in db.execute(sql, (number,))]
-    return _digest([*own, *sorted(rows, key=repr)])
+    rows = db.execute(
+        "SELECT digest || '|' || undone || '|' || coalesce(who, '') FROM inspections "
+        "WHERE batch = ? UNION ALL SELECT digest || '|' || undone FROM treatments WHERE batch = ? "
+        "ORDER BY 1",
+        (number, number),
+    )
+    return _digest([*own, tuple(row for (row,) in rows)])
 
 
 def _digest(rows: Iterable[tuple[object, ...]]) -> str:
@@ -238,24 +241,16 @@ def refuse_changed(
     for fid, content, mark in rows:
         number += 1
         if fid != number:
-            raise _changed(number, "is missing, or stands elsewhere")
-        if mark != _chained(before, str(content)) or not _is_entry(content, number):
-            raise _changed(number, "is not what was written")
+            raise _changed(number, worded("is missing, or stands elsewhere"))
+        if mark != _chained(before, str(content)):
+            raise _changed(number, worded("is not what was written"))
         before = mark
     head = _head(db)
     if head[0] > number:
-        raise _changed(number + 1, "is missing, and whatever came after it")
+        raise _changed(number + 1, worded("is missing, and whatever came after it"))
     if head != (number, before):
-        raise _changed(number, "is not the last that was written")
+        raise _changed(number, worded("is not the last that was written"))
     return number, before
-
-
-def _is_entry(content: object, number: int) -> bool:
-    try:
-        said = json.loads(str(content))
-    except ValueError:
-        return False
-    return isinstance(said, dict) and said.get("entry") == number
 
 
 def _changed(number: int, how: str) -> FileProblem:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, dataclass, field
 from datetime import date, time
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -106,9 +107,7 @@ class MonitoringSettings:
 
     def living(self) -> PestInWeather | None:
         """Return the pest in its weather, day by day; None: no pest was named."""
-        if self.pest is None:
-            return None
-        return PestInWeather(self.pest, self.weather, self.begins)
+        return None if self.pest is None else _living(self.pest, self.weather, self.begins)
 
     def decides(self) -> Sampler:
         """Return the sampler; raise `SettingError` if there is none of that name."""
@@ -153,6 +152,12 @@ class MonitoringSettings:
     def date(self, day: int) -> date:
         """Return the date of a day."""
         return (np.datetime64(self.begins, "D") + day).astype(date)  # type: ignore[no-any-return]
+
+
+@lru_cache(maxsize=4)
+def _living(pest: Pest, weather: Weather | None, begins: date) -> PestInWeather:
+    """Return a pest in its weather, made once: a year of hours takes half a second to lay out."""
+    return PestInWeather(pest, weather, begins)
 
 
 def seconds(at: time) -> float:

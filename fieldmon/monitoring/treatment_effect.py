@@ -113,8 +113,8 @@ class TreatmentEffect:
             )  # fmt: skip
         said = [
             worded(
-                "{product} on {day}: of {plants} inspected before and after, {before} were found "
-                "infested before and {after} after.",
+                "After {product} on {day}: of {plants} inspected before and after, {before} were "
+                "found infested before and {after} after.",
                 product=product, day=self.day, plants=counted(self.before.inspected, "plant"),
                 before=self.before.sentence(), after=self.after.sentence(),
             )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from datetime import date, datetime
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 from zoneinfo import ZoneInfo
 
@@ -120,12 +121,17 @@ class Weather:
 
     def local_days(self) -> NDArray[np.datetime64]:
         """Return the local date on which each entry begins, ``(n,)`` datetime64[D]."""
+        return self._local_days
+
+    @cached_property
+    def _local_days(self) -> NDArray[np.datetime64]:
+        # a year of hours takes a hundredth of a second, and is asked for again and again
         if not self.zone:
             return self.at.astype("datetime64[D]")
         zone = ZoneInfo(self.zone)
         seconds = self.at.astype("datetime64[s]").astype(np.int64)
         days = [datetime.fromtimestamp(int(one), zone).date() for one in seconds]
-        return np.array(days, "datetime64[D]")
+        return read_only(np.array(days, "datetime64[D]"))
 
     def by_day(self) -> Iterator[tuple[date, Weather]]:
         """Yield each local date and what there is of it."""

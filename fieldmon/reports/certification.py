@@ -33,13 +33,13 @@ if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.compute.units import Units
-    from fieldmon.monitoring import Caution, KeptTreatment, Season
+    from fieldmon.monitoring import Caution, KeptTreatment, LogEntry, Season
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
 
 # as many letters as a value beside its name may have, and a line of sentences; millimetres that
 # lines, titles and a page take up, a little more than they do
-_SHORT, _LINE_LETTERS = 30, 88
-_ROW_MM, _LINE_MM, _TITLE_MM, _PAGE_MM = 4.1, 4.6, 9.0, 236.0
+_SHORT, _LINE_LETTERS = 30, 100
+_ROW_MM, _LINE_MM, _TITLE_MM, _PAGE_MM = 4.1, 3.8, 9.0, 240.0
 _DAYS_A_PAGE = 92
 
 
@@ -53,17 +53,24 @@ class _PlotRecord:
     treatments: tuple[KeptTreatment, ...]
     cautions: tuple[Caution, ...]
     effects: tuple[TreatmentEffect, ...]
+    log: tuple[LogEntry, ...]
+    wrong: str
 
     @classmethod
     def of(cls, season: Season, until: date | None, units: Units) -> _PlotRecord:
         last = season.last_date()
         on = last if until is None else until
         done = tuple(one for one in season.treatments() if one.on <= on)
-        return cls(season, on, units, done, season.cautions(on, units), season.effects(on, units))
+        beware, told = season.cautions(on, units), season.effects(on, units)
+        try:
+            log, wrong = season.log(), " ".join(season.held_to_log())
+        except FieldmonError as changed:
+            log, wrong = (), str(changed)
+        return cls(season, on, units, done, beware, told, log, wrong)
 
     @property
     def name(self) -> str:
-        return words.isolated(self.season.plot.field.name)
+        return self.season.plot.field.name
 
     def inspected(self) -> tuple[int, int]:
         """Return how many inspections there were, and finds among them."""
@@ -74,7 +81,7 @@ class _PlotRecord:
         """Return what was advised last, up to a treatment's day; empty: nothing."""
         said = [
             entry.what
-            for entry in self.season.log()
+            for entry in self.log
             if entry.kind == "advised" and entry.what["date"] <= str(one.on)
         ]
         return f"{said[-1]['said']} ({said[-1]['date']})" if said else ""
@@ -210,11 +217,12 @@ def _parts(table: Table, most: int) -> Iterator[Table]:
 
 
 def _cautions(records: list[_PlotRecord]) -> list[str]:
-    return [
-        worded("{plot}: {said}", plot=one.name, said=caution.sentence)
-        for one in records
-        for caution in one.cautions
-    ]
+    return [_of_plot(one, caution.sentence, records) for one in records for caution in one.cautions]
+
+
+def _of_plot(one: _PlotRecord, said: str, records: list[_PlotRecord]) -> str:
+    """Return a sentence with its plot before it, where there are several."""
+    return worded(words.CERT_ON_PLOT, plot=one.name, said=said) if len(records) > 1 else said
 
 
 def _unsaid(records: list[_PlotRecord]) -> list[str]:
@@ -238,15 +246,12 @@ def _unsaid(records: list[_PlotRecord]) -> list[str]:
 
 
 def _log(one: _PlotRecord) -> str:
-    try:
-        log, wrong = one.season.log(), one.season.held_to_log()
-    except FieldmonError as changed:
-        return worded("{plot}: {said}", plot=one.name, said=str(changed))
-    if wrong:
-        return worded("{plot}: {said}", plot=one.name, said=" ".join(wrong))
+    """Return whether the past is what was written, and the digest to keep."""
+    if one.wrong:
+        return worded(words.CERT_ON_PLOT, plot=one.name, said=one.wrong)
     return worded(
-        words.CERT_LOG_HOLDS, plot=one.name, n=figure(len(log)),
-        since=one.units.day(log[0].at[:10]), digest=log[-1].digest,
+        words.CERT_LOG_HOLDS, plot=one.name, n=figure(len(one.log)),
+        since=one.units.day(one.log[0].at[:10]), digest=one.log[-1].digest,
     )  # fmt: skip
 
 
@@ -284,7 +289,7 @@ def _card(number: int, one: _PlotRecord, treatment: KeptTreatment) -> tuple[Bloc
     more = [caution.sentence for caution in one.cautions if caution.batch == treatment.batch]
     more += [effect.sentence() for effect in one.effects if effect.batch == treatment.batch]
     title = worded(
-        "{number}. {plot}, {day}", number=number, plot=one.name, day=one.units.day(treatment.on)
+        words.CERT_TITLE_OF, number=number, plot=one.name, day=one.units.day(treatment.on)
     )
     table = Table(title, words.CERT_COLUMNS, short, (0.4, 0.6), flow=2, left=(0, 1), whole=True)
     below = (*long, *more)

@@ -178,6 +178,7 @@ class _Page:
         if isinstance(block, Paragraph):
             return self._paragraph_high(block)
         if isinstance(block, Listing):
+            self._font(8.0)
             high = (self._text_high(said, self.wide - 5.0, 8.0) + 0.8 for said in block.sentences)
             return _titled(block.title) + sum(high)
         return 0.0

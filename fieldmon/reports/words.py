@@ -147,9 +147,13 @@ CERT_CAUTIONS, CERT_CAUTIONS_NONE = "To beware of", "Nothing."
 CERT_PLOTS = "Plots"
 CERT_PLOT_COLUMNS = ("plot", "area", "from", "to", "treatments", "inspected", "found")
 CERT_UNSAID, CERT_UNSAID_NONE = "Asked for and not said", "Nothing: every application is complete."
-CERT_MISSING = "{plot}, {day}: {what}."
+# a name at the head of a line would turn the line's direction where it is read from the right
+CERT_ON_PLOT, CERT_TITLE_OF = "On {plot}: {said}", "{number}. Treatment of {plot}, {day}"
+CERT_MISSING = "On {plot}, {day}: {what}."
 CERT_LOG = "Log"
-CERT_LOG_HOLDS = "{plot}: {n} entries since {since}, the chain holds. The last digest is {digest}."
+CERT_LOG_HOLDS = (
+    "On {plot}: {n} entries since {since}, the chain holds. The last digest is {digest}."
+)
 CERT_MEANINGS = (
     "Each entry of the log has a digest of itself and of all before it: keep the last one.",
     "Whoever keeps it can tell later whether the past was changed: the log must still hold it.",

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.plot.field import Field
     from fieldmon.plot.layout import Planting
     from fieldmon.simulation.worker import ChunkSeasons, Setting
@@ -47,18 +48,23 @@ class StudyPlot:
         Records on it, from which the first morning's chances follow.
     day
         The day they are seen from.
+    living
+        The pest, in the weather of the season's days; None: nights are as the levels have them.
     """
 
     field: Field
     planting: Planting
     observations: Observations
     day: np.datetime64
+    living: PestInWeather | None = None
 
     @cached_property
     def digest(self) -> str:
         """Return what tells this plot and its records from any others."""
         parts = (*self.field.told, *vars(self.observations).values())
-        return digest(*parts, _as_written(self.planting), str(self.day), length=_DIGITS)
+        # unsaid, it leaves a plot what it was before pests could be named
+        living = () if self.living is None else _living_parts(self.living)
+        return digest(*parts, _as_written(self.planting), str(self.day), *living, length=_DIGITS)
 
     @cached_property
     def about_plants(self) -> int:
@@ -171,6 +177,12 @@ def _seasons(sampler: str, n_plants: int, n_days: int) -> int:
     """Return how many seasons take about `_CHUNK_S`."""
     day_s = _S_PER_DAY + n_plants * kind_of(sampler).s_per_plant_day
     return math.ceil(_CHUNK_S / (n_days * day_s))
+
+
+def _living_parts(living: PestInWeather) -> tuple[object, ...]:
+    """Return what tells a pest in its weather from any other."""
+    weather = () if living.weather is None else tuple(vars(living.weather).values())
+    return (living.pest, str(living.begins), *weather)
 
 
 def _as_written(settings: object) -> bytes:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     Night = Callable[[PlantGrid, NDArray[np.bool_], np.uint64], NDArray[np.bool_]]
 
 
-class Insects(Protocol):
+class PlotInsects(Protocol):
     """What lives on a plot, from morning to morning."""
 
     @property

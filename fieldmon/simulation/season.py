@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Sampler
-    from fieldmon.simulation.insects import Insects
+    from fieldmon.simulation.insects import PlotInsects
     from fieldmon.simulation.start import Start
     from fieldmon.simulation.treating import TreatmentRule
 
@@ -90,7 +90,7 @@ class SeasonSettings:
             return self.pests(grid, infested, key)
         return night(grid, infested, self.spread, key)
 
-    def insects(self, grid: PlantGrid, infested: NDArray[np.bool_]) -> Insects:
+    def insects(self, grid: PlantGrid, infested: NDArray[np.bool_]) -> PlotInsects:
         """Return what lives on a plot where plants ``(n,)`` are infested on the first morning."""
         if self.pest is not None:
             return PestInsects(grid, infested, self.pest)

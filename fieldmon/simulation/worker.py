@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FieldmonError
+from fieldmon.infestation.pest_prior import prior_for
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.plot import Plot
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.simulation.design import Combination, StudyPlot
     from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.team_season import Team
@@ -40,6 +42,24 @@ class RefusedPlot(NamedTuple):
     why: str
 
 
+class LaidPlot(NamedTuple):
+    """A plot ready to be simulated on.
+
+    Parameters
+    ----------
+    plot
+        Its plants.
+    chance
+        ``(n,)`` of infestation on the first morning.
+    living
+        The pest in its weather; None: nights are as the levels have them.
+    """
+
+    plot: Plot
+    chance: NDArray[np.float64]
+    living: PestInWeather | None = None
+
+
 ChunkSeasons = list[dict[str, Any]] | RefusedPlot
 """A row a season, see `results.SCHEMA`."""
 
@@ -52,30 +72,32 @@ def simulate_chunk(setting: Setting, seeds: range, n_days: int) -> ChunkSeasons:
     """
     of, levels = setting
     try:
-        plot, chance = _laid(of.digest, _Unhashed(of))
+        laid = _laid(of.digest, _Unhashed(of))
     except FieldmonError as error:
         return RefusedPlot(of.field.name, str(error))
-    rows = []
+    rows, plot = [], laid.plot
     for seed in seeds:
-        season = simulated_season((plot, chance), Robot(), levels, seed, n_days)
+        season = simulated_season(laid, Robot(), levels, seed, n_days)
         about = {"plot": plot.field.name, **vars(levels), "seed": seed, "days": n_days}
         rows.append(about | {"plants": len(plot.grid)} | _measures(season))
     return rows
 
 
 def simulated_season(
-    prepared: tuple[Plot, NDArray[np.float64]],
+    laid: LaidPlot,
     robot: Robot,
     levels: Combination,
     seed: int,
     n_days: int,
     team: Team = ONE,
 ) -> SeasonMetrics:
-    """Return what one season comes to, on a plot with its chances of infestation ``(n,)``."""
-    (plot, chance), streams = prepared, RandomStreams(seed)
+    """Return what one season comes to, on a plot with its chances of infestation."""
+    plot, chance, living = laid
+    streams = RandomStreams(seed)
     start = season_start(plot.grid, chance, levels.infested, streams)
-    settings = SeasonSettings(n_days=n_days, spread=Spread(levels.spread))
+    settings = SeasonSettings(n_days=n_days, spread=Spread(levels.spread), pest=living)
     robot = replace(robot, hours=levels.hours, look_s=levels.look_s)
+    robot = robot if living is None else living.pest.seen_by(robot)
     decides = sampler(levels.sampler)
     return season_metrics(team.days((plot, robot), decides, start, settings, streams))
 
@@ -94,11 +116,14 @@ class _Unhashed:
 
 
 @lru_cache(maxsize=_KEPT)
-def _laid(digest: str, of: _Unhashed) -> tuple[Plot, NDArray[np.float64]]:  # noqa: ARG001 - the key
+def _laid(digest: str, of: _Unhashed) -> LaidPlot:  # noqa: ARG001 - the key
     """Return a plot with its plants, and their chances of infestation."""
     plot = Plot.of(of.plot.field, of.plot.planting)
-    records, day = of.plot.observations, of.plot.day
-    return plot, prior_chance(plot.grid, plot.field, records, day, PriorSettings())
+    records, day, living = of.plot.observations, of.plot.day, of.plot.living
+    prior = PriorSettings()
+    if living is not None:
+        prior = prior_for(prior, living.pest, living.weather, living.begins)
+    return LaidPlot(plot, prior_chance(plot.grid, plot.field, records, day, prior), living)
 
 
 def _measures(season: SeasonMetrics) -> dict[str, Any]:

@@ -25,6 +25,8 @@ def test_samplers_are_compared_on_a_plot_and_the_seasons_kept(run, tmp_path):
         (["--sampler", "best"], "best"),
         (["--infested", "2"], "between 0 and 1"),
         (["--date", "today"], "YYYY-MM-DD"),
+        (["--pest", "mote"], "one of thesis, spider-mite"),
+        (["--pest", "thesis", "--spread", "0.2"], "--spread goes without --pest"),
     ],
 )
 def test_bad_words_are_a_sentence(run, words, says):

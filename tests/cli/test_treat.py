@@ -41,3 +41,63 @@ def test_only_the_area_that_was_treated_is_cleaner(run, season, tmp_path):
     # clean neighbours may be taken for cleaner, never for less clean
     assert (after[~inside] <= before[~inside] + 1e-12).all()
     assert np.median(after[~inside] / before[~inside]) == pytest.approx(1.0, abs=0.01)
+
+
+def test_what_was_applied_is_kept_and_what_to_beware_of_is_said(run, season, tmp_path):
+    (tmp_path / "labels.csv").write_text(
+        "product,max dose,unit,waiting days,re-entry hours,IRAC\nAcarol,0.5,l/ha,7,12,6\n"
+    )
+    run("labels", season, "labels.csv")
+    run("change", season, "--harvest", "2026-11-05", "--who", "Ann")
+    words = ["--efficacy", "0.8", "--rows", "1-2", "--product", "Acarol", "--dose", "0.6 l/ha"]
+    words += ["--ended", "09:30", "--operator", "Ann", "--reason", "mites", "--date", BEGINS]
+    code, out, err, _ = run("treat", season, *words)
+    assert code == 0, err
+    assert "Enter there from 2026-11-02 21:30 on (Asia/Jerusalem)." in out
+    assert "Harvest there from 2026-11-10 on." in out
+    assert "beware: Harvest on 2026-11-05 is too soon after Acarol" in err
+    assert "beware: The dose of Acarol on 2026-11-02, 0.6 l/ha, is more than its label" in err
+    (one,) = Season(season).treatments()
+    lines = Season(season).label.line
+    assert np.array_equal(one.place.plants, np.isin(lines, [1, 2]))
+    _, out, _, _ = run("status", season, "--date", BEGINS)
+    assert "harvest                from 2026-11-10 on, after the treatment of 2026-11-02" in out
+    assert "beware                 Harvest on 2026-11-05 is too soon" in out
+
+
+def test_zones_of_a_decision_are_the_area_without_the_rest_of_the_plot(run, season):
+    code, _, err, _ = run("decide", season, "--threshold", "5%", "--per-ha", "200", "-o", "z.gpkg")
+    assert code == 0, err
+    run("treat", season, "--efficacy", "0.8", "--area", "z.gpkg", "--date", BEGINS)
+    (one,) = Season(season).treatments()
+    zones = gpd.read_file("z.gpkg")
+    sprayed = shapely.union_all(zones[zones["RATE"] > 0].geometry)
+    inside = shapely.contains_xy(sprayed, Season(season).plot.grid.lonlat())
+    assert 0 < inside.sum() < len(inside)
+    assert np.array_equal(one.place.plants, inside)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--dose", "much"], "--dose must be a number with its unit"),
+        (["--dose", "2 buckets"], "The unit of a dose must be"),
+        (["--rows", "three"], "--rows must be rows such as 3-5,8"),
+        (["--rows", "999"], "but --rows says 999"),
+        (["--rows", "1", "--area", "a.geojson"], "not both"),
+        (["--irac", "sulphur"], "must be one of IRAC"),
+        (["--ended", "9"], "--ended must be a time"),
+        (["--waiting-days", "-2"], "A waiting period must be"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_nothing_is_noted(run, season, words, said):
+    code, _, err, _ = run("treat", season, "--efficacy", "0.8", "--date", BEGINS, *words)
+    assert code == 2
+    assert said in " ".join(err.split())
+    assert Season(season).treatments() == ()
+
+
+def test_without_an_efficacy_it_is_what_the_season_learnt_or_asked_for(run, season):
+    code, _, err, _ = run("treat", season, "--product", "soap", "--date", BEGINS)
+    assert code == 2
+    assert "How well a treatment works must be said" in " ".join(err.split())

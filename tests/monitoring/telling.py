@@ -50,8 +50,9 @@ def without_records(path):
         triggers = db.execute("SELECT name FROM sqlite_master WHERE type = 'trigger'").fetchall()
         for (name,) in triggers:
             db.execute(f"DROP TRIGGER {name}")
-        for name in ("labels", "log", "mornings"):
+        for name in ("labels", "log", "mornings", "photos_asked"):
             db.execute(f"DROP TABLE {name}")
+            db.execute("DELETE FROM gpkg_geometry_columns WHERE table_name = ?", (name,))
             db.execute("DELETE FROM gpkg_contents WHERE table_name = ?", (name,))
         db.execute("DROP INDEX inspections_batch")
         older = {row[1] for row in db.execute("PRAGMA table_info(treatments)")}
@@ -71,7 +72,7 @@ def without_phones(path):
         for view in views:
             db.execute(f"DROP VIEW {view}")
         for table in (*ours, "gpkgext_relations", "gpkg_extensions"):
-            db.execute(f"DROP TABLE {table}")
+            db.execute(f"DROP TABLE IF EXISTS {table}")
         for name in (*ours, *views):
             db.execute("DELETE FROM gpkg_geometry_columns WHERE table_name = ?", (name,))
             db.execute("DELETE FROM gpkg_contents WHERE table_name = ?", (name,))

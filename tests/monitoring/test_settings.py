@@ -2,6 +2,7 @@
 
 from datetime import date, time
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,8 +10,10 @@ from hypothesis import strategies as st
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.infestation.spread import Spread
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
+from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.robot import Robot, Viewpoints
 
 BEGINS = date(2026, 4, 6)
@@ -90,3 +93,13 @@ def test_a_season_begun_before_finds_were_traced_goes_on_as_it_did():
     assert parts != before
     assert MonitoringSettings(BEGINS).belief.traces
     assert not from_json(before).belief.traces
+
+
+def test_a_pest_in_its_weather_is_laid_out_once_for_a_season():
+    at = np.datetime64("2026-11-18", "s") + 86_400 * np.arange(2)
+    weather = weather_of(at, DAY_S, temperature_c=np.array([20.0, 21.0]))
+    chosen = MonitoringSettings(date(2026, 11, 18), pest=shipped_pest("thesis"), weather=weather)
+    again = from_json(as_json(chosen))
+    assert again.living() is from_json(as_json(chosen)).living()
+    assert again.pest == chosen.pest
+    assert MonitoringSettings(date(2026, 11, 18)).living() is None

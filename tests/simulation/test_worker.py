@@ -1,11 +1,16 @@
 """A chunk of a study is seasons of the simulator, and nothing else."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
 from fieldmon.infestation.spread import Spread
+from fieldmon.io.readers.pest_file import shipped_pest
+from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.layout import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
@@ -14,7 +19,7 @@ from fieldmon.simulation.design import Combination
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
-from fieldmon.simulation.worker import RefusedPlot, simulate_chunk, simulated_season
+from fieldmon.simulation.worker import LaidPlot, RefusedPlot, simulate_chunk, simulated_season
 from tests.simulation.study_plots import DAY, plot
 
 LEVELS = Combination("dynamic", 3.0, 40.0, 0.05, 0.1)
@@ -22,12 +27,13 @@ LEVELS = Combination("dynamic", 3.0, 40.0, 0.05, 0.1)
 
 def laid():
     one = Plot.of(plot().field, Planting())
-    return one, prior_chance(one.grid, one.field, Observations.none(), DAY, PriorSettings())
+    chance = prior_chance(one.grid, one.field, Observations.none(), DAY, PriorSettings())
+    return LaidPlot(one, chance)
 
 
 def test_a_season_of_a_study_is_that_of_the_simulator():
     (row,) = simulate_chunk((plot(), LEVELS), range(37, 38), 4)
-    one, chance = laid()
+    one, chance, _ = laid()
     start = Start(start_infested(chance, 0.05, RandomStreams(37).of("start")), chance)
     settings = SeasonSettings(n_days=4, spread=Spread(0.1))
     season = season_metrics(
@@ -81,8 +87,28 @@ def test_a_plot_without_room_comes_back_with_a_sentence():
 
 
 def test_records_raise_the_chance_where_they_are():
-    one, chance = laid()
+    one, chance, _ = laid()
     made = np.array(
-        [simulated_season((one, chance), Robot(), LEVELS, s, 1).new[0] for s in range(60)]
+        [simulated_season(LaidPlot(one, chance), Robot(), LEVELS, s, 1).new[0] for s in range(60)]
     )
     assert abs(made.mean() / len(one.grid) - 0.05) < 0.01
+
+
+def test_a_plot_with_a_pest_meets_that_pest_and_is_another_to_the_study():
+    """At 30 °C mites multiply four times as fast as at 15: more plants are infested."""
+    days = DAY + np.arange(-30, 10)
+
+    def at(temperature_c):
+        warm = np.full(len(days), float(temperature_c))
+        weather = weather_of(days.astype("datetime64[s]"), DAY_S, temperature_c=warm)
+        living = PestInWeather(shipped_pest("spider-mite"), weather, DAY.astype(object))
+        return replace(plot(), living=living)
+
+    cold, hot = at(13), at(30)
+    assert len({plot().digest, cold.digest, hot.digest}) == 3
+    told = Combination("naive", 0.2, 40.0, 0.05, 0.1)
+    few, many = (
+        sum(row["infestations"] for row in simulate_chunk((one, told), range(4), 6))
+        for one in (cold, hot)
+    )
+    assert many > 1.2 * few

@@ -19,7 +19,7 @@ def shown(monkeypatch):
         lines, made = [], Forecast(DAYS, DAYS // 2, DAYS * 3, weather)
         monkeypatch.setattr(st, "markdown", lines.append)
         monkeypatch.setattr(st, "caption", lines.append)
-        monkeypatch.setattr(st, "altair_chart", lambda chart, alt: lines.append(chart.to_dict()))
+        monkeypatch.setattr(st, "altair_chart", lambda chart, **_: lines.append(chart.to_dict()))
         monkeypatch.setattr(forecast.chosen_day, "forecast", lambda _: made)
         monkeypatch.setattr(forecast, "_day", lambda _: "2026-12-25")
         forecast.show(None)

@@ -1,0 +1,21 @@
+"""`fieldmon study spread`: spread foretold on mapped plots, and what was seen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def spread(
+    folder: Annotated[Path, typer.Argument(help="Folder with public maps of several dates.")],
+) -> None:
+    """Foretell mapped plots from date to date; score it beside no change and the thesis's rule.
+
+    Example: fieldmon study spread maps
+    """
+    from fieldmon.studies.map_spread import intervals_in, scores  # noqa: PLC0415
+
+    for each in intervals_in(folder):
+        typer.echo(scores(each).sentence())

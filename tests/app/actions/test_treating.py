@@ -1,0 +1,52 @@
+"""A treatment with all that a record asks, and the harvest it has to wait for."""
+
+from datetime import date
+
+from fieldmon.decisions.labels import ProductLabel
+from tests.app.driving import go, press, texts_of
+
+
+def noted(app, **said):
+    go(app, "record")
+    app.number_input(key="efficacy").set_value(80)
+    app.text_input(key="product").set_value("Acarol")
+    for key, value in said.items():
+        box = app.number_input if isinstance(value, (int, float)) else app.text_input
+        box(key=f"treat {key}").set_value(value)
+    next(b for b in app.button if b.label == "Note the treatment").click()
+    app.run()
+
+
+def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, season):
+    begins = season().settings.begins
+    go(season_app, "record")
+    table = b"product,waiting days,re-entry hours\nAcarol,7,12\n"
+    season_app.file_uploader(key="labels_file").upload("labels.csv", table, "text/csv")
+    season_app.run()
+    press(season_app, "Take these labels")
+    assert "1 label is kept" in season_app.success[0].value
+    assert season().labels() == (ProductLabel("Acarol", waiting_days=7, reentry_hours=12.0),)
+    season_app.date_input(key="harvest None").set_value(begins)
+    season_app.run()
+    assert season().settings.harvest == begins
+    noted(season_app, dose=0.5, unit="l/ha", water=800, operator="Ann", reason="mites", days=3)
+    assert not season_app.error
+    said = season_app.success[0].value
+    assert "Treatment noted." in said
+    assert "the label's counts" in said
+    assert "is too soon after Acarol" in said
+    (one,) = season().treatments()
+    assert (str(one.application.dose), one.application.operator) == ("0.5 l/ha", "Ann")
+    assert (one.application.waiting_days, one.application.reentry_hours) == (3, 12.0)
+    page = texts_of(go(season_app, "season"))
+    assert "harvest is allowed from" in page
+    assert isinstance(one.waits.harvest_from, date)
+    warned = " ".join(one.value for one in season_app.warning)
+    assert "is too soon after Acarol" in warned
+    assert "Do not enter where Acarol" in " ".join(w.value for w in go(season_app, "today").warning)
+
+
+def test_a_dose_without_a_unit_is_asked_for(season_app, season):
+    noted(season_app, dose=0.5)
+    assert "must have a number and a unit" in season_app.error[0].value
+    assert season().treatments() == ()

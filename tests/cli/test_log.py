@@ -1,0 +1,21 @@
+"""`fieldmon log`: what happened, and that it still holds."""
+
+from tests.cli.estate import BEGINS
+from tests.monitoring.test_season_log import by_hand
+
+
+def test_the_log_is_shown_and_a_changed_past_is_refused(run, season):
+    run("treat", season, "--efficacy", "0.5", "--date", BEGINS, "--operator", "Ann")
+    code, out, err, _ = run("log", season)
+    assert code == 0, err
+    assert "begins" in out
+    assert "Ann" in out
+    assert "2 entries, the chain holds; the last digest is" in out
+    by_hand(season, "UPDATE treatments SET product = 'water'")
+    code, _, err, _ = run("log", season)
+    assert code == 2
+    assert "Row 1 of the layer treatments is not what was recorded." in err
+    by_hand(season, "UPDATE log SET entry = replace(entry, 'Ann', 'Eve') WHERE fid = 2")
+    code, out, err, _ = run("log", season)
+    assert (code, out) == (2, "")
+    assert "entry 2 is not what was written" in err

@@ -1,0 +1,137 @@
+"""What to beware of after treatments: the third use in a row, and not the second."""
+
+from datetime import date, time, timedelta
+
+import numpy as np
+import pytest
+
+from fieldmon.decisions.doses import Dose
+from fieldmon.decisions.labels import ProductLabel
+from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring.cautions import RulesToKeep, cautions, harvest_from
+from fieldmon.monitoring.treatments import KeptTreatment, TreatedPlace
+from fieldmon.monitoring.waiting_periods import end_of
+from fieldmon.plot.local_clock import LocalClock
+
+BEGINS, CLOCK, ALL = date(2026, 4, 6), LocalClock("Asia/Jerusalem"), np.ones(20, bool)
+EAST, WEST = np.arange(20) < 12, np.arange(20) >= 8
+LABEL = ProductLabel("Acarol", max_dose=Dose(0.5, "l/ha"), waiting_days=7, reentry_hours=12.0,
+                     irac_groups=("6",), max_uses=2)  # fmt: skip
+
+
+def treated(day, plants=ALL, **said):
+    on = BEGINS + timedelta(day)
+    said = Application(**({"product": "Acarol", "ended": time(9)} | said))
+    return KeptTreatment(
+        day + 1, day + 1, day, on, TreatedPlace(None, plants, 1.0), 0.8, said,
+        end_of(CLOCK, on, said.ended), CLOCK,
+    )  # fmt: skip
+
+
+def found(treatments, labels=(), harvest=None, on=30):
+    rules = RulesToKeep(tuple(labels), harvest, time(6))
+    return cautions(treatments, rules, BEGINS + timedelta(on))
+
+
+def kinds(*args, **more):
+    return [(one.kind, one.batch) for one in found(*args, **more)]
+
+
+@pytest.mark.parametrize(("days", "warned"), [(6, False), (7, False), (8, True)])
+def test_a_harvest_is_too_soon_until_the_first_day_after_the_wait(days, warned):
+    # over on the 14th at 09:00 with 8 days, so the 15th is the first whole day; 13th with 7, 14th
+    said = kinds([treated(0, waiting_days=days)], harvest=date(2026, 4, 14))
+    assert said == ([("harvest", 1)] if warned else [])
+    day, one = harvest_from([treated(0, waiting_days=days)], ())
+    assert (day, one.batch) == (date(2026, 4, 7 + days), 1)
+
+
+def test_a_wait_that_nobody_said_is_asked_for_before_a_harvest_and_after_it_nothing_is():
+    late = treated(20)
+    assert kinds([treated(0), late], harvest=date(2026, 4, 14)) == [("harvest", 1)]
+    assert kinds([treated(0)]) == []
+    assert harvest_from([treated(0)], ()) is None
+
+
+@pytest.mark.parametrize(("on", "warned"), [(0, True), (1, True), (2, False)])
+def test_entry_is_warned_of_until_the_work_of_a_day_begins_after_it(on, warned):
+    one = treated(0, reentry_hours=24.0)
+    (said,) = found([one], on=on) or [None]
+    assert (said is not None) == warned
+    if said:
+        assert said.sentence == (
+            "Do not enter where Acarol was applied on 2026-04-06 before 09:00 on 2026-04-07."
+        )
+
+
+def test_the_third_use_of_a_group_in_a_row_is_warned_of_and_not_the_second():
+    three = [treated(day, irac_groups=("6",)) for day in (0, 3, 6)]
+    assert kinds(three[:2]) == []
+    assert kinds(three) == [("group", 7)]
+    assert "Use 3 of mode-of-action group 6 in a row on 20 plants" in found(three)[0].sentence
+
+
+@pytest.mark.parametrize(
+    ("between", "warned"), [(("28",), False), (("4A", "6"), True), ((), True), (("6A",), False)]
+)
+def test_another_group_between_ends_the_row_and_an_unknown_one_does_not(between, warned):
+    days = [treated(0, irac_groups=("6",)), treated(2, irac_groups=between),
+            treated(4, irac_groups=("6",)), treated(6, irac_groups=("6",))]  # fmt: skip
+    assert (("group", 7) in kinds(days)) == warned
+
+
+def test_a_row_of_uses_is_of_plants_and_not_of_the_plot():
+    zones = [treated(0, EAST, irac_groups=("6",)), treated(2, WEST, irac_groups=("6",)),
+             treated(4, EAST, irac_groups=("6",))]  # fmt: skip
+    (one,) = found(zones)
+    assert "on 4 plants" in one.sentence
+
+
+def test_a_mixture_of_a_tank_is_one_use_of_each_of_its_groups():
+    mixed = [treated(day, irac_groups=(group,)) for day in (0, 3, 6) for group in ("6", "28")]
+    assert kinds(mixed) == [("group", 7), ("group", 7)]
+    assert kinds(mixed[:4]) == []
+
+
+@pytest.mark.parametrize(
+    ("dose", "water", "said"),
+    [
+        (Dose(0.5, "l/ha"), None, None), (Dose(0.51, "l/ha"), None, "more than its label"),
+        (Dose(60, "ml/dunam"), None, "more than its label"), (Dose(0.1, "%"), 400.0, None),
+        (Dose(0.1, "%"), None, "cannot be compared"),
+        (Dose(1, "kg/ha"), None, "cannot be compared"),
+    ],
+)  # fmt: skip
+def test_a_dose_above_the_label_is_warned_of(dose, water, said):
+    told = found([treated(0, dose=dose, water_l_ha=water)], [LABEL])
+    assert [one.kind for one in told] == ([] if said is None else ["dose"])
+    assert all(said in one.sentence for one in told)
+
+
+def test_more_uses_than_the_label_allows_are_warned_of_where_they_overlap():
+    other = ("28",)
+    uses = [treated(0, irac_groups=other), treated(0, EAST, irac_groups=other)]
+    uses += [treated(3, EAST), treated(5, WEST)]
+    (one,) = found(uses, [LABEL])
+    assert (one.kind, one.batch) == ("uses", 6)
+    assert (
+        "Use 3 in this season on 4 plants: Acarol on 2026-04-11. Its label allows 2."
+        in one.sentence
+    )
+
+
+def test_a_wait_shorter_than_the_labels_is_said_and_the_labels_counts():
+    short = treated(0, waiting_days=3, reentry_hours=4.0)
+    assert kinds([short], [LABEL]) == [("waiting", 1), ("waiting", 1)]
+    assert harvest_from([short], [LABEL])[0] == date(2026, 4, 14)
+    assert harvest_from([treated(0, waiting_days=9)], [LABEL])[0] == date(2026, 4, 16)
+
+
+def test_a_product_without_a_label_is_said_where_there_is_a_table():
+    assert kinds([treated(0, product="soap")], [LABEL]) == [("label", 1)]
+    assert kinds([treated(0, product="soap")]) == []
+    assert kinds([treated(0, product="")], [LABEL]) == []
+
+
+def test_what_comes_after_the_day_is_not_looked_at():
+    assert kinds([treated(9, dose=Dose(9, "l/ha"))], [LABEL], on=8) == []

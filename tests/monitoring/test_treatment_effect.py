@@ -1,0 +1,128 @@
+"""Whether a treatment worked, as plants tell that were looked at before and after."""
+
+from datetime import date, timedelta
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
+from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring.history import History
+from fieldmon.monitoring.treatment_effect import (
+    PRIOR_PLANTS,
+    FoundShare,
+    effects,
+    learnt_efficacy,
+)
+from fieldmon.monitoring.treatments import KeptTreatment, TreatedPlace
+from fieldmon.monitoring.waiting_periods import end_of
+from fieldmon.plot.local_clock import LocalClock
+from tests.monitoring.seasons import BEGINS, a_plot
+
+GRID = a_plot().grid
+HERE = np.arange(len(GRID)) < 50
+
+
+def history(*looks, detection=0.84):
+    """Return a history of looks: day, plants, result of each."""
+    made = Inspections.none()
+    for day, plants, results in looks:
+        on = np.datetime64(BEGINS, "D") + day
+        made = made.and_those(Inspections.of(np.array(plants), np.array(results), on))
+    return History(GRID, BEGINS, None, made, detection=detection)
+
+
+def treated(day, plants=HERE, said=0.8, product="soap"):
+    on, clock = BEGINS + timedelta(day), LocalClock("UTC")
+    place = TreatedPlace(None, plants, 1.0)
+    return KeptTreatment(day, day, day, on, place, said, Application(product),
+                         end_of(clock, on, None), clock)  # fmt: skip
+
+
+def effect(past, treatments, on=60):
+    return effects(treatments, past, on)
+
+
+def test_plants_seen_before_and_after_are_counted_and_no_others():
+    past = history(
+        (1, [0, 1, 2, 3, 4, 60, 61], [FOUND, FOUND, FOUND, CLEAN, FOUND, FOUND, CLEAN]),
+        (2, [5], [SKIPPED]),
+        (5, [0, 1, 3, 5, 60, 61, 70], [CLEAN, FOUND, CLEAN, CLEAN, FOUND, FOUND, FOUND]),
+    )
+    (one,) = effect(past, [treated(3)])
+    assert (one.before, one.after) == (FoundShare(2, 3), FoundShare(1, 3))
+    assert one.elsewhere == (FoundShare(1, 2), FoundShare(2, 2))
+    assert one.cured_of == 2
+    assert effect(past, [treated(3)], on=4)[0].before.inspected == 0  # not known yet
+    assert effect(past, [treated(3)], on=2) == ()
+
+
+def test_results_from_beyond_another_treatment_or_three_weeks_tell_nothing():
+    past = history((0, [0, 1], [FOUND] * 2), (4, [1], [FOUND]), (8, [0, 1], [CLEAN] * 2),
+                   (40, [2], [CLEAN]))  # fmt: skip
+    both = [treated(2), treated(6)]
+    first, second = effect(past, both)
+    assert (first.before, first.after) == (FoundShare(1, 1), FoundShare(1, 1))
+    assert (second.before, second.after) == (FoundShare(1, 1), FoundShare(0, 1))
+    late = history((0, [2], [FOUND]), (40, [2], [CLEAN]))
+    assert effect(late, [treated(2)])[0].before.inspected == 0
+
+
+def test_a_treatment_works_after_its_days_inspections_and_the_last_before_counts():
+    past = history((1, [0], [CLEAN]), (3, [0], [FOUND]), (4, [0], [CLEAN]), (5, [0], [FOUND]))
+    (one,) = effect(past, [treated(3)])
+    assert (one.before, one.after) == (FoundShare(1, 1), FoundShare(0, 1))
+
+
+def test_without_a_plant_that_tells_it_is_what_was_said():
+    (one,) = effect(history(), [treated(3, said=0.8)])
+    assert one.efficacy == pytest.approx(0.8, abs=0.01)
+    assert "not known yet" in one.sentence()
+    assert learnt_efficacy([one], "soap") is None
+
+
+@given(st.floats(0.05, 0.95), st.integers(0, 40), st.data())
+def test_what_is_learnt_lies_between_what_was_said_and_what_was_seen(said, n, data):
+    still = data.draw(st.integers(0, n))
+    plants = list(range(n))
+    past = history(
+        (1, plants, [FOUND] * n), (5, plants, [FOUND] * still + [CLEAN] * (n - still))
+    ) if n else history()  # fmt: skip
+    (one,) = effect(past, [treated(3, said=said)])
+    seen = np.clip(1 - still / n / 0.84, 0, 1) if n else said
+    # a truncated or overlooked share bends the mean a little: by less than a plant or two
+    slack = 0.02 + 1.0 / (n + PRIOR_PLANTS)
+    assert min(said, seen) - slack <= one.efficacy <= max(said, seen) + slack
+    assert one.low <= one.efficacy <= one.high
+
+
+def test_many_plants_overrule_what_was_said():
+    plants = list(range(50))
+    looks = (1, plants, [FOUND] * 50), (5, plants, [FOUND] * 34 + [CLEAN] * 16)
+    (one,) = effect(history(*looks, detection=1.0), [treated(3, said=0.95)])
+    # nothing is overlooked: a beta prior and a binomial, whose mean is known
+    worth = PRIOR_PLANTS
+    assert one.efficacy == pytest.approx((16 + 0.95 * worth) / (50 + worth), abs=1e-3)
+    # what is overlooked looks cured
+    assert effect(history(*looks), [treated(3, said=0.95)])[0].efficacy < one.efficacy
+    assert learnt_efficacy([one], "SOAP").efficacy == one.efficacy
+    assert "told by 50 plants; 95% was said beforehand, which is worth 4 plants" in one.sentence()
+
+
+@pytest.mark.parametrize(
+    ("found", "n", "low", "high"),
+    # Clopper and Pearson at 90 %, as R's binom.test(..., conf.level = 0.9) gives them
+    [(0, 10, 0.0, 0.2589), (2, 10, 0.0368, 0.5069), (10, 10, 0.7411, 1.0), (5, 50, 0.0402, 0.1990)],
+)
+def test_the_interval_of_a_share_is_the_exact_one(found, n, low, high):
+    assert FoundShare(found, n).interval == pytest.approx((low, high), abs=2e-4)
+
+
+def test_it_is_said_in_words():
+    past = history((1, [0, 1, 60], [FOUND] * 3), (5, [0, 1, 60], [CLEAN, FOUND, FOUND]))
+    said = effect(past, [treated(3)])[0].sentence()
+    assert said.startswith("After soap on 2026-04-09: of 2 plants inspected before and after, 100%")
+    assert "Elsewhere 100% (1 of 1" in said
+    assert date(2026, 4, 9) == BEGINS + timedelta(3)

@@ -1,0 +1,119 @@
+"""The record for a certifier: complete, and honest about what nobody said."""
+
+import shutil
+from dataclasses import replace
+from datetime import time, timedelta
+
+import pytest
+
+from fieldmon.compute.units import Units
+from fieldmon.decisions.doses import Dose
+from fieldmon.decisions.labels import ProductLabel
+from fieldmon.errors import SettingError
+from fieldmon.monitoring import Application, Season
+from fieldmon.reports.certification import certification_report
+from fieldmon.reports.content import Listing, Table
+from fieldmon.reports.html import html_text
+from fieldmon.reports.pdf import pdf_bytes
+from tests.monitoring.seasons import BEGINS, a_season, some_results
+from tests.monitoring.test_season_log import by_hand
+from tests.reports.reading import texts
+
+REASON = "Spider mites on 6 % of the plants, above the threshold of 5 %; no predators on 30 leaves"
+FULL = Application(
+    "Acarol", Dose(0.6, "l/ha"), 800.0, "Ann Cohen", REASON, 3, 12.0, ("6",), time(7), time(9, 30),
+    "boom sprayer 12 m", "tomato", "spider mites", "Dr Levi",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def season(tmp_path_factory):
+    """Make a season with six treatments, one of them of which little was said."""
+    made = a_season(tmp_path_factory.mktemp("certified") / "season.gpkg")
+    made.record(some_results(made, n=12, found=[2, 3]), "monday.csv", "Ann")
+    made.keep_labels([ProductLabel("Acarol", max_dose=Dose(0.5, "l/ha"), waiting_days=7)])
+    made.advise(BEGINS, "Treat: 6 % of the plants are believed infested.", "Ben")
+    for day in range(5):
+        said = FULL if not day else replace(FULL, product="Oil", dose=None)
+        made.treat(BEGINS + timedelta(day), 0.8, application=said)
+    made.treat(BEGINS + timedelta(5), 0.5, product="soap")
+    return made
+
+
+@pytest.fixture(scope="module")
+def made(season):
+    return certification_report([season], Units())
+
+
+def cards(report):
+    """Return what each application says, by name."""
+    return [
+        dict(block.rows)
+        for sheet in report.sheets
+        if sheet.heading == "Applications"
+        for block in sheet.blocks
+        if isinstance(block, Table)
+    ]
+
+
+def test_every_field_that_globalgap_asks_for_stands_there(made):
+    first, *_, last = cards(made)
+    assert first["Product"] == "Acarol"
+    assert (first["Dose"], first["Water"], first["Area"]) == ("0.6 l/ha", "800 l/ha", "0.59 ha")
+    assert (first["Operator"], first["Authorised by"]) == ("Ann Cohen", "Dr Levi")
+    assert (first["Began and ended"], first["Time zone"]) == ("07:00–09:30", "Asia/Jerusalem")
+    assert (first["Machinery"], first["Crop"]) == ("boom sprayer 12 m", "tomato")
+    assert (first["Waiting period"], first["Harvest from"]) == ("7 days", "2026-04-14")
+    assert first["Entry from"] == "2026-04-06 21:30"
+    assert last["Operator"] == last["Dose"] == last["Waiting period"] == "not said"
+    said = " ".join(made.words())
+    assert f"Reason: {REASON}" in said
+    assert "Advised: Treat: 6 % of the plants are believed infested. (2026-04-06)" in said
+
+
+def test_it_says_what_to_beware_of_what_is_missing_and_the_last_digest(made, season):
+    said = " ".join(made.words())
+    assert "The dose of Acarol on 2026-04-06, 0.6 l/ha, is more than its label allows" in said
+    assert "2026-04-11: Dose, Crop, Operator, Authorised by, Machinery, Waiting period" in said
+    assert f"The last digest is {season.log()[-1].digest}" in said
+
+
+def test_paper_holds_every_application_and_no_page_runs_over(made, season):
+    pages = texts(pdf_bytes(made))
+    assert len(pages) == len(made.sheets)
+    text = " ".join(pages)
+    for number in range(1, 7):
+        assert f"{number}. Treatment of" in text
+    assert "more rows" not in text
+    assert season.log()[-1].digest in text
+    assert html_text(made).count("<h2>") >= 6
+
+
+def test_several_seasons_are_one_record(season, tmp_path):
+    other = Season(shutil.copy(season.path, tmp_path / "other.gpkg"))
+    other.treat(BEGINS + timedelta(6), 0.5, product="water")
+    both = certification_report([season, other], Units())
+    assert len(cards(both)) == 13
+    plots = next(b for s in both.sheets for b in s.blocks if isinstance(b, Table))
+    assert [row[4:] for row in plots.rows] == [("6", "12", "2"), ("7", "12", "2")]
+    before = certification_report([season], Units(), BEGINS + timedelta(1))
+    assert len(cards(before)) == 2
+
+
+def test_a_file_that_does_not_hold_to_its_log_says_so_in_the_record(season, tmp_path):
+    path = shutil.copy(season.path, tmp_path / "changed.gpkg")
+    by_hand(path, "UPDATE treatments SET product = 'water' WHERE fid = 1")
+    report = certification_report([Season(path)], Units())
+    logs = [
+        b for s in report.sheets for b in s.blocks if isinstance(b, Listing) and b.title == "Log"
+    ]
+    assert "Row 1 of the layer treatments is not what was recorded." in logs[0].sentences[0]
+    assert "the chain holds" not in " ".join(report.words())
+    by_hand(path, "UPDATE log SET entry = '{}' WHERE fid = 3")
+    changed = " ".join(certification_report([Season(path)], Units()).words())
+    assert "entry 3 is not what was written" in changed
+
+
+def test_a_record_is_of_a_season_or_more():
+    with pytest.raises(SettingError, match="of a season or more"):
+        certification_report([], Units())

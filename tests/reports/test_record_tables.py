@@ -1,0 +1,72 @@
+"""A season's record as tables."""
+
+import csv
+import io
+from datetime import date, time
+
+import numpy as np
+import pytest
+
+from fieldmon.decisions.doses import Dose
+from fieldmon.decisions.labels import ProductLabel
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring import Application
+from fieldmon.reports.record_tables import (
+    csv_bytes,
+    inspections_table,
+    log_table,
+    treatments_table,
+)
+from tests.monitoring.seasons import BEGINS, a_season, some_results
+
+FULL = Application("Acarol", Dose(0.4, "l/ha"), 800.0, "Ann", '=1+1 "mites"\nseen', ended=time(9))
+
+
+@pytest.fixture(scope="module")
+def season(tmp_path_factory):
+    made = a_season(tmp_path_factory.mktemp("tables") / "season.gpkg")
+    made.record(some_results(made, n=4, found=[2]), "monday.csv", "Ann")
+    made.keep_labels([ProductLabel("Acarol", waiting_days=3, reentry_hours=12.0)])
+    made.treat(BEGINS, 0.8, application=FULL)
+    return made
+
+
+def read(lines):
+    return list(csv.DictReader(io.StringIO(csv_bytes(lines).decode("utf-8-sig"), newline="")))
+
+
+def test_a_treatment_has_what_a_certifier_asks_and_the_labels_wait(season):
+    (one,) = read(treatments_table(season))
+    assert (one["plot"], one["date"], one["ended"]) == ("מטע Paran", "2026-04-06", "09:00")
+    assert (one["dose"], one["unit"], one["operator"]) == ("0.4", "l/ha", "Ann")
+    assert (one["waiting_days"], one["harvest_from"]) == ("3", "2026-04-10")
+    assert one["entry_from"] == "2026-04-06 21:00"
+    assert float(one["area_ha"]) == pytest.approx(0.5862, abs=1e-3)
+    assert int(one["plants"]) == len(season.plot.grid)
+    assert one["machinery"] == ""
+
+
+def test_words_that_a_spreadsheet_would_run_stay_words(season):
+    (one,) = read(treatments_table(season))
+    assert one["reason"].startswith("'=1+1")
+
+
+def test_inspections_and_log_are_there_line_by_line(season):
+    done = season.history.inspections
+    lines = read(inspections_table(season))
+    assert [line["result"] for line in lines].count("found") == 1
+    assert len(lines) == len(done) == 4
+    label = season.label
+    found = int(done.plant[done.result == FOUND][0])
+    (here,) = (line for line in lines if line["result"] == "found")
+    assert (int(here["row"]), int(here["plant"])) == (label.line[found], label.number[found])
+    place = [float(here["lon"]), float(here["lat"])]
+    assert place == pytest.approx(season.plot.grid.lonlat(np.array([found]))[0], abs=1e-7)
+    log = read(log_table(season))
+    assert [line["what"] for line in log] == ["begins", "seen", "labels", "treated"]
+    assert log[-1]["digest"] == season.log()[-1].digest
+
+
+def test_of_nothing_no_table_is_made():
+    assert csv_bytes([]) == b""
+    assert date(2026, 4, 6) == BEGINS

@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
 
 # least, most and step of each box
-_LIMITS: dict[str, tuple[float, float, float]] = {
+_LIMITS: dict[str, tuple[float, float, float] | tuple[int, int, int]] = {
     "decide level": (0.1, 99.0, 0.5), "decide sure": (51.0, 99.0, 1.0),
-    "decide rate": (1.0, 10_000.0, 10.0), "decide rows": (0.0, 50.0, 1.0),
+    "decide rate": (1.0, 10_000.0, 10.0), "decide rows": (0, 50, 1),
     "decide on": (0.0, 500.0, 1.0), "decide off": (0.0, 500.0, 1.0),
-    "decide ring": (0.0, 10.0, 1.0), "decide per_ha": (0.0, 1e6, 10.0),
+    "decide ring": (0, 10, 1), "decide per_ha": (0.0, 1e6, 10.0),
     "decide per_zone": (0.0, 1e5, 0.5), "decide loss": (0.0, 1e5, 0.1),
     "decide days": (0.0, 365.0, 1.0), "decide works": (1.0, 100.0, 1.0),
     "decide reserve": (0.0, 99.0, 1.0),
@@ -71,7 +71,7 @@ def _box(key: str) -> None:
     low, high, step = _LIMITS[key]
     widget_memory.show(
         st.number_input, texts.DECIDE_BOXES[key.partition(" ")[2]], low, high, step=step, key=key,
-        default=float(deciding.BEGINS[key]),
+        default=type(step)(deciding.BEGINS[key]),
     )  # fmt: skip
 
 

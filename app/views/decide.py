@@ -25,7 +25,7 @@ def show(choices: Choices) -> None:
         return
     advice = asked.advice(choices)
     plant_history.want(choices, shown.zone_map(choices, advice))
-    shown.headline(advice)
+    shown.headline(choices, advice)
     deciding.threshold()
     shown.figures(choices, advice, asked.product())
     deciding.assumed(advice)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+import shapely
 import streamlit as st
 
 from fieldmon.decisions.leaves import of_leaves
@@ -18,6 +19,7 @@ from fieldmon.reports.pdf import pdf_bytes
 from ..state import deciding, widget_memory
 from ..words import language, texts
 from ..words.language import in_words, of_error
+from . import treating
 
 if TYPE_CHECKING:
     from fieldmon.monitoring.advice import Advice
@@ -25,11 +27,11 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
 
 # least, most and step of each box
-_LIMITS: dict[str, tuple[float, float, float]] = {
+_LIMITS: dict[str, tuple[float, float, float] | tuple[int, int, int]] = {
     "decide level": (0.1, 99.0, 0.5), "decide sure": (51.0, 99.0, 1.0),
-    "decide rate": (1.0, 10_000.0, 10.0), "decide rows": (0.0, 50.0, 1.0),
+    "decide rate": (1.0, 10_000.0, 10.0), "decide rows": (0, 50, 1),
     "decide on": (0.0, 500.0, 1.0), "decide off": (0.0, 500.0, 1.0),
-    "decide ring": (0.0, 10.0, 1.0), "decide per_ha": (0.0, 1e6, 10.0),
+    "decide ring": (0, 10, 1), "decide per_ha": (0.0, 1e6, 10.0),
     "decide per_zone": (0.0, 1e5, 0.5), "decide loss": (0.0, 1e5, 0.1),
     "decide days": (0.0, 365.0, 1.0), "decide works": (1.0, 100.0, 1.0),
     "decide reserve": (0.0, 99.0, 1.0),
@@ -69,7 +71,7 @@ def _box(key: str) -> None:
     low, high, step = _LIMITS[key]
     widget_memory.show(
         st.number_input, texts.DECIDE_BOXES[key.partition(" ")[2]], low, high, step=step, key=key,
-        default=float(deciding.BEGINS[key]),
+        default=type(step)(deciding.BEGINS[key]),
     )  # fmt: skip
 
 
@@ -128,6 +130,16 @@ def files(choices: Choices, advice: Advice) -> None:
         texts.DECIDE_DOWNLOAD, lambda: treatment_map_bytes(of(), name), name, type="primary",
         key="decide download", on_click="ignore",
     )  # fmt: skip
+
+
+def treated(choices: Choices, advice: Advice) -> None:
+    """Take down that the zones were treated, and with what; what was advised is kept with it."""
+    if not len(advice.zones):
+        return
+    with st.expander(texts.DECIDE_TREATED):
+        whole = shapely.union_all(advice.outlines)
+        area = shapely.MultiPolygon(list(shapely.get_parts(whole)))
+        treating.show(choices, area, f"{advice.headline()} {advice.plot.sentence()}")
 
 
 def _report(choices: Choices, advice: Advice, product: str):  # noqa: ANN202 - a report

@@ -30,12 +30,14 @@ if TYPE_CHECKING:
 
 # more numbers than these have no room beside each other
 _MOST_NUMBERS = 200
+# who decides asks where to spray, not where to drive
+_OF_ROUTE = frozenset({"casing", "route", "arrows"})
 
 
-def headline(advice: Advice) -> None:
+def headline(choices: Choices, advice: Advice) -> None:
     """Answer the daily question in one sentence, and say what the answer rests on."""
     with st.container(key="lead"):
-        st.markdown(f"**{in_words(advice.headline())}**")
+        st.markdown(f"**{in_words(advice.headline(choices.units.of_library))}**")
     for sentence in advice.reasons():
         st.markdown(in_words(sentence))
 
@@ -93,7 +95,8 @@ def zone_map(choices: Choices, advice: Advice) -> MapContent:
     """Return the map of the chosen day with the zones on it, each with its number."""
     day = map_layers.day_map(choices, off=("records", "route", "hot"))
     places = [one for one in day.labels if one["k"] not in {"stop", "leg"}]
-    content = replace(day, labels=places, play=None)
+    below = [layer for layer in day.layers if layer.id not in _OF_ROUTE]
+    content = replace(day, labels=places, layers=below, play=None)
     key = f"zones {choices.key} {choices.revision} {choices.day} {choices.dark} {advice.asked}"
     layers = cached.layers(key, partial(_layers, advice, dark=choices.dark))
     if not layers:

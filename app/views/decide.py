@@ -8,7 +8,7 @@ import streamlit as st
 
 from ..actions import assuming, beginning, deciding
 from ..show import advice as shown
-from ..show import map_layers, plant_history
+from ..show import cautions, map_layers, plant_history
 from ..state import deciding as asked
 from ..words import texts
 
@@ -25,11 +25,13 @@ def show(choices: Choices) -> None:
         return
     advice = asked.advice(choices)
     plant_history.want(choices, shown.zone_map(choices, advice))
-    shown.headline(advice)
+    shown.headline(choices, advice)
     deciding.threshold()
     shown.figures(choices, advice, asked.product())
     deciding.assumed(advice)
     shown.zones(advice)
     deciding.files(choices, advice)
+    cautions.show(choices)
+    deciding.treated(choices, advice)
     deciding.leaves()
     assuming.show(choices)

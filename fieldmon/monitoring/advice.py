@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, worded
 from fieldmon.decisions.map_verdict import map_verdict, zone_verdicts
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
@@ -154,23 +155,24 @@ class Advice:
         """Return the area of each zone, lon/lat."""
         return outlines(self.grid, self.zones)
 
-    def headline(self) -> str:
-        """Return the daily question's answer in one sentence."""
+    def headline(self, units: Units | None = None) -> str:
+        """Return the daily question's answer in one sentence; `units` writes its area."""
         if self.verdict == LOOK_ON:
             return self._look_on()
         area = {
-            "area": self.zones.m2 / 10_000, "zones": counted(len(self.zones), "zone"),
+            "area": (units or Units()).square(self.zones.m2),
+            "zones": counted(len(self.zones), "zone"),
             "share": self.zones.m2 / self.zones.plot_m2,
         }  # fmt: skip
         if self.verdict == TREAT and self.zones.m2 >= _WHOLE * self.zones.plot_m2:
-            return worded("Treat the whole plot, {area:.2f} ha.", area=area["area"])
+            return worded("Treat the whole plot, {area}.", area=area["area"])
         if self.verdict == TREAT and len(self.zones):
-            return worded("Treat {area:.2f} ha in {zones}, {share:.0%} of the plot.", **area)
+            return worded("Treat {area} in {zones}, {share:.0%} of the plot.", **area)
         if self.verdict == TREAT:
             return worded("Treat: so much is infested, though nowhere it pays by these costs.")
         if self.above:
             return worded(
-                "Do not treat the whole plot, but {area:.2f} ha of it in {zones}, {share:.0%}.",
+                "Do not treat the whole plot, but {area} of it in {zones}, {share:.0%}.",
                 **area,
             )
         return worded("Do not treat today.")
@@ -184,9 +186,9 @@ class Advice:
             plants=counted(least, "plant"),
         )
 
-    def sentences(self) -> list[str]:
+    def sentences(self, units: Units | None = None) -> list[str]:
         """Return the answer and what it rests on, in sentences."""
-        return [self.headline(), *self.reasons(), *self.said_of_zones()]
+        return [self.headline(units), *self.reasons(), *self.said_of_zones()]
 
     def reasons(self) -> list[str]:
         """Return what the answer rests on, and the looks that it lacks."""

@@ -39,11 +39,11 @@ def advice_report(
     season: Season, on: date, advice: Advice, units: Units, product: str = ""
 ) -> Report:
     """Return the report of what is advised after a day's work."""
-    lead, *sentences = advice.sentences()
+    lead, *sentences = advice.sentences(units)
     blocks: list[Block] = [
         Paragraph(lead, lead=True),
         *map(Paragraph, sentences),
-        _figures(advice, product),
+        _figures(advice, product, units),
         *_map(season, on, advice, units),
         *([_zones(advice)] if len(advice.zones) else []),
         NoteLines(words.NOTES),
@@ -53,13 +53,13 @@ def advice_report(
     return Report(name, title, on, (Sheet(words.ADVICE_SHEET, tuple(blocks)),))
 
 
-def _figures(advice: Advice, product: str) -> KeyFigures:
+def _figures(advice: Advice, product: str, units: Units) -> KeyFigures:
     zones = advice.zones
     share = worded(words.OF_PLOT, share=zones.m2 / zones.plot_m2)
     rate = worded(words.RATE, rate=advice.asked.rate_l_ha)
     return KeyFigures(
         (
-            KeyFigure(words.AREA_SPRAYED, figure(zones.m2 / 10_000, ".2f", " ha"), share),
+            KeyFigure(words.AREA_SPRAYED, units.square(zones.m2), share),
             KeyFigure(words.PRODUCT, product or words.PRODUCT_OPEN, rate),
             KeyFigure(words.LIQUID, figure(advice.litres, ".0f", " l")),
             KeyFigure(words.INFESTED_INSIDE, figure(zones.inside, ".1f"),

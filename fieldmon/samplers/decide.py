@@ -22,7 +22,7 @@ from fieldmon.samplers.base import Sampler, Scene, Stops
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.plot.grid import Linked
+    from fieldmon.plot.grid import Linked, PlantGrid
     from fieldmon.plot.travel import TravelTable
     from fieldmon.samplers.base import WouldFind
 
@@ -45,35 +45,43 @@ class _Believed(NamedTuple):
 
 
 class _Pass(NamedTuple):
-    """Room for a pass, ``(n,)`` each: what plants weigh, the chosen, and who is seen."""
+    """Room for a pass, ``(n,)`` each: what plants weigh, the chosen, and who is seen.
+
+    And ``(rows,)`` what the plants of each row weigh together, and whether it is driven.
+    """
 
     weight: Floats
     chosen: NDArray[np.int64]
     seen: NDArray[np.bool_]
+    of_row: Floats
+    driven: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
 class Decide(Sampler):
     """Look where a look changes the verdict most: spread over the plot, denser where unforeseen.
 
-    It drives the plot in passes of some looks each, up and down in the order of the rows. The
-    looks of a pass stand as far apart as the chances of the plants between them say; each pass
-    goes between the looks of those before it. So there is a fair picture of the whole plot early,
-    and it becomes finer until the day is over or a verdict is clear.
+    It drives the plot in passes of some looks each, up and down in the order of the rows. A pass
+    drives some rows only, for the way through a row costs as much as many looks, and spreads its
+    looks along them; how dense rows and looks are is as the chances say. Each pass goes between
+    the looks of those before it. So there is a fair picture of the whole plot early, and it
+    becomes finer until the day is over or a verdict is clear.
 
     Parameters
     ----------
     looks_a_pass
         Looks in one pass over the plot (our choice: about as many as the fewest that decide).
+    apart
+        Plants between two looks of a row at least: more than a cluster is wide (our choice).
     """
 
     looks_a_pass: int = 25
+    apart: int = 20
 
     def __post_init__(self) -> None:
-        if self.looks_a_pass < 1:
-            raise SettingError(
-                f"Decide's looks_a_pass must be 1 or more, but it is {self.looks_a_pass}."
-            )
+        for name, value in vars(self).items():
+            if value < 1:
+                raise SettingError(f"Decide's {name} must be 1 or more, but it is {value}.")
 
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day."""
@@ -86,10 +94,21 @@ class Decide(Sampler):
             (grid.linked, grid.snake, would_find.view(np.uint8)),
             (
                 _Believed(chance, pairs, chance.copy(), Neighbourhood.of(n)),
-                _Pass(np.empty(n), np.empty(n, np.int64), scene.last_inspected == scene.day),
+                _Pass(
+                    np.empty(n),
+                    np.empty(n, np.int64),
+                    scene.last_inspected == scene.day,
+                    np.empty(grid.n_rows),
+                    np.empty(grid.n_rows, np.bool_),
+                ),
             ),
-            (scene.at, self.looks_a_pass, scene.robot.detects, scene.key),
+            (scene.at, self._rows(grid), scene.robot.detects, scene.key),
         )
+
+    def _rows(self, grid: PlantGrid) -> tuple[int, int]:
+        """Return the looks of a pass, and in how many rows."""
+        usual = max(1.0, len(grid) / grid.n_rows / self.apart)
+        return self.looks_a_pass, max(1, min(round(self.looks_a_pass / usual), grid.n_rows))
 
 
 @loop
@@ -98,7 +117,7 @@ def _walk(
     clock: Clock,
     plants: tuple[Linked, NDArray[np.int32], NDArray[np.uint8]],
     work: tuple[_Believed, _Pass],
-    start: tuple[int, int, float, np.uint64],
+    start: tuple[int, tuple[int, int], float, np.uint64],
     stops: Stops,
 ) -> int:
     believed, room = work
@@ -108,7 +127,7 @@ def _walk(
     first = coin(key, 0)
     while k < stops.plant.size and tries < _TRIES:
         place = (first + number * _GOLDEN) % 1.0
-        n = _choose(believed, snake, room, (looks, place, detects))
+        n = _choose(travel, (believed, room), snake, (looks, place, detects))
         if n == 0:
             break
         _turn(travel, clock, room.chosen, (at, n))
@@ -130,33 +149,60 @@ def _walk(
 
 @part
 def _choose(
-    believed: _Believed,
+    travel: TravelTable,
+    work: tuple[_Believed, _Pass],
     snake: NDArray[np.int32],
-    room: _Pass,
-    wishes: tuple[int, float, float],
+    wishes: tuple[tuple[int, int], float, float],
 ) -> int:
     """Choose the plants of a pass in the order of the rows; return how many.
 
-    One at each equal share of the weights, from a place that moves from pass to pass.
+    Rows by what their plants weigh together, from a place that moves from pass to pass; and in
+    each of them equally many plants, by what each weighs.
     """
-    looks, place, detects = wishes
+    believed, room = work
+    (looks, rows), place, detects = wishes
+    _weigh(believed, room, detects)
+    room.of_row[:] = 0.0
+    for i in range(room.weight.size):
+        room.of_row[travel.row[i]] += room.weight[i]
+    _drive_rows(room, rows, place)
     total = 0.0
+    for row in range(room.of_row.size):
+        total += 1.0 if room.driven[row] else 0.0
+    n, so_far, ahead = 0, 0.0, place
     for j in range(snake.size):
         i = snake[j]
+        row = travel.row[i]
+        if not room.driven[row] or room.weight[i] <= 0.0:
+            continue
+        so_far += room.weight[i] / room.of_row[row]
+        if so_far * looks > ahead * total:
+            room.chosen[n] = i
+            n += 1
+            ahead = max(ahead + 1.0, np.floor(so_far * looks / total - place) + 1.0 + place)
+    return n
+
+
+@part
+def _weigh(believed: _Believed, room: _Pass, detects: float) -> None:
+    """Weigh each plant by how unforeseen a look at it is; nothing where one was seen today."""
+    for i in range(room.weight.size):
         # what today's finds beside it tell of a plant is no news about the plot
         p = min(believed.chance[i], believed.morning[i])
         q = detects * p
         told = q * (1.0 - p) ** 2 * detects * p / max(q * (1.0 - q), _LEAST * _LEAST)
-        room.weight[j] = 0.0 if room.seen[i] else np.sqrt(told)
-        total += room.weight[j]
-    n, so_far, ahead = 0, 0.0, place
-    for j in range(snake.size):
-        so_far += room.weight[j]
-        if room.weight[j] > 0.0 and so_far * looks > ahead * total:
-            room.chosen[n] = snake[j]
-            n += 1
-            ahead = max(ahead + 1.0, np.floor(so_far * looks / total - place) + 1.0 + place)
-    return n
+        room.weight[i] = 0.0 if room.seen[i] else np.sqrt(told)
+
+
+@part
+def _drive_rows(room: _Pass, rows: int, place: float) -> None:
+    """Choose the rows of a pass: one at each equal share of all weights."""
+    total, so_far, ahead = room.of_row.sum(), 0.0, place
+    for row in range(room.of_row.size):
+        so_far += room.of_row[row]
+        room.driven[row] = room.of_row[row] > 0.0 and so_far * rows > ahead * total
+        while so_far * rows > ahead * total and ahead < rows:
+            ahead += 1.0
 
 
 @part

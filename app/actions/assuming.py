@@ -46,8 +46,11 @@ def _boxes_of_season(choices: Choices) -> None:
         st.caption(texts.ASSUMED_LAID)
         st.number_input(texts.BACKGROUND, 0.0, 100.0, 100 * settings.prior.background_chance, 0.5,
                         key="season_background", help=texts.BACKGROUND_HELP)  # fmt: skip
-        st.number_input(texts.SPREAD, 0.0, 100.0, 100 * settings.belief.spread.rate_per_day, 0.5,
-                        key="season_spread", help=texts.SPREAD_HELP)  # fmt: skip
+        # a pest says itself how it spreads
+        if settings.pest is None:
+            usual = 100 * settings.belief.spread.rate_per_day
+            st.number_input(texts.SPREAD, 0.0, 100.0, usual, 0.5,
+                            key="season_spread", help=texts.SPREAD_HELP)  # fmt: skip
         st.form_submit_button(texts.ASSUMED_USE, on_click=_change, args=(choices,))
 
 
@@ -56,7 +59,9 @@ def _change(choices: Choices) -> str:
     """Let a season believe otherwise, from its first morning on."""
     settings, state = choices.season.settings, st.session_state
     prior = replace(settings.prior, background_chance=state["season_background"] / 100)
-    spread = replace(settings.belief.spread, rate_per_day=state["season_spread"] / 100)
-    belief = replace(settings.belief, spread=spread)
+    belief = settings.belief
+    if settings.pest is None:
+        rate = state["season_spread"] / 100
+        belief = replace(belief, spread=replace(belief.spread, rate_per_day=rate))
     choices.season.change(replace(settings, prior=prior, belief=belief), settings)
     return texts.ASSUMED_CHANGED

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+import shapely
 import streamlit as st
 
 from fieldmon.decisions.leaves import of_leaves
@@ -18,6 +19,7 @@ from fieldmon.reports.pdf import pdf_bytes
 from ..state import deciding, widget_memory
 from ..words import language, texts
 from ..words.language import in_words, of_error
+from . import treating
 
 if TYPE_CHECKING:
     from fieldmon.monitoring.advice import Advice
@@ -128,6 +130,16 @@ def files(choices: Choices, advice: Advice) -> None:
         texts.DECIDE_DOWNLOAD, lambda: treatment_map_bytes(of(), name), name, type="primary",
         key="decide download", on_click="ignore",
     )  # fmt: skip
+
+
+def treated(choices: Choices, advice: Advice) -> None:
+    """Take down that the zones were treated, and with what; what was advised is kept with it."""
+    if not len(advice.zones):
+        return
+    with st.expander(texts.DECIDE_TREATED):
+        whole = shapely.union_all(advice.outlines)
+        area = shapely.MultiPolygon(list(shapely.get_parts(whole)))
+        treating.show(choices, area, f"{advice.headline()} {advice.plot.sentence()}")
 
 
 def _report(choices: Choices, advice: Advice, product: str):  # noqa: ANN202 - a report

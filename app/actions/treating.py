@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _TEXTS = ("operator", "reason", "machinery", "crop", "pest", "authorised_by")
 
 
-def show(choices: Choices, area: MultiPolygon | None = None) -> None:
+def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") -> None:
     """Show the form for a treatment of the open season, and note it on demand.
 
     Parameters
@@ -35,13 +35,16 @@ def show(choices: Choices, area: MultiPolygon | None = None) -> None:
         With a season.
     area
         Where it was, lon/lat, as the zones of a decision; None: on the whole plot.
+    advised
+        What was advised, for the season's log; empty: nothing.
     """
     with st.form("treatment_form", border=False):
         st.number_input(texts.TREAT_EFFICACY, 0, 100, None, 5, key="efficacy")
         st.text_input(texts.TREAT_PRODUCT, key="product")
         with st.expander(texts.TREAT_RECORD):
             _boxes()
-        st.form_submit_button(texts.TREAT_BUTTON, on_click=_treat, args=(choices, area))
+        st.form_submit_button(texts.TREAT_BUTTON, on_click=_treat,
+                              args=(choices, area, advised))  # fmt: skip
     _harvest(choices)
     with st.expander(texts.LABELS):
         _labels(choices)
@@ -85,7 +88,7 @@ def _said() -> Application:
 
 
 @notices.reporting
-def _treat(choices: Choices, area: MultiPolygon | None) -> str:
+def _treat(choices: Choices, area: MultiPolygon | None, advised: str) -> str:
     """Note a treatment; say what to beware of because of it."""
     efficacy, season = st.session_state["efficacy"], choices.season
     said = _said()
@@ -93,6 +96,8 @@ def _treat(choices: Choices, area: MultiPolygon | None) -> str:
     if efficacy is None and not said.product:
         raise SettingError(texts.TREAT_UNSAID)
     works = None if efficacy is None else efficacy / 100
+    if advised:
+        season.advise(choices.on, advised, choices.who or "")
     done = season.treat(choices.on, works, area, application=said)
     if not done.new:
         return texts.TREATED_BEFORE

@@ -148,6 +148,8 @@ PLOT: dict[str, Any] = {
                 "start": _LIST | {"description": "Plants of row k: start[k] to start[k + 1]."},
                 "row": _LIST | {"description": "Its number on the ground, from 1."},
                 "aisle": _LIST | {"description": "Rows of one number share their aisle."},
+                "side": _LIST
+                | {"description": "The aisle is left (1) or right (-1) of its plants in order."},
             },
         },
         "plants": {
@@ -179,7 +181,7 @@ DAY: dict[str, Any] = {
         "photos": {"type": "array", "items": {"type": "object"}},
         "photos_asked": {
             "type": "array",
-            "description": "Photos that somebody asks for and nobody has taken yet.",
+            "description": "Photos asked for, not taken yet, and this person's to take.",
             "items": {
                 "type": "object",
                 "properties": {

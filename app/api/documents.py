@@ -17,10 +17,9 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.infestation.observations import ABSENT, PRESENT
-from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
+from fieldmon.monitoring.day_ahead import Part, asked_of, planned_again, route_ahead, work_left_s
 from fieldmon.monitoring.derived_layers import spot_area
 from fieldmon.monitoring.photos import photos_of
-from fieldmon.monitoring.photos_asked import photos_asked
 from fieldmon.plot.local_clock import local_clock, utc_now
 
 if TYPE_CHECKING:
@@ -55,6 +54,7 @@ def plot_document(season: Season) -> tuple[str, bytes]:
             "start": grid.row_start.tolist(),
             "row": season.label.line[grid.row_start[:-1]].tolist(),
             "aisle": grid.corridor.tolist(),
+            "side": (-grid.side).tolist(),
         },
         "plants": {
             "lon": lonlat[:, 0].tolist(),
@@ -73,8 +73,7 @@ def day_document(season: Season, scout: Scout, on: date | None) -> bytes:
     part = Part(scout.rows, scout.name)
     route, history = route_ahead(season, on, part), season.history
     member = part.member(season)
-    scene = season.scene(on, who="" if member is None else member.name)
-    robot = scene.robot
+    robot = season.settings.robot if member is None else member.robot
     known = history.known(number)
     document = {
         "season": season.path.stem,
@@ -91,7 +90,7 @@ def day_document(season: Season, scout: Scout, on: date | None) -> bytes:
             "visit_s": robot.visit_s,
             "returns": robot.returns,
         },
-        "seconds_left": scene.seconds_left,
+        "seconds_left": work_left_s(season, on, part),
         "route": _route(route),
         # evening: what was found today counts
         "chance": np.round(season.evening(on) * 1000).astype(int).tolist(),
@@ -101,7 +100,7 @@ def day_document(season: Season, scout: Scout, on: date | None) -> bytes:
         "contradicting": _said(season.contradicting(on)),
         "hot_spots": _hot_spots(season, known),
         "photos": [photo._asdict() for photo in photos_of(season)],
-        "photos_asked": [one._asdict() for one in photos_asked(season)],
+        "photos_asked": [one._asdict() for one in asked_of(season, on, part)],
     }
     return _json(document)
 

@@ -32,6 +32,8 @@ _DASHES = [[1, 0], [6, 3], [2, 2]]
 _LEGEND = alt.Legend(orient="top", title=None, columns=2, labelLimit=300, symbolType="stroke",
                      symbolSize=300, symbolStrokeWidth=3, symbolOpacity=1)  # fmt: skip
 _GREY = "#7F7F7F"
+# as many dates fit side by side in the narrow panel
+_FEW_LABELS = 6
 
 
 def _in_language(make: Callable[..., alt.Chart]) -> Callable[..., alt.Chart]:
@@ -233,8 +235,9 @@ def development(
             "guessed": there.guessed,
         }
     )
-    days = alt.X("day:O", title=axes[0], sort=None,
-                 axis=alt.Axis(labelAngle=0, labelOverlap=True))  # fmt: skip
+    # layers do not agree which labels to leave out: so few never overlap
+    some = list(table["day"][:: math.ceil(len(table) / _FEW_LABELS)])
+    days = alt.X("day:O", title=axes[0], sort=None, axis=alt.Axis(labelAngle=0, values=some))
     base = alt.Chart(table).encode(
         x=days,
         y=alt.Y("gathered:Q", title=axes[1]),

@@ -42,7 +42,7 @@ def _sentence(choices: Choices, there: Development) -> str:
     day = choices.units.day
     values = {
         "degree_days": number(there.so_far, ".0f"),
-        "threshold": number(there.threshold_c, "g"),
+        "threshold": pest_figures.celsius(there.threshold_c),
         "needed": number(there.per_generation, "g"),
         "since": day(there.since),
     }

@@ -24,6 +24,11 @@ def stage_name(name: str) -> str:
     return texts.PEST_STAGES.get(name) or texts.isolated(name)
 
 
+def celsius(temperature_c: float) -> str:
+    """Return a temperature, whose sign stays behind its number on a page from the right too."""
+    return texts.isolated(texts.CELSIUS.format(n=number(temperature_c, "g")))
+
+
 def show(pest: Pest) -> None:
     """Show what a pest's file says, each part with its source and its doubt."""
     if pest.species:
@@ -49,13 +54,13 @@ def _figures(pest: Pest) -> list[str]:
         made.append(
             texts.PEST_GENERATION.format(
                 degree_days=number(pest.generation.degree_days, "g"),
-                threshold=number(pest.generation.threshold_c, "g"),
+                threshold=celsius(pest.generation.threshold_c),
             )
         )
     if pest.increase is not None:
         pairs = zip(pest.increase.at_c, pest.increase.per_day, strict=True)
         rates = [
-            texts.PEST_RATE.format(rate=number(rate, "g"), at=number(at, "g")) for at, rate in pairs
+            texts.PEST_RATE.format(rate=number(rate, "g"), at=celsius(at)) for at, rate in pairs
         ]
         made.append(f"{texts.PEST_INCREASE}: {', '.join(rates)}")
     form = texts.PEST_MOVES[moves.kernel]

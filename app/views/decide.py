@@ -8,7 +8,7 @@ import streamlit as st
 
 from ..actions import assuming, beginning, deciding
 from ..show import advice as shown
-from ..show import map_layers, plant_history
+from ..show import cautions, map_layers, plant_history
 from ..state import deciding as asked
 from ..words import texts
 
@@ -31,5 +31,7 @@ def show(choices: Choices) -> None:
     deciding.assumed(advice)
     shown.zones(advice)
     deciding.files(choices, advice)
+    cautions.show(choices)
+    deciding.treated(choices, advice)
     deciding.leaves()
     assuming.show(choices)

@@ -185,11 +185,12 @@ PEST_PARTS = {
     "movement": "How it moves", "entry": "How it enters", "detection": "How it is seen",
     "course": "Its course in a plant",
 }  # fmt: skip
+CELSIUS = "{n} °C"
 PEST_COLUMNS = ("Stage", "Threshold (°C)", "Degree-days")
 PEST_NOT_FOUND = "Not found, or our choice"
-PEST_GENERATION = "A generation takes {degree_days} degree-days above {threshold} °C."
+PEST_GENERATION = "A generation takes {degree_days} degree-days above {threshold}."
 PEST_INCREASE = "Rate of increase a day"
-PEST_RATE = "{rate} at {at} °C"
+PEST_RATE = "{rate} at {at}"
 PEST_MOVES = {
     "adjacent": "It goes to each plant beside it with a chance of {per_day} a day.",
     "exponential": "A plant sends out {per_day} a day, on average {reach} m far.",
@@ -204,7 +205,7 @@ PEST_COURSE = "A plant shows it after {hidden} days and infects others after {la
 PEST_COUNT = "What is counted: {what}."
 DEGREE_DAYS = "Degree-days"
 NEXT_GENERATION = "Next generation around {when}."
-GATHERED = "{degree_days} degree-days above {threshold} °C since {since}, of {needed} a generation."
+GATHERED = "{degree_days} degree-days above {threshold} since {since}, of {needed} a generation."
 STAGE_NOW = "Those of that day: {stage}."
 NO_GENERATION = "At this warmth the next generation is more than a year away."
 GENERATION_MARK = "generation {n}"
@@ -625,6 +626,7 @@ TREAT_UNSAID = (
     "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
     "it kills, as on the label or by experience."
 )
+DECIDE_TREATED = "The zones were treated"
 TREAT_RECORD = "What a certifier asks: dose, waiting period, who and why"
 TREAT_DOSE, TREAT_UNIT, TREAT_WATER = "Dose of the product", "Unit of the dose", "Water, l/ha"
 TREAT_GROUP, TREAT_GROUP_HELP = "IRAC group", "The mode of action, such as 6, or 4A+28."
@@ -798,7 +800,7 @@ SCOUT_PAGE = {
     "time_over": "The hours are over",
     "waiting": "{n} to send", "all_sent": "All sent", "some_refused": "{n} not taken",
     "menu": "Menu", "close": "Close", "ok": "OK", "cancel": "Cancel",
-    "scan": "Scan the code that the app shows: Scout, On a phone.",
+    "scan": "Scan the code that the app shows: Today, Send to phone.",
     "not_loaded": "{season}: nothing is loaded yet. A network is needed once.",
     "load_day": "Load the day", "old_day": "This route is of {day}: load today's",
     "loading": "Loading ...", "route_done": "The route is done.",

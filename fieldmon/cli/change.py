@@ -77,6 +77,8 @@ class ChangeOptions:
             new = replace(new, sampler_settings=_every(new.sampler, self.every))
         if self.start is not None:
             new = replace(new, starts=clock(self.start))
+        if self.spread is not None and self.living.pest != "none":
+            self._must_spread(settings)
         if self.spread is not None:
             rate = replace(settings.belief.spread, rate_per_day=self.spread)
             new = replace(new, belief=replace(new.belief, spread=rate))
@@ -86,6 +88,14 @@ class ChangeOptions:
             none = self.harvest.casefold() == "none"
             new = replace(new, harvest=None if none else day(self.harvest, "--harvest"))
         return self._of_pest(new, plot)
+
+    def _must_spread(self, settings: MonitoringSettings) -> None:
+        """Refuse a rate of spread where a pest says how it spreads."""
+        if settings.pest is not None or self.living.pest is not None:
+            raise SettingError(
+                "--spread goes without a pest, which says how it spreads. Take the pest out with: "
+                "fieldmon change --pest none"
+            )
 
     def _of_pest(self, settings: MonitoringSettings, plot: Field) -> MonitoringSettings:
         """Return settings with the pest and the weather told; ``none`` takes the pest out."""

@@ -106,12 +106,12 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
             **level,
         ),
     )
-    typer.echo(asked.sentence())
-    if level:
-        typer.echo("\n".join(advice.said_of_plot()))
-    else:
-        typer.echo(of_leaves(asked, leaves, counted, presence=presence))
-    typer.echo("\n".join(advice.said_of_zones(above=bool(level))))
+    said = (
+        advice.said_of_plot() if level else [of_leaves(asked, leaves, counted, presence=presence)]
+    )
+    where = advice.said_of_zones(above=bool(level))
+    typer.echo("\n".join([asked.sentence(), *said, *where]))
+    kept.advise(when, " ".join([*said[:1], *where[:1]]))
     if output:
         _write(_Asked(kept, when, advice, product), output)
 

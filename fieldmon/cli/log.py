@@ -27,3 +27,5 @@ def log(season: SeasonFile) -> None:
             f"The file must say what its log says, but it does not: {' '.join(wrong)} Go back to a "
             "copy from before."
         )
+    for sentence in kept.other_maps():
+        typer.echo(f"doubtful: {sentence}", err=True)

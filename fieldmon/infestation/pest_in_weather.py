@@ -79,7 +79,9 @@ class PestSpread(Spread):
     warmth
         Degree-days for each stage of the pest.
     edge_per_day
-        Mean chance that a plant is infested from the plot's edge.
+        Chance that a plant at the plot's edge is infested from there.
+    mortality_per_day
+        Chance that a plant's infestation ends of itself.
     """
 
     movement: Movement | None = None
@@ -88,6 +90,7 @@ class PestSpread(Spread):
     days: float = 1.0
     warmth: tuple[float, ...] = ()
     edge_per_day: float = 0.0
+    mortality_per_day: float = 0.0
 
 
 class DayWeather(NamedTuple):
@@ -179,6 +182,7 @@ class PestInWeather:
             days=spell.days,
             warmth=spell.warmth,
             edge_per_day=entry.edge_per_day,
+            mortality_per_day=pest.mortality_per_day,
         )
 
     def _spell(self, day: DayWeather, hours: Sequence[int], frame: Frame) -> Spell:

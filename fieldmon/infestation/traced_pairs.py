@@ -292,6 +292,9 @@ class TracedPairs:
             return morning
         gain = np.maximum(morning.chance - self.chance, 0.0)
         cohorts = self.cohorts.overnight(self.chance, gain, morning.chance, spread)
+        if spread.mortality_per_day > 0.0:
+            left = (1.0 - spread.mortality_per_day) ** spread.days
+            morning = morning.treated(np.full(len(gain), left))
         return replace(morning, cohorts=cohorts, wind_m_s=_of_late(self.wind_m_s, spread.wind_m_s))
 
     def _brought(self, reach: Reach, moves: Floats, sends: float, spread: Spread) -> Floats:

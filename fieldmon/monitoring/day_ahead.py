@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.monitoring.photos_asked import AskedPhoto
     from fieldmon.monitoring.season_file import Season
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route
@@ -64,10 +65,12 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     who = "" if member is None else member.name
     kept = season.kept_route(on, who)
     if not len(kept) and part.rows is None:
-        return season.plan(on, wishes=Wishes(_asked(season)), who=who or None).route
+        return season.plan(on, wishes=Wishes(_wanted(season)), who=who or None).route
     scene = season.scene(on, who=who)
     left = kept[(scene.last_inspected[kept] != scene.day) & inside(season, part.rows)[kept]]
-    return _through(scene, left) if len(left) else planned_again(season, on, part)
+    if len(left):
+        return _through(scene, left)
+    return planned_again(season, on, part, work_left_s(season, on, part))
 
 
 def planned_again(
@@ -77,13 +80,27 @@ def planned_again(
 
     Where it is for the whole plot, it is kept as the route given out.
     """
-    mine = inside(season, part.rows)
-    asked = tuple(plant for plant in _asked(season) if mine[plant])
+    others = np.flatnonzero(~inside(season, part.rows))
     member = part.member(season)
     now = None if seconds_left is None else _time(season, seconds_left, member)
-    wishes = Wishes(asked, tuple(np.flatnonzero(~mine).tolist()))
+    wishes = Wishes(_wanted(season, part), tuple(others.tolist()))
     who = None if member is None else member.name
     return season.plan(on, now, keep=part.rows is None, wishes=wishes, who=who).route
+
+
+def work_left_s(season: Season, on: date, part: Part) -> float:
+    """Return the seconds left of somebody's working day, which begins with the first inspection.
+
+    Of nobody in particular, and where inspections have no times, it is what the season reckons.
+    """
+    member = part.member(season)
+    done = season.history.inspections.on(on)
+    own_s = done.second[done.who == part.name]
+    known_s = own_s[~np.isnan(own_s)]
+    if not part.name or (len(own_s) and not len(known_s)):
+        return float(season.scene(on, who="" if member is None else member.name).seconds_left)
+    robot = season.settings.robot if member is None else member.robot
+    return max(float(robot.day_s - (np.ptp(known_s) if len(known_s) else 0.0)), 0.0)
 
 
 def inside(season: Season, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
@@ -95,9 +112,27 @@ def inside(season: Season, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
     return part
 
 
-def _asked(season: Season) -> tuple[int, ...]:
-    """Return the plants of which a photo is asked for."""
-    return tuple(sorted({one.plant for one in photos_asked(season)}))
+def asked_of(season: Season, on: date, part: Part = WHOLE) -> tuple[AskedPhoto, ...]:
+    """Return the photos asked for that are somebody's to take: none is taken by two.
+
+    Those in a part's rows; of a team those on one's own route, and the first one's where they are
+    on nobody's.
+    """
+    mine, member = inside(season, part.rows), part.member(season)
+    if member is not None:
+        routes = {one.name: season.kept_route(on, one.name) for one in season.settings.team}
+        own = routes.pop(member.name)
+        if member.name != season.settings.team[0].name:
+            mine &= np.isin(np.arange(len(mine)), own)
+        for others in routes.values():
+            mine[others] = False
+    return tuple(one for one in photos_asked(season) if mine[one.plant])
+
+
+def _wanted(season: Season, part: Part = WHOLE) -> tuple[int, ...]:
+    """Return the plants of a part of which a photo is asked for."""
+    mine = inside(season, part.rows)
+    return tuple(sorted({one.plant for one in photos_asked(season) if mine[one.plant]}))
 
 
 def _time(season: Season, seconds_left: float, member: TeamMember | None) -> time:

@@ -50,7 +50,7 @@ def refresh(
     worked = np.unique(history.days).tolist()
     planned = [day for (day,) in db.execute("SELECT DISTINCT day FROM routes")]
     treated = [treatment.day for treatment in history.treatments]
-    days = sorted({0, *worked, *planned, *treated})
+    days: list[int] = sorted({0, *worked, *planned, *treated})
     db.execute("DELETE FROM days WHERE day >= ?", (since,))
     rows = [_day_row(history, morning(day), day) for day in days if day >= since]
     insert(db, schema.DAYS, rows)
@@ -100,8 +100,8 @@ def spot_area(plot: Plot, spots: HotSpots, h: int) -> MultiPolygon:
 @lru_cache(maxsize=64)  # a tap changes one spot of many
 def _ground_around(xy_m: bytes, row_m: float) -> shapely.Geometry:
     plants = shapely.MultiPoint(np.frombuffer(xy_m).reshape(-1, 2))
-    around: shapely.Geometry = plants.buffer(1.5 * row_m, quad_segs=4)
-    return around.buffer(-row_m, quad_segs=4)
+    around = shapely.buffer(plants, 1.5 * row_m, quad_segs=4)
+    return shapely.buffer(around, -row_m, quad_segs=4)
 
 
 def _write_states(

@@ -131,7 +131,7 @@ def _packed(morning: Belief) -> bytes | None:
     if arrays is None:
         return None
     file = io.BytesIO()
-    np.savez(file, **arrays)  # type: ignore[arg-type] - names of ours
+    np.savez(file, allow_pickle=False, **arrays)
     return zlib.compress(file.getvalue(), 1)
 
 

@@ -340,6 +340,7 @@ class Season:
             if all(routes.is_kept(db, today, who) for today, who in named):
                 return
         with self.store.writing() as db:
+            before = self._read(db)
             kept = [
                 (today, who)
                 for today, who in named
@@ -348,7 +349,7 @@ class Season:
             for today, who in kept:
                 season_log.append(db, "planned", who, **routes.in_words(settings, today))
             if kept:
-                self._refresh(db, named[0][0].scene.day)
+                self._refresh(db, named[0][0].scene.day, before)
 
     def _noted(self, settings: MonitoringSettings, today: DayPlan, who: str) -> DayPlan:
         begins = routes.begins(settings, today, who)
@@ -479,7 +480,7 @@ class Season:
             if new:
                 self._log_seen(db, news, (batch, source, who))
                 first = _settings(db).day(inspections.date.min().item())
-                self._refresh(db, first, before.mornings.until(first))
+                self._refresh(db, first, before)
         return Recorded(batch if new else None, new, len(inspections) - new)
 
     def _log_seen(
@@ -551,6 +552,7 @@ class Season:
             )
         works = self._efficacy(said.product) if efficacy is None else efficacy
         with self._lock, self.store.writing() as db:
+            before = self._read(db)
             day = _settings(db).day(on)
             said = said.by_label(
                 label_for(label_table.read(db), said.product, said.crop, said.pest)
@@ -567,7 +569,7 @@ class Season:
                     batch=batch, date=str(on), said=treatments.in_words(place, said),
                     efficacy=works, **said.said(),
                 )  # fmt: skip
-                self._refresh(db, day)
+                self._refresh(db, day, before)
         return Recorded(batch if new else None, new, 1 - new)
 
     def _treated(self, area: MultiPolygon | None) -> TreatedPlace:
@@ -853,22 +855,28 @@ class Season:
             (day,) = db.execute("SELECT max(day) FROM days").fetchone()
             return _settings(db).date(int(day))
 
-    def verify(self) -> tuple[str, ...]:
-        """Hold the chance maps rebuilt from the causes to the digests kept; say what differs."""
+    def verify(self, *, whole: bool = True) -> tuple[str, ...]:
+        """Hold the file to its digests; return a sentence for each thing that differs.
+
+        Whole, every morning since the first is worked out again and each row is held to the log;
+        else only mornings after the last one that the file keeps.
+        """
+        doubt = () if self.store.doubt is None else (self.store.doubt,)
+        held = self.held_to_log() if whole else ()
+        return (*doubt, *held, *self.other_maps(whole=whole))
+
+    def other_maps(self, *, whole: bool = True) -> tuple[str, ...]:
+        """Return a sentence for each day whose chance map is not the one that was used then."""
         with self._lock:
             contents = self._now()
+            since = 0 if whole else max(contents.mornings.known)
             with self.store.reading() as db:
                 kept = db.execute("SELECT day, date, digest FROM days ORDER BY day").fetchall()
-            doubt = () if self.store.doubt is None else (self.store.doubt,)
-            return (
-                doubt
-                + self.held_to_log()
-                + tuple(
-                    f"The chance map of {on} comes out differently from the one used then: it was "
-                    "made by another version of fieldmon, or the file was changed by other hands."
-                    for day, on, then in kept
-                    if derived_layers.map_digest(contents.morning(day).chance) != then
-                )
+            return tuple(
+                f"The chance map of {on} comes out differently from the one used then: it was "
+                "made by another version of fieldmon, or the file was changed by other hands."
+                for day, on, then in kept
+                if day >= since and derived_layers.map_digest(contents.morning(day).chance) != then
             )
 
     def rebuild(self) -> None:
@@ -921,11 +929,15 @@ class Season:
         return inside
 
     def _refresh(
-        self, db: sqlite3.Connection, since: int = 0, at_hand: Mapping[int, Belief] | None = None
+        self, db: sqlite3.Connection, since: int = 0, before: _Contents | None = None
     ) -> None:
-        """Write what follows from the causes, within the transaction that changes them."""
+        """Write what follows from the causes, within the transaction that changes them.
+
+        Nothing before `since` has changed; what the transaction read `before` its changes saves
+        working those mornings out again.
+        """
         self._last = None
-        now = self._read(db, at_hand)
+        now = self._read(db, None if before is None else before.mornings.until(since))
         newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
         keep_mornings(db, now.mornings, newest)
         qgis_project.keep(db, self.path.name)

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 #: a season of a perennial crop fits into it twice; a slip in a date does not
 MOST_DAYS = 800
+#: four years of hours: they are read with every look into the file
+MOST_WEATHER = 36_000
 
 
 @dataclass(frozen=True)
@@ -93,6 +95,15 @@ class MonitoringSettings:
                 worded(
                     "A pest needs its finds traced, but this season goes without. Trace them with: "
                     "fieldmon change --trace"
+                )
+            )
+        if self.weather is not None and len(self.weather) > MOST_WEATHER:
+            raise SettingError(
+                worded(
+                    "A season keeps {most} hours or days of weather at most, but there are {n}. "
+                    "Leave out years long ago.",
+                    most=MOST_WEATHER,
+                    n=len(self.weather),
                 )
             )
         if len(self.decides().inspection_times(self.robot).detects) > 1:

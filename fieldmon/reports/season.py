@@ -129,9 +129,6 @@ def _stands(facts: _Facts) -> Iterator[Block]:
         yield Listing(words.CERT_CAUTIONS, sentences[:_MOST_CAUTIONS])
     yield from facts.plot_map(by_state=False)
     yield Paragraph(joined(" ", _rows_seen(facts)))
-    told = [one for one in facts.season.effects(facts.on, facts.units) if one.before.inspected]
-    if told:
-        yield Listing("", tuple(one.sentence() for one in told[-_MOST_EFFECTS:]))
 
 
 def _figures(facts: _Facts) -> KeyFigures:
@@ -259,6 +256,9 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
 def _goes_by(facts: _Facts) -> Iterator[Block]:
     yield _batches(facts)
     yield _treatments(facts)
+    told = [one for one in facts.season.effects(facts.on, facts.units) if one.before.inspected]
+    if told:
+        yield Listing("", tuple(one.sentence() for one in told[-_MOST_EFFECTS:]))
     season = facts.season
     yield from settings_blocks(WorkSettings.of_season(season), facts.units)
     yield Listing(words.MEANING, words.MEANINGS)

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fieldmon.compute.units import Units
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.prior import PriorSettings
+    from fieldmon.infestation.spread import Spread
     from fieldmon.monitoring import Season
     from fieldmon.plot.assumed import Assumed
     from fieldmon.reports.content import Block
@@ -45,6 +47,8 @@ class WorkSettings:
         What is made of findings and nights; None where there is no season.
     guessed
         What the import of the plot had to guess, in sentences.
+    living
+        The pest in its weather, by which nights go; None: as `belief` has them.
     """
 
     robot: Robot
@@ -54,6 +58,7 @@ class WorkSettings:
     assumed: tuple[Assumed, ...] = ()
     belief: BeliefSettings | None = None
     guessed: tuple[str, ...] = ()
+    living: PestInWeather | None = None
 
     @classmethod
     def of_season(cls, season: Season) -> WorkSettings:
@@ -63,7 +68,7 @@ class WorkSettings:
         return cls(
             settings.robot, settings.sampler, settings.prior,
             (grid.row_spacing_m, grid.plant_spacing_m), season.assumed(), settings.belief,
-            tuple(one.sentence for one in guessed),
+            tuple(one.sentence for one in guessed), settings.living(),
         )  # fmt: skip
 
     def origin(self, setting: str) -> str:
@@ -81,7 +86,7 @@ def settings_blocks(settings: WorkSettings, units: Units) -> Iterator[Block]:
     rows = (
         *_of_plot(settings, units),
         *_of_work(settings),
-        *_of_belief(settings),
+        *_of_belief(settings, units),
     )
     yield Table(
         words.SETTINGS, words.SETTING_COLUMNS, rows, (0.46, 0.2, 0.34), flow=2,
@@ -93,7 +98,7 @@ def settings_blocks(settings: WorkSettings, units: Units) -> Iterator[Block]:
 
 def assumed_sentence(settings: WorkSettings, units: Units) -> str:
     """Return what the figures rest on though nobody said it, in a sentence; empty: nothing."""
-    rows = (*_of_plot(settings, units), *_of_work(settings), *_of_belief(settings))
+    rows = (*_of_plot(settings, units), *_of_work(settings), *_of_belief(settings, units))
     said = [
         worded("{name}: {value}", name=name, value=value)
         for name, value, origin in rows
@@ -123,22 +128,36 @@ def _of_work(settings: WorkSettings) -> Iterator[Row]:
     yield words.DETECTS, figure(robot.detects, ".0%"), settings.origin("detects")
 
 
-def _of_belief(settings: WorkSettings) -> Iterator[Row]:
+def _of_belief(settings: WorkSettings, units: Units) -> Iterator[Row]:
     background = figure(100 * settings.prior.background_chance, "g", " %")
     yield words.BACKGROUND, background, settings.origin("background_chance")
     if settings.belief is None:
         return
-    spread, usual = settings.belief.spread, BeliefSettings()
-    yield (
-        words.SPREAD,
-        figure(100 * spread.rate_per_day, "g", " %"),
-        settings.origin("rate_per_day"),
-    )
-    arrive = spread.arrivals_per_day
-    said = worded(words.ARRIVALS_VALUE, n=1 / arrive) if arrive else words.ARRIVALS_NONE
-    yield words.ARRIVALS, said, _from(arrive == usual.spread.arrivals_per_day)
-    treated = settings.belief.treated
+    if settings.living is None:
+        yield from _of_nights(settings, settings.belief.spread)
+    else:
+        yield from _of_pest(settings.living, units)
+    treated, usual = settings.belief.treated, BeliefSettings()
     yield words.TREATED, words.TREATED_VALUES[treated], _from(treated == usual.treated)
+
+
+def _of_nights(settings: WorkSettings, spread: Spread) -> Iterator[Row]:
+    rate = figure(100 * spread.rate_per_day, "g", " %")
+    yield words.SPREAD, rate, settings.origin("rate_per_day")
+    arrive, usual = spread.arrivals_per_day, BeliefSettings().spread.arrivals_per_day
+    said = worded(words.ARRIVALS_VALUE, n=1 / arrive) if arrive else words.ARRIVALS_NONE
+    yield words.ARRIVALS, said, _from(arrive == usual)
+
+
+def _of_pest(living: PestInWeather, units: Units) -> Iterator[Row]:
+    pest, weather = living.pest, living.weather
+    yield words.PEST, Worded(words.isolated(pest.title or pest.name)), words.FROM_CHOSEN
+    if weather is None or not len(weather):
+        yield words.WEATHER, words.WEATHER_NONE, words.FROM_USUAL
+        return
+    days = weather.local_days()
+    first, last = units.day(str(days[0])), units.day(str(days[-1]))
+    yield words.WEATHER, worded(words.WEATHER_DAYS, first=first, last=last), words.FROM_FILE
 
 
 def _from(usual: bool) -> str:  # noqa: FBT001 - one question

@@ -478,15 +478,7 @@ def drawn_by_clicks(page):
     """Draw an area and take it back, then a path and the gate; return the clicks, gate first."""
     plants = page.get_by_test_id("stMetric").filter(has_text="Plants").first
     before = plants.inner_text()
-    rest(page)
-    for _ in range(3):
-        page.get_by_text("Gate, paths, no-go areas").click()
-        # what stands above may still come, and move it from under the pointer
-        with suppress(PlaywrightTimeout):
-            page.get_by_role("combobox", name="A click on the map sets").wait_for(timeout=5_000)
-            break
-    else:
-        pytest.fail("three clicks, and the tools for drawing do not open")
+    open_drawing(page)
     draw_by_click(page, "corners of a no-go area")
     for number, corner in enumerate([(0.4, 0.4), (0.6, 0.4), (0.5, 0.65)], start=1):
         at_share(page, corner, says=f"{number} point(s)")
@@ -508,6 +500,18 @@ def drawn_by_clicks(page):
     assert plants.inner_text() == before
     draw_by_click(page, "nothing")
     return gate, *path
+
+
+def open_drawing(page):
+    """Open what can be drawn on the plot."""
+    rest(page)
+    for _ in range(3):
+        page.get_by_text("Gate, paths, no-go areas").click()
+        # what stands above may still come, and move it from under the pointer
+        with suppress(PlaywrightTimeout):
+            page.get_by_role("combobox", name="A click on the map sets").wait_for(timeout=5_000)
+            return
+    pytest.fail("three clicks, and the tools for drawing do not open")
 
 
 def path_is_where_it_was_clicked(field, clicked, seen):
@@ -719,3 +723,20 @@ def test_the_sheet_is_pulled_up_and_let_down_again(page, address):
     assert sheet.bounding_box()["y"] == half
     assert look(page).shape[1] == 390
     assert page.locator(DRAWN).count() == 1
+
+
+@pytest.mark.parametrize("page", [PHONE], indirect=True)
+def test_on_a_phone_two_taps_cut_the_plot_into_blocks(page, address):
+    page.goto(f"{address}/plot")
+    page.locator(DRAWN).wait_for(timeout=240_000)
+    open_drawing(page)
+    draw_by_click(page, "a cut into blocks")
+    plot, _ = sample()
+    low, high = plot.grid.xy_m.min(axis=0) - 9, plot.grid.xy_m.max(axis=0) + 9
+    across = [((low[0] + high[0]) / 2, y) for y in (low[1], high[1])]
+    for number, place in enumerate(pixels(view(page), plot.grid.frame.lonlat(across)), start=1):
+        click(page, place, says=f"{number} point(s)")
+    bar, sheet = page.locator(".drawbar").bounding_box(), page.locator(".st-key-panel")
+    assert bar["y"] + bar["height"] <= sheet.bounding_box()["y"], "what is asked is under the sheet"
+    page.get_by_role("button", name="Finish").click()
+    page.get_by_text("a cut into blocks: 2").wait_for(timeout=60_000)

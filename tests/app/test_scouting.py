@@ -62,7 +62,7 @@ def invited(phone, line, season, name="Ann"):
     """Scan the code with the network, until all that is needed is on the phone."""
     key = scouts.let_in(season, name)
     phone.page.goto(invitation(line.address, season.path.stem, key, str(BEGINS), "en"))
-    phone.page.locator("#clean").wait_for()
+    phone.page.locator("#clean").wait_for(timeout=120_000)
     phone.page.evaluate("navigator.serviceWorker.ready.then(() => null)")
     phone.page.wait_for_function("() => navigator.serviceWorker.controller !== null")
     return key
@@ -75,6 +75,7 @@ def plant_of(page):
 def told_now(page, result, count=None):
     """Say what was found at the next plant; return it once the page has gone on."""
     plant = plant_of(page)
+    page.locator("#answers:not([data-resting])").wait_for()
     if result == "found":
         page.locator("#found").click()
         if count is not None:
@@ -210,6 +211,49 @@ def holds(season, there, said):
         assert (kind, hashlib.sha256(data).hexdigest()) == ("image/jpeg", digest)
     assert len(photos.photos_of(season)) == PHOTOS
     keeps_the_rules(season.path)
+
+
+def test_a_glove_that_bounces_says_nothing_of_the_next_plant(season, line, phone):
+    invited(phone, line, season, "Fay")
+    plant = plant_of(phone.page)
+    phone.page.evaluate("() => [1, 2, 3].forEach(() => document.querySelector('#clean').click())")
+    phone.page.locator(f"#last[data-plant='{plant}'][data-kept=true]").wait_for()
+    assert [one["plant"] for one in kept(phone.page).records] == [plant]
+
+
+def test_by_keyboard_alone(season, line, phone):
+    invited(phone, line, season, "Gil")
+    page = phone.page
+
+    def to(name):
+        for _ in range(40):
+            if page.evaluate("document.activeElement?.id") == name:
+                return
+            page.keyboard.press("Tab")
+        pytest.fail(f"{name} was not reached")
+
+    first = plant_of(page)
+    to("clean")
+    page.keyboard.press("Enter")
+    page.locator(f"#last[data-plant='{first}'][data-kept=true]").wait_for()
+    assert page.evaluate("document.activeElement.id") == "clean", "it stays where one taps"
+    page.locator("#answers:not([data-resting])").wait_for()
+    second = plant_of(page)
+    to("found")
+    page.keyboard.press("Space")
+    page.locator("#details").wait_for()
+    to("count")
+    page.keyboard.type("4")
+    to("save")
+    page.keyboard.press("Enter")
+    page.locator(f"#last[data-plant='{second}'][data-kept=true]").wait_for()
+    to("open_menu")
+    page.keyboard.press("Enter")
+    page.locator("#close").wait_for()
+    page.keyboard.press("Escape")
+    page.locator("#close").wait_for(state="hidden")
+    records = [(one["plant"], one["result"], one.get("count")) for one in kept(page).records]
+    assert records == [(first, "clean", None), (second, "found", 4)]
 
 
 def test_what_a_scout_does_in_the_field(season, line, browser, tmp_path):

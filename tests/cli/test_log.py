@@ -1,5 +1,6 @@
 """`fieldmon log`: what happened, and that it still holds."""
 
+from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS
 from tests.monitoring.test_season_log import by_hand
 
@@ -19,3 +20,12 @@ def test_the_log_is_shown_and_a_changed_past_is_refused(run, season):
     code, out, err, _ = run("log", season)
     assert (code, out) == (2, "")
     assert "entry 2 is not what was written" in err
+
+
+def test_what_was_advised_is_in_the_log_once(run, season):
+    for _ in range(2):
+        code, out, err, _ = run("decide", season, "--threshold", "5%", "--date", BEGINS)
+        assert code == 0, err
+    (one,) = (entry for entry in Season(season).log() if entry.kind == "advised")
+    assert one.what["date"] == BEGINS
+    assert one.what["said"].split(":")[0] in out

@@ -107,6 +107,8 @@ def test_what_the_weather_leaves_open_is_asked_with_the_option_that_answers(run,
 def test_weather_of_a_season_without_a_pest_is_refused(run, season, station):
     code, _, err, _ = run("change", season, "--weather", station)
     assert (code, "this season has none" in err) == (2, True)
+    code, _, err, _ = run("change", season, "--spread", "0.1", "--pest", "thesis")
+    assert (code, "--spread goes without a pest" in err) == (2, True)
     code, _, err, _ = run("change", season, "--no-trace", "--pest", "thesis")
     assert (code, "needs its finds traced" in err) == (2, True)
 

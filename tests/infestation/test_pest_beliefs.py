@@ -89,6 +89,13 @@ def test_eggs_send_nothing_out_in_the_chance_map_either():
     assert slow == pytest.approx(simulated(living, some(), 3).sum(), rel=0.15, abs=0.5)
 
 
+def test_what_predators_end_the_chance_map_ends_too():
+    grown = replace(pest(), stages=(), mortality_per_day=0.2)
+    living = PestInWeather(grown, None)
+    said, made = believed(living, some(), 3).chance.sum(), simulated(living, some(), 3).sum()
+    assert said == pytest.approx(made, rel=0.15, abs=0.5)
+
+
 def test_nights_are_as_warm_as_they_were():
     cold, hot = (
         believed(PestInWeather(pest(), weather(t), date(2026, 6, 1)), some(), 3).chance.sum()
@@ -139,3 +146,16 @@ def test_without_a_pest_nothing_is_different():
     assert belief.cohorts is None
     assert belief.overnight(Spread(0.1)).wind_m_s == (0.0, 0.0)
     assert not belief.known_to_jump
+
+
+def test_a_day_is_planned_by_what_can_be_seen():
+    """Of the plants that the last nights infested, nothing shows yet; of the others all does."""
+    living = PestInWeather(pest(), None)
+    morning = believed(living, some(), 2)
+    seen = morning.in_sight
+    hidden = morning.cohorts.hidden
+    assert seen.chance == pytest.approx(np.maximum(morning.chance * (1.0 - hidden), 1e-6))
+    assert seen.chance[some()] == pytest.approx(morning.chance[some()], rel=1e-3)
+    assert (seen.pair_chance <= morning.pair_chance + 1e-12).all()
+    usual = TracedPairs.of(GRID, np.full(N, 0.02))
+    assert usual.in_sight is usual

@@ -7,7 +7,7 @@ import pytest
 
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.day_ahead import Part, inside, planned_again, route_ahead
+from fieldmon.monitoring.day_ahead import Part, inside, planned_again, route_ahead, work_left_s
 from fieldmon.planning.members import team_of
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -51,6 +51,19 @@ def test_the_rest_planned_again_fits_what_is_left_of_the_hours(season):
     assert 0 < short.end_s <= 900
     assert not np.isin(short.plant, done).any()
     assert len(planned_again(season, BEGINS, seconds_left=0)) == 0
+
+
+def test_the_hours_of_each_run_from_the_first_inspection_of_that_person(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    day_s, plants = fresh.settings.robot.day_s, fresh.plan(BEGINS).route.plant
+    late = np.array([15.5, 16.5]) * 3600.0
+    fresh.record(Inspections.of(plants[:2], np.zeros(2, np.int8), BEGINS, second=late), "f", "Ann")
+    assert work_left_s(fresh, BEGINS, Part(name="Ann")) == day_s - 3600
+    assert work_left_s(fresh, BEGINS, Part(name="Ben")) == day_s
+    assert work_left_s(fresh, BEGINS, Part()) == fresh.scene(BEGINS).seconds_left
+    fresh.record(Inspections.of(plants[2:3], np.zeros(1, np.int8), BEGINS), "f", "Cem")
+    assert work_left_s(fresh, BEGINS, Part(name="Cem")) == fresh.scene(BEGINS).seconds_left
+    assert len(planned_again(fresh, BEGINS, Part((1, 3), "Ben"), day_s)), "though it is evening"
 
 
 def test_nothing_is_left_where_all_was_inspected(season):

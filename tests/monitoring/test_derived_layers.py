@@ -88,8 +88,9 @@ def test_a_tap_writes_only_the_plants_of_which_something_else_is_known(season, m
 
     def watched(db, *given):
         db.set_trace_callback(lambda sql: written.append(sql) if "REPLACE INTO plant" in sql else 0)
-        refresh(db, *given)
+        newest = refresh(db, *given)
         db.set_trace_callback(None)
+        return newest
 
     monkeypatch.setattr(derived_layers, "refresh", watched)
     plant = np.flatnonzero(season.history.states(0) < 0)[:1]

@@ -1,15 +1,17 @@
 """A photo is asked for until one of its plant has come, and the day's route leads by."""
 
 import shutil
+from dataclasses import replace
 
 import pytest
 
 from fieldmon.errors import LimitError, ObservationError, SettingError
 from fieldmon.monitoring import Season, photos_asked, scouts
-from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
+from fieldmon.monitoring.day_ahead import Part, asked_of, planned_again, route_ahead
 from fieldmon.monitoring.photos import Photo, keep
 from fieldmon.monitoring.photos_asked import ask_no_more, ask_photo
 from fieldmon.monitoring.tellings import take
+from fieldmon.planning.members import team_of
 from tests.monitoring.rules import keeps_the_rules
 from tests.monitoring.seasons import BEGINS, a_season
 from tests.monitoring.telling import JPEG, NOW, a_telling
@@ -70,6 +72,27 @@ def test_the_route_given_out_leads_by_what_is_asked_for(tmp_path):
     low = int(season.label.line[missed])
     far = Part(rows=(low + 2, low + 3))
     assert missed not in planned_again(season, BEGINS, far).plant, "a part is a part"
+
+
+def test_of_a_team_or_of_parts_one_person_is_to_take_each(tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    alone, n = season.settings, len(season.plot.grid)
+    team = tuple(
+        replace(one, name=name)
+        for one, name in zip(team_of(2, alone.robot), ("Ann", "Ben"), strict=True)
+    )
+    season.change(replace(alone, team=team), alone)
+    ann = season.plan(BEGINS, who="Ann").route.plant
+    ben = season.plan(BEGINS, who="Ben").route.plant
+    nobodys = min({*range(n)} - {*ann.tolist()} - {*ben.tolist()})
+    for plant in (ann[0], ben[0], nobodys):
+        ask_photo(season, int(plant))
+    to_take = {name: [one.plant for one in asked_of(season, BEGINS, Part(name=name))]
+               for name in ("Ann", "Ben")}  # fmt: skip
+    assert to_take == {"Ann": [ann[0], nobodys], "Ben": [ben[0]]}
+    low = int(season.label.line[ann[0]])
+    rows = asked_of(season, BEGINS, Part(rows=(low, low), name="Cem"))
+    assert {int(season.label.line[one.plant]) for one in rows} == {low}
 
 
 def test_copies_that_are_merged_ask_for_all_that_neither_took_back(path, tmp_path):

@@ -89,3 +89,21 @@ def test_changes_of_then_are_taken_back_now(tmp_path):
     flagged = Season(shutil.copy(FOLDER / "both_faces_flagged.gpkg", tmp_path))
     assert not flagged.settings.belief.treated
     assert flagged.before_change() is None
+
+
+def test_a_season_of_format_6_keeps_its_treatments_and_its_log_begins(tmp_path):
+    """Made before applications and the log were known: two treatments, one of them undone."""
+    season = Season(shutil.copy(FOLDER / "of_format_6.gpkg", tmp_path))
+    assert (tmp_path / "of_format_6.gpkg.format-6").is_file()
+    (soap,) = season.treatments()
+    assert (soap.application.product, soap.efficacy, soap.place.area_ha) == ("soap", 0.8, None)
+    assert soap.application.dose is None
+    assert season.history.treatments[0].plants.sum() == soap.place.plants.sum() > 0
+    (began,) = season.log()
+    assert "the file was of format 6" in began.sentence()
+    assert season.verify() == ()
+    assert season.treat(soap.on, 0.8, soap.place.area, "soap").new == 0  # by the digest of then
+    (effect,) = season.effects(season.last_date())
+    assert (effect.before.found, effect.after.found) == (2, 0)
+    assert season.undo() != ""
+    assert season.held_to_log() == ()

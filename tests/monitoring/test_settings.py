@@ -13,7 +13,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
-from fieldmon.pests.weather import DAY_S, weather_of
+from fieldmon.pests.weather import DAY_S, HOUR_S, weather_of
 from fieldmon.plot.robot import Robot, Viewpoints
 
 BEGINS = date(2026, 4, 6)
@@ -103,3 +103,10 @@ def test_a_pest_in_its_weather_is_laid_out_once_for_a_season():
     assert again.living() is from_json(as_json(chosen)).living()
     assert again.pest == chosen.pest
     assert MonitoringSettings(date(2026, 11, 18)).living() is None
+
+
+def test_more_weather_than_a_season_can_carry_is_refused():
+    at = np.datetime64("2000-01-01", "s") + 3_600 * np.arange(40_000)
+    weather = weather_of(at, HOUR_S, temperature_c=np.full(40_000, 20.0))
+    with pytest.raises(SettingError, match="36000 hours or days of weather at most"):
+        MonitoringSettings(date(2026, 11, 18), pest=shipped_pest("thesis"), weather=weather)

@@ -2,12 +2,16 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from fieldmon.compute.units import Units
+from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.infestation.spread import Spread
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.robot import Robot
 from fieldmon.reports.content import Listing, Table
@@ -90,3 +94,17 @@ def test_of_what_was_guessed_three_sentences_are_shown():
     blocks = settings_blocks(replace(TOLD, guessed=guessed), Units())
     (listing,) = [one for one in blocks if isinstance(one, Listing)]
     assert listing.sentences == guessed[:3]
+
+
+def test_a_named_pest_and_its_weather_stand_in_the_place_of_the_usual_nights():
+    at = np.datetime64("2026-11-01", "s") + 86_400 * np.arange(9)
+    weather = weather_of(at, DAY_S, temperature_c=np.full(9, 20.0))
+    mite = shipped_pest("spider-mite")
+    with_weather = rows(replace(TOLD, living=PestInWeather(mite, weather)))
+    assert "Two-spotted spider mite, by degree-days" in str(
+        with_weather["Pest, by which nights go"]
+    )
+    assert with_weather["Its weather"][0] == "2026-11-01 to 2026-11-09"
+    assert "Spread to a neighbour, a night" not in with_weather
+    without = rows(replace(TOLD, living=PestInWeather(mite)))
+    assert without["Its weather"][0] == "none: as its figures hold"

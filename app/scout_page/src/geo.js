@@ -18,7 +18,7 @@ export function laidOut(document, digest) {
   const plot = {
     digest, name: document.name, zone: document.zone, lon0, lat0, kx, ky, x, y,
     number: Int32Array.from(number), start: Int32Array.from(document.rows.start),
-    row: Int32Array.from(document.rows.row), aisle: Int32Array.from(document.rows.aisle),
+    row: Int32Array.from(document.rows.row), aisle: Int32Array.from(document.rows.aisle), side: Int8Array.from(document.rows.side),
     rowSpacing: document.row_spacing_m, plantSpacing: document.plant_spacing_m,
   };
   plot.boundary = rings(document.boundary).map((ring) => ring.map((at) => metres(plot, at)));

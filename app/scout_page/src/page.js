@@ -3,8 +3,10 @@
 import { plantAt, rowOf } from "./geo.js";
 import { PlotMap } from "./map.js";
 import { scaled } from "./photo.js";
-import { LANGUAGES, say, speak } from "./words.js";
+import { LANGUAGES, own, say, speak } from "./words.js";
 
+// a glove that bounces must say nothing of the next plant
+const REST_MS = 250;
 const STAGES = ["egg", "young", "adult", "web"];
 
 function h(name, values = {}, ...inner) {
@@ -22,6 +24,7 @@ export class Page {
   constructor(root, field, store) {
     Object.assign(this, { root, field, store });
     this.state = "idle";
+    this.rests = 0;
     this.left = { records: 0, photos: 0, refused: [] };
   }
 
@@ -137,9 +140,16 @@ export class Page {
     const n = this.left.records + this.left.photos + field.unwritten();
     const ended = this.state === "ended", signs = { offline: "⏸", ended: "⚠", sending: "↑", sent: "✓", idle: "" };
     const text = n ? say("waiting", { n }) : this.left.refused.length ? say("some_refused", { n: this.left.refused.length }) : say("all_sent");
-    this.bar.replaceChildren(h("div", { class: "said" }, ...said),
-      h("span", { id: "sync", class: ended || this.left.refused.length ? "bad" : "", "data-state": this.state, "data-left": n }, `${signs[this.state]} ${text}`),
-      h("button", { type: "button", id: "open_menu", "aria-label": say("menu"), onclick: () => this.#openMenu() }, "☰"));
+    // the button stays the same: a keyboard may stand on it
+    if (!this.bar.hasChildNodes()) {
+      this.bar.append(h("div", { class: "said" }), h("span", { id: "sync" }),
+        h("button", { type: "button", id: "open_menu", "aria-label": say("menu"), onclick: () => this.#openMenu() }, "☰"));
+    }
+    const [head, sync] = this.bar.children;
+    head.replaceChildren(...said);
+    sync.className = ended || this.left.refused.length ? "bad" : "";
+    Object.assign(sync.dataset, { state: this.state, left: n });
+    sync.textContent = `${signs[this.state]} ${text}`;
   }
 
   #hours() {
@@ -221,10 +231,13 @@ export class Page {
   #buttons() {
     const tap = (result, beat) => h("button", { type: "button", class: result, id: result, onclick: () => this.#tell(result, beat) }, say(result));
     const found = h("button", { type: "button", class: "found", id: "found", onclick: () => this.#act(() => this.field.note({ open: true })) }, say("found"));
-    return h("div", { id: "answers" }, tap("clean", 30), found, tap("skipped", 30));
+    return h("div", { id: "answers", "data-resting": performance.now() < this.rests }, tap("clean", 30), found, tap("skipped", 30));
   }
 
   async #tell(result, beat) {
+    if (performance.now() < this.rests) return;
+    this.rests = performance.now() + REST_MS;
+    setTimeout(() => document.getElementById("answers")?.removeAttribute("data-resting"), REST_MS);
     const kept = this.#act(() => this.field.tell(result), beat);
     this.map.look(this.field.plant, true);
     await kept;
@@ -289,7 +302,7 @@ export class Page {
       this.menu.close();
       this.#act(() => field.goTo(one.plant));
       this.map.look(one.plant, true);
-    } }, `${say("place", { row: rowOf(field.plot, one.plant), plant: field.plot.number[one.plant] })}${one.note ? `: ${one.note}` : ""}`);
+    } }, `${say("place", { row: rowOf(field.plot, one.plant), plant: field.plot.number[one.plant] })}${one.note ? `: ${own(one.note)}` : ""}`);
     const title = say("asked", { n: field.asked().length });
     this.#show(h("div", {}, h("h2", {}, title), ...field.asked().map(lead),
       h("button", { type: "button", class: "wide main", onclick: () => this.menu.close() }, say("close"))), title, "asked");

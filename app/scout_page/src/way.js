@@ -78,8 +78,8 @@ function outward(plot, end, last) {
   const piece = pieceOf(plot, end), other = last ? plot.start[piece] : plot.start[piece + 1] - 1;
   const far = apart(plot, end, other);
   if (far > 0) return [(plot.x[end] - plot.x[other]) / far, (plot.y[end] - plot.y[other]) / far];
-  const [x, y] = sideOf(plot, piece); // a row of one plant: either way
-  return last ? [y, -x] : [-y, x];
+  const [x, y] = rowDirection(plot, piece);
+  return last ? [x, y] : [-x, -y];
 }
 
 function beyond(plot, plant, [ux, uy]) {
@@ -101,23 +101,18 @@ function sideOf(plot, piece) {
 }
 
 function side(plot, piece) {
-  const first = plot.start[piece], last = plot.start[piece + 1] - 1, middle = (first + last) >> 1;
-  const to = (a, b) => [plot.x[b] - plot.x[a], plot.y[b] - plot.y[a]];
-  const near = (wanted) => {
-    let best = Infinity, found = -1;
-    for (let k = 0; k < plot.row.length; k++) {
-      if (k === piece || plot.row[k] === plot.row[piece] || !wanted(k)) continue;
-      const plant = beside(plot, k, middle), d = apart(plot, plant, middle);
-      if (d < best) { best = d; found = plant; }
+  const left = plot.side?.[piece] ?? 1, [x, y] = rowDirection(plot, piece);
+  return [-y * left, x * left];
+}
+
+/** The direction of a row, of length 1; of one plant alone that of the row nearest to it that has more. */
+function rowDirection(plot, piece) {
+  for (let k = 0; k < plot.row.length; k++) {
+    for (const other of [piece - k, piece + k]) {
+      if (other < 0 || other >= plot.row.length) continue;
+      const first = plot.start[other], last = plot.start[other + 1] - 1, far = apart(plot, first, last);
+      if (far > 0) return [(plot.x[last] - plot.x[first]) / far, (plot.y[last] - plot.y[first]) / far];
     }
-    return found;
-  };
-  const partner = near((k) => plot.aisle[k] === plot.aisle[piece]);
-  const other = partner < 0 ? near((k) => Math.abs(plot.row[k] - plot.row[piece]) === 1) : partner;
-  let [x, y] = other < 0 ? [0, 1] : to(middle, other);
-  if (partner < 0) [x, y] = [-x, -y]; // the aisle is on the side where no row is
-  const [rx, ry] = to(first, last), length = Math.hypot(rx, ry);
-  if (length > 0) { const s = (x * rx + y * ry) / length ** 2; [x, y] = [x - s * rx, y - s * ry]; }
-  const far = Math.hypot(x, y) || 1;
-  return [x / far, y / far];
+  }
+  return [1, 0];
 }

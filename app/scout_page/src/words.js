@@ -14,10 +14,13 @@ export async function speak(language) {
   return chosen;
 }
 
-/** A text, its blanks filled. */
+/** A text, its blanks filled; words of people keep to their own direction. */
 export function say(name, values = {}) {
-  return (words[name] ?? name).replace(/\{(\w+)\}/g, (_, blank) => values[blank] ?? "");
+  return (words[name] ?? name).replace(/\{(\w+)\}/g, (_, blank) => own(values[blank] ?? ""));
 }
+
+/** What is put into a text, so that its script changes no other's order. */
+export const own = (value) => (typeof value === "string" && /\p{L}/u.test(value) ? `\u2068${value}\u2069` : value);
 
 /** The language of the phone, where the page speaks it. */
 export const phones = () => (navigator.languages ?? []).map((one) => one.slice(0, 2)).find((one) => LANGUAGES[one]) ?? "en";

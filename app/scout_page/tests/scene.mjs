@@ -10,7 +10,7 @@ export function aPlot() {
   }
   return { name: "Gate", boundary: { type: "Polygon", coordinates: [[[35, 30], [35.0001, 30], [35, 30.0001], [35, 30]]] },
     no_go: { type: "MultiPolygon", coordinates: [] }, gate: null, zone: "Asia/Jerusalem",
-    row_spacing_m: 3, plant_spacing_m: 2, rows: { start: [0, 5, 10, 15], row: [1, 2, 3], aisle: [0, 0, 1] }, plants: { lon, lat, number } };
+    row_spacing_m: 3, plant_spacing_m: 2, rows: { start: [0, 5, 10, 15], row: [1, 2, 3], aisle: [0, 0, 1], side: [1, -1, 1] }, plants: { lon, lat, number } };
 }
 
 export const laid = () => laidOut(aPlot(), "p1");

@@ -21,8 +21,8 @@ function crossesARow(plot, line) {
   return false;
 }
 
-/** Rows of `lengths` plants, two and two at one aisle; they begin at one line, or end there. */
-function plotOf(lengths, endsMeet = false) {
+/** Rows of `lengths` plants, two and two at one aisle, or each at its own; they begin at one line, or end there. */
+function plotOf(lengths, endsMeet = false, own = false) {
   const lon = [], lat = [], number = [], start = [0], most = Math.max(...lengths);
   lengths.forEach((n, row) => {
     for (let k = 0; k < n; k++) {
@@ -30,12 +30,13 @@ function plotOf(lengths, endsMeet = false) {
     }
     start.push(lon.length);
   });
-  return laidOut({ ...aPlot(), rows: { start, row: lengths.map((_, k) => k + 1), aisle: lengths.map((_, k) => k >> 1) },
+  return laidOut({ ...aPlot(), rows: { start, row: lengths.map((_, k) => k + 1), aisle: lengths.map((_, k) => (own ? k : k >> 1)),
+    side: lengths.map((_, k) => (k % 2 && !own ? -1 : 1)) },
     plants: { lon, lat, number } }, "p");
 }
 
 test("a way between any two plants begins and ends beside them and goes through no row", () => {
-  for (const one of [plot, plotOf([5, 9, 3, 12, 4, 6]), plotOf([5, 9, 3, 12, 4, 6], true), plotOf([1, 4, 1, 4, 1])]) {
+  for (const one of [plot, plotOf([5, 9, 3, 12, 4, 6]), plotOf([5, 9, 3, 12, 4, 6], true), plotOf([5, 9, 3, 12, 4, 6], false, true), plotOf([1, 4, 1, 4, 1])]) {
     const n = one.x.length;
     for (let a = 0; a < n; a++) for (let b = 0; b < n; b++) {
       const line = around(one, a, b), beside = ([x, y], i) => Math.hypot(x - one.x[i], y - one.y[i]);

@@ -8,6 +8,8 @@ import numpy as np
 import shapely
 from pydeck import Layer
 
+from fieldmon.plot.row_course import row_courses
+
 from ...words import texts
 from . import colours, deck
 
@@ -58,22 +60,32 @@ def plan(grid: PlantGrid, field: Field, *, dark: bool = False) -> list[Layer]:
 
 def rows_m(grid: PlantGrid) -> Iterator[Float]:
     """Yield the middle of each row in metres, half a plant longer on both ends."""
+    if grid.aisles_m is not None:
+        long = shapely.simplify(row_courses(grid)[np.diff(grid.row_start) > 1], _SMOOTH_M)
+        yield from (shapely.get_coordinates(line) for line in long)
+        return
     half = grid.plant_spacing_m / 2
     for first, after in zip(grid.row_start[:-1], grid.row_start[1:], strict=True):
         own = grid.xy_m[first:after]
-        if grid.aisles_m is None:
-            y = own[:, 1].mean()
-            yield np.array([[own[0, 0] - half, y], [own[-1, 0] + half, y]])
-        elif len(own) > 1:
-            yield shapely.get_coordinates(shapely.simplify(shapely.LineString(own), _SMOOTH_M))
+        y = own[:, 1].mean()
+        yield np.array([[own[0, 0] - half, y], [own[-1, 0] + half, y]])
 
 
 def aisles_m(grid: PlantGrid) -> Iterator[Float]:
-    """Yield the middle of each aisle in metres, once, however many rows are inspected from it."""
-    if grid.aisles_m is not None:
-        lines = grid.aisles_m
-        for first, after in zip(lines.start[:-1], lines.start[1:], strict=True):
-            yield lines.xy_m[first:after]
+    """Yield the middle of each aisle in metres, once, however many rows are inspected from it.
+
+    As far as its lane: where rows bend, the line itself goes on beyond the headland.
+    """
+    if grid.aisles_m is not None and grid.aisle is not None:
+        low, first = np.full((2, int(grid.corridor.max()) + 1), np.inf)
+        high = -low
+        np.minimum.at(low, grid.corridor, grid.lane_x_m[:, 0])
+        np.maximum.at(high, grid.corridor, grid.lane_x_m[:, 1])
+        first[grid.corridor] = grid.aisle
+        for aisle, ends in zip(first.astype(int), np.stack([low, high], axis=1), strict=True):
+            one, other = grid.aisles_m.points(np.full(2, aisle), ends)[:, None]
+            inner = grid.aisles_m.corners_between(aisle, *ends)
+            yield np.concatenate([one, inner, other])
         return
     lanes = np.column_stack([grid.lane_x_m, grid.lane_y_m]).round(2)
     for low, high, y in np.unique(lanes, axis=0):

@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 _MOST_NAMED = 12
-_COUNTED_ON = "Rows were taken as counted on from block to block."
-_FROM_ONE = "Rows were taken as counted from 1 in each block."
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,15 +44,15 @@ class Plants:
     block
         ``(n,)`` labels of the block; None: there are none.
     also
-        Other labels ``(n,)`` of blocks and of rows by which people may name the same plants, with
-        a word on how these count; what stands first is preferred.
+        Other labels ``(n,)`` of blocks and of rows by which people may name the same plants, and
+        whether these rows count from 1 in each block; what stands first is preferred.
     """
 
     lonlat: NDArray[np.float64]
     row: NDArray[np.str_]
     plant: NDArray[np.str_]
     block: NDArray[np.str_] | None = None
-    also: tuple[tuple[NDArray[np.str_], NDArray[np.str_], str], ...] = ()
+    also: tuple[tuple[NDArray[np.str_], NDArray[np.str_], bool], ...] = ()
 
     def __post_init__(self) -> None:
         for values in (self.lonlat, self.row, self.plant):
@@ -122,8 +120,8 @@ def labelled(
     number = block_label(grid, first).astype(np.str_)
     within = row_in_block(grid, first).astype(np.str_)
     known = [number, *_called(lonlat, blocks)]
-    ways = [(block, row, _COUNTED_ON) for block in known]
-    ways += [(block, within, _FROM_ONE) for block in known]
+    ways = [(block, row, False) for block in known]
+    ways += [(block, within, True) for block in known]
     return Plants(lonlat, row, plant, number, tuple(ways[1:]))
 
 
@@ -222,7 +220,9 @@ def _about_blocks(
     if row is None or not plants.also:
         return []
     if block is not None:
-        return [guessed(plants.also[way - 1][2] if way else _COUNTED_ON)]
+        if way and plants.also[way - 1][2]:
+            return [guessed(worded("Rows were taken as counted from 1 in each block."))]
+        return [guessed(worded("Rows were taken as counted on from block to block."))]
     said = worded(
         "{n} record(s) name no block: their rows were taken as counted on from block to block, 1 "
         "to {last}. Where each block counts its rows from 1, give a column of blocks.",

@@ -54,6 +54,8 @@ if TYPE_CHECKING:
 _MOST_NONSENSE = 0.05
 # without a unit: no place is warmer than this on average, or ever
 _WARMEST_MEAN_C, _WARMEST_C, _SURELY_F = 35.0, 50.0, 60.0
+# no station measured before, and nobody forecasts so far
+_FIRST_DAY, _LAST_DAY = np.datetime64("1850-01-01"), np.datetime64("2150-01-01")
 _CALM = frozenset({"calm", "---", "windstill", "רגוע"})
 _POINTS = ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
            "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW")  # fmt: skip
@@ -139,7 +141,7 @@ def _times(layer: Layer, options: WeatherOptions, taken: set[str]) -> _Timed:
     stated = np.zeros(len(cells), bool)
     for i, cell in enumerate(cells):
         clock = clocks[cell]
-        if np.isnat(read.day[i]):
+        if np.isnat(read.day[i]) or not _FIRST_DAY <= read.day[i] < _LAST_DAY:
             continue
         local[i] = read.day[i] if clock is None else local_time(read.day[i], clock, UTC)
         stated[i] = clock is not None and clock.offset is not None

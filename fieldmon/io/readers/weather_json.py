@@ -18,6 +18,7 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import ImportMessage, doubtful
 from fieldmon.io.parse.clock import zone_of
 from fieldmon.io.readers.weather_rows import WeatherRows
+from fieldmon.pests.weather import DAY_S
 
 if TYPE_CHECKING:
     from fieldmon.io.readers.weather_options import WeatherOptions
@@ -32,6 +33,7 @@ PARAMETERS = {
     "wind_speed_m_s": (4003, 4002, 4013, 4012),
     "wind_from_deg": (4001, 4011),
 }
+_LEAST_STEP_S = 60
 # quality control: 1 and 2 passed, from 4 on bits of tests that failed
 _FAILED = ~3
 
@@ -50,12 +52,12 @@ def rows_of_json(
     try:
         told = json.loads(data)
         at = datetime.fromisoformat(told["timeStart"])
-        step, numbers = int(told["interval"]), [int(one) for one in told["weatherParameters"]]
+        step, numbers = _step(told["interval"]), [int(one) for one in told["weatherParameters"]]
         place = _place(told["locationWeatherData"] or [], name, options)
         table = np.array(
             [[np.nan if v is None else float(v) for v in row] for row in place["data"] or []], float
         ).reshape(-1, len(numbers))
-    except (ValueError, KeyError, TypeError, IndexError) as error:
+    except (ValueError, KeyError, TypeError, IndexError, OverflowError, RecursionError) as error:
         raise FileProblem(
             worded(
                 "{name} must be weather as IPM Decisions writes it (timeStart, interval, "
@@ -75,6 +77,14 @@ def rows_of_json(
     forecast = np.zeros(len(table), bool)
     rows = WeatherRows(times, measured, forecast, zone, options.zone or "")
     return rows, _about_quality(place, told, numbers)
+
+
+def _step(told: str | float) -> int:
+    """Return the seconds from one value to the next."""
+    step = int(told)
+    if not _LEAST_STEP_S <= step <= DAY_S:
+        raise ValueError(f"an interval of {step} s")
+    return step
 
 
 def _place(places: list[dict[str, Any]], name: str, options: WeatherOptions) -> dict[str, Any]:

@@ -24,3 +24,16 @@ def test_leaves_that_were_counted_have_a_verdict_with_its_source(season_app):
     assert "Zalom" in texts_of(season_app)
     season_app.number_input(key="decide counted").set_value(50).run()
     assert "No more leaves can be infested" in season_app.warning[0].value
+
+
+def test_zones_that_were_treated_are_noted_with_what_was_advised(season_app, season):
+    go(season_app, "decide")
+    season_app.number_input(key="efficacy").set_value(80)
+    next(b for b in season_app.button if b.label == texts.TREAT_BUTTON).click()
+    season_app.run()
+    assert not season_app.exception
+    (one,) = season().treatments()
+    assert 0 < one.place.plants.sum() <= len(season().plot.grid)
+    advised, treated = season().log()[-2:]
+    assert (advised.kind, treated.kind) == ("advised", "treated")
+    assert advised.what["date"] == str(one.on)

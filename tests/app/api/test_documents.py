@@ -32,7 +32,19 @@ def test_plants_are_where_they_are_with_their_rows(served):
     start, row = plot["rows"]["start"], plot["rows"]["row"]
     assert np.repeat(row, np.diff(start)).tolist() == label.line.tolist()
     assert plot["zone"] == "Asia/Jerusalem"
+    _tells_where_the_aisles_are(served.season, plot)
     assert plot_document(served.season) == (name, made)
+
+
+def _tells_where_the_aisles_are(season, plot):
+    """Hold each stop of a route to lie on the side of its row that is told."""
+    route, grid = season.plan(BEGINS, keep=False).route, season.plot.grid
+    row = grid.row[route.plant]
+    first, last = grid.xy_m[grid.row_start[row]], grid.xy_m[grid.row_start[row + 1] - 1]
+    to_aisle = route.line_m[route.line_stop] - grid.xy_m[route.plant]
+    ahead = last - first
+    left = np.sign(ahead[:, 0] * to_aisle[:, 1] - ahead[:, 1] * to_aisle[:, 0])
+    assert left.tolist() == np.array(plot["rows"]["side"])[row].tolist()
 
 
 def test_the_day_is_what_the_season_says(served, scout):

@@ -237,3 +237,9 @@ def test_fuzzed_tables_are_read_or_refused_with_a_sentence(tmp_path):
             sentences.append(str(refused))
     assert 5 < len(sentences) < 40
     assert all(sentence.endswith((".", "?")) for sentence in sentences)
+
+
+def test_dates_of_no_station_are_no_times(read):
+    imported = read("date,temp (C)\n0001-01-01,20\n2026-11-18,20\n9999-12-31,21\n2026-11-19,22")
+    assert len(imported.value) == 2
+    assert "2 line(s) without a time" in said(imported)

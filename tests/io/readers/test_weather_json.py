@@ -87,7 +87,8 @@ def test_failed_quality_control_is_told(read):
 
 @pytest.mark.parametrize(
     "broken",
-    [{"timeStart": "yesterday"}, {"interval": "often"}, {"weatherParameters": [1, 2]},
+    [{"timeStart": "yesterday"}, {"interval": 0}, {"interval": -3600}, {"interval": 1e300},
+     {"interval": "often"}, {"weatherParameters": [1, 2]},
      {"locationWeatherData": None}, {"locationWeatherData": [{"data": [[1]]}]}],
 )  # fmt: skip
 def test_what_is_not_of_the_format_is_refused_with_a_sentence(read, broken):

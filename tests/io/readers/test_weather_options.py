@@ -1,10 +1,11 @@
 """What is chosen about weather is checked when it is chosen."""
 
 import pytest
+from shapely import MultiPolygon, box
 
-import fieldmon as fm
 from fieldmon.errors import SettingError
 from fieldmon.io.readers.weather_options import WeatherOptions
+from fieldmon.plot.field import Field
 
 
 def test_units_and_zones_that_are_none_are_refused():
@@ -16,6 +17,6 @@ def test_units_and_zones_that_are_none_are_refused():
 
 
 def test_days_begin_by_the_plots_clock_unless_another_is_told():
-    field = fm.read_plots("sample_data/paran_estate.zip")[0]
+    field = Field("square", MultiPolygon([box(35.15, 30.36, 35.151, 30.361)]))
     assert WeatherOptions().on(field).zone == "Asia/Jerusalem"
     assert WeatherOptions(zone="UTC").on(field).zone == "UTC"

@@ -1,7 +1,5 @@
 """The plan of a plot: rows and aisles where they are, a hatch on what is not driven through."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import shapely
@@ -10,6 +8,7 @@ from shapely import MultiPolygon, box
 from app.show.maps import plan_layers
 from fieldmon.plot.field import Field
 from fieldmon.plot.plot import Plot
+from fieldmon.plot.projection import Frame
 from tests.app.chosen import CORNER, a_plot
 
 LON, LAT = CORNER
@@ -53,16 +52,21 @@ def test_layers_are_those_of_the_plan_with_the_outline_above(plot):
     assert sum(light.get_color) > sum(dark.get_color)
 
 
-def test_rows_that_bend_are_drawn_bent_and_their_aisles_as_they_run():
-    grid = a_plot().grid
-    bent_m = grid.xy_m + np.stack([np.zeros(len(grid)), 5 * np.sin(grid.xy_m[:, 0] / 15)], axis=1)
-    middles = np.array([[0.0, 0.0], [9.0, 3.0], [20.0, 1.0], [0.0, 8.0], [20.0, 9.0]])
-    bent = replace(grid, xy_m=bent_m, aisle_start=np.array([0, 3, 5]), aisle_m=middles)
+def test_rows_that_bend_are_drawn_bent_and_aisles_as_far_as_their_lanes():
+    k, j = np.divmod(np.arange(6 * 40), 40)
+    at, turn = 60.0 + 2.5 * k, (j - 20) * 1.4 / 60
+    xy_m = np.stack([at * np.sin(turn), at * np.cos(turn)], axis=1)
+    # where plants are missing a row bends on
+    there = (k != 2) | (j < 9) | (j > 30)
+    bent = Plot.around("bent", Frame(LON, LAT).lonlat(xy_m[there])).grid
     rows = [*plan_layers.rows_m(bent)]
+    assert len(rows) == 6
     assert max(len(row) for row in rows) > 3
     assert len(np.concatenate(rows)) < len(bent)
     lines = shapely.MultiLineString(rows)
-    assert shapely.distance(lines, shapely.points(bent_m)).max() <= 0.1
-    assert [line.tolist() for line in plan_layers.aisles_m(bent)] == [
-        middles[:3].tolist(), middles[3:].tolist()
-    ]  # fmt: skip
+    everyone = bent.frame.xy_m(Frame(LON, LAT).lonlat(xy_m))
+    assert shapely.distance(lines, shapely.points(everyone)).max() <= 0.15
+    aisles = shapely.MultiLineString([*plan_layers.aisles_m(bent)])
+    assert len(aisles.geoms) == 6
+    assert shapely.distance(aisles, shapely.points(bent.stop_m)).max() < 0.01
+    assert shapely.buffer(bent.drivable_m, 0.05).covers(aisles)

@@ -20,7 +20,7 @@ from ..state.plot_edits import CUT, GATE, NO_GO, PATH, ROW, Edit, points_of
 from ..state.plot_files import draw, drawn, laid
 from ..words import texts
 from ..words.language import of_error
-from . import bending
+from . import bending, turning_rows
 
 if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
@@ -133,7 +133,8 @@ def content(
     field, kind = choices.plot.field, _kind()
     layers = [
         *map_layers.plan(choices), *_as_it_was(before), *_plain_plants(choices),
-        *_row_lines(choices), *marks.blocks(field, dark=choices.dark), *marks.paths(field),
+        *_row_lines(choices), *turning_rows.layers(choices),
+        *marks.blocks(field, dark=choices.dark), *marks.paths(field),
         *marks.records(records, dark=choices.dark),
     ]  # fmt: skip
     if field.gate is not None:
@@ -149,9 +150,10 @@ def content(
         draw = Drawable(_SHAPES[kind], kind, texts.DRAW_HINTS[kind], _corners(field))
     made = MapContent(
         **field_map.of_plot(choices), layers=layers, switches=map_layers.switches(layers),
-        legend=[*legends.signs(dark=choices.dark)[2:], *legends.plan(field, dark=choices.dark)],
+        legend=[*turning_rows.legend(choices), *legends.signs(dark=choices.dark)[2:],
+                *legends.plan(field, dark=choices.dark)],
         draw=draw,
-        labels=map_layers.words(choices),
+        labels=[*turning_rows.labels(choices), *map_layers.words(choices)],
     )  # fmt: skip
     return made, MapAnswers(drawn=partial(_drawn, choices))
 

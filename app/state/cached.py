@@ -25,6 +25,7 @@ from fieldmon.io.rasters.read import read_backdrop, read_relief
 from fieldmon.monitoring import worked_route
 from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from, plan_in
+from fieldmon.plot.row_detection import rows_from_plants
 from fieldmon.reports import season as reports
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
@@ -69,6 +70,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
+    from fieldmon.plot.row_detection import RowDirection
     from fieldmon.reports.content import Report
     from fieldmon.samplers.base import Scene
 
@@ -391,6 +393,12 @@ def without_missing(
 ) -> Imported[Plot]:
     """Return a plot without the plants that a raster shows to be missing; `key` as above."""
     return prepare.without_missing(_plot, _source)
+
+
+@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
+def directions(key: str, _plants: Array) -> tuple[RowDirection, ...]:  # noqa: ARG001
+    """Return the directions in which measured plants stand in rows, whatever was said of them."""
+    return rows_from_plants(_plants).directions
 
 
 def layers(key: str, make: Callable[[], list[Layer]]) -> list[Layer]:

@@ -32,6 +32,11 @@ def is_said(plot_key: str) -> bool:
     return row_settings(plot_key) != dict.fromkeys(row_settings(plot_key), None) | {"in_rows": True}
 
 
+def turn(plot_key: str, bearing_deg: float | None) -> None:
+    """Let a plot's rows run along a bearing, or as they are found (for callbacks)."""
+    widget_memory.put(f"row_bearing {plot_key}", bearing_deg)
+
+
 def block_settings(plot_key: str, name: str) -> dict[str, float]:
     """Return what was said of a block's rows by hand, as `fieldmon.plot.block.Block` has it."""
     now = units()

@@ -57,6 +57,15 @@ def change(names: tuple[str, ...], new: Callable[[Any], Any]) -> None:
                 st.session_state[key] = new(now)
 
 
+def put(key: str, new: object) -> None:
+    """Let a widget hold a value, which may be none (for callbacks)."""
+    page, _ = _values().get(key, ("", None))
+    _values()[key] = (page, new)
+    st.session_state.setdefault(_BEGINS, {})[key] = new
+    if key in st.session_state:
+        st.session_state[key] = new
+
+
 def show(
     widget: Callable[..., T], *arguments: object, key: str, default: object = None,
     **settings: object,

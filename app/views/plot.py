@@ -15,6 +15,7 @@ from ..actions import (
     drawing,
     laying_ground,
     rasters,
+    turning_rows,
 )
 from ..show import field_map, plot_figures
 from ..show import records as records_shown
@@ -57,6 +58,7 @@ def show(choices: Choices) -> None:
         st.caption(texts.BEFORE_NOTE)
         st.button(texts.BEFORE_DROP, key="forget_before", on_click=plot_before.forget)
     st.caption(sentence(choices.plot.assumed, choices.units))
+    turning_rows.show(choices)
     if plot_source.chosen() == plot_source.FILES:
         with st.expander(texts.FILES):
             bringing_files.show()

@@ -432,6 +432,16 @@ DRAW_NOTE = "Insects come in along paths; a no-go area carries no plants and is 
 BEND_ROW = "Row to bend; the others follow it"
 BEND_MAKES = "This makes {rows} rows with {plants} plants. They are drawn over the plot."
 BEND_USE, BEND_DROP = "Use these rows", "Drop them"
+DIRECTIONS = "Which way do the rows run?"
+DIRECTIONS_NOTE = (
+    "The plants stand in rows several ways, as in a square or triangular planting. Each way is "
+    "drawn over the plants. The longest rows are taken until you choose."
+)
+DIRECTION = Plural(
+    "{number} · {bearing}° · {rows} row, {apart} apart",
+    "{number} · {bearing}° · {rows} rows, {apart} apart", by="rows",
+)  # fmt: skip
+DIRECTIONS_AGAIN = "Show every way again"
 BLOCKS = "Blocks"
 BLOCKS_NOTE = (
     "Leave a box empty for rows along the block's longest side, as far apart as elsewhere."

@@ -71,6 +71,9 @@ class Terminal:
         for assumed in laid.assumed:
             option = assumed.setting.removesuffix("_m").replace("_", "-")
             typer.echo(f"{assumed} [--{option}]", err=True)
+        for one in () if laid.plot.rows is None else laid.plot.rows.directions:
+            bearing = f"[--bearing {one.bearing_deg:.1f}]"
+            typer.echo(f"could be: {one}, {one.row_spacing_m:.2f} m apart {bearing}", err=True)
 
     @contextmanager
     def answering(self) -> Iterator[None]:

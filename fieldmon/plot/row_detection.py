@@ -11,7 +11,7 @@ import shapely
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import cKDTree
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.projection import Frame
 
@@ -36,6 +36,28 @@ _MOST_PLANTS = 10_000
 
 
 @dataclass(frozen=True)
+class RowDirection:
+    """A direction in which plants stand in rows.
+
+    Parameters
+    ----------
+    bearing_deg
+        Clockwise from true north, in 0..180.
+    n_rows
+        How many rows they make along it.
+    row_spacing_m
+        How far these are apart.
+    """
+
+    bearing_deg: float
+    n_rows: int
+    row_spacing_m: float
+
+    def __str__(self) -> str:
+        return f"{counted(self.n_rows, 'row')} along {self.bearing_deg:.0f} degrees"
+
+
+@dataclass(frozen=True)
 class Rows:
     """How rows run on a plot, and how that is known.
 
@@ -47,16 +69,16 @@ class Rows:
         Typical distances, or None where the evidence does not show them.
     how
         The evidence in words, for people.
-    others_deg
-        Other directions in which plants stand in rows as well: of a square planting one, of a
-        triangular one two.
+    directions
+        Every direction in which plants stand in rows, the one taken first: of a square planting
+        two, of a triangular one three; empty where there is one only.
     """
 
     bearing_deg: float
     row_spacing_m: float | None
     plant_spacing_m: float | None
     how: str
-    others_deg: tuple[float, ...] = ()
+    directions: tuple[RowDirection, ...] = ()
 
 
 def rows_from_boundary(field: Field) -> Rows:
@@ -124,8 +146,37 @@ def rows_from_plants(lonlat: Float, near_bearing_deg: float | None = None) -> Ro
         best.row_spacing_m,
         best.plant_spacing_m,
         f"from {len(east_north_m)} plants in {rows}{stray}{doubt}",
-        tuple(lines.bearing_deg % 180.0 for lines in others),
+        tuple(_direction(lonlat, lines) for lines in (best, *others)) if others else (),
     )
+
+
+def row_ends(lonlat: Float, bearing_deg: float, row_spacing_m: float) -> Float:
+    """Return where straight rows of plants begin and end, ``(r, 2, 2)`` lon/lat.
+
+    Parameters
+    ----------
+    lonlat
+        ``(n, 2)`` plants.
+    bearing_deg, row_spacing_m
+        Along which they stand in rows, and how far these are about apart.
+    """
+    frame = frame_around(lonlat).turned(bearing_deg)
+    x, y = frame.xy_m(lonlat).T
+    line = split_lines(y, row_spacing_m)
+    n_on = np.bincount(line)
+    y_m = np.bincount(line, y) / n_on
+    start = np.concatenate([[0], np.cumsum(n_on)[:-1]])
+    along = x[np.argsort(line, kind="stable")]
+    ends_m = [
+        np.stack([end.reduceat(along, start), y_m], axis=1) for end in (np.minimum, np.maximum)
+    ]
+    return frame.lonlat(np.concatenate(ends_m)).reshape(2, -1, 2).swapaxes(0, 1)
+
+
+def _direction(lonlat: Float, lines: _Lines) -> RowDirection:
+    """Return a direction with the number of rows that all plants make along it."""
+    bearing_deg, spacing_m = lines.bearing_deg % 180.0, lines.row_spacing_m or np.inf
+    return RowDirection(bearing_deg, len(row_ends(lonlat, bearing_deg, spacing_m)), spacing_m)
 
 
 def _longest(seen: list[_Lines], best: _Lines) -> tuple[_Lines, list[_Lines]]:

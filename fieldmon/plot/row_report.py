@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.measured_rows import SaidRows
-    from fieldmon.plot.row_detection import Rows
+    from fieldmon.plot.row_detection import RowDirection, Rows
 
     Float = NDArray[np.float64]
 
@@ -58,8 +58,9 @@ class RowReport:
         Share of the plants that stand more than a quarter of the row spacing beside their row.
     in_rows
         Whether they stand in rows at all.
-    others_deg
-        Other directions in which they stand in rows as well.
+    directions
+        Every direction in which they stand in rows, the one taken first; empty where there is one
+        only, or where a bearing or names decided.
     misnamed_share
         Share of the plants that stand in another row than its name says; None without names.
     named
@@ -82,7 +83,7 @@ class RowReport:
     off_m: float
     off_share: float
     in_rows: bool
-    others_deg: tuple[float, ...] = ()
+    directions: tuple[RowDirection, ...] = ()
     misnamed_share: float | None = None
     named: bool = False
     of_trial: bool = False
@@ -132,11 +133,12 @@ class RowReport:
                 f"{self.nearly_square_m[1]:.2f} m, nearly as far: they may run, or bend, another "
                 "way. Look at them, and draw one row or name each plant's row if they do."
             )
-        if self.others_deg:
-            ways = " and ".join(f"{way:.0f}" for way in self.others_deg)
+        if self.directions:
+            taken, *others = map(str, self.directions)
             said.append(
-                f"The plants stand in rows along {ways} degrees as well; the direction with the "
-                "longest rows was taken. Give the row bearing if it is another."
+                f"The plants stand in rows in {len(self.directions)} directions: {taken}, but also "
+                f"{' and '.join(others)}. The first, with the longest rows, was taken. Give the "
+                "row bearing if it is another."
             )
         return tuple(said)
 
@@ -185,7 +187,7 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
         typical_m,
         float(np.mean(alone_m > _OFF * grid.row_spacing_m)),
         said.label is not None or not scattered,
-        () if decided else found.others_deg,
+        () if decided else found.directions,
         said.misnamed,
         said.label is not None,
         said.of_trial,
@@ -241,7 +243,7 @@ def _nearly_square(grid: PlantGrid, found: Rows, said: SaidRows) -> tuple[float,
     if grid.aisles_m is not None:
         return apart_m
     # straight rows that cross others are told of as such
-    sure = said.bearing or bool(found.others_deg)
+    sure = said.bearing or bool(found.directions)
     return None if sure or not _abreast(grid) else apart_m
 
 

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 
 import geopandas as gpd
 import numpy as np
@@ -212,3 +213,26 @@ def test_a_plot_is_only_its_rows(run, tmp_path):
     assert "rows: 477 plants in 9 rows" in out or "in 9 rows, which run as they bend" in out
     assert "guessed: No boundary was given" in err
     assert run("init", "bow.gpkg", "--rows", "rows.geojson")[0] == 0
+
+
+@pytest.mark.parametrize("planting", ["square", "triangular"])
+def test_each_direction_of_a_planting_is_named_with_the_option_that_chooses_it(
+    run, tmp_path, planting
+):
+    k, j = np.divmod(np.arange(10 * 24), 24)
+    shift, apart = (0.0, 1.0) if planting == "square" else (0.5, np.sqrt(0.75))
+    xy_m = 3.0 * np.stack([j + shift * (k % 2), apart * k], axis=1)
+    rows = [f"{lon:.9f},{lat:.9f}" for lon, lat in FRAME.turned(20.0).lonlat(xy_m)]
+    (tmp_path / "trees.csv").write_text("\n".join(["lon,lat", *rows]))
+    asked = "plan", "--plants", "trees.csv", "--hours", 1, "--no-bound", "-o", "day.csv"
+    code, out, err, _ = run(*asked)
+    assert code == 0, err
+    named = re.findall(r"could be: (\d+) rows along (\d+) degrees, .* \[--bearing ([\d.]+)\]", err)
+    ways = [20, 110] if planting == "square" else [20, 80, 140]
+    assert sorted(int(degrees) for _, degrees, _ in named) == ways
+    assert f"240 plants in {named[0][0]} rows, bearing {named[0][2]} degrees" in out
+    for n_rows, _, bearing in named:
+        code, out, err, _ = run(*asked, "--bearing", bearing)
+        assert code == 0, err
+        assert f"240 plants in {n_rows} rows, bearing {bearing} degrees" in out
+        assert "could be:" not in err

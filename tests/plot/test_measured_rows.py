@@ -16,7 +16,7 @@ from fieldmon.plot.layout import Planting, grid_from_plants
 from fieldmon.plot.measured_rows import PlantNames, SaidRows, name_numbers
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
-from fieldmon.plot.row_detection import rows_from_plants
+from fieldmon.plot.row_detection import row_ends, rows_from_plants
 from tests.bent import right_share
 
 FRAME = Frame(8.0, 47.0)
@@ -66,7 +66,7 @@ def test_a_bearing_that_is_said_keeps_rows_that_run_that_way():
         off_deg = (plot.grid.frame.bearing_deg - bearing_deg + 90) % 180 - 90
         assert off_deg == pytest.approx(0.0, abs=1.0)
         assert plot.grid.n_rows == 20
-        assert plot.rows.others_deg == ()
+        assert plot.rows.directions == ()
 
 
 def test_names_of_rows_decide_where_they_tell_of_rows():
@@ -125,16 +125,22 @@ def test_a_square_planting_has_rows_two_ways_and_takes_the_longer_ones():
     xy_m = 3.0 * np.stack([j, k], axis=1) + np.random.default_rng(1).normal(0, 0.05, (360, 2))
     rows = rows_from_plants(Frame(8.0, 47.0, 20.0).lonlat(xy_m))
     assert rows.bearing_deg == pytest.approx(20.0, abs=0.5)
-    assert [round(way) for way in rows.others_deg] == [110]
+    assert [(round(one.bearing_deg), one.n_rows) for one in rows.directions] == [
+        (20, 12),
+        (110, 30),
+    ]
+    assert [one.row_spacing_m for one in rows.directions] == pytest.approx([3.0, 3.0], abs=0.05)
     plot = Plot.around("square", Frame(8.0, 47.0, 20.0).lonlat(xy_m))
-    assert any("along 110 degrees as well" in said for said in plot.rows.doubts)
+    assert any("but also 30 rows along 110 degrees" in said for said in plot.rows.doubts)
+    ends_m = Frame(8.0, 47.0, 20.0).xy_m(row_ends(plot.field.plants, 110.0, 3.0).reshape(-1, 2))
+    assert np.ptp(ends_m.reshape(-1, 2, 2)[..., 1], axis=1) == pytest.approx(33.0, abs=0.4)
 
 
 def test_a_triangular_planting_has_rows_three_ways():
     k, j = np.divmod(np.arange(20 * 20), 20)
     xy_m = 3.0 * np.stack([j + k / 2 - k // 2, k * np.sqrt(0.75)], axis=1)
     rows = rows_from_plants(Frame(8.0, 47.0, 10.0).lonlat(xy_m))
-    ways = sorted(round(way) for way in (rows.bearing_deg, *rows.others_deg))
+    ways = sorted(round(one.bearing_deg) for one in rows.directions)
     assert ways == [10, 70, 130]
 
 

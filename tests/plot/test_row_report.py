@@ -7,6 +7,7 @@ import pytest
 
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
+from fieldmon.plot.row_detection import RowDirection
 from fieldmon.plot.row_report import RowReport
 
 SURE = RowReport("20 plants in 4 rows", 0.02, 0.0, in_rows=True)
@@ -21,7 +22,10 @@ SURE = RowReport("20 plants in 4 rows", 0.02, 0.0, in_rows=True)
         ({"misnamed_share": 0.2, "named": True}, "20% of the plants seem to stand in another row"),
         ({"misnamed_share": 0.2, "named": True}, "the names decided"),
         ({"misnamed_share": 0.6}, "rows were found instead"),
-        ({"others_deg": (30.0, 90.0)}, "along 30 and 90 degrees as well"),
+        (
+            {"directions": (RowDirection(20, 9, 3.0), RowDirection(80, 12, 3.0))},
+            "in 2 directions: 9 rows along 20 degrees, but also 12 rows along 80 degrees. The",
+        ),
         ({"in_rows": False}, "No rows were found"),
     ],
 )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from ..show import pest_figures
 from ..state import widget_memory
 from ..state.comparison import ComparisonSettings, Strategy
 from ..words import texts
@@ -15,10 +16,12 @@ from ..words.strategies import sampler_name
 MOST_ROBOTS = 5
 
 if TYPE_CHECKING:
+    from fieldmon.infestation.pest_in_weather import PestInWeather
+
     from ..state.choices import Choices
 
 
-def settings(choices: Choices) -> ComparisonSettings:
+def settings(choices: Choices, pest: PestInWeather | None = None) -> ComparisonSettings:
     """Show what can be compared; return what is asked for."""
     left, middle, right = st.columns([2, 1, 1])
     samplers = widget_memory.show(
@@ -44,14 +47,20 @@ def settings(choices: Choices) -> ComparisonSettings:
     )
     first, *others = st.columns(4)
     seeds = first.number_input(texts.SEEDS, 1, 500, 20, help=texts.SEEDS_HELP, key="seeds")
-    return ComparisonSettings(strategies, *season(others), int(seeds))
+    return ComparisonSettings(strategies, *season(others, pest), int(seeds))
 
 
-def season(columns: list) -> tuple[int, float, float]:
-    """Show what a simulated season is like: days, share infested at the start, spread a night."""
+def season(columns: list, pest: PestInWeather | None = None) -> tuple[int, float, float]:
+    """Show what a simulated season is like: days, share infested at the start, spread a night.
+
+    Where a pest is known, its nights are told instead of asked for.
+    """
     show, (first, second, third) = widget_memory.show, columns
     n_days = show(first.number_input, texts.DAYS, 2, 60, key="n_days", default=25)
     share = show(second.number_input, texts.INFESTED, 0.1, 50.0, step=0.5, key="share", default=2.0)
+    if pest is not None:
+        third.caption(texts.NIGHTS_OF_PEST.format(pest=pest_figures.title(pest.pest)))
+        return int(n_days), share / 100, 0.0
     rate = show(third.number_input, texts.SPREAD, 0.0, 100.0, step=5.0, key="rate", default=10.0,
                 help=texts.SPREAD_HELP)  # fmt: skip
     return int(n_days), share / 100, rate / 100

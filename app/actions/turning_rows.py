@@ -95,7 +95,7 @@ def _notes(choices: Choices, found: tuple[RowDirection, ...]) -> tuple[str, ...]
     """Return what is said of each direction, on its button and in the legend."""
     return tuple(
         texts.DIRECTION.format(
-            number=number(k, "d"), bearing=number(one.bearing_deg, ".0f"), rows=one.n_rows,
+            number=number(k, "d"), bearing=number(one.bearing_deg, ".0f"), n=one.n_rows,
             apart=choices.units.metres(one.row_spacing_m),
         )
         for k, one in enumerate(found, start=1)

@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.row_detection import RowDirection
     from fieldmon.reports.content import Report
     from fieldmon.samplers.base import Scene
+    from fieldmon.simulation.worker import LaidPlot
 
     from .comparison import ComparisonSettings
 
@@ -428,11 +429,13 @@ def comparison(
     key: str,  # noqa: ARG001
     settings: ComparisonSettings,
     robot: Robot,
-    _plot: Plot,
-    _chance: Array,
+    _laid: LaidPlot,
 ) -> Comparison:
-    """Return the comparison of these settings on this plot; it is at work or will be."""
-    return Comparison(settings, _plot, _chance, robot)
+    """Return the comparison of these settings on this plot; it is at work or will be.
+
+    `key` stands for the plot, its chances and its pest.
+    """
+    return Comparison(settings, _laid, robot)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
@@ -441,17 +444,18 @@ def simulated_season(
     sampler_name: str,
     numbers: tuple[int, float, float, int],
     robot: Robot,
-    _plot: Plot,
-    _chance: np.ndarray,
+    _laid: LaidPlot,
 ) -> tuple[list[SimulatedDay], SeasonMetrics]:
-    """Return a simulated season and its figures; `key` stands for plot, records and day.
+    """Return a simulated season and its figures; `key` stands for plot, records, day and pest.
 
     `numbers` are days, share infested at the start, spread a night, and seed.
     """
     n_days, share, rate, seed = numbers
     streams = RandomStreams(seed)
-    start = season_start(_plot.grid, _chance, share, streams)
-    settings = SeasonSettings(n_days=n_days, spread=Spread(rate))
+    plot, chance, living = _laid
+    robot = robot if living is None else living.pest.seen_by(robot)
+    start = season_start(plot.grid, chance, share, streams)
+    settings = SeasonSettings(n_days=n_days, spread=Spread(rate), pest=living)
     decides = sampler(sampler_name)
-    walk = list(simulated_days(_plot.aisles, robot, decides, start, settings, streams))
+    walk = list(simulated_days(plot.aisles, robot, decides, start, settings, streams))
     return walk, season_metrics(walk)

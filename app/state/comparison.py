@@ -21,12 +21,11 @@ from fieldmon.simulation.experiment import Experiment, Memory, run
 from fieldmon.simulation.statistics import half_interval, summary_statistics
 from fieldmon.simulation.team_season import Team
 from fieldmon.simulation.team_worth import marginal_gains
-from fieldmon.simulation.worker import simulated_season
+from fieldmon.simulation.worker import LaidPlot, simulated_season
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.statistics import SummaryStatistics
@@ -73,7 +72,7 @@ class ComparisonSettings:
     share
         Plants infested at the start, 0 to 1.
     rate
-        Chance a night that an infested plant infests each plant next to it.
+        Chance a night that an infested plant infests each plant next to it, where no pest is known.
     seeds
         Seasons for each strategy.
     """
@@ -122,12 +121,10 @@ class Outcome:
 class Comparison:
     """A comparison that runs in a thread of its own and can be watched and stopped."""
 
-    def __init__(
-        self, settings: ComparisonSettings, plot: Plot, chance: Floats, robot: Robot
-    ) -> None:
+    def __init__(self, settings: ComparisonSettings, laid: LaidPlot, robot: Robot) -> None:
         self.settings = settings
         self.problem: FieldmonError | None = None
-        self._prepared, self._robot = (plot, chance), robot
+        self._laid, self._robot = laid, robot
         self._experiment = Experiment(
             settings=settings.strategies,
             seeds=range(1, settings.seeds + 1),
@@ -192,7 +189,7 @@ class Comparison:
         )
         team = Team(strategy.robots, TEAMWORK)
         season = seeds.start, settings.n_days
-        return simulated_season(self._prepared, self._robot, levels, *season, team)
+        return simulated_season(self._laid, self._robot, levels, *season, team)
 
 
 def outcomes(seasons: dict[Strategy, list[SeasonMetrics]]) -> list[Outcome]:

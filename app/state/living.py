@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.compute.digest import digest
 from fieldmon.errors import FieldmonError
+from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.pest_prior import prior_for
 from fieldmon.io.readers.pest_file import read_pest, shipped_names, shipped_pest
 from fieldmon.io.readers.weather_options import WeatherOptions
@@ -80,6 +82,20 @@ def met(choices: Choices) -> Weather | None:
     """Return the weather for what is chosen."""
     read = weather(choices.plot, choices.today or choices.on)
     return None if read is None else read.value
+
+
+def in_weather(choices: Choices) -> PestInWeather | None:
+    """Return the pest in its weather from the day on, the season's own; None: nobody named one."""
+    if (season := choices.season) is not None:
+        known = season.settings.pest, season.settings.weather
+    else:
+        known = pest(), met(choices)
+    return None if known[0] is None else PestInWeather(known[0], known[1], choices.on)
+
+
+def key(known: PestInWeather | None) -> str:
+    """Return what stands for a pest in its weather in cache keys."""
+    return "" if known is None else digest(*known.told, length=16)
 
 
 def prior(settings: PriorSettings, plot: Plot, today: date, on: date) -> PriorSettings:

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.simulation.worker import LaidPlot
+
 from ..actions import changing, comparing
 from ..show import charts, field_map, map_layers, verdicts
-from ..state import cached, chosen_day
+from ..state import cached, chosen_day, living
 from ..state.comparison import Comparison, curve, gains, outcomes
 from ..words import texts
 from ..words.language import of_error
@@ -23,13 +25,14 @@ def show(choices: Choices) -> None:
     """Choose what to compare, and watch the results come."""
     field_map.want(map_layers.day_map(choices))
     st.caption(texts.COMPARE_INTRO)
-    settings = comparing.settings(choices)
+    pest = living.in_weather(choices)
+    settings = comparing.settings(choices, pest)
     if not 1 <= len(settings.strategies) <= _MOST:
         st.warning(texts.TOO_MANY.format(most=_MOST, n=len(settings.strategies)))
         return
-    key = f"{choices.key} {choices.revision} {choices.day}"
-    chance = chosen_day.chance(choices)
-    running = cached.comparison(key, settings, choices.robot, choices.plot, chance)
+    key = f"{choices.key} {choices.revision} {choices.day} {living.key(pest)}"
+    laid = LaidPlot(choices.plot, chosen_day.chance(choices), pest)
+    running = cached.comparison(key, settings, choices.robot, laid)
     with st.container(horizontal=True):
         label = texts.GO_ON if 0 < running.done < running.total else texts.RUN
         st.button(label, type="primary", key="run", on_click=running.start,

@@ -17,11 +17,9 @@ from ..actions import (
     rasters,
     turning_rows,
 )
-from ..show import field_map, plot_figures
+from ..show import assumed, field_map, plot_figures
 from ..show import records as records_shown
-from ..show.assumed import sentence
-from ..state import chosen_day, plot_before, plot_files, plot_source, rooms
-from ..state.row_settings import is_said
+from ..state import chosen_day, plot_before, plot_files, plot_source, rooms, row_settings
 from ..words import texts
 from ..words.language import in_words
 
@@ -42,7 +40,7 @@ def bring(problem: FieldmonError | None) -> None:
         answering.show(problem)
         laying = plot_files.laying()
         # what was set by hand may be what is wrong: it must stay within reach
-        if isinstance(problem, PlotError) and is_said(laying):
+        if isinstance(problem, PlotError) and row_settings.is_said(laying):
             drawing.rows(laying)
         if isinstance(problem, PlotError):
             drawing.undo_last(laying)
@@ -57,7 +55,7 @@ def show(choices: Choices) -> None:
     if before is not None:
         st.caption(texts.BEFORE_NOTE)
         st.button(texts.BEFORE_DROP, key="forget_before", on_click=plot_before.forget)
-    st.caption(sentence(choices.plot.assumed, choices.units))
+    st.caption(assumed.sentence(choices.plot.assumed, choices.units))
     turning_rows.show(choices)
     if plot_source.chosen() == plot_source.FILES:
         with st.expander(texts.FILES):

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.samplers import COMPARED
+from fieldmon.simulation.worker import LaidPlot
 
 from ..actions import comparing
 from ..show import charts, field_map, simulated_day
-from ..state import cached, chosen_day
+from ..state import cached, chosen_day, living
 from ..words import texts
 from ..words.language import number
 from ..words.strategies import sampler_name
@@ -24,14 +25,14 @@ if TYPE_CHECKING:
 def show(choices: Choices) -> None:
     """Simulate, and show any day of any sampler on the map."""
     st.caption(texts.SEASON_INTRO)
-    numbers = comparing.season(st.columns(3))
+    pest = living.in_weather(choices)
+    numbers = comparing.season(st.columns(3), pest)
     seed = st.number_input(texts.SEED, 0, 10_000, 1, help=texts.SEED_HELP, key="seed")
     names = _names(choices)
-    chance, key = chosen_day.chance(choices), f"{choices.key}{choices.revision}{choices.day}"
+    laid = LaidPlot(choices.plot, chosen_day.chance(choices), pest)
+    key = f"{choices.key}{choices.revision}{choices.day}{living.key(pest)}"
     seasons = {
-        name: cached.simulated_season(
-            key, name, (*numbers, int(seed)), choices.robot, choices.plot, chance
-        )
+        name: cached.simulated_season(key, name, (*numbers, int(seed)), choices.robot, laid)
         for name in names
     }
     name = st.segmented_control(

@@ -221,6 +221,7 @@ DEVELOPMENT_NOTE = (
 )
 DAYS, INFESTED, SPREAD, SEED = "Days", "Infested at the start (%)", "Spread a night (%)", "Seed"
 SPREAD_HELP = "Chance a night that an infested plant infests each plant next to it."
+NIGHTS_OF_PEST = "Spreads as the chosen pest, by its weather where that is known: {pest}."
 SEED_HELP = "The same seed gives the same season."
 DETECTION_AXIS, DAY_AXIS, FOUND_AXIS = "found so far (%)", "day", "plants found that day"
 COMPARED = "Samplers compared"
@@ -438,8 +439,8 @@ DIRECTIONS_NOTE = (
     "drawn over the plants. The longest rows are taken until you choose."
 )
 DIRECTION = Plural(
-    "{number} · {bearing}° · {rows} row, {apart} apart",
-    "{number} · {bearing}° · {rows} rows, {apart} apart", by="rows",
+    "{number} · {bearing}° · {n} row, {apart} apart",
+    "{number} · {bearing}° · {n} rows, {apart} apart",
 )  # fmt: skip
 DIRECTIONS_AGAIN = "Show every way again"
 BLOCKS = "Blocks"

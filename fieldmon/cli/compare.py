@@ -20,6 +20,7 @@ from fieldmon.cli.options import (
     WorkDate,
     WorkerOptions,
 )
+from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER, SamplerName
 from fieldmon.cli.study_output import must_be_folder, write_all
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.plot.plot import Plot
     from fieldmon.studies.teams.seasons import TeamOutcome, TeamScenario, TeamSetting
 
@@ -68,13 +70,20 @@ class CompareOptions:
     seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons of each.")] = 10
     infested: Annotated[float, typer.Option(help="Share of plants infested at the start.")] = 0.02
     spread: Annotated[
-        list[float] | None, typer.Option(help="Chance a night; repeat for more. 0.1 if none.")
+        list[float] | None,
+        typer.Option(
+            help="Chance a night; repeat for more. 0.1 if neither it nor --pest is given."
+        ),
     ] = None
     to: Annotated[
-        str, typer.Option(help="Whom an infested plant infests: each neighbour, one, or all.")
-    ] = "each"
+        str | None,
+        typer.Option(
+            help="Whom an infested plant infests: each neighbour, one, or all. Each if not given."
+        ),
+    ] = None
     on: WorkDate = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
+    living: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
 
 
@@ -85,6 +94,9 @@ def compare(options: CompareOptions) -> None:
     All of them meet the same insects. On a plot of your own, or on square ones of several sizes.
     A comparison that was stopped goes on where its table ends.
 
+    With --pest the insects are that pest's, in the weather of --weather, and the chance map knows.
+
+    Example: fieldmon compare vines.zip --feature 3 --pest spider-mite --weather station.csv
     Example: fieldmon compare vines.zip --feature 3 --observations mites.csv --robots 1-3
     Example: fieldmon compare --hectares 1 --hectares 5 --spread 0.1 --spread 0.3 --robots 1-5
     """
@@ -125,33 +137,44 @@ def _scenarios(options: CompareOptions) -> list[TeamScenario]:
 
     if options.hectares and options.plot is not None:
         raise SettingError("Give a plot file or --hectares, but not both.")
+    options.living.check_alone(spread=options.spread, to=options.to)
+    robot = options.living.seen(options.worker.robot())
     plots = [square_plot(hectares) for hectares in options.hectares or ()]
-    known = [(plot, unknown_chance(plot)) for plot in plots] or [_own(options)]
-    robot = options.worker.robot()
+    known = [(plot, unknown_chance(plot)) for plot in plots]
+    if plots:  # all of them lie in one place
+        field = plots[0].field
+        living = options.living.living(field, day_on(field, day(options.on)))
+    else:
+        own, living = _own(options)
+        known = [own]
     return [
         TeamScenario(
             plot, chance,
-            Spread(rate, options.to),  # type: ignore[arg-type]
-            robot, options.infested, options.days,
+            Spread(rate, options.to or "each"),  # type: ignore[arg-type]
+            robot, options.infested, options.days, living,
         )
         for plot, chance in known
         for rate in options.spread or [0.1]
     ]  # fmt: skip
 
 
-def _own(options: CompareOptions) -> tuple[Plot, NDArray[np.float64]]:
-    """Return the plot of the command's files, and what is believed of it."""
+def _own(
+    options: CompareOptions,
+) -> tuple[tuple[Plot, NDArray[np.float64]], PestInWeather | None]:
+    """Return the plot of the command's files with what is believed of it, and its pest."""
     import numpy as np  # noqa: PLC0415
 
-    from fieldmon.infestation.prior import PriorSettings, prior_chance  # noqa: PLC0415
+    from fieldmon.infestation.prior import prior_chance  # noqa: PLC0415
 
     told = day(options.on)
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
     plot = known.plot
-    on = np.datetime64(day_on(plot.field, told), "D")
+    begins = day_on(plot.field, told)
+    on, living = np.datetime64(begins, "D"), options.living.living(plot.field, begins)
+    prior = prior_of(living, begins)
     tell_unusable(known.records, on)
-    chance = prior_chance(plot.grid, plot.field, known.records, on, PriorSettings(), known.risk)
-    return plot, chance
+    chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
+    return (plot, chance), living
 
 
 def _settings(

@@ -61,6 +61,15 @@ class PestOptions:
 
         return None if self.pest is None else pest_of(self.pest)
 
+    def check_alone(self, **given: object) -> None:
+        """Raise `SettingError` where a pest is named and options say how it spreads as well."""
+        said = [f"--{name}" for name, value in given.items() if value is not None]
+        if self.pest is not None and said:
+            verb = "goes" if len(said) == 1 else "go"
+            raise SettingError(
+                f"{' and '.join(said)} {verb} without --pest, which says how it spreads."
+            )
+
     def met(self, field: Field) -> Weather | None:
         """Return the weather that was given, and print what there is to say of it."""
         if self.weather is None:

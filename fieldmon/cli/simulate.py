@@ -24,7 +24,6 @@ from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import COMPARED_SAMPLERS, SamplerName
 from fieldmon.cli.times import day, day_on
-from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from fieldmon.decisions.zones import TreatmentCosts, Zones
@@ -78,8 +77,7 @@ class SimulateOptions:
         from fieldmon.infestation.spread import Spread  # noqa: PLC0415
         from fieldmon.simulation.season import SeasonSettings  # noqa: PLC0415
 
-        if living is not None and self.spread is not None:
-            raise SettingError("--spread goes without --pest, which says how it spreads.")
+        self.living.check_alone(spread=self.spread)
         rate = 0.1 if self.spread is None else self.spread
         return SeasonSettings(
             n_days=self.days, spread=Spread(rate), pest=living, treating=_treating(self)

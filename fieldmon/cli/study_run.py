@@ -14,7 +14,6 @@ from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.preparing import estate
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
-from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -57,8 +56,7 @@ class StudyOptions:
         """Return what is compared."""
         from fieldmon.simulation.design import Design  # noqa: PLC0415
 
-        if self.living.pest is not None and self.spread:
-            raise SettingError("--spread goes without --pest, which says how it spreads.")
+        self.living.check_alone(spread=self.spread or None)
         told = {
             "samplers": self.sampler,
             "hours": self.hours,

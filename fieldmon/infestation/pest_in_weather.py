@@ -133,6 +133,12 @@ class PestInWeather:
     weather: Weather | None = None
     begins: date = field(default_factory=lambda: date(2026, 1, 1))
 
+    @property
+    def told(self) -> tuple[object, ...]:
+        """Return what tells a pest in its weather from any other, for a digest."""
+        weather = () if self.weather is None else tuple(vars(self.weather).values())
+        return (self.pest, str(self.begins), *weather)
+
     def day(self, number: int) -> DayWeather:
         """Return the weather of a day: of its date, or the usual of it."""
         on = self.begins + timedelta(days=number)

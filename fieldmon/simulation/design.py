@@ -63,7 +63,7 @@ class StudyPlot:
         """Return what tells this plot and its records from any others."""
         parts = (*self.field.told, *vars(self.observations).values())
         # unsaid, it leaves a plot what it was before pests could be named
-        living = () if self.living is None else _living_parts(self.living)
+        living = () if self.living is None else self.living.told
         return digest(*parts, _as_written(self.planting), str(self.day), *living, length=_DIGITS)
 
     @cached_property
@@ -177,12 +177,6 @@ def _seasons(sampler: str, n_plants: int, n_days: int) -> int:
     """Return how many seasons take about `_CHUNK_S`."""
     day_s = _S_PER_DAY + n_plants * kind_of(sampler).s_per_plant_day
     return math.ceil(_CHUNK_S / (n_days * day_s))
-
-
-def _living_parts(living: PestInWeather) -> tuple[object, ...]:
-    """Return what tells a pest in its weather from any other."""
-    weather = () if living.weather is None else tuple(vars(living.weather).values())
-    return (living.pest, str(living.begins), *weather)
 
 
 def _as_written(settings: object) -> bytes:

@@ -79,6 +79,38 @@ def test_insects_are_simulated_and_days_planned_by_the_pest(run, tmp_path, stati
     assert "chance to find what is there" not in err
 
 
+def test_a_robot_compared_with_others_has_the_season_that_simulate_shows(run, tmp_path, station):
+    words = [*PLOT, "--pest", "spider-mite", "--weather", station, "--date", BEGINS]
+    words += ["--hours", "0.4", "--days", 3, "--sampler", "naive"]
+    code, _, err, _ = run("simulate", *words, "-o", "season.csv")
+    assert code == 0, err
+    code, out, err, _ = run("compare", *words, "--robots", "1-2", "--seeds", 2)
+    assert code == 0, err
+    assert "Nursery spider-mite (naive, sections): A second robot would save" in out
+    alone = [one for one in table(tmp_path / "robots.csv") if one["robots"] == "1"]
+    left = [int(one["infested_left"]) for one in table(tmp_path / "season.csv")]
+    assert float(alone[0]["infested_plant_days"]) == sum(left)
+    assert alone[0]["spread"] == "nan"
+    first = (tmp_path / "robots.csv").read_text()
+    code, again, err, _ = run("compare", *words, "--robots", "1-2", "--seeds", 2)
+    assert (again, (tmp_path / "robots.csv").read_text()) == (out, first), "it goes on as it was"
+    refused = "compare", *words, "--spread", 0.1, "--to", "one"
+    assert "--spread and --to go without --pest" in run(*refused)[2]
+
+
+def test_square_plots_are_compared_by_a_pest_in_one_line_of_the_chart(run, tmp_path):
+    words = ["--hectares", 0.05, "--hectares", 0.1, "--pest", "whitefly", "--hours", "0.3"]
+    code, _, err, _ = run("compare", *words, "--days", 2, "--seeds", 2, "--robots", "1-2")
+    assert code == 0, err
+    assert err.count("pest: ") == 1
+    assert "as the pest spreads" in (tmp_path / "robots.html").read_text()
+
+
+def table(path):
+    with path.open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [

@@ -36,11 +36,11 @@ def of_sizes(made: Sequence[TeamRow]) -> list[Markup]:
     if len({row.hectares for row in made}) < 2:
         return []
     lines = []
-    for who, spread in dict.fromkeys((row.who, row.spread) for row in made):
-        of = [row for row in made if (row.who, row.spread) == (who, spread)]
+    for who, nights in dict.fromkeys((row.who, row.nights) for row in made):
+        of = [row for row in made if (row.who, row.nights) == (who, nights)]
         points = sorted((row.hectares / row.robots, row.loss.mean / row.hectares) for row in of)
         x, y = zip(*_together(points), strict=True)
-        lines.append(Line(f"{spread:.0%} a night", x, y))
+        lines.append(Line(nights, x, y))
     title, up = "Infested plant-days a hectare", "infested plant-days a hectare"
     return [line_chart(title, lines, ("hectares a robot", up), powers=True)]
 

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.simulation.team_season import Team
 
 _DIGITS = 8
@@ -46,13 +47,15 @@ class TeamScenario:
     chance
         ``(n,)`` chance of infestation as believed on the first morning.
     spread
-        What the insects do at night.
+        What the insects do at night, where no pest is named.
     robot
         Each of a team.
     infested
         Share of plants infested on the first morning.
     n_days
         Working days.
+    living
+        The pest in its weather; None: nights are as `spread` says.
     """
 
     plot: Plot
@@ -61,6 +64,7 @@ class TeamScenario:
     robot: Robot = field(default_factory=Robot)
     infested: float = 0.02
     n_days: int = 25
+    living: PestInWeather | None = None
 
     @property
     def hectares(self) -> float:
@@ -73,10 +77,16 @@ class TeamScenario:
         """Return the scenario in words; the same for the same plot and settings only."""
         settings = (self.robot, self.infested, self.n_days, self.spread)
         parts = (self.plot.grid.xy_m, self.chance, repr(settings).encode())
-        return (
-            f"{self.plot.field.name} spread {self.spread.rate_per_day:.0%} to {self.spread.to} "
-            f"{digest(*parts, length=_DIGITS)}"
-        )
+        # unsaid, it leaves a scenario what it was before pests could be named
+        living = () if self.living is None else self.living.told
+        nights = f"spread {self.spread.rate_per_day:.0%} to {self.spread.to}"
+        nights = nights if self.living is None else self.living.pest.name
+        return f"{self.plot.field.name} {nights} {digest(*parts, *living, length=_DIGITS)}"
+
+    @property
+    def rate_per_day(self) -> float:
+        """Return the chance a night to infest a neighbour; NaN where a pest has its own nights."""
+        return self.spread.rate_per_day if self.living is None else np.nan
 
 
 class TeamSetting(NamedTuple):
@@ -100,7 +110,10 @@ class TeamSetting(NamedTuple):
 
 @dataclass(frozen=True)
 class TeamOutcome:
-    """What a season of a team came to; a level never reached counts as one day more than it has."""
+    """What a season of a team came to; a level never reached counts as one day more than it has.
+
+    `spread` is NaN where a pest has nights of its own.
+    """
 
     scenario: str
     who: str
@@ -169,13 +182,13 @@ def outcome(setting: TeamSetting, seed: int) -> TeamOutcome:
     scenario, streams = setting.scenario, RandomStreams(seed)
     plot = scenario.plot
     start = season_start(plot.grid, scenario.chance, scenario.infested, streams)
-    season = SeasonSettings(n_days=scenario.n_days, spread=scenario.spread)
+    season = SeasonSettings(n_days=scenario.n_days, spread=scenario.spread, pest=scenario.living)
     decides = sampler_of(setting.sampler)
     works = plot, scenario.robot
     made = season_metrics(setting.team.days(works, decides, start, season, streams))
     return TeamOutcome(
         scenario.name, setting.who, setting.team.robots, seed,
-        round(scenario.hectares, 3), scenario.spread.rate_per_day,
+        round(scenario.hectares, 3), scenario.rate_per_day,
         float(made.infested_plant_days), float(made.first_day(80.0) or scenario.n_days + 1),
         round(float(made.worked_h.sum()), 3), float(made.found.sum()),
     )  # fmt: skip

@@ -26,7 +26,7 @@ class TeamRow(NamedTuple):
     loss, d80, worked_h
         Infested plant-days, days to 80 %, and hours worked of a season.
     hectares, spread
-        How large the plot is, and the chance a night.
+        How large the plot is, and the chance a night; NaN where a pest has nights of its own.
     gain
         What they save beyond the next lesser team, on the seeds that both met; None for the least.
     """
@@ -40,6 +40,11 @@ class TeamRow(NamedTuple):
     hectares: float
     spread: float
     gain: MarginalGain | None
+
+    @property
+    def nights(self) -> str:
+        """Return how the insects spread, in words."""
+        return "as the pest spreads" if np.isnan(self.spread) else f"{self.spread:.0%} a night"
 
     def __repr__(self) -> str:
         return f"<TeamRow: {self.scenario}, {self.robots} robots>"

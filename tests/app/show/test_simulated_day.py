@@ -6,6 +6,7 @@ import pytest
 from app.show import field_map, simulated_day
 from app.show.maps import deck
 from app.state import cached
+from fieldmon.simulation.worker import LaidPlot
 from tests.app.chosen import a_plot, chosen
 from tests.app.shown_plants import plants_in
 
@@ -16,7 +17,7 @@ def played():
     choices = chosen(plot)
     chance = np.full(len(plot.grid), 0.1)
     days, _ = cached.simulated_season(
-        "shown", "dynamic", (4, 0.2, 0.1, 1), choices.robot, plot, chance
+        "shown", "dynamic", (4, 0.2, 0.1, 1), choices.robot, LaidPlot(plot, chance)
     )
     return choices, days
 

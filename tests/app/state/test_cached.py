@@ -7,6 +7,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import PriorSettings, start_infested
 from fieldmon.plot.robot import Robot
+from fieldmon.simulation.worker import LaidPlot
 from tests.app.chosen import a_plot
 from tests.app.driving import go, metric, opened, tap
 from tests.monitoring.seasons import a_season
@@ -54,7 +55,7 @@ def test_a_simulated_season_is_the_one_that_the_library_simulates():
     plot, robot, seed = a_plot(), Robot(hours=1.0), 3
     chance = np.full(len(plot.grid), 0.05)
     days, figures = cached.simulated_season(
-        "test", "dynamic", (4, 0.05, 0.1, seed), robot, plot, chance
+        "test", "dynamic", (4, 0.05, 0.1, seed), robot, LaidPlot(plot, chance)
     )
     assert len(days) == len(figures.found) == 4
     starts = start_infested(chance, 0.05, RandomStreams(seed).of("start"))

@@ -11,9 +11,12 @@ from app.state.comparison import (
     gains,
     outcomes,
 )
+from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.plot.field import Field
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
+from fieldmon.simulation.worker import LaidPlot
 from tests.app.driving import SQUARE, until
 
 SHORT = [Strategy(name, 1.0, 40.0) for name in ("naive", "dynamic")]
@@ -24,11 +27,11 @@ def plot():
     return Plot.of(Field("square", SQUARE, gate=(35.15, 30.36)))
 
 
-def compared(plot, strategies, seeds=4):
+def compared(plot, strategies, seeds=4, living=None):
     rng = np.random.default_rng(3)
     chance = np.where(rng.random(len(plot.grid)) < 0.1, 0.5, 0.001)
     settings = ComparisonSettings(tuple(strategies), n_days=5, share=0.05, rate=0.1, seeds=seeds)
-    running = Comparison(settings, plot, chance, Robot())
+    running = Comparison(settings, LaidPlot(plot, chance, living), Robot())
     running.start()
     running.wait(120)
     assert running.done == running.total
@@ -49,6 +52,14 @@ def test_every_strategy_meets_the_same_insects_on_the_first_morning(plot):
     assert len(set(starts[0])) > 1
 
 
+def test_seasons_of_a_pest_are_its_own_whatever_a_chance_a_night_says(plot):
+    usual = compared(plot, SHORT[:1]).seasons()[SHORT[0]]
+    of_pest = compared(plot, SHORT[:1], living=PestInWeather(shipped_pest("whitefly"))).seasons()
+    starts = [[int(season.new[0]) for season in made] for made in (usual, of_pest[SHORT[0]])]
+    assert starts[0] == starts[1]
+    assert [s.left.tolist() for s in usual] != [s.left.tolist() for s in of_pest[SHORT[0]]]
+
+
 def test_longer_inspections_and_more_hours_lose_less(plot):
     strategies = [Strategy("dynamic", 1.0, 20.0), Strategy("dynamic", 4.0, 40.0)]
     ranked = outcomes(compared(plot, strategies).seasons())
@@ -59,7 +70,7 @@ def test_longer_inspections_and_more_hours_lose_less(plot):
 
 def test_a_stopped_comparison_goes_on_where_it_stood(plot):
     settings = ComparisonSettings(tuple(SHORT), n_days=3, share=0.05, rate=0.1, seeds=200)
-    running = Comparison(settings, plot, np.full(len(plot.grid), 0.01), Robot())
+    running = Comparison(settings, LaidPlot(plot, np.full(len(plot.grid), 0.01)), Robot())
     running.start()
     running.stop()
     running.wait(60)

@@ -1,5 +1,7 @@
 """Strategies are compared while the page waits for nothing."""
 
+from app.state import living
+from app.state.comparison import Comparison
 from tests.app.driving import go, press, texts_of
 
 
@@ -40,3 +42,19 @@ def test_what_a_second_robot_would_save_on_this_plot_is_said(app):
     # a team cannot be put to use here: one robot's way can
     box = next(b for b in app.selectbox if b.label == "Strategy")
     assert [option for option in box.options if "×" in option] == []
+
+
+def test_seasons_are_those_of_the_pest_that_was_chosen(app, monkeypatch):
+    begun = []
+    monkeypatch.setattr(Comparison, "start", lambda self: begun.append(self._laid.living))
+    go(app, "plot")
+    app.selectbox(key=living.WHICH).set_value("whitefly").run()
+    go(app, "compare")
+    assert not app.exception
+    assert "rate" not in {one.key for one in app.number_input}
+    assert any("Spreads as the chosen pest" in one.value for one in app.caption)
+    app.button(key="run").click().run()
+    assert [one.pest.name for one in begun] == ["whitefly"]
+    go(app, "simulate")
+    assert not app.exception
+    assert any("Spreads as the chosen pest" in one.value for one in app.caption)

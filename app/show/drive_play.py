@@ -12,7 +12,7 @@ from ..state.map_store import JSON, STORE
 from ..words import texts
 from . import field_map, map_layers
 from .map_view import MapContent
-from .maps import colours, deck, legends, plant_layers
+from .maps import colours, legends, plant_layers
 from .maps.plant_layers import PlantNotes
 
 if TYPE_CHECKING:
@@ -32,15 +32,16 @@ def content(choices: Choices, scene: Scene, day: DayInTime | None) -> MapContent
     grid, dark = scene.grid, choices.dark
     shade = colours.by_chance(scene.chance, dark=dark)
     notes = PlantNotes(scene.chance)
+    seen = legends.by_state()
+    seen["items"] = seen["items"][:2]  # of the others their chances are shown
     alt = texts.DRIVE_ALT.format(name=choices.plot.field.name)
     common = field_map.of_plot(choices) | ({} if day is None else {"alt": alt})
     return MapContent(
         **common,
         layers=[
             *map_layers.plan(choices), plant_layers.plants(grid, shade, notes, "plants-chance"),
-            deck.boundary(choices.plot.field, dark=dark),
         ],
-        legend=[legends.by_chance(dark=dark), legends.by_state()],
+        legend=[{**legends.by_chance(dark=dark), "of": ""}, {**seen, "of": ""}],
         drive=None if day is None else published(scene, day),
     )  # fmt: skip
 

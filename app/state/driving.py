@@ -58,7 +58,7 @@ class DayInTime:
         return cls.of(trace, plot, scene.chance, scene.robot)
 
 
-class _Stopped(FieldmonError):
+class _StoppedError(FieldmonError):
     """Nobody wants the day any more."""
 
 
@@ -116,7 +116,7 @@ class DriveRun:
     def _work(self) -> None:
         try:
             self.day = self._driven()
-        except _Stopped:
+        except _StoppedError:
             self.gone_s = 0.0
         except FieldmonError as error:
             self.problem = error
@@ -130,7 +130,7 @@ class DriveRun:
 
         def watch(stop: DrivenStop, errand: Errand) -> None:
             if self._stop.is_set():
-                raise _Stopped
+                raise _StoppedError
             recording.note(stop, errand)
             self.gone_s = recording.stops[-1].at_s
 

@@ -55,8 +55,9 @@ def _run(choices: Choices, scene: Scene, key: str) -> DriveRun:
         st.segmented_control, texts.DRIVE_ROBOT, kinds, key="drive_robot", default=CHARGED,
         required=True, format_func=texts.DRIVE_ROBOTS.__getitem__,
     )  # fmt: skip
-    share = widget_memory.show(st.number_input, texts.DRIVE_SHARE, 0.1, 50.0, step=0.5,
-                               key="drive_share", default=2.0, help=texts.DRIVE_MADE_UP)  # fmt: skip
+    share = widget_memory.show(
+        st.number_input, texts.DRIVE_SHARE, 0.1, 50.0, step=0.5, key="drive_share", default=2.0
+    )
     st.caption(texts.DRIVE_MADE_UP)
     made_up = MadeUp(share / 100)
     run = cached.drive_run(key, kind, made_up, choices.plot, scene, sampler(choices.sampler))

@@ -41,7 +41,7 @@ def content(choices: Choices, scene: Scene, day: DayInTime | None) -> MapContent
         layers=[
             *map_layers.plan(choices), plant_layers.plants(grid, shade, notes, "plants-chance"),
         ],
-        legend=[{**legends.by_chance(dark=dark), "of": ""}, {**seen, "of": ""}],
+        legend=[{**legends.by_chance(dark=dark), "of": ""}, {**seen, "of": "", "title": ""}],
         drive=None if day is None else published(scene, day),
     )  # fmt: skip
 

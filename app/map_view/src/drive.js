@@ -44,7 +44,7 @@ export class Drive {
     this.press = element("button", { type: "button", class: "tool", text: "▶", "aria-label": words.play, onclick: () => this.toggle() });
     this.slider = element("input", { type: "range", min: 0, max: data.end, step: 1, value: this.second, "aria-label": words.time_of_day,
       oninput: () => this.to(Number(this.slider.value)) });
-    this.clock = element("span", { class: "clock" });
+    this.clock = element("span", { class: "clock", dir: "auto" });
     const speed = element("select", { "aria-label": words.speed, onchange: () => { this.speed = Number(speed.value); } },
       SPEEDS.map((by) => element("option", { value: by, text: `${by} ×`, selected: by === this.speed })));
     this.camera = element("input", { type: "checkbox", checked: this.following, onchange: () => {
@@ -181,14 +181,28 @@ export class Drive {
       places && new ScatterplotLayer({ id: "glow", data: finds, getPosition: (plant) => [places.lon[plant], places.lat[plant]],
         getRadius: 1.1, radiusMinPixels: 7, getFillColor: [...this.data.found, 70], stroked: true, getLineColor: dark ? [255, 255, 255] : [90, 0, 0],
         getLineWidth: 0.08, lineWidthMinPixels: 1.5 }),
-      places && metres < NEAR && this.columns(viewport),
+      places && this.isNear(viewport) && this.columns(viewport),
       ...this.robot(metres),
     ];
   }
 
+  isNear(viewport) {
+    return (this.tall = metresPerPixel(viewport) < NEAR);
+  }
+
+  centre(viewport) {
+    return this.following ? poseAt(this.data, this.second) : { lon: viewport.longitude, lat: viewport.latitude };
+  }
+
+  // Tell whether other plants are to be drawn tall since somebody moved the map.
+  isStale(viewport) {
+    if (!this.data || this.timer || !viewport) return false;
+    const near = metresPerPixel(viewport) < NEAR;
+    return near !== this.tall || (near && this.columnsAt && metresApart(this.centre(viewport), this.columnsAt) > REACH_M / 8);
+  }
+
   columns(viewport) {
-    const { places } = this.from, [radius, tall] = this.data.plant;
-    const centre = this.following ? poseAt(this.data, this.second) : { lon: viewport.longitude, lat: viewport.latitude };
+    const { places } = this.from, [radius, tall] = this.data.plant, centre = this.centre(viewport);
     if (!this.columnsAt || metresApart(centre, this.columnsAt) > REACH_M / 8) {
       this.columnsAt = centre;
       const which = nearest(places, centre, this.cost < SLOW_MS ? MOST : FEW), n = which.length, { table, ranks } = this.shaded;

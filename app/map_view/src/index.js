@@ -148,6 +148,7 @@ class MapPage {
       getCursor: ({ isDragging }) => (isDragging ? "grabbing" : this.drawing.mode ? "crosshair" : "grab"),
       onViewStateChange: ({ viewState, interactionState }) => this.limited(viewState, interactionState),
       onAfterRender: () => {
+        if (this.drive.isStale(this.viewport())) this.drawLayers();
         this.follow();
         for (const done of this.waiting.splice(0)) done();
       },

@@ -16,6 +16,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from fieldmon.decisions.doses import Dose
+    from fieldmon.decisions.labels import ProductLabel
     from fieldmon.errors import (
         ChoiceNeeded,
         ContradictionError,
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
         read_weather,
     )
     from fieldmon.io.sources import PlantingChoices
+    from fieldmon.monitoring.applications import Application
     from fieldmon.monitoring.history import BeliefSettings
     from fieldmon.monitoring.monitor import Monitor, MonitorDay, PlantToInspect
     from fieldmon.monitoring.season_file import Season
@@ -70,6 +73,8 @@ _MODULES = {
         "PlotError",
         "SettingError",
     ),
+    "decisions.doses": ("Dose",),
+    "decisions.labels": ("ProductLabel",),
     "infestation.hotspots": ("HotSpots", "hot_spots"),
     "infestation.inspections": ("Inspections",),
     "infestation.observations": ("Observations",),
@@ -82,6 +87,7 @@ _MODULES = {
         "read_records",
         "read_weather",
     ),
+    "monitoring.applications": ("Application",),
     "monitoring.history": ("BeliefSettings",),
     "monitoring.monitor": ("Monitor", "MonitorDay", "PlantToInspect"),
     "monitoring.season_file": ("Season",),
@@ -108,11 +114,13 @@ _HOME = {name: module for module, names in _MODULES.items() for name in names}
 
 __all__ = [
     "SAMPLERS",
+    "Application",
     "BeliefSettings",
     "Block",
     "ChoiceNeeded",
     "ContradictionError",
     "DayPlan",
+    "Dose",
     "Field",
     "FieldmonError",
     "FileProblem",
@@ -130,6 +138,7 @@ __all__ = [
     "PlantingChoices",
     "Plot",
     "PlotError",
+    "ProductLabel",
     "Robot",
     "Route",
     "Season",

@@ -56,6 +56,12 @@ class Application:
     ------
     SettingError
         If a number cannot be, or a text is longer than a record.
+
+    Examples
+    --------
+    >>> from fieldmon.decisions.doses import Dose
+    >>> Application("Acarol", Dose(0.5, "l/ha"), waiting_days=7).said()["dose"]
+    '0.5 l/ha'
     """
 
     product: str = ""

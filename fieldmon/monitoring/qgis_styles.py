@@ -175,9 +175,17 @@ PHOTO_STYLES = {
 }
 
 
+ASKED_STYLES = {"photos_asked": _single(Symbol("marker", YELLOW, 3.0, "star"))}
+
+
 def add_photo_styles(db: sqlite3.Connection) -> None:
     """Add the styles of what phones bring."""
     _add(db, PHOTO_STYLES)
+
+
+def add_asked_styles(db: sqlite3.Connection) -> None:
+    """Add the style of the photos that are asked for."""
+    _add(db, ASKED_STYLES)
 
 
 def add_styles(db: sqlite3.Connection) -> None:

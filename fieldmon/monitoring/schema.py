@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.monitoring import phone_tables
 from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create, found
-from fieldmon.monitoring.qgis_styles import add_photo_styles, add_styles
+from fieldmon.monitoring.qgis_styles import add_asked_styles, add_photo_styles, add_styles
 
 if TYPE_CHECKING:
     import sqlite3
@@ -405,6 +405,7 @@ def _phones_come(db: sqlite3.Connection) -> None:
 def _photos_are_asked_for(db: sqlite3.Connection) -> None:
     """Version 7 did not say of which plants somebody wants a photo."""
     create(db, phone_tables.PHOTOS_ASKED)
+    add_asked_styles(db)
 
 
 def _records_come(db: sqlite3.Connection) -> None:

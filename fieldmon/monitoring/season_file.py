@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -69,7 +69,7 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
     from datetime import date, time
 
     from numpy.typing import NDArray
@@ -100,11 +100,31 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
+class _Revision(NamedTuple):
+    """What changes when anything that counts does, whoever changed it.
+
+    Parameters
+    ----------
+    changes
+        How often the file was changed by us.
+    inspections
+        How many rows there are, the number of the last, and how many are undone.
+    """
+
+    changes: int
+    inspections: tuple[int, int | None, float]
+
+    @classmethod
+    def of(cls, db: sqlite3.Connection) -> _Revision:
+        of_rows = "SELECT count(*), max(fid), total(undone) FROM inspections"
+        return cls(int(get_meta(db, "revision") or 0), db.execute(of_rows).fetchone())
+
+
 @dataclass(frozen=True, eq=False)
 class _Contents:
     """What the file said when it was read last."""
 
-    revision: str
+    revision: _Revision
     settings: MonitoringSettings
     history: History
     mornings: Mornings
@@ -148,6 +168,7 @@ class Season:
         self.store = Store(path)
         self._lock = threading.RLock()
         self._last: _Contents | None = None
+        self._written: _Contents | None = None
         self._prior: tuple[object, Floats] | None = None
         self._aisles: dict[tuple[float, float], Aisles] = {}
         with self.store.reading() as db:
@@ -187,7 +208,7 @@ class Season:
         begins = np.datetime64(settings.begins, "D")
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
         history = _nothing_yet(plot, settings, prior, observations)
-        first = _Contents("", settings, history, Mornings(history))
+        first = _Contents(_Revision(0, (0, None, 0.0)), settings, history, Mornings(history))
         with Store.new(path) as db:
             tables.write_plot(db, plot)
             tables.write_observations(db, observations)
@@ -210,7 +231,7 @@ class Season:
     def revision(self) -> str:
         """Return what changes when anything that counts does, whoever changed it."""
         with self.store.reading() as db:
-            return _revision(db)
+            return repr(tuple(_Revision.of(db)))
 
     @property
     def settings(self) -> MonitoringSettings:
@@ -339,7 +360,7 @@ class Season:
         with self.store.reading() as db:
             if all(routes.is_kept(db, today, who) for today, who in named):
                 return
-        with self.store.writing() as db:
+        with self._writing() as db:
             before = self._read(db)
             kept = [
                 (today, who)
@@ -463,7 +484,7 @@ class Season:
         SettingError
             If a date is not of this season.
         """
-        with self._lock, self.store.writing() as db:
+        with self._writing() as db:
             before = self._read(db)
             held = before.history.inspections
             if not confirmed:
@@ -551,7 +572,7 @@ class Season:
                 )
             )
         works = self._efficacy(said.product) if efficacy is None else efficacy
-        with self._lock, self.store.writing() as db:
+        with self._writing() as db:
             before = self._read(db)
             day = _settings(db).day(on)
             said = said.by_label(
@@ -890,25 +911,39 @@ class Season:
         with self._lock, self.store.reading() as db:
             return self._read(db)
 
+    @contextmanager
+    def _writing(self) -> Iterator[sqlite3.Connection]:
+        """Give the file for one transaction; what it wrote is known once it is kept."""
+        with self._lock:
+            self._written = None
+            with self.store.writing() as db:
+                yield db
+            self._last, self._written = self._written or self._last, None
+
     def _read(
-        self, db: sqlite3.Connection, at_hand: Mapping[int, Belief] | None = None
+        self, db: sqlite3.Connection, before: _Contents | None = None, since: int = 0
     ) -> _Contents:
         """Return what the file says; nothing is read again that did not change.
 
-        Mornings that are at hand are still believed, and need not be worked out again.
+        What the same transaction read `before` its changes, which reach back to the day `since`,
+        need not be read and worked out again.
         """
         outside_changes.refuse(db)
-        revision = _revision(db)
+        revision = _Revision.of(db)
         if self._last is None or self._last.revision != revision:
             settings = _settings(db)
             prior = self._first_morning(settings)
+            if before is not None and before.revision.inspections == revision.inspections:
+                inspections = before.history.inspections
+            else:
+                inspections = inspection_table.load(db, settings.begins)
             history = replace(
                 _nothing_yet(self.plot, settings, prior, self.observations),
-                inspections=inspection_table.load(db, settings.begins),
+                inspections=inspections,
                 treatments=treatments.load(db, self._inside),
             )
-            mornings = Mornings(history, dict(at_hand or {}))
-            if at_hand is None:
+            mornings = Mornings(history, {} if before is None else before.mornings.until(since))
+            if before is None:
                 take_mornings(db, mornings)
             self._last = _Contents(revision, settings, history, mornings)
         return self._last
@@ -937,11 +972,13 @@ class Season:
         working those mornings out again.
         """
         self._last = None
-        now = self._read(db, None if before is None else before.mornings.until(since))
+        now = self._read(db, before, since)
         newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
         keep_mornings(db, now.mornings, newest)
         qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
+        kept = now.revision._replace(changes=now.revision.changes + 1)
+        self._written = replace(now, revision=kept)
 
 
 def _nothing_yet(
@@ -964,12 +1001,6 @@ def _nothing_yet(
 def _names(settings: MonitoringSettings) -> tuple[str, ...]:
     """Return who works: the names of the team, or nobody's for the one."""
     return tuple(member.name for member in settings.team) or ("",)
-
-
-def _revision(db: sqlite3.Connection) -> str:
-    """Return what changes when anything that counts does, whoever changed it."""
-    counted = db.execute("SELECT count(*), max(fid), total(undone) FROM inspections").fetchone()
-    return repr((get_meta(db, "revision"), counted))
 
 
 def _settings(db: sqlite3.Connection) -> MonitoringSettings:

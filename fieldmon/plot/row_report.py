@@ -37,7 +37,9 @@ _EVEN, _BY_TURNS, _LEAST_M, _MANY = 0.55, 0.65, 0.05, 20
 _NARROW, _RARE = 0.5, 0.25
 # rows that bend may be traced along another direction where plants stand nearly as far apart in
 # them as the rows are
-_SQUARE, _SQUARE_STRAIGHT = 0.62, 0.8
+_SQUARE = 0.62
+# plants of rows that have nothing to do with each other stand a quarter of a spacing off level
+_LEVEL = 0.15
 # so many plants are asked for the nearest one of another row, among so many about them
 _ASKED, _NEAR = 5000, 6
 
@@ -234,13 +236,33 @@ def _two_gaps(grid: PlantGrid) -> tuple[float, float] | None:
 def _nearly_square(grid: PlantGrid, found: Rows, said: SaidRows) -> tuple[float, float] | None:
     """Return how far apart rows and their plants are, if rows that bend could run another way."""
     apart_m = grid.row_spacing_m, grid.plant_spacing_m
-    bent = grid.aisles_m is not None
-    # straight rows that cross others are told of as such
-    sure = said.label is not None or (not bent and (said.bearing or bool(found.others_deg)))
-    least = _SQUARE if bent else _SQUARE_STRAIGHT
-    if sure or not least < apart_m[1] / apart_m[0] < 1 / least:
+    if said.label is not None or not _SQUARE < apart_m[1] / apart_m[0] < 1 / _SQUARE:
         return None
-    return apart_m
+    if grid.aisles_m is not None:
+        return apart_m
+    # straight rows that cross others are told of as such
+    sure = said.bearing or bool(found.others_deg)
+    return None if sure or not _abreast(grid) else apart_m
+
+
+def _abreast(grid: PlantGrid) -> bool:
+    """Tell whether plants of neighbouring rows stand in line across, perhaps in a line that bends.
+
+    From row to row they are then as much off level as from the row before, or nearly.
+    """
+    one = np.repeat(np.arange(len(grid)), np.diff(grid.across_start))
+    line = grid.row_line[grid.row]
+    up = line[grid.across_plant] == line[one] + 1
+    one, other = one[up], grid.across_plant[up]
+    if len(one) < _MANY or (grid.twin >= 0).any():
+        return False
+    of_line = np.split(
+        grid.along_m[other] - grid.along_m[one], np.flatnonzero(np.diff(line[one])) + 1
+    )
+    shift_m = np.array([np.median(off_m) for off_m in of_line])
+    whole_m = grid.plant_spacing_m
+    change_m = np.abs((np.diff(shift_m) + whole_m / 2) % whole_m - whole_m / 2)
+    return bool(len(change_m) and np.median(change_m) < _LEVEL * whole_m)
 
 
 def _gaps_m(grid: PlantGrid) -> Float:

@@ -81,7 +81,7 @@ SAMPLERS = {
         reads_chance=True, chooses_time=True, s_per_plant_day=2.5e-6,
     ),
     "decide": SamplerKind(
-        "decide:Decide", "Decide", "the looks that tell soonest whether treating pays",
+        "decide:Decide", "Decide", "the inspections that tell soonest whether treating pays",
         reads_chance=True, s_per_plant_day=4e-7,
     ),
     "snake": SamplerKind(

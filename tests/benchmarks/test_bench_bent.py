@@ -1,4 +1,9 @@
-"""A million plants in rows that bend: laid in two seconds, a day on them as soon as on straight."""
+"""A million plants in rows that bend: laid in two seconds, a day on them as soon as on straight.
+
+Seconds of work: what else the machine does is not counted.
+"""
+
+import time
 
 import numpy as np
 import pytest
@@ -12,7 +17,6 @@ from fieldmon.plot.layout import Planting, lay
 from fieldmon.plot.line_layout import lay_along
 from fieldmon.plot.projection import Frame
 from fieldmon.samplers import sampler
-from tests.benchmarks.scale import best_of
 from tests.scenes import scene_on
 
 SIDE, RADIUS_M = 1000, 3000.0
@@ -38,6 +42,7 @@ def straight():
     return lay(Field("straight", MultiPolygon([area])), PLANTING)
 
 
+@pytest.mark.benchmark(timer=time.process_time)
 def test_a_million_plants_are_laid_in_bent_rows_in_two_seconds(benchmark):
     grid = benchmark.pedantic(bent, rounds=5, warmup_rounds=1)
     assert len(grid) > 990_000
@@ -49,9 +54,19 @@ def scenes():
     return scene_on(bent(), hours=8.0), scene_on(straight(), hours=8.0)
 
 
+@pytest.mark.benchmark(timer=time.process_time)
 @pytest.mark.parametrize("name", ["adaptive", "dynamic", "naive"])
 def test_a_day_in_bent_rows_is_planned_as_fast_as_in_straight_ones(scenes, benchmark, name):
     who, (one, other) = sampler(name), scenes
-    benchmark.pedantic(plan_in, (one, who), rounds=9, warmup_rounds=1)
-    straight_s, _ = best_of(lambda: plan_in(other, who), 9)
-    assert benchmark.stats["min"] < 1.2 * straight_s
+    plan_in(other, who)
+    benchmark.pedantic(plan_in, (one, who), rounds=2, warmup_rounds=1)
+    # by turns: the machine is as busy for one as for the other
+    times_s = [[worked_s(lambda on=on: plan_in(on, who)) for on in (one, other)] for _ in range(9)]
+    bent_s, straight_s = np.min(times_s, axis=0)
+    assert bent_s < 1.2 * straight_s
+
+
+def worked_s(do):
+    began = time.process_time()
+    do()
+    return time.process_time() - began

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from shapely import MultiPolygon
 
@@ -253,6 +253,7 @@ def test_double_rows_taken_as_two_are_said_with_both_distances():
     bend=st.floats(0.1, 0.9),
     seed=st.integers(0, 2**32),
 )
+@example(size=(5, 15), closer=0.8125, bend=0.875, seed=0)
 def test_rows_that_bend_and_are_nearly_square_are_right_or_doubted(size, closer, bend, seed):
     k, j = np.divmod(np.arange(size[0] * size[1]), size[1])
     at = max(size[1] * 3.0 * closer / bend, 45.0) + 3.0 * k
@@ -263,6 +264,15 @@ def test_rows_that_bend_and_are_nearly_square_are_right_or_doubted(size, closer,
     xy_m = xy_m[kept] + rng.normal(0.0, 0.1, (len(kept), 2))
     plot = Plot.around("square", FRAME.lonlat(xy_m))
     assert right_share(rows_of(plot.grid, xy_m), k[kept]) >= 0.99 or plot.rows.doubts
+
+
+def test_straight_rows_that_have_nothing_to_do_with_each_other_are_no_square():
+    xy_m, row = planted()
+    xy_m[:, 0] *= 1.5
+    xy_m[:, 0] += np.random.default_rng(8).uniform(0, 2.1, 10)[row]
+    plot = Plot.around("orchard", FRAME.lonlat(xy_m))
+    assert plot.grid.plant_spacing_m / plot.grid.row_spacing_m == pytest.approx(0.84, abs=0.03)
+    assert plot.rows.nearly_square_m is None
 
 
 @pytest.mark.parametrize("radius_m", [None, 80.0])

@@ -36,7 +36,7 @@ async function begin() {
 async function later(page, field, store, access) {
   const runner = new Runner(new Sync(store), field, (state) => page.sending(state));
   const others = new BroadcastChannel("fieldmon");
-  page.onTold = () => { runner.now(); others.postMessage("told"); };
+  page.onTold = () => { runner.afterTap(); others.postMessage("told"); };
   // another window of this page told something
   others.onmessage = async () => { await field.open(); await page.refresh(); };
   if ("serviceWorker" in navigator) navigator.serviceWorker.register("worker.js", { updateViaCache: "none" }).catch(() => {});

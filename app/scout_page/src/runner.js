@@ -2,7 +2,8 @@
 
 import { KeyEnded } from "./sync.js";
 
-const SOON_MS = 3000, LATEST_MS = 60000, NEWS_MS = 60000;
+// after a tap the page is left to the finger first
+const AFTER_TAP_MS = 1000, SOON_MS = 3000, LATEST_MS = 60000, NEWS_MS = 60000;
 
 export class Runner {
   constructor(sync, field, tell) {
@@ -12,6 +13,8 @@ export class Runner {
   }
 
   now() { this.wait = SOON_MS; this.#later(0); }
+
+  afterTap() { this.wait = SOON_MS; this.#later(AFTER_TAP_MS); }
 
   #later(ms) {
     clearTimeout(this.timer);

@@ -1,12 +1,15 @@
 """A pest's figures are shown with their sources, whoever wrote its file."""
 
+from dataclasses import replace
+
 import pytest
 import streamlit as st
 
 from app.show import pest_figures
 from app.words import language, texts
 from fieldmon.io.readers.pest_file import shipped_names, shipped_pest
-from fieldmon.pests.pest import Citation, Movement, Pest
+from fieldmon.pests.pest import Citation, Pest, Stage
+from tests.app.test_hostile_texts import LEADS, NAMES
 
 
 @pytest.fixture
@@ -44,13 +47,13 @@ def test_rain_wind_latency_and_entry_are_told(said):
     assert "adults on a leaf" in shown
 
 
-def test_a_pest_of_ones_own_is_called_as_its_file_says_and_leads_nowhere(said):
+@pytest.mark.parametrize("words", NAMES)
+def test_a_pest_of_ones_own_is_called_as_its_file_says_and_leads_nowhere(said, words):
     pest = Pest(
-        "own", title="My [mite](https://example.org)", movement=Movement(per_day=0.1),
-        citations=(Citation("movement", "See ![](https://example.org/x.png)"),),
+        "own", title=words, species=words, not_found=words, count_means=words,
+        stages=(Stage(words, 10, 100),), citations=(Citation("movement", words, words),),
     )  # fmt: skip
-    assert "mite" in pest_figures.title(pest)
-    pest_figures.show(pest)
-    for line in [pest_figures.title(pest), *said]:
-        assert "](http" not in line
-        assert "![" not in line
+    named = [pest_figures.title(pest), pest_figures.stage_name(words)]
+    pest_figures.show(replace(pest, stages=()))
+    for line in [*named, *said]:
+        assert not LEADS.search(line.replace("**", "")), line

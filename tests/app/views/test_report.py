@@ -29,3 +29,12 @@ def test_in_a_season_the_season_is_handed_out_too_on_either_paper(app):
     paper.set_value("letter").run()
     assert not app.exception
     assert downloads(app) == [texts.REPORT_PDF, texts.REPORT_HTML]
+
+
+def test_the_record_for_a_certifier_is_handed_out_in_a_season(app):
+    begun(app)
+    go(app, "report")
+    (about,) = [one for one in app.radio if one.label == texts.REPORT_ABOUT]
+    about.set_value("certification").run()
+    assert not app.exception
+    assert downloads(app) == [texts.REPORT_PDF, texts.REPORT_HTML]

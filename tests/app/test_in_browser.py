@@ -751,7 +751,7 @@ def test_a_robot_drives_by_the_space_bar_stands_at_a_find_and_the_find_lights_up
     bar.wait_for(timeout=120_000)
     rest(page)
     now = lambda: json.loads(bar.get_attribute("data-now"))  # noqa: E731
-    sent = [fetch(page, one) for one in page.requests if "/map_data/" in one]
+    sent = [fetch(page, one) for one in [*page.requests] if "/map_data/" in one]
     day = next(one for one in sent if "stops" in one)
     red = lambda image: (np.abs(image - [190, 25, 25]).max(axis=2) < 40).sum()  # noqa: E731
     begins, before = now(), look(page)

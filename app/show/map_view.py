@@ -110,6 +110,8 @@ class MapContent:
         What plays a day, or None.
     frames
         The days of a season, to be slid over and played, or None.
+    drive
+        Where the browser finds a driven day (see `drive_play`); the map is then seen aslant.
     draw
         What clicks draw, or None.
     ground
@@ -128,6 +130,7 @@ class MapContent:
     labels: list[Label] = field(default_factory=list)
     play: dict[str, Any] | None = None
     frames: Frames | None = None
+    drive: str | None = None
     draw: Drawable | None = None
     ground: GroundShown = field(default_factory=GroundShown)
     title: str = ""
@@ -181,6 +184,7 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
         "labels": content.labels,
         "play": content.play,
         "frames": None if content.frames is None else _sent(content.frames),
+        "drive": content.drive,
         "draw": draw and {"id": draw.name, "kind": draw.kind, "hint": draw.hint,
                           "snap": [list(p) for p in draw.snap],
                           "points": [list(p) for p in draw.points]},

@@ -36,6 +36,7 @@ from ..words import language, texts
 from ..words.language import Late
 from . import opened_seasons
 from .comparison import Comparison
+from .driving import DayInTime, DriveRun
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from shapely import MultiLineString
 
     from fieldmon.compute.units import Units
+    from fieldmon.drive.simulated import MadeUp
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.observations import Observations
@@ -72,7 +74,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.row_detection import RowDirection
     from fieldmon.reports.content import Report
-    from fieldmon.samplers.base import Scene
+    from fieldmon.samplers.base import Sampler, Scene
     from fieldmon.simulation.worker import LaidPlot
 
     from .comparison import ComparisonSettings
@@ -436,6 +438,25 @@ def comparison(
     `key` stands for the plot, its chances and its pest.
     """
     return Comparison(settings, _laid, robot)
+
+
+@st.cache_resource(max_entries=8)
+def drive_run(
+    key: str,  # noqa: ARG001
+    kind: str,
+    made_up: MadeUp,
+    _plot: Plot,
+    _scene: Scene,
+    _sampler: Sampler,
+) -> DriveRun:
+    """Return a day driven by a simulated robot, done or to be; `key` stands for the scene."""
+    return DriveRun(kind, _plot, _scene, _sampler, made_up)
+
+
+@st.cache_resource(max_entries=8, show_spinner=_WORKING)
+def recorded_drive(key: str, _data: bytes, _plot: Plot, _scene: Scene) -> DayInTime:  # noqa: ARG001
+    """Return a day that was driven; `key` stands for the scene and the file."""
+    return DayInTime.of_file(_data, _plot, _scene)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)

@@ -20,7 +20,7 @@ ROOMS = {
     "plots": Room("grid_view", ("plots",)),
     "today": Room("route", ("today", "scout", "record", "decide")),
     "season": Room("calendar_month", ("season", "field", "report")),
-    "ahead": Room("balance", ("compare", "simulate")),
+    "ahead": Room("balance", ("compare", "simulate", "drive")),
     "plot": Room("polyline", ("plot",)),
 }
 

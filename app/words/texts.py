@@ -31,7 +31,7 @@ PARTS = {
     "plots": "Plots", "plot": "Plot & data",
     "today": "Plan", "scout": "Scout", "record": "Record",
     "season": "How it goes", "decide": "Decide", "field": "Plants & hot spots", "report": "Report",
-    "compare": "Compare", "simulate": "Simulate",
+    "compare": "Compare", "simulate": "Simulate", "drive": "Drive",
 }  # fmt: skip
 RESEARCH, REPORT, STUDY = "Research", "Report", "The thesis, without records"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
@@ -144,6 +144,8 @@ MAP_WORDS = {
             "Escape leaves.", "corners": "{n} point(s)",
     "ground": "Ground", "ground_away": "The ground's pictures cannot be reached.",
     "scale": "The scale bar is {bar} long; the arrow points north.",
+    "speed": "Speed", "follow": "Follow the robot",
+    "driven": "{time} · {stops} stops, {found} found",
 }  # fmt: skip
 SEASON_INTRO = (
     "A simulated season on this plot. The start is drawn from the chance map; insects spread to "
@@ -741,6 +743,26 @@ STRATEGY_ROBOTS_HELP = (
     "hour; who reads no chances keeps to a section of its own."
 )
 SEEDS, SEEDS_HELP = "Seasons each", "More seasons, narrower intervals."
+DRIVE_INTRO = (
+    "Watch the robot drive the day between the rows: what it finds lights up, and the chances "
+    "change as it learns. Nothing is recorded."
+)
+DRIVE_SOURCE = "Which day"
+DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day"}
+DRIVE_ROBOT = "Robot"
+DRIVE_ROBOTS = {"charged": "As charged", "mujoco": "Physical simulation"}
+DRIVE_MADE_UP = (
+    "The finds are made up: insects are drawn from the chance map, on this share of the plants."
+)
+DRIVE_SHARE = "Infested plants (%)"
+DRIVE_RUN = "Drive the day"
+DRIVE_PROGRESS = "{share} % of the day driven"
+DRIVE_FILE = "Bag (.mcap) or stops (.stops.csv) that `fieldmon drive` wrote on this plot"
+DRIVE_BELIEVED = (
+    "Of a file only the way and the finds are known; chances are taken from this plot's map."
+)
+DRIVE_KEYS = "Space plays and pauses. Moving the map lets go of the robot."
+DRIVE_ALT = "{name} from above and aside: the robot among the rows."
 RUN, STOP, GO_ON = "Compare", "Stop", "Go on"
 COMPARE_PROGRESS = "{done} of {total} seasons simulated"
 COMPARE_EMPTY = "Choose and press Compare. Results appear as they come."

@@ -206,28 +206,11 @@ def _driver(
         with live_robot(Broker.of(options.broker), who, str(believed[1]), say) as live:
             yield live, recording
         return
-    look = _insects(options, aisles, worker, believed[0])
-    if options.robot is Drives.MUJOCO:
-        from fieldmon.drive.mujoco_robot import MujocoRobot  # noqa: PLC0415
+    from fieldmon.drive.simulated import MadeUp, simulated_robot  # noqa: PLC0415
 
-        driver = MujocoRobot(worker, look, options.gnss, options.seed, recording.track)
-        yield driver, recording
-        return
-    from fieldmon.drive.charged import ChargedRobot  # noqa: PLC0415
-
-    yield ChargedRobot(look), recording
-
-
-def _insects(options: DriveOptions, aisles: Aisles, worker: Robot, chance: Any) -> Any:  # noqa: ANN401
-    """Return what a simulated robot finds at each plant."""
-    from fieldmon.compute.random_streams import RandomStreams  # noqa: PLC0415
-    from fieldmon.drive.insects import Insects  # noqa: PLC0415
-    from fieldmon.simulation.start import season_start  # noqa: PLC0415
-
-    streams = RandomStreams(options.seed)
-    start = season_start(aisles.grid, chance, options.infested, streams)
-    times = sampler_of(options.sampler, options.every).inspection_times(worker)
-    return Insects(aisles.grid, start, times.detects, streams=streams).look
+    made_up = MadeUp(options.infested, options.seed, options.gnss)
+    decides = sampler_of(options.sampler, options.every)
+    yield simulated_robot(options.robot.value, recording, decides, made_up), recording
 
 
 def _write(driven: DrivenDay, on: date, options: DriveOptions) -> None:

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.drive.bag_layouts import foxglove_layout, rviz_layout
-from fieldmon.errors import SettingError
+from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.plot.clearance import half_canopy_m
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from datetime import datetime
 
     from fieldmon.drive.errand import Float
@@ -206,8 +207,13 @@ def _places(frame: Frame, xy_m: Float) -> Float:
 def _east_north_poses(frame: Frame, poses: Float) -> Float:
     turned = poses.copy()
     turned[:, 1:3] = _places(frame, poses[:, 1:3])
-    turned[:, 3] += math.radians(90.0 - frame.bearing_deg)
+    turned[:, 3] += east_north_yaw(frame)
     return turned
+
+
+def east_north_yaw(frame: Frame) -> float:
+    """Return the angle by which rows are turned from east, radians, against the clock."""
+    return math.radians(90.0 - frame.bearing_deg)
 
 
 def _thinned(poses: Float) -> Float:
@@ -221,6 +227,38 @@ def _thinned(poses: Float) -> Float:
             kept.append(k)
             last = poses[k]
     return poses[kept]
+
+
+def colour_says(colour: Any) -> bool | None:  # noqa: ANN401 - a message
+    """Return what the colour of a find means: found, clean, or neither."""
+    red, green, blue = round(colour.r, 2), round(colour.g, 2), round(colour.b, 2)
+    return {_FOUND[:3]: True, _CLEAN[:3]: False}.get((red, green, blue))
+
+
+def read_bag(path: Path, topics: tuple[str, ...]) -> Iterator[tuple[str, float, Any]]:
+    """Yield topic, seconds since the first message, and message of a bag (.mcap).
+
+    Raises
+    ------
+    FileProblem
+        If it cannot be read.
+    SettingError
+        If the library that reads bags is not installed.
+    """
+    _rosbags()
+    from rosbags.highlevel import AnyReader  # noqa: PLC0415 - an extra
+    from rosbags.typesys import Stores, get_typestore  # noqa: PLC0415
+
+    try:
+        with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as bag:
+            ours = [one for one in bag.connections if one.topic in topics]
+            for one, at_ns, data in bag.messages(ours):
+                at_s = (at_ns - bag.start_time) / 1e9
+                yield one.topic, at_s, bag.deserialize(data, one.msgtype)
+    except FieldmonError:
+        raise
+    except Exception as error:  # a damaged bag fails in many ways
+        raise FileProblem("The bag cannot be read: is it whole, and an .mcap of ROS 2?") from error
 
 
 def _rosbags() -> tuple[Any, Any]:

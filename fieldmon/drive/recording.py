@@ -63,9 +63,16 @@ class Recording:
         planned = [errand.line_m, *(line[1:] for _, line in errand.ahead)]
         asked, visit = stop.stop, stop.visit
         done_s = asked.arrive_s + asked.inspect_s if visit.done_s is None else visit.done_s
-        self.stops.append(Noted(done_s, asked.plant, visit.found, np.concatenate(planned)))
+        noted = Noted(done_s, asked.plant, visit.found, np.concatenate(planned))
         if not len(self.track.poses) or self.track.poses[-1, 0] < done_s - asked.inspect_s - 1.0:
-            self._drive_evenly(errand.line_m, done_s - asked.inspect_s, done_s)
+            self.take(noted, done_s - asked.inspect_s, errand.line_m)
+        else:
+            self.stops.append(noted)
+
+    def take(self, noted: Noted, there_s: float, line_m: Float | None = None) -> None:
+        """Take in a stop of a robot without a track, reached at a second along its line."""
+        self.stops.append(noted)
+        self._drive_evenly(noted.line_m if line_m is None else line_m, there_s, noted.at_s)
 
     def _drive_evenly(self, line_m: Float, there_s: float, done_s: float) -> None:
         step = np.diff(line_m, axis=0)

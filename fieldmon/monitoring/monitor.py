@@ -161,6 +161,13 @@ class Monitor:
         self._day = MonitorDay(self, self._scene(), self._sampler)
         return self._day
 
+    def day_in(self, scene: Scene) -> MonitorDay:
+        """Begin the day, or the rest of it, that a scene stands in: as of a season on disk."""
+        self.day_number, self._last_inspected = scene.day, scene.last_inspected
+        self._trail = scene.trail
+        self._day = MonitorDay(self, scene, self._sampler)
+        return self._day
+
     def night(self) -> None:
         """Let a night pass: what is believed of the next morning.
 

@@ -740,3 +740,39 @@ def test_on_a_phone_two_taps_cut_the_plot_into_blocks(page, address):
     assert bar["y"] + bar["height"] <= sheet.bounding_box()["y"], "what is asked is under the sheet"
     page.get_by_role("button", name="Finish").click()
     page.get_by_text("a cut into blocks: 2").wait_for(timeout=60_000)
+
+
+@pytest.mark.parametrize("page", [LAPTOP], indirect=True)
+def test_a_robot_drives_by_the_space_bar_stands_at_a_find_and_the_find_lights_up(page, address):
+    page.goto(f"{address}/ahead?part=drive")
+    rest(page)
+    page.get_by_role("button", name=texts.DRIVE_RUN).click()
+    bar = page.locator(f"{MAP} .drive[data-now]")
+    bar.wait_for(timeout=120_000)
+    rest(page)
+    now = lambda: json.loads(bar.get_attribute("data-now"))  # noqa: E731
+    sent = [fetch(page, one) for one in [*page.requests] if "/map_data/" in one]
+    day = next(one for one in sent if "stops" in one)
+    red = lambda image: (np.abs(image - [190, 25, 25]).max(axis=2) < 40).sum()  # noqa: E731
+    begins, before = now(), look(page)
+    page.locator(f"{MAP} .canvas").focus()
+    page.keyboard.press("Space")
+    until(lambda: now()["stops"] > 0)
+    page.keyboard.press("Space")
+    assert not now()["playing"]
+    assert (now()["lon"], now()["lat"]) != (begins["lon"], begins["lat"])
+    find = next(one for one in day["stops"] if one[2])
+    slider = page.get_by_role("slider", name=texts.MAP_WORDS["time_of_day"])
+    standing = []
+    for second in (find[0] - 8, find[0] - 3, find[0] + 1):
+        slider.fill(f"{second:.0f}")
+        standing.append(now())
+    places = {(one["lon"], one["lat"]) for one in standing[:2]}
+    assert len(places) == 1, "it stands while it looks"
+    assert [one["found"] for one in standing] == [0, 0, 1]
+    becomes(page, lambda image: red(image) > red(before) + 100, "the find")
+
+
+def fetch(page, url):
+    """Return what the browser finds at an address, as JSON; empty if it is none."""
+    return page.evaluate("url => fetch(url).then((a) => a.json()).catch(() => ({}))", url)

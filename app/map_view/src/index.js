@@ -8,6 +8,7 @@ import { Deck, FlyToInterpolator, MapView } from "@deck.gl/core";
 
 import { button, element, legendOf, Scale, signPicture } from "./chrome.js";
 import { Drawing } from "./draw.js";
+import { Drive, PITCH } from "./drive.js";
 import { Frames } from "./frames.js";
 import { asked, moved } from "./keys.js";
 import { Labels } from "./labels.js";
@@ -49,6 +50,7 @@ class MapPage {
     this.playback = new Playback(this.foot, () => this.drawLayers());
     this.frames = new Frames(this.foot, { changed: () => this.drawLayers(), save: (blob, name) => saved(blob, name),
       shot: async (day) => { await this.rendered(); return this.shot(day, FILM_PX); } });
+    this.drive = new Drive(this.foot, () => this.drawLayers());
     this.foot.append(this.credit);
     this.drawing = new Drawing(() => this.drawLayers(), (mode, points) => this.drawn(mode, points));
     this.jsons = [];
@@ -80,9 +82,9 @@ class MapPage {
     // who selects rows goes on, though the server has drawn what is selected so far
     if (!data.select || this.drawing.mode?.kind !== "rows") this.drawing.begin(data.draw ?? null);
     this.drawBar();
-    let jsons;
+    let jsons, driven;
     try {
-      jsons = await Promise.all(data.layers.map(store.layer));
+      [driven, ...jsons] = await Promise.all([data.drive && store.json(data.drive), ...data.layers.map(store.layer)]);
     } catch {
       // the server has let go of something: it makes it again when asked
       if (turn === this.turn) this.tell("missing", turn);
@@ -92,6 +94,8 @@ class MapPage {
     this.jsons = jsons;
     this.playback.show(data.frames ? null : data.play ?? null, data.words);
     this.frames.show(data.frames ?? null, data.words);
+    this.root.classList.toggle("aslant", Boolean(driven));
+    this.drive.show(driven ?? null, data.words, data.drive);
     this.look();
     this.drawLayers();
     this.root.dataset.shown = data.layers.map((one) => one.url).join(" ");
@@ -106,7 +110,7 @@ class MapPage {
   }
 
   look() {
-    const { bounds, place } = this.data;
+    const { bounds, drive } = this.data, place = `${this.data.place} ${drive ? "aslant" : ""}`;
     if (!this.deck) {
       this.open(bounds);
     } else if (place !== this.place) {
@@ -118,7 +122,8 @@ class MapPage {
   }
 
   fit() {
-    return fitted(this.data.bounds, this.size(), this.padding());
+    const view = fitted(this.data.bounds, this.size(), this.padding());
+    return this.data.drive ? { ...view, pitch: PITCH } : view;
   }
 
   size() {
@@ -141,8 +146,9 @@ class MapPage {
       pickingRadius: 0,
       _pickable: false,
       getCursor: ({ isDragging }) => (isDragging ? "grabbing" : this.drawing.mode ? "crosshair" : "grab"),
-      onViewStateChange: ({ viewState }) => this.limited(viewState),
+      onViewStateChange: ({ viewState, interactionState }) => this.limited(viewState, interactionState),
       onAfterRender: () => {
+        if (this.drive.isStale(this.viewport())) this.drawLayers();
         this.follow();
         for (const done of this.waiting.splice(0)) done();
       },
@@ -157,9 +163,11 @@ class MapPage {
     this.watch.observe(this.canvasPlace);
   }
 
-  limited(view) {
+  limited(view, interaction) {
+    // a robot is seen from aside, and let go of by who moves the map
+    this.drive.release(interaction);
     // tilting is of no use on a plan, and turning it loses north
-    return { ...view, pitch: 0 };
+    return this.data.drive ? view : { ...view, pitch: 0 };
   }
 
   // a window that changes its size before anybody moved the map shows the whole plot again
@@ -172,11 +180,14 @@ class MapPage {
   drawLayers() {
     if (!this.deck) return;
     const accent = this.data.dark || this.data.ground?.picture ? [255, 220, 90] : [0, 110, 70];
-    const jsons = [...this.frames.of(this.jsons), ...this.playback.layers(this.data.dark), ...this.drawing.layers(accent)];
+    const followed = this.viewport() && this.drive.view(this.viewport(), this.middle());
+    if (followed) this.deck.setProps({ initialViewState: { ...followed, maxZoom: 24 } });
+    const jsons = [...this.drive.of(this.frames.of(this.jsons)), ...this.playback.layers(this.data.dark), ...this.drawing.layers(accent)];
     const hidden = new Set(this.off().flatMap((name) => this.switchOf(name)?.layers ?? []));
     for (const name of this.data.shades?.flatMap((one) => (one.key === this.shade() ? [] : one.layers)) ?? []) hidden.add(name);
     const ground = { ...this.data.ground, opacity: this.groundOpacity, failed: () => this.groundFailed() };
-    this.deck.setProps({ layers: layersOf(jsons, hidden, this.opacity, ground) });
+    const driven = this.drive.layers(this.viewport(), this.data.dark);
+    this.deck.setProps({ layers: [...layersOf(jsons, hidden, this.opacity, ground), ...driven] });
     this.drawBar();
     this.follow();
   }
@@ -319,13 +330,14 @@ class MapPage {
     const view = this.viewport();
     if (!view) return;
     this.moved = true;
-    const { longitude, latitude, zoom, bearing } = view;
-    this.deck.setProps({ initialViewState: { longitude, latitude, bearing, pitch: 0, maxZoom: 24,
+    const { longitude, latitude, zoom, bearing, pitch } = view;
+    this.deck.setProps({ initialViewState: { longitude, latitude, bearing, pitch, maxZoom: 24,
       zoom: Math.min(24, zoom + by), transitionDuration: 200 } });
   }
 
   whole() {
     this.moved = false;
+    this.drive.release({ isPanning: true });
     this.deck?.setProps({ initialViewState: { ...this.fit(), maxZoom: 24, transitionDuration: 300 } });
   }
 
@@ -465,6 +477,10 @@ class MapPage {
   // -- the keyboard
 
   typed(event) {
+    if (event.key === " " && this.drive.data) {
+      this.drive.pressed(event);
+      return;
+    }
     const wanted = asked(event, this.drawing.mode?.kind ?? null), viewport = this.viewport();
     if (!wanted || !viewport) return;
     event.preventDefault();
@@ -472,6 +488,7 @@ class MapPage {
     if (wanted.leave) this.leave();
     else this.showCross();
     if (wanted.move) {
+      this.drive.release({ isPanning: true });
       this.moved = true;
       this.deck.setProps({ initialViewState: { ...moved(viewport, wanted.move), maxZoom: 24 } });
     }
@@ -619,6 +636,7 @@ class MapPage {
   end() {
     this.playback.stop();
     this.frames.stop();
+    this.drive.end();
     this.watch?.disconnect();
     this.shape.end();
     this.deck?.finalize();

@@ -30,5 +30,5 @@ export function asked({ key, shiftKey, ctrlKey, metaKey, altKey }, mode) {
 // Return the view moved by pixels.
 export function moved(viewport, [dx, dy]) {
   const [longitude, latitude] = viewport.unproject([viewport.width / 2 + dx, viewport.height / 2 + dy]);
-  return { longitude, latitude, zoom: viewport.zoom, bearing: viewport.bearing ?? 0, pitch: 0 };
+  return { longitude, latitude, zoom: viewport.zoom, bearing: viewport.bearing ?? 0, pitch: viewport.pitch ?? 0 };
 }

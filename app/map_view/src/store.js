@@ -20,7 +20,7 @@ function once(url, read) {
   return kept.get(url);
 }
 
-const json = (url) => once(url, (answer) => answer.json());
+export const json = (url) => once(url, (answer) => answer.json());
 const places = (url) => once(url, async (answer) => placesOf(await answer.arrayBuffer()));
 const picture = (url) => once(url, async (answer) => createImageBitmap(await answer.blob()));
 const bytes = (url) => once(url, async (answer) => new Uint8Array(await answer.arrayBuffer()));

@@ -1,0 +1,274 @@
+// A driven day between the rows: the robot, its way, what it found and what is believed by then.
+
+import { WebMercatorViewport } from "@deck.gl/core";
+import { TripsLayer } from "@deck.gl/geo-layers";
+import { ColumnLayer, PolygonLayer, ScatterplotLayer } from "@deck.gl/layers";
+
+import { element } from "./chrome.js";
+import { metresPerPixel } from "./view.js";
+
+const SPEEDS = [1, 10, 30, 100, 300], M_PER_DEGREE = 111320;
+export const PITCH = 55;
+// nearer than so many metres a pixel plants are columns, the nearest of them, within so many metres
+const NEAR = 0.11, MOST = 1500, FEW = 400, REACH_M = 60, SLOW_MS = 60;
+// the robot is never smaller on the screen; it is followed from so near
+const LEAST_PX = 30, FOLLOW_ZOOM = 20.5, TURN_MS = 900;
+
+export class Drive {
+  // `changed` is called when another moment is to be drawn
+  constructor(place, changed) {
+    this.changed = changed;
+    this.root = place.appendChild(element("div", { class: "play drive", hidden: true }));
+    this.data = null;
+    this.key = null;
+    this.speed = 30;
+    this.root.addEventListener("keydown", (event) => {
+      if (event.key === " " && event.target === this.slider) this.pressed(event);
+    });
+    this.typed = (event) => { if (event.key === " " && this.data && document.activeElement === document.body) this.pressed(event); };
+    document.addEventListener("keydown", this.typed);
+  }
+
+  // `data` is what the server wrote (see `show/drive_play.py`) or null
+  show(data, words, key) {
+    const again = JSON.stringify([key, words]);
+    if (again === this.key) return;
+    const other = data !== this.data;
+    this.key = again;
+    this.words = words;
+    if (other) this.stop();
+    this.data = data;
+    this.root.hidden = !data;
+    if (!data) return;
+    if (other) Object.assign(this, { second: 0, following: true, turning: true, bearing: data.heading[0] ?? 0, ranks: null });
+    this.press = element("button", { type: "button", class: "tool", text: "▶", "aria-label": words.play, onclick: () => this.toggle() });
+    this.slider = element("input", { type: "range", min: 0, max: data.end, step: 1, value: this.second, "aria-label": words.time_of_day,
+      oninput: () => this.to(Number(this.slider.value)) });
+    this.clock = element("span", { class: "clock", dir: "auto" });
+    const speed = element("select", { "aria-label": words.speed, onchange: () => { this.speed = Number(speed.value); } },
+      SPEEDS.map((by) => element("option", { value: by, text: `${by} ×`, selected: by === this.speed })));
+    this.camera = element("input", { type: "checkbox", checked: this.following, onchange: () => {
+      Object.assign(this, { following: this.camera.checked, turning: true });
+      this.changed();
+    } });
+    this.root.replaceChildren(this.press, this.slider, speed,
+      element("label", { class: "follow" }, [this.camera, element("span", { text: words.follow })]), this.clock);
+    this.tell();
+  }
+
+  pressed(event) {
+    event.preventDefault();
+    this.toggle();
+  }
+
+  toggle() {
+    if (this.timer) {
+      this.stop();
+      return;
+    }
+    if (this.second >= this.data.end) this.to(0);
+    this.press.textContent = "❚❚";
+    let last = performance.now();
+    const step = (now) => {
+      // a page that was not seen for a while goes on where it was
+      const gone = Math.min(now - last, 400);
+      last = now;
+      this.second = Math.min(this.second + (gone / 1000) * this.speed, this.data.end);
+      this.turn(gone);
+      this.timer = this.second < this.data.end ? requestAnimationFrame(step) : null;
+      if (this.mayDraw(now, gone) || !this.timer) {
+        this.draws = now;
+        this.tell();
+        this.changed();
+      }
+      if (!this.timer) this.stop();
+    };
+    this.timer = requestAnimationFrame(step);
+  }
+
+  // Without a graphics card a picture takes long: then fewer of them, and half the time for the page.
+  mayDraw(now, gone) {
+    this.cost = Math.max(gone, 0.9 * (this.cost ?? 0));
+    return this.draws === undefined || this.cost < SLOW_MS || now - this.draws >= Math.min(2 * this.cost, 700);
+  }
+
+  stop() {
+    if (this.timer) cancelAnimationFrame(this.timer);
+    this.timer = null;
+    this.draws = undefined;
+    if (this.press) this.press.textContent = "▶";
+    if (this.data) this.tell();
+  }
+
+  to(second) {
+    this.second = second;
+    this.tell();
+    this.changed();
+  }
+
+  release(state) {
+    if (!this.data || !this.following) return;
+    if (state?.isRotating) this.turning = false;
+    if (state?.isPanning) this.following = this.camera.checked = false;
+  }
+
+  tell() {
+    const { stops } = this.data, made = stops.slice(0, until(stops, this.second)), now = poseAt(this.data, this.second);
+    const found = made.filter((one) => one[2]).length, minutes = Math.floor(this.second / 60);
+    const time = `${Math.floor(minutes / 60)}:${String(minutes % 60).padStart(2, "0")}`;
+    this.slider.value = this.second;
+    this.clock.textContent = this.words.driven.replace("{time}", time).replace("{stops}", made.length).replace("{found}", found);
+    this.slider.setAttribute("aria-valuetext", this.clock.textContent);
+    this.root.dataset.now = JSON.stringify({ second: this.second, ...now, stops: made.length, found, playing: Boolean(this.timer) });
+  }
+
+  // Turn the camera slowly to where the robot heads, unless someone wants little motion.
+  turn(gone) {
+    if (!this.turning || matchMedia("(prefers-reduced-motion: reduce)").matches) return;
+    const by = ((poseAt(this.data, this.second).heading - this.bearing + 540) % 360) - 180;
+    this.bearing = (this.bearing + by * Math.min(1, gone / TURN_MS) + 360) % 360;
+  }
+
+  // Return the view that follows the robot, at a place of the window; null where nobody wants it.
+  view(viewport, middle) {
+    if (!this.data || !this.following) return null;
+    const { lon, lat } = poseAt(this.data, this.second), { width, height } = viewport;
+    const own = this.turning ? { bearing: this.bearing } : { bearing: viewport.bearing };
+    const near = this.near === this.data ? viewport.zoom : FOLLOW_ZOOM, pitch = viewport.pitch || PITCH;
+    this.near = this.data;
+    const port = new WebMercatorViewport({ width, height, longitude: lon, latitude: lat, zoom: near, pitch, ...own });
+    return { ...port.panByPosition([lon, lat], middle), zoom: near, pitch, ...own };
+  }
+
+  // Return the map's layers with the plants as they are known and believed at the moment.
+  of(jsons) {
+    const k = this.data ? jsons.findIndex((one) => one.id === "plants-chance" && one.places) : -1;
+    if (k < 0) return jsons;
+    if (this.from !== jsons[k]) Object.assign(this, { from: jsons[k], ranks: null });
+    this.learn();
+    return jsons.with(k, this.shaded);
+  }
+
+  learn() {
+    const { stops, changes, clean, found } = this.data, { table, ranks } = this.from;
+    const done = [until(changes, this.second), until(stops, this.second)];
+    if (this.ranks && done[0] === this.done[0] && done[1] === this.done[1]) return;
+    if (!this.ranks || done[0] < this.done[0] || done[1] < this.done[1]) {
+      this.ranks = ranks.slice();
+      this.done = [0, 0];
+    }
+    for (const [, plants, classes] of changes.slice(this.done[0], done[0])) {
+      plants.forEach((plant, i) => { if (this.ranks[plant] < table.length) this.ranks[plant] = classes[i]; });
+    }
+    for (const [, plant, saw] of stops.slice(this.done[1], done[1])) {
+      if (saw !== null) this.ranks[plant] = table.length + (saw ? 1 : 0);
+    }
+    this.done = done;
+    // another object: what is made of the ranks is then made again
+    this.shaded = { ...this.from, ranks: this.ranks.slice(), table: [...table, [...clean, 255], [...found, 255]] };
+    this.columnsAt = null;
+  }
+
+  // Return deck.gl's own layers: nothing of them is sent, or made from JSON.
+  layers(viewport, dark) {
+    if (!this.data || !viewport) return [];
+    const metres = metresPerPixel(viewport);
+    const finds = this.data.stops.slice(0, until(this.data.stops, this.second)).filter((one) => one[2]).map((one) => one[1]);
+    const { places } = this.from ?? {}, colour = dark ? [110, 220, 255] : [12, 62, 170];
+    return [
+      new TripsLayer({ id: "driven", data: [this.data], getPath: (d) => d.lon.map((lon, k) => [lon, d.lat[k]]), getTimestamps: (d) => d.at,
+        getColor: colour, widthMinPixels: 3, getWidth: 0.2, currentTime: this.second, trailLength: 1e7, fadeTrail: false, capRounded: true }),
+      places && new ScatterplotLayer({ id: "glow", data: finds, getPosition: (plant) => [places.lon[plant], places.lat[plant]],
+        getRadius: 1.1, radiusMinPixels: 7, getFillColor: [...this.data.found, 70], stroked: true, getLineColor: dark ? [255, 255, 255] : [90, 0, 0],
+        getLineWidth: 0.08, lineWidthMinPixels: 1.5 }),
+      places && this.isNear(viewport) && this.columns(viewport),
+      ...this.robot(metres),
+    ];
+  }
+
+  isNear(viewport) {
+    return (this.tall = metresPerPixel(viewport) < NEAR);
+  }
+
+  centre(viewport) {
+    return this.following ? poseAt(this.data, this.second) : { lon: viewport.longitude, lat: viewport.latitude };
+  }
+
+  // Tell whether other plants are to be drawn tall since somebody moved the map.
+  isStale(viewport) {
+    if (!this.data || this.timer || !viewport) return false;
+    const near = metresPerPixel(viewport) < NEAR;
+    return near !== this.tall || (near && this.columnsAt && metresApart(this.centre(viewport), this.columnsAt) > REACH_M / 8);
+  }
+
+  columns(viewport) {
+    const { places } = this.from, [radius, tall] = this.data.plant, centre = this.centre(viewport);
+    if (!this.columnsAt || metresApart(centre, this.columnsAt) > REACH_M / 8) {
+      this.columnsAt = centre;
+      const which = nearest(places, centre, this.cost < SLOW_MS ? MOST : FEW), n = which.length, { table, ranks } = this.shaded;
+      const positions = new Float64Array(2 * n), colours = new Uint8Array(4 * n), heights = new Float32Array(n);
+      which.forEach((plant, k) => {
+        const rank = ranks[plant];
+        positions.set([places.lon[plant], places.lat[plant]], 2 * k);
+        colours.set(table[rank], 4 * k);
+        heights[k] = rank === table.length - 1 ? 1.5 * tall : tall;
+      });
+      this.near3d = { length: n, attributes: { getPosition: { value: positions, size: 2 },
+        getFillColor: { value: colours, size: 4, normalized: true }, getElevation: { value: heights, size: 1 } } };
+    }
+    return new ColumnLayer({ id: "columns", data: this.near3d, radius, diskResolution: 6, extruded: true,
+      material: { ambient: 0.55, diffuse: 0.6 } });
+  }
+
+  robot(metres) {
+    const { lon, lat, heading } = poseAt(this.data, this.second), [long, wide] = this.data.size;
+    const grown = Math.max(1, (LEAST_PX * metres) / long), way = (heading * Math.PI) / 180;
+    const at = ([ahead, right]) => [
+      lon + (grown * (ahead * Math.sin(way) + right * Math.cos(way))) / (M_PER_DEGREE * Math.cos((lat * Math.PI) / 180)),
+      lat + (grown * (ahead * Math.cos(way) - right * Math.sin(way))) / M_PER_DEGREE];
+    const body = [[long / 2, -wide / 2], [long / 2, wide / 2], [-long / 2, wide / 2], [-long / 2, -wide / 2]].map(at);
+    const nose = [[long / 2, 0], [-long / 4, wide / 3], [-long / 4, -wide / 3]].map(at);
+    return [["robot", body, 0.5, [255, 210, 0]], ["nose", nose, 0.62, [20, 24, 28]]].map(([id, polygon, tall, colour]) =>
+      new PolygonLayer({ id, data: [polygon], getPolygon: (one) => one, extruded: true, getElevation: tall * grown, getFillColor: colour, material: { ambient: 0.7, diffuse: 0.5 } }));
+  }
+
+  end() {
+    this.stop();
+    document.removeEventListener("keydown", this.typed);
+  }
+}
+
+// Return how many entries of a list that begin with their seconds are at or before a second.
+export function until(list, second) {
+  let low = 0, high = list.length;
+  while (low < high) {
+    const mid = (low + high) >> 1;
+    if ((Array.isArray(list[mid]) ? list[mid][0] : list[mid]) <= second) low = mid + 1;
+    else high = mid;
+  }
+  return low;
+}
+
+// Return where the robot is at a second and where it heads, degrees.
+export function poseAt({ at, lon, lat, heading }, second) {
+  const k = Math.min(Math.max(until(at, second), 1), at.length - 1), span = at[k] - at[k - 1];
+  const share = span > 0 ? Math.min(Math.max((second - at[k - 1]) / span, 0), 1) : 1;
+  const turned = ((heading[k] - heading[k - 1] + 540) % 360) - 180;
+  return { lon: lon[k - 1] + share * (lon[k] - lon[k - 1]), lat: lat[k - 1] + share * (lat[k] - lat[k - 1]),
+    heading: (heading[k - 1] + share * turned + 360) % 360 };
+}
+
+function metresApart(a, b) {
+  return Math.hypot((a.lon - b.lon) * Math.cos((a.lat * Math.PI) / 180), a.lat - b.lat) * M_PER_DEGREE;
+}
+
+// Return the plants nearest to a place, not too many of them.
+export function nearest({ n, lon, lat }, place, most) {
+  const found = [];
+  for (let k = 0; k < n; k++) {
+    const apart = metresApart({ lon: lon[k], lat: lat[k] }, place);
+    if (apart < REACH_M) found.push([apart, k]);
+  }
+  if (found.length > most) found.sort((a, b) => a[0] - b[0]);
+  return found.slice(0, most).map((one) => one[1]);
+}

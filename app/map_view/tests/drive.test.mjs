@@ -1,0 +1,67 @@
+// A driven day: where the robot is at each second, what is known by then, and who is drawn tall.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { Drive, nearest, poseAt, until } from "../src/drive.js";
+
+const DAY = {
+  at: [0, 10, 40, 50], lon: [35, 35.001, 35.001, 35.001], lat: [30, 30, 30, 30.001], heading: [90, 90, 350, 10],
+  stops: [[40, 2, true], [50, 0, false]], changes: [[40, [0, 1, 2], [3, 3, 0]], [50, [1], [2]]], end: 50,
+  clean: [0, 0, 255], found: [255, 0, 0], plant: [0.3, 1.5], size: [0.8, 0.6],
+};
+const PLANTS = { id: "plants-chance", places: { n: 3 }, ranks: new Uint8Array([1, 1, 1]), table: [[0], [1], [2], [3]] };
+
+function driving(second) {
+  // the page's own parts are not needed for what is drawn
+  return Object.assign(Object.create(Drive.prototype), { data: DAY, second });
+}
+
+test("the robot moves evenly, stands at a stop, and turns the short way", () => {
+  assert.deepEqual(poseAt(DAY, 5), { lon: 35.0005, lat: 30, heading: 90 });
+  assert.deepEqual([poseAt(DAY, 11).lon, poseAt(DAY, 39).lon], [35.001, 35.001]);
+  assert.equal(poseAt(DAY, 45).heading, 0);
+  assert.equal(poseAt(DAY, -1).lon, 35);
+  assert.equal(poseAt(DAY, 99).lat, 30.001);
+});
+
+test("what is over is counted by its second", () => {
+  assert.deepEqual([0, 39.9, 40, 49, 50, 99].map((second) => until(DAY.stops, second)), [0, 0, 1, 1, 2, 2]);
+});
+
+test("finds and chances are those of the second, forwards and backwards, and inspected plants stay so", () => {
+  const drive = driving(0);
+  const ranks = (second) => { drive.second = second; return [...drive.of([PLANTS])[0].ranks]; };
+  assert.deepEqual(ranks(0), [1, 1, 1]);
+  assert.deepEqual(ranks(40), [3, 3, 5]);
+  assert.deepEqual(ranks(50), [4, 2, 5]);
+  assert.deepEqual(ranks(45), [3, 3, 5]);
+  assert.deepEqual([...PLANTS.ranks], [1, 1, 1]);
+  assert.deepEqual(drive.of([PLANTS])[0].table.slice(4), [[0, 0, 255, 255], [255, 0, 0, 255]]);
+});
+
+test("the same moment is the same object, so that nothing is made twice", () => {
+  const drive = driving(41), [first] = drive.of([PLANTS]);
+  drive.second = 45;
+  assert.equal(drive.of([PLANTS])[0], first);
+});
+
+test("only the nearest plants are drawn tall, and not too many", () => {
+  const n = 500, lon = Float64Array.from({ length: n }, (_, k) => 35 + k * 1e-5), lat = new Float64Array(n).fill(30);
+  const own = nearest({ n, lon, lat }, { lon: 35, lat: 30 }, 1500);
+  assert.equal(own.length, 63); // 60 m at 0.963 m each
+  assert.deepEqual(nearest({ n, lon, lat }, { lon: 35.002, lat: 30 }, 3).sort(), [199, 200, 201]);
+});
+
+test("where pictures take long there are fewer of them", () => {
+  const drive = driving(0), drawn = (each) => {
+    Object.assign(drive, { cost: 0, draws: undefined });
+    let count = 0;
+    for (let now = 0; now < 3000; now += each) {
+      if (drive.mayDraw(now, each)) { count += 1; drive.draws = now; }
+    }
+    return count;
+  };
+  assert.equal(drawn(20), 150);
+  assert.ok(drawn(100) <= 16);
+});

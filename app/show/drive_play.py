@@ -1,0 +1,82 @@
+"""A driven day on the map: sent once, played by the browser (see `map_view/src/drive.js`)."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from ..state.map_store import JSON, STORE
+from ..words import texts
+from . import field_map, map_layers
+from .map_view import MapContent
+from .maps import colours, legends, plant_layers
+from .maps.plant_layers import PlantNotes
+
+if TYPE_CHECKING:
+    from fieldmon.samplers.base import Scene
+
+    from ..state.choices import Choices
+    from ..state.driving import DayInTime
+
+#: how tall plants are drawn
+_TALL_M = 1.5
+# days are not changed once driven; their texts go when they do
+_WRITTEN: WeakKeyDictionary[DayInTime, bytes] = WeakKeyDictionary()
+
+
+def content(choices: Choices, scene: Scene, day: DayInTime | None) -> MapContent:
+    """Return the plot in the morning of a day, and the day to play once it is driven."""
+    grid, dark = scene.grid, choices.dark
+    shade = colours.by_chance(scene.chance, dark=dark)
+    notes = PlantNotes(scene.chance)
+    seen = legends.by_state()
+    seen["items"] = seen["items"][:2]  # of the others their chances are shown
+    alt = texts.DRIVE_ALT.format(name=choices.plot.field.name)
+    common = field_map.of_plot(choices) | ({} if day is None else {"alt": alt})
+    return MapContent(
+        **common,
+        layers=[
+            *map_layers.plan(choices), plant_layers.plants(grid, shade, notes, "plants-chance"),
+        ],
+        legend=[{**legends.by_chance(dark=dark), "of": ""}, {**seen, "of": "", "title": ""}],
+        drive=None if day is None else published(scene, day),
+    )  # fmt: skip
+
+
+def published(scene: Scene, day: DayInTime) -> str:
+    """Return the address at which the browser finds a day."""
+    if day not in _WRITTEN:
+        _WRITTEN[day] = json.dumps(as_data(scene, day), separators=(",", ":")).encode()
+    return STORE.publish(_WRITTEN[day], JSON)
+
+
+def as_data(scene: Scene, day: DayInTime) -> dict[str, object]:
+    """Return poses, stops and changes of the chance classes, each at its second of the day."""
+    at_s, lon, lat, heading = day.trace.poses.T
+    changes, before = [], _classes(scene.chance)
+    for second, chance in day.believed:
+        now = _classes(chance)
+        plants = np.flatnonzero(now != before)
+        changes.append([round(second, 1), plants.tolist(), now[plants].tolist()])
+        before = now
+    robot, spacing_m = scene.robot, min(scene.grid.plant_spacing_m, scene.grid.row_spacing_m)
+    return {
+        "at": np.round(at_s, 1).tolist(),
+        "lon": np.round(lon, 7).tolist(),
+        "lat": np.round(lat, 7).tolist(),
+        "heading": np.round(heading, 1).tolist(),
+        "stops": [[round(s.done_s, 1), s.plant, s.found] for s in day.trace.stops],
+        "changes": changes,
+        "end": round(day.trace.end_s, 1),
+        "size": [robot.length_m or 0.8, robot.width_m or 0.6],
+        "plant": [0.35 * spacing_m, _TALL_M],
+        "found": list(colours.FOUND),
+        "clean": list(colours.CLEAN),
+    }
+
+
+def _classes(chance: np.ndarray) -> np.ndarray:
+    return colours.by_chance(chance).rank.astype(np.int64)

@@ -1,0 +1,54 @@
+"""A planned day, driven by a simulated robot while somebody watches."""
+
+import pytest
+
+from app.state.driving import DayInTime, DriveRun
+from fieldmon.drive.simulated import MadeUp
+from fieldmon.errors import FieldmonError
+from fieldmon.samplers import sampler
+from tests.app.chosen import a_plot, chosen
+
+
+@pytest.fixture(scope="module")
+def planned():
+    choices = chosen(a_plot())
+    return choices.plot, choices.plan()
+
+
+def run_of(planned, kind="charged", share=1e-9):
+    plot, plan = planned
+    return DriveRun(kind, plot, plan.scene, sampler("adaptive"), MadeUp(share))
+
+
+def test_where_nothing_is_found_the_day_is_the_planned_one(planned):
+    run = run_of(planned)
+    run.start()
+    run.wait(60)
+    assert run.problem is None
+    assert [one.plant for one in run.day.trace.stops] == planned[1].work.plant.tolist()
+    assert 0.9 < run.share <= 1.0
+    assert run.day.believed[-1][0] == run.day.trace.stops[-1].done_s
+
+
+def test_a_day_that_is_stopped_is_not_kept_and_can_begin_again(planned):
+    run = run_of(planned, share=0.2)
+    run.stop()
+    run._work()
+    assert run.day is None
+    assert (run.problem, run.share) == (None, 0.0)
+    run.start()
+    run.wait(60)
+    assert any(one.found for one in run.day.trace.stops)
+
+
+def test_a_problem_is_kept_to_be_said(planned):
+    run = run_of(planned, kind="gazebo")
+    run._work()
+    assert "gazebo" in str(run.problem)
+
+
+def test_a_file_of_something_else_is_refused(planned):
+    plot, plan = planned
+    for data in (b"\x89MCAPxxx", b"a,b\n1,2\n", b"\xff\xfe"):
+        with pytest.raises(FieldmonError):
+            DayInTime.of_file(data, plot, plan.scene)

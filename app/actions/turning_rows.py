@@ -96,7 +96,7 @@ def _notes(choices: Choices, found: tuple[RowDirection, ...]) -> tuple[str, ...]
     return tuple(
         texts.DIRECTION.format(
             number=number(k, "d"), bearing=number(one.bearing_deg, ".0f"), n=one.n_rows,
-            apart=choices.units.metres(one.row_spacing_m),
+            apart=choices.units.metres(one.row_spacing_m, 1),
         )
         for k, one in enumerate(found, start=1)
     )  # fmt: skip

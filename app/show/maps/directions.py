@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 # Okabe & Ito's, for the colour-blind
 _COLOURS: tuple[Colour, ...] = ((0, 114, 178), (213, 94, 0), (204, 121, 167), (0, 158, 115))
 # of the longest row: how many strokes, and which share of each is drawn; the first is not broken
-_STROKES = ((1, 1.0), (20, 0.6), (44, 0.35), (12, 0.8))
+_STROKES = ((1, 1.0), (20, 0.6), (36, 0.5), (12, 0.8))
 # more strokes than these make a map slow
 _MOST = 6_000
 

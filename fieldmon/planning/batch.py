@@ -83,7 +83,12 @@ class Task:
 
     def digest(self, observations: Observations) -> str:
         """Return what tells this task from any other, however alike."""
-        parts = (*self.plot.told, self.who, self.stated, *vars(self.orders).values())
+        ordered = dict(vars(self.orders))
+        # folders of routes from before these could be ordered hold the tasks of today's usual
+        for name, usual in (("prior", PriorSettings()), ("pest", None)):
+            if ordered[name] == usual:
+                del ordered[name]
+        parts = (*self.plot.told, self.who, self.stated, *ordered.values())
         return digest(*parts, *vars(observations).values(), length=16)
 
 

@@ -47,7 +47,8 @@ def hostile_season(path, name=EVERY):
         who=np.array([name] * 6, object), notes=np.array([name] * 6, object),
     )  # fmt: skip
     season.record(found, name, name)
-    season.treat(date(2026, 11, 16), 0.5, product=name)
+    # a product may have 2 000 letters; a longer one is refused
+    season.treat(date(2026, 11, 16), 0.5, product=name[:2000])
     return season
 
 

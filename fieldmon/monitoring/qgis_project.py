@@ -14,7 +14,7 @@ import zipfile
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
 
-from fieldmon.monitoring.qgis_styles import STYLES
+from fieldmon.monitoring.qgis_styles import ASKED_STYLES, PHOTO_STYLES, STYLES
 
 if TYPE_CHECKING:
     import sqlite3
@@ -70,6 +70,8 @@ class Shown(NamedTuple):
 
 _TODAY = (
     Shown("inspections", "Findings", '"undone" = 0', edited=True),
+    Shown("photo_places", "Photos"),
+    Shown("photos_asked", "Photos asked for", '"ended" IS NULL'),
     Shown("stops", "Stops today", f'"route" = {_LAST_ROUTE}'),
     Shown("routes", "Route today", f'"fid" = {_LAST_ROUTE}'),
 )
@@ -165,13 +167,15 @@ def _checked(on: bool) -> str:  # noqa: FBT001 - one flag
 
 def _layer(file: str, one: Shown, shape: str) -> str:
     source = f"./{file}|layername={one.table}" + (f"|subset={one.only}" if one.only else "")
-    drawn = re.search(r"<renderer-v2.*</renderer-v2>", STYLES[one.table], re.DOTALL)
+    style = (STYLES | PHOTO_STYLES | ASKED_STYLES)[one.table]
+    parts = r"<mapTip>.*</mapTip>|<renderer-v2.*</renderer-v2>"
+    drawn = "".join(re.findall(parts, style, re.DOTALL))
     return (
         f'<maplayer type="vector" geometry="{_SHAPES[shape]}" readOnly="{int(not one.edited)}">'
         f"<id>{one.id}</id><datasource>{escape(source)}</datasource>"
         f"<layername>{escape(one.title)}</layername><srs>{_system(4326)}</srs>"
         f'<provider encoding="UTF-8">ogr</provider>{_form() if one.edited else ""}'
-        f"{drawn.group(0) if drawn else ''}</maplayer>"
+        f"{drawn}</maplayer>"
     )
 
 

@@ -1,6 +1,9 @@
 """Photos are kept byte for byte, once, and other programs find them with their plants."""
 
+import base64
+import os
 import sqlite3
+import subprocess
 from contextlib import closing
 
 import pyogrio
@@ -10,6 +13,7 @@ from fieldmon.errors import AccessError, LimitError, ObservationError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season, photos, scouts
 from fieldmon.monitoring.photos import Photo, keep, photos_of, picture
+from fieldmon.monitoring.photos_asked import ask_photo
 from fieldmon.monitoring.tellings import take
 from tests.monitoring.telling import JPEG, NOW, a_telling
 
@@ -118,3 +122,41 @@ def test_photos_are_related_to_inspections_as_the_standard_asks(season, key):
             pair,
         )
         assert there.fetchone() == (3, "one")
+
+
+_ASK_QGIS = """
+import base64, sys
+from qgis.core import QgsApplication, QgsProject
+app = QgsApplication([], False)
+app.initQgis()
+project = QgsProject.instance()
+assert project.read(f"geopackage:{sys.argv[1]}?projectName=fieldmon")
+(photos,) = project.mapLayersByName("Photos")
+(asked,) = project.mapLayersByName("Photos asked for")
+places = list(photos.getFeatures())
+print(photos.isValid(), asked.isValid(), len(places), asked.featureCount(), places[0]["plant"],
+      "to_base64" in photos.mapTipTemplate())
+print(base64.b64encode(bytes(places[0]["data"])).decode(), flush=True)
+del places, photos, asked
+project.clear()
+app.exitQgis()
+"""
+
+
+@pytest.mark.skipif(not os.path.isdir("/usr/lib/python3/dist-packages/qgis"),  # noqa: PTH112
+                    reason="QGIS (Debian's python3-qgis) is not on this machine")  # fmt: skip
+def test_qgis_opens_the_season_and_shows_the_photo_at_its_plant(season, key, tmp_path):
+    one = a_telling(3, FOUND)
+    take(season, key, [one], NOW)
+    keep(season, key, a_photo(one.id))
+    ask_photo(season, 5, "the lower leaves", "Office")
+    season.rebuild()
+    asked = subprocess.run(
+        ["/usr/bin/python3", "-c", _ASK_QGIS, str(season.path)],
+        check=False, capture_output=True, text=True,
+        env={"QT_QPA_PLATFORM": "offscreen", "HOME": str(tmp_path), "PATH": os.environ["PATH"]},
+    )  # fmt: skip
+    assert asked.returncode == 0, asked.stderr
+    told, photo = asked.stdout.splitlines()[-2:]
+    assert told == "True True 1 1 3 True"
+    assert base64.b64decode(photo) == JPEG

@@ -49,7 +49,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     done = f"{len(seen)} done, " if len(seen) else ""
     typer.echo(f"{on}: {done}{day_in_words(route)}")
     tell_assumed(season.assumed())
-    write_routes(with_forecast(route, season.forecast(on)), options.output)
+    write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
     write_chance_map(options.chance_map, season.plot, today.chance)
 
 

@@ -14,6 +14,7 @@ from fieldmon.plot.passing import legs_of
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from geopandas import GeoDataFrame
@@ -195,7 +196,7 @@ def route_of(scene: Scene, work: Workday) -> Route:
     )
 
 
-def with_forecast(route: Route, ahead: Forecast) -> Route:
+def with_forecast(route: Route, ahead: Callable[[], Forecast]) -> Route:
     """Return a route whose files say how many plants are infested on the next mornings."""
     if route.notes is None:
         return route

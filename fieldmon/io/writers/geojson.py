@@ -13,6 +13,8 @@ import numpy as np
 from fieldmon.plot.grid import block_label, row_label
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.infestation.forecast import Forecast
@@ -38,14 +40,15 @@ class RouteNotes:
     who
         Who of a team drives it; None: it is the only one.
     ahead
-        How many plants are infested on the next mornings; None: it is not known.
+        Returns how many plants are infested on the next mornings, asked by GeoJSON alone (a second
+        of work on a large plot); None: it is not known.
     """
 
     plot: str
     sampler: str
     start: datetime | None = None
     who: str | None = None
-    ahead: Forecast | None = None
+    ahead: Callable[[], Forecast] | None = None
 
 
 def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
@@ -62,7 +65,6 @@ def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
         **_bound(route),
         **({} if notes.start is None else {"start": _clock(notes.start, 0.0)}),
         **({} if notes.start is None else {"end": _clock(notes.start, route.end_s)}),
-        **({} if notes.ahead is None else {"forecast": _ahead(notes.ahead)}),
     }
 
 
@@ -116,6 +118,7 @@ def _line_feature(
         "properties": {
             "kind": "route",
             **summary(route, notes),
+            **({} if notes.ahead is None else {"forecast": _ahead(notes.ahead())}),
             "vertex_s": np.round(route.line_s, 3).tolist(),
         },
     }

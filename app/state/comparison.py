@@ -7,13 +7,11 @@ are drawn from streams that know nothing of the strategy. So differences are tak
 
 from __future__ import annotations
 
-import threading
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.errors import FieldmonError
 from fieldmon.planning.members import Teamwork
 from fieldmon.simulation import executor
 from fieldmon.simulation.design import Combination
@@ -22,6 +20,8 @@ from fieldmon.simulation.statistics import half_interval, summary_statistics
 from fieldmon.simulation.team_season import Team
 from fieldmon.simulation.team_worth import marginal_gains
 from fieldmon.simulation.worker import LaidPlot, simulated_season
+
+from .background import BackgroundWork
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -118,12 +118,12 @@ class Outcome:
     worked_h: float = 0.0
 
 
-class Comparison:
+class Comparison(BackgroundWork):
     """A comparison that runs in a thread of its own and can be watched and stopped."""
 
     def __init__(self, settings: ComparisonSettings, laid: LaidPlot, robot: Robot) -> None:
+        super().__init__()
         self.settings = settings
-        self.problem: FieldmonError | None = None
         self._laid, self._robot = laid, robot
         self._experiment = Experiment(
             settings=settings.strategies,
@@ -133,8 +133,6 @@ class Comparison:
             seed_by_seed=True,
         )
         self._made: Memory[SeasonMetrics] = Memory()
-        self._stop = threading.Event()
-        self._thread: threading.Thread | None = None
 
     @property
     def total(self) -> int:
@@ -146,26 +144,14 @@ class Comparison:
         """Return the number of seasons simulated."""
         return len(self._made)
 
-    @property
-    def running(self) -> bool:
-        """Tell whether it is at work."""
-        return self._thread is not None and self._thread.is_alive()
-
     def start(self) -> None:
         """Begin, or go on where it was stopped."""
         if not self.running and self.done < self.total:
-            self._stop.clear()
-            self._thread = threading.Thread(target=self._work, daemon=True)
-            self._thread.start()
+            self.begin()
 
-    def stop(self) -> None:
-        """End after the season that is being simulated; what is there is kept."""
-        self._stop.set()
-
-    def wait(self, timeout_s: float) -> None:
-        """Wait for the end."""
-        if self._thread is not None:
-            self._thread.join(timeout_s)
+    def work(self) -> None:
+        """Simulate what is not there yet; stopped after a season, what is there is kept."""
+        run(self._experiment, executor.here(), self._made, stop=self._stop.is_set)
 
     def seasons(self) -> dict[Strategy, list[SeasonMetrics]]:
         """Return the seasons of all seeds that every strategy has been through."""
@@ -175,12 +161,6 @@ class Comparison:
                 made[chunk.setting].append(self._made[chunk.key])
         full = min(len(seasons) for seasons in made.values())
         return {strategy: seasons[:full] for strategy, seasons in made.items()}
-
-    def _work(self) -> None:
-        try:
-            run(self._experiment, executor.here(), self._made, stop=self._stop.is_set)
-        except FieldmonError as error:
-            self.problem = error
 
     def _season(self, strategy: Strategy, seeds: range) -> SeasonMetrics:
         settings = self.settings

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -19,6 +18,8 @@ from fieldmon.drive.trace import (
 from fieldmon.errors import FieldmonError
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.monitor import Monitor
+
+from .background import BackgroundWork
 
 if TYPE_CHECKING:
     import numpy as np
@@ -62,7 +63,7 @@ class _StoppedError(FieldmonError):
     """Nobody wants the day any more."""
 
 
-class DriveRun:
+class DriveRun(BackgroundWork):
     """A day that is being driven, and can be watched and stopped.
 
     Parameters
@@ -78,18 +79,11 @@ class DriveRun:
     def __init__(
         self, kind: str, plot: Plot, scene: Scene, sampler: Sampler, made_up: MadeUp
     ) -> None:
+        super().__init__()
         self._kind, self._plot, self._scene = kind, plot, scene
         self._sampler, self._made_up = sampler, made_up
         self.day: DayInTime | None = None
-        self.problem: FieldmonError | None = None
         self.gone_s, self.said = 0.0, ""
-        self._stop = threading.Event()
-        self._thread: threading.Thread | None = None
-
-    @property
-    def running(self) -> bool:
-        """Tell whether it is at work."""
-        return self._thread is not None and self._thread.is_alive()
 
     @property
     def share(self) -> float:
@@ -99,27 +93,15 @@ class DriveRun:
     def start(self) -> None:
         """Begin, from the morning."""
         if not self.running and self.day is None:
-            self._stop.clear()
             self.problem, self.gone_s = None, 0.0
-            self._thread = threading.Thread(target=self._work, daemon=True)
-            self._thread.start()
+            self.begin()
 
-    def stop(self) -> None:
-        """End after the stop that is being driven; nothing is kept."""
-        self._stop.set()
-
-    def wait(self, timeout_s: float) -> None:
-        """Wait for the end."""
-        if self._thread is not None:
-            self._thread.join(timeout_s)
-
-    def _work(self) -> None:
+    def work(self) -> None:
+        """Drive the day; stopped after a stop, nothing is kept."""
         try:
             self.day = self._driven()
         except _StoppedError:
             self.gone_s = 0.0
-        except FieldmonError as error:
-            self.problem = error
 
     def _driven(self) -> DayInTime:
         scene = self._scene

@@ -6,6 +6,7 @@ then follows from its plants alone, and the best drive from a sweep up the ladde
 
 from __future__ import annotations
 
+from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -32,6 +33,8 @@ from fieldmon.planning.routes.frontier import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.planning.routes.relaxation import Ladder
@@ -42,6 +45,13 @@ if TYPE_CHECKING:
 
 _NEVER = -1e300
 _SAME_PLACE_M = 1e-6
+_NO_SIDE, _BOTH_SIDES = 0, 3
+# drives are told apart by which of so many stretches they begin in, and end in, up the ladder
+_STRETCHES = 16
+#: prices of a kind of drives are looked for so far from that of all at most
+REACH = 30.0
+# so many prices are tried for a bound of each kind of drive; those of one so near each other end it
+_PRICES, _CLOSE = 40, 1.01
 
 
 class Costs(NamedTuple):
@@ -92,12 +102,13 @@ class Drawn(NamedTuple):
 
 
 class _Room(NamedTuple):
-    """Room for a sweep: worth ``(e, 12)``, cuts, rewards, and the best way to every state."""
+    """Room for a sweep: worth ``(e, 12)``, cuts, rewards; the best to every state, its reward."""
 
     worth: Float
     reward: Float
     cut: Int
     best: Float
+    held: Float
     choice: Int
     of_side: Float
 
@@ -117,6 +128,7 @@ class Priced:
             np.empty(ways),
             np.empty(ways),
             np.zeros((*ways, 4), np.int64),
+            np.empty((e + 1, s)),
             np.empty((e + 1, s)),
             np.empty((e, s), np.int64),
             np.empty((4, 2)),
@@ -169,17 +181,80 @@ class Priced:
         """Return what no drive in so many seconds can reach, by the best drive at a price."""
         return max(drawn.worth + price * (seconds + self.costs.change_s), 0.0)
 
+    def bound_by_kind(self, seconds: float, price: float, until_s: float) -> float:
+        """Return what no drive in so many seconds can reach: the most of all kinds of drives."""
+        least = least_by_kind(self.kinds, seconds + self.costs.change_s, price, until_s)
+        return max(float(least.max()), 0.0)
+
+    def kinds(self, price: float) -> tuple[Float, Float]:
+        """Return worth and reward of the best drive of each kind at a price, ``(g, h)``.
+
+        A kind is the stretch of the ladder in which a drive begins, the lowest, and that in which
+        it ends, the highest.
+        """
+        gate, end = self.ladder.gate, len(self.ladder.across_m)
+        low, high = _stretches(0, gate + 1), _stretches(gate, end)
+        worth, reward = np.empty((2, len(low) - 1, len(high) - 1))
+        _value(self.ladder, self.reward, self.costs, (price, False), self._room)
+        self._value_gate(price)
+        metre = price * self.costs.metre_s
+        _sweep_kinds(self.ladder, self.tables, metre, self._room, (low, high, worth, reward))
+        return worth, reward
+
     def seconds(self, drawn: Drawn, price: float) -> float:
         """Return the seconds that a drive takes on the ladder."""
         return (drawn.reward - drawn.worth) / price - self.costs.change_s
 
 
+def _stretches(first: int, end: int) -> Int:
+    """Return where stretches of elements begin, and the end."""
+    return np.unique(np.linspace(first, end, min(_STRETCHES, end - first) + 1).astype(np.int64))
+
+
+def least_by_kind(
+    kinds: Callable[[float], tuple[Float, Float]], seconds: float, price: float, until_s: float
+) -> Float:
+    """Return what no drive of each kind can reach in so many seconds, by a price of its own.
+
+    At one price for all, a kind that is far too long and one that is too short may seem worth a
+    drive between them, which does not exist. Here each has the price that is least for it: the
+    kind with the most is given a better one, until no other helps.
+
+    Parameters
+    ----------
+    kinds
+        Worth and reward of the best drive of each kind at a price.
+    seconds
+        The hours, and what is granted.
+    price
+        Where to begin.
+    until_s
+        Up to which moment of the clock prices are tried.
+    """
+    shape = kinds(price)[0].shape
+    low, high = np.full(shape, price / REACH), np.full(shape, price * REACH)
+    least = np.full(shape, np.inf)
+    for _ in range(_PRICES):
+        worth, reward = kinds(price)
+        least = np.minimum(least, worth + price * seconds)
+        too_long = reward - worth > price * seconds
+        low = np.where(too_long, np.maximum(low, price), low)
+        high = np.where(too_long, high, np.minimum(high, price))
+        at = np.unravel_index(np.argmax(least), shape)
+        if high[at] < _CLOSE * low[at] or monotonic() > until_s:
+            break
+        price = float(np.sqrt(low[at] * high[at]))
+    return least
+
+
 @part
 def _put(
-    room: _Room, at: tuple[int, int], what: tuple[float, float], cut: tuple[int, int, int, int]
+    room: _Room, k: int, way: int, what: tuple[float, float], cut: tuple[int, int, int, int]
 ) -> None:
-    """Note a way of driving an aisle if it is worth more than the one known."""
-    k, way = at
+    """Note a way of driving an aisle if it is worth more than the one known.
+
+    Numbers written out are handed over as ``np.int64``: it would be compiled for each of them.
+    """
     if what[0] > room.worth[k, way]:
         room.worth[k, way], room.reward[k, way] = what
         for c in range(4):
@@ -242,29 +317,44 @@ def _value_through(
             held_of[side] += reward[i]
             turns += before >= 0 and before != side
             before = side
-    _put(room, (k, NOTHING), (0.0, 0.0), (first, end, 0, 0))
-    _put(room, (k, ONCE), (-across, 0.0), (first, end, 0, 0))
-    _put(room, (k, TWICE), (-2.0 * across, 0.0), (first, end, 0, 0))
+    _put(
+        room, k, np.int64(NOTHING), (0.0, 0.0), (first, end, np.int64(_NO_SIDE), np.int64(_NO_SIDE))
+    )
+    _put(
+        room,
+        k,
+        np.int64(ONCE),
+        (-across, 0.0),
+        (first, end, np.int64(_NO_SIDE), np.int64(_NO_SIDE)),
+    )
+    _put(
+        room,
+        k,
+        np.int64(TWICE),
+        (-2.0 * across, 0.0),
+        (first, end, np.int64(_NO_SIDE), np.int64(_NO_SIDE)),
+    )
     for side in range(2):
         if gains_of[side] > change:
-            worth, cut = gains_of[side] - change, (end, end, side + 1, 0)
-            _put(room, (k, ONCE), (worth - across, held_of[side]), cut)
-            _put(room, (k, TWICE), (worth - 2.0 * across, held_of[side]), cut)
+            worth, cut = gains_of[side] - change, (end, end, side + 1, np.int64(_NO_SIDE))
+            _put(room, k, np.int64(ONCE), (worth - across, held_of[side]), cut)
+            _put(room, k, np.int64(TWICE), (worth - 2.0 * across, held_of[side]), cut)
     if turns == 0:
         return
-    gains, held, cut = gains_of[0] + gains_of[1] - change, held_of[0] + held_of[1], (end, end, 3, 0)
+    gains, held = gains_of[0] + gains_of[1] - change, held_of[0] + held_of[1]
+    cut = (end, end, np.int64(_BOTH_SIDES), np.int64(_NO_SIDE))
     turn = price * costs.turn_s
-    _put(room, (k, TWICE), (gains - 2.0 * across - min(turn, change), held), cut)
+    _put(room, k, np.int64(TWICE), (gains - 2.0 * across - min(turn, change), held), cut)
     if feasible:
         worth = gains - across - min(turns * turn, turn + 2.0 * across)
-        _put(room, (k, ONCE), (worth, held), cut)
+        _put(room, k, np.int64(ONCE), (worth, held), cut)
     else:
         worth = _once(ladder, reward, (k, stop, metre), (turn, min(turn, change)))
-        _put(room, (k, ONCE), (worth - change - across, held), cut)
+        _put(room, k, np.int64(ONCE), (worth - change - across, held), cut)
         # one side on the way through, the other on the way back to where the day ends
         worth = gains - across - min(turn, change)
-        _put(room, (k, LEFT_BACK), (worth, held), cut)
-        _put(room, (k, RIGHT_BACK), (worth, held), cut)
+        _put(room, k, np.int64(LEFT_BACK), (worth, held), cut)
+        _put(room, k, np.int64(RIGHT_BACK), (worth, held), cut)
 
 
 @part
@@ -340,18 +430,18 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
                 continue
             if sides == 3:
                 gains -= both_sides
-            cut = (first, i, 0, sides)
-            _put(room, (k, FROM_RIGHT), (gains - 2.0 * deep, held), cut)
-            _put(room, (k, END_RIGHT), (gains - deep, held), cut)
+            cut = (first, i, np.int64(_NO_SIDE), sides)
+            _put(room, k, np.int64(FROM_RIGHT), (gains - 2.0 * deep, held), cut)
+            _put(room, k, np.int64(END_RIGHT), (gains - deep, held), cut)
             if in_cut > first:
                 cut = (in_cut, i, in_sides, sides)
                 what = in_left + gains - 2.0 * deep, in_left_held + held
-                _put(room, (k, FROM_BOTH), what, cut)
+                _put(room, k, np.int64(FROM_BOTH), what, cut)
                 what = in_left + gains - deep, in_left_held + held
-                _put(room, (k, END_RIGHT_AND), what, cut)
+                _put(room, k, np.int64(END_RIGHT_AND), what, cut)
                 cut = (end_cut, i, end_sides, sides)
                 what = end_left + gains - 2.0 * deep, end_left_held + held
-                _put(room, (k, END_LEFT_AND), what, cut)
+                _put(room, k, np.int64(END_LEFT_AND), what, cut)
         side = 1 if ladder.upper[i] else 0
         left_of[side] += reward[i] - stop
         left_held_of[side] += reward[i]
@@ -373,8 +463,20 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
                 end_left, end_left_held = gains - deep, held
                 end_cut, end_sides = i + 1, sides
     if in_cut > first:
-        _put(room, (k, FROM_LEFT), (in_left, in_left_held), (in_cut, end, in_sides, 0))
-        _put(room, (k, END_LEFT), (end_left, end_left_held), (end_cut, end, end_sides, 0))
+        _put(
+            room,
+            k,
+            np.int64(FROM_LEFT),
+            (in_left, in_left_held),
+            (in_cut, end, in_sides, np.int64(_NO_SIDE)),
+        )
+        _put(
+            room,
+            k,
+            np.int64(END_LEFT),
+            (end_left, end_left_held),
+            (end_cut, end, end_sides, np.int64(_NO_SIDE)),
+        )
 
 
 @loop
@@ -399,3 +501,54 @@ def _sweep(ladder: Ladder, tables: Tables, metre: float, room: _Room) -> int:
             if worth > room.best[k + 1, after]:
                 room.best[k + 1, after], room.choice[k, after] = worth, t
     return 1
+
+
+@loop
+def _sweep_kinds(
+    ladder: Ladder,
+    tables: Tables,
+    metre: float,
+    room: _Room,
+    kinds: tuple[Int, Int, Float, Float],
+) -> None:
+    """Find worth and reward of the best drive that begins and ends in each pair of stretches."""
+    low, high, worth, reward = kinds
+    worth[:] = _NEVER
+    reward[:] = 0.0
+    for begin in range(low.size - 1):
+        end = 0
+        room.best[:] = _NEVER
+        room.best[0, 0] = 0.0
+        room.held[0, 0] = 0.0
+        for k in range(low[begin], ladder.across_m.size):
+            if k == low[begin]:
+                room.best[k, 0] = room.held[k, 0] = 0.0
+            while end + 1 < high.size - 1 and k >= high[end + 1]:
+                end += 1
+            _take_element(ladder, tables, metre, room, k)
+            if k + 1 == low[begin + 1]:
+                # it has begun by now
+                room.best[k + 1, 0] = _NEVER
+            if room.best[k + 1, 1] > worth[begin, end]:
+                worth[begin, end], reward[begin, end] = room.best[k + 1, 1], room.held[k + 1, 1]
+            # those that end here do not end further up
+            room.best[k + 1, 1] = _NEVER
+
+
+@part
+def _take_element(ladder: Ladder, tables: Tables, metre: float, room: _Room, k: int) -> None:
+    """Find the best way to every state after an element, and its reward."""
+    ways = tables.gate if k == ladder.gate else tables.aisle
+    for t in range(ways.shape[0]):
+        before, way, after = ways[t, 0], ways[t, 1], ways[t, 2]
+        if room.best[k, before] <= _NEVER or (after == 1 and k < ladder.gate):
+            continue
+        worth = room.best[k, before] + room.worth[k, way]
+        if after > 1 and k + 1 == ladder.across_m.size:
+            continue
+        if after > 1:
+            left, right = tables.passes[after, 0], tables.passes[after, 1]
+            worth -= metre * (left * ladder.up_m[k, 0] + right * ladder.up_m[k, 1])
+        if worth > room.best[k + 1, after]:
+            room.best[k + 1, after] = worth
+            room.held[k + 1, after] = room.held[k, before] + room.reward[k, way]

@@ -10,6 +10,7 @@ import streamlit as st
 from fieldmon.drive.simulated import CHARGED, MUJOCO, MadeUp
 from fieldmon.samplers import sampler
 
+from ..actions import background
 from ..show import drive_play, field_map
 from ..state import cached, widget_memory
 from ..words import texts
@@ -61,10 +62,7 @@ def _run(choices: Choices, scene: Scene, key: str) -> DriveRun:
     st.caption(texts.DRIVE_MADE_UP)
     made_up = MadeUp(share / 100)
     run = cached.drive_run(key, kind, made_up, choices.plot, scene, sampler(choices.sampler))
-    with st.container(horizontal=True):
-        st.button(texts.DRIVE_RUN, type="primary", key="drive_run", on_click=run.start,
-                  disabled=run.running or run.day is not None)  # fmt: skip
-        st.button(texts.STOP, key="drive_stop", on_click=run.stop, disabled=not run.running)
+    background.buttons(run, texts.DRIVE_RUN, key="drive_run", over=run.day is not None)
     return run
 
 

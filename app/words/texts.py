@@ -508,7 +508,14 @@ DECIDE_BOXES = {
     "days": "Days that it stays infested", "works": "Treating cleans, %",
     "reserve": "Never sprayed, for predators, %",
 }  # fmt: skip
-DECIDE_LEAVES, DECIDE_THRESHOLD = "By leaves that were counted", "Threshold"
+DECIDE_LEAVES, DECIDE_THRESHOLD = "By another threshold, or by leaves counted", "Threshold"
+DECIDE_OWN, DECIDE_OWN_TAKE = "Thresholds of your own (CSV)", "Take these thresholds"
+DECIDE_OWN_HELP = (
+    "Columns name, measure, level and source; the measure is share of plants, share of leaves or "
+    "mean per leaf. They are kept until the page is closed."
+)
+DECIDE_OWN_KEPT = Plural("{n} threshold can be chosen now.", "{n} thresholds can be chosen now.")
+DECIDE_TAKE = "Treat from {share:.1%} of the plants on"
 DECIDE_THRESHOLDS = {
     "almond": "almond", "almond with predators": "almond with predators",
     "strawberry before fruit": "strawberry before fruit",
@@ -654,6 +661,8 @@ TREAT_TEXTS = {
     "crop": "Crop",
     "pest": "Pest",
     "authorised_by": "Authorised by",
+    "active_ingredient": "Active ingredient",
+    "weather": "Weather then",
 }
 TREAT_DOSE_UNSAID = (
     "A dose must have a number and a unit, but one of them is empty. Write both, such as 0.5 and "

@@ -176,9 +176,7 @@ def _season(options: DriveOptions, file: Path) -> tuple[DrivenDay, date]:
         return _driven(options, today, aisles, (worker, driver), _begins(season, on)), on
 
 
-def _team(
-    options: DriveOptions, file: Path
-) -> list[tuple[date, DrivenDay, DriveOptions]] | None:
+def _team(options: DriveOptions, file: Path) -> list[tuple[date, DrivenDay, DriveOptions]] | None:
     """Let a season's team drive its day by VDA 5050, a robot each; None: it is no such day."""
     from fieldmon.monitoring import Season  # noqa: PLC0415
 

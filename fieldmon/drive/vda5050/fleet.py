@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import queue
 import time
 from contextlib import contextmanager
@@ -16,6 +15,7 @@ from fieldmon.drive.vda5050.messages import (
     header_of,
     home_order,
     order_of,
+    result_of,
     sent_at,
 )
 from fieldmon.drive.vda5050.wire import Wire
@@ -106,7 +106,7 @@ class Vda5050Robot:
             return Visit(None, self._now_s(), stuck=self._ended(said))
         if self._traffic is not None:
             self._crossing.arrived(errand.stop.plant)
-        result = _result(said)
+        result = result_of(said)
         found = result.get("found") if said["actionStatus"] == "FINISHED" else None
         return Visit(found, self._at_s(result.get("day_s")), stuck=self._ended(self._low()))
 
@@ -279,14 +279,3 @@ def _finished(state: dict[str, Any], action: str) -> dict[str, Any] | None:
             done: dict[str, Any] = one
             return done
     return None
-
-
-def _result(action: dict[str, Any]) -> dict[str, Any]:
-    """Return what a robot said of an action; empty if it is nothing that can be read."""
-    try:
-        said = json.loads(action.get("resultDescription") or "{}")
-    except ValueError:
-        return {}
-    if not isinstance(said, dict) or not isinstance(said.get("found"), bool | None):
-        return {}
-    return said

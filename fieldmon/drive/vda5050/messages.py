@@ -189,3 +189,14 @@ def _edge(a: dict[str, Any], b: dict[str, Any]) -> dict[str, Any]:
         "endNodeId": b["nodeId"],
         "actions": [],
     }
+
+
+def result_of(action: dict[str, Any]) -> dict[str, Any]:
+    """Return what a robot said of an action; empty if nothing of it can be read."""
+    try:
+        said = json.loads(action.get("resultDescription") or "{}")
+    except ValueError:
+        return {}
+    if not isinstance(said, dict) or not isinstance(said.get("found"), bool | None):
+        return {}
+    return said

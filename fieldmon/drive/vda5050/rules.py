@@ -62,21 +62,21 @@ _ACTION_2, _ACTION_3 = _action("NONE", "SOFT", "HARD"), _action("NONE", "SINGLE"
 _AT_ONCE = _action("NONE")
 _MODES_2 = ("AUTOMATIC", "SEMIAUTOMATIC", "MANUAL", "SERVICE", "TEACHIN")
 _MODES_3 = ("STARTUP", "AUTOMATIC", "SEMIAUTOMATIC", "INTERVENED", "MANUAL", "SERVICE", "TEACH_IN")
-_STATE_2 = {
+_POSE_2 = {"agvPosition?": _PLACE | {"theta": _NUMBER, "positionInitialized": bool}}
+_POSE_3 = {"mobileRobotPosition?": _PLACE | {"theta": _NUMBER, "localized": bool}}
+_STATE_2 = _POSE_2 | {
     "actionStates": [{"actionId": str, "actionStatus": _STATUS, "resultDescription?": str}],
     "batteryState": {"batteryCharge": _NUMBER, "charging": bool},
-    "agvPosition?": _PLACE | {"theta": _NUMBER, "positionInitialized": bool},
     "safetyState": {"eStop": ("AUTOACK", "MANUAL", "REMOTE", "NONE"), "fieldViolation": bool},
     "information?": [
         {"infoType": str, "infoLevel": ("INFO", "DEBUG"), "infoDescription?": str},
     ],
 }
 _DONE_3 = {"actionId": str, "actionStatus": (*_STATUS, "RETRIABLE"), "actionResult?": str}
-_STATE_3 = {
+_STATE_3 = _POSE_3 | {
     "actionStates": [_DONE_3],
     "instantActionStates": [_DONE_3],
     "powerSupply": {"stateOfCharge": _NUMBER, "charging": bool},
-    "mobileRobotPosition?": _PLACE | {"theta": _NUMBER, "localized": bool},
     "safetyState": {"activeEmergencyStop": ("MANUAL", "REMOTE", "NONE"), "fieldViolation": bool},
     "information?": [
         {"infoType": str, "infoLevel": ("INFO", "DEBUG"), "infoDescriptor?": str},
@@ -92,6 +92,7 @@ RULES: dict[str, Rules] = {
         "state": _state(_MODES_2, ("WARNING", "FATAL"), _STATE_2),
         "connection": _HEADER | {"connectionState": ("ONLINE", "OFFLINE", "CONNECTIONBROKEN")},
         "instantActions": _HEADER | {"actions": [_ACTION_2]},
+        "visualization": _HEADER | _POSE_2,
     },
     "3.0": {
         "order": _order(_ACTION_3, _ELLIPSE, {}),
@@ -99,6 +100,7 @@ RULES: dict[str, Rules] = {
         "connection": _HEADER
         | {"connectionState": ("ONLINE", "OFFLINE", "HIBERNATING", "CONNECTION_BROKEN")},
         "instantActions": _HEADER | {"actions": [_AT_ONCE]},
+        "visualization": _HEADER | _POSE_3,
     },
 }
 

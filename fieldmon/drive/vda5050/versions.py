@@ -72,6 +72,10 @@ MAP_OF_FIELDS: dict[str, tuple[_Field, ...]] = {
     "connection": (
         _Field((), "connectionState", "connectionState", {"CONNECTIONBROKEN": "CONNECTION_BROKEN"}),
     ),
+    "visualization": (
+        _Field(("agvPosition",), "positionInitialized", "localized"),
+        _Field((), "agvPosition", "mobileRobotPosition"),
+    ),
     "instantActions": (),
 }  # fmt: skip
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import queue
 import socket
+import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlsplit
 
@@ -64,21 +65,19 @@ class RobotName(NamedTuple):
     serial: str
     version: str = USUAL
 
-    @property
-    def topic(self) -> str:
-        """Return what its topics begin with.
-
-        Raises
-        ------
-        SettingError
-            If a name holds what parts or stands for topics.
-        """
+    def check(self) -> None:
+        """Raise `SettingError` if a name holds what parts or stands for topics."""
         for name in self[:2]:
             if not name or set(name) & set("/+#$"):
                 raise SettingError(
                     "Manufacturer and serial number of a robot must have no /, +, # or $, and not "
                     f"be empty, but one is {name!r}."
                 )
+
+    @property
+    def topic(self) -> str:
+        """Return what its topics begin with; raise `SettingError` as `check` does."""
+        self.check()
         return f"{VERSIONS[self.version][1]}/{self.manufacturer}/{self.serial}"
 
 
@@ -111,6 +110,8 @@ class Wire:
     ) -> None:
         mqtt = _paho()
         self.heard: queue.Queue[tuple[str, bytes]] = queue.Queue()
+        #: when a message of each kind came last, by `time.monotonic`
+        self.heard_at: dict[str, float] = {}
         self.robot, self._topic = robot, robot.topic
         self._hears = [f"{self._topic}/{kind}" for kind in hears]
         client = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2, client_id=name, clean_session=False)
@@ -151,7 +152,9 @@ class Wire:
         self.connected()
 
     def _on_message(self, _client: object, _data: object, message: Any) -> None:  # noqa: ANN401
-        self.heard.put((message.topic.rpartition("/")[2], message.payload))
+        kind = message.topic.rpartition("/")[2]
+        self.heard_at[kind] = time.monotonic()
+        self.heard.put((kind, message.payload))
 
 
 def _at_once(_client: object, _data: object, line: Any) -> None:  # noqa: ANN401 - a socket

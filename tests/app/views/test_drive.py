@@ -23,3 +23,15 @@ def test_a_file_is_asked_for_where_a_day_was_driven_already(app):
     app.get("file_uploader")[0].set_value(("x.csv", b"a,b\n1,2\n", "text/csv")).run()
     assert "must begin with the columns" in app.error[0].value
     assert map_of(app)["drive"] is None
+
+
+def test_a_robot_that_drives_now_is_asked_for_and_what_is_wrong_is_said(app):
+    go(app, "drive")
+    app.segmented_control(key="drive_source").set_value("live").run()
+    assert any(one.value == texts.DRIVE_LIVE for one in app.caption)
+    app.text_input(key="drive_broker").set_value("127.0.0.1:1").run()
+    press(app, texts.DRIVE_WATCH)
+    until(lambda: any("must answer" in one.value for one in app.run().error))
+    assert map_of(app)["drive"] is None
+    app.text_input(key="drive_serial").set_value("a/b").run()
+    assert "must have no /" in app.error[0].value

@@ -13,6 +13,7 @@ from fieldmon.samplers import sampler
 from ..state import cached, widget_memory
 from ..words import texts
 from ..words.language import of_error
+from . import background
 
 if TYPE_CHECKING:
     from fieldmon.samplers.base import Scene
@@ -34,10 +35,7 @@ def run(choices: Choices, scene: Scene, key: str) -> DriveRun:
     st.caption(texts.DRIVE_MADE_UP)
     made_up = MadeUp(share / 100)
     made = cached.drive_run(key, kind, made_up, choices.plot, scene, sampler(choices.sampler))
-    with st.container(horizontal=True):
-        st.button(texts.DRIVE_RUN, type="primary", key="drive_run", on_click=made.start,
-                  disabled=made.running or made.day is not None)  # fmt: skip
-        st.button(texts.STOP, key="drive_stop", on_click=made.stop, disabled=not made.running)
+    background.buttons(made, texts.DRIVE_RUN, key="drive_run", over=made.day is not None)
     st.fragment(_progress, run_every=0.5 if made.running else None)(made, at_work=made.running)
     return made
 

@@ -14,6 +14,7 @@ from fieldmon.errors import FieldmonError
 from ..state import cached, widget_memory
 from ..words import texts
 from ..words.language import of_error
+from . import background
 
 if TYPE_CHECKING:
     from fieldmon.samplers.base import Scene
@@ -42,10 +43,7 @@ def robot(key: str, scene: Scene) -> LiveDrive | None:
         st.error(of_error(error))
         return None
     live = cached.live_drive(key, broker, name, scene)
-    with st.container(horizontal=True):
-        st.button(texts.DRIVE_WATCH, type="primary", key="drive_watch", on_click=live.start,
-                  disabled=live.running)  # fmt: skip
-        st.button(texts.STOP, key="drive_unwatch", on_click=live.stop, disabled=not live.running)
+    background.buttons(live, texts.DRIVE_WATCH, key="drive_watch", over=False)
     st.fragment(_standing, run_every=1.0 if live.running else None)(live, at_work=live.running)
     return live
 

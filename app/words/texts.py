@@ -146,6 +146,10 @@ MAP_WORDS = {
     "scale": "The scale bar is {bar} long; the arrow points north.",
     "speed": "Speed", "follow": "Follow the robot",
     "driven": "{time} · {stops} stops, {found} found",
+    "live": "live, {seconds} s ago", "paused": "paused, {seconds} s ago",
+    "lost": "connection lost, last heard {seconds} s ago", "waiting": "not heard yet",
+    "failed": "an error, {seconds} s ago", "ended": "not listened to any more",
+    "away": "the server is not reached",
 }  # fmt: skip
 SEASON_INTRO = (
     "A simulated season on this plot. The start is drawn from the chance map; insects spread to "
@@ -757,7 +761,19 @@ DRIVE_INTRO = (
     "change as it learns. Nothing is recorded."
 )
 DRIVE_SOURCE = "Which day"
-DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day"}
+DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day", "live": "Live"}
+DRIVE_LIVE = (
+    "A robot that speaks VDA 5050, listened to where its messages are exchanged. Nothing is sent "
+    "and nothing is recorded here: `fieldmon drive --robot vda5050` does that."
+)
+DRIVE_BROKER, DRIVE_MANUFACTURER, DRIVE_SERIAL = "MQTT broker", "Manufacturer", "Serial number"
+DRIVE_VDA = "Version of VDA 5050"
+DRIVE_WATCH = "Watch"
+DRIVE_LAG = "Heard {seconds} s ago; what the map shows is up to a second older."
+DRIVE_NOT_HEARD = "The robot was not heard yet. Is it on, and are its names right?"
+DRIVE_LOST = "The robot's connection is lost; it was last heard {seconds} s ago."
+DRIVE_PAUSED = "The robot is paused, or driven by hand."
+DRIVE_FAILED = "The robot reports an error that it cannot mend: {said}"
 DRIVE_ROBOT = "Robot"
 DRIVE_ROBOTS = {"charged": "As charged", "mujoco": "Physical simulation"}
 DRIVE_MADE_UP = (

@@ -110,6 +110,15 @@ CHOOSE_OTHER, CHOOSE_NOWHERE = "Another answer", "leads nowhere"
 LEGEND_ZONE = "border of a time zone"
 ANSWERS_ALT = Plural("Map of {n} place where the plot could lie.",
                      "Map of {n} places where the plot could lie.")  # fmt: skip
+RECORDS_ON_MAP = (
+    "Which of these is right? *Plot & data* shows on the map where the records then lie, with a "
+    "ring round each find. Click it there, or choose here."
+)
+ANSWER_RECORDS = "{near} of {n} on the plot, {found} finds"
+ANSWERS_OF_RECORDS_ALT = Plural(
+    "Map of the plot, and of {n} place where the records could lie.",
+    "Map of the plot, and of {n} places where the records could lie.",
+)
 LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
 UNDO_ANSWER = "Take back: {option} = {value}"
 SEVERITIES = {

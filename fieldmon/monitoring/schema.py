@@ -258,7 +258,6 @@ INSPECTION_LOTS = GeoPackageTable(
     "inspection_lots",
     (
         "lot INTEGER NOT NULL UNIQUE",
-        "rows INTEGER NOT NULL",
         "content TEXT NOT NULL",
         "columns BLOB NOT NULL",
     ),
@@ -322,7 +321,7 @@ OPEN = "open"
 #: in `fieldmon`: how often a row of the inspections was added, changed or deleted, by whomever
 INSPECTIONS_CHANGED = "inspections"
 #: rows of inspections are kept once more in lots: a row's lot is its number without so many bits
-LOT_BITS = 14
+LOT_BITS = 12
 
 _CHANCE_VIEW = """
 CREATE VIEW chance AS
@@ -386,19 +385,25 @@ def watch(db: sqlite3.Connection) -> None:
 def count_inspections(db: sqlite3.Connection) -> None:
     """Let the file count by itself what is done to inspections, and drop lots that are so no more.
 
-    Of a row that another one replaces (SQL's REPLACE) SQLite tells nobody: whoever reads a lot
-    counts its rows.
+    Of a row that another one replaces (SQL's REPLACE) SQLite tells nobody afterwards.
     """
     db.execute(
         "INSERT OR IGNORE INTO fieldmon (key, value) VALUES (?, '0')", (INSPECTIONS_CHANGED,)
     )
+    count = f"UPDATE fieldmon SET value = value + 1 WHERE key = '{INSPECTIONS_CHANGED}'"  # noqa: S608 - ours
     for event, rows in (("insert", ("new",)), ("update", ("old", "new")), ("delete", ("old",))):
         lots = ", ".join(f"{row}.fid >> {LOT_BITS}" for row in rows)
+        drop = f"DELETE FROM inspection_lots WHERE lot IN ({lots})"  # noqa: S608 - names of ours
         db.execute(
-            f"CREATE TRIGGER inspections_{event}_counted AFTER {event} ON inspections BEGIN "  # noqa: S608 - names of ours
-            f"UPDATE fieldmon SET value = value + 1 WHERE key = '{INSPECTIONS_CHANGED}'; "
-            f"DELETE FROM inspection_lots WHERE lot IN ({lots}); END"
+            f"CREATE TRIGGER inspections_{event}_counted AFTER {event} ON inspections "
+            f"BEGIN {count}; {drop}; END"
         )
+        if event != "delete":
+            db.execute(
+                f"CREATE TRIGGER inspections_{event}_replacing BEFORE {event} ON inspections "  # noqa: S608 - ours
+                f"BEGIN DELETE FROM inspection_lots WHERE lot IN (SELECT fid >> {LOT_BITS} "
+                "FROM inspections WHERE digest = new.digest AND undone = 0); END"
+            )
 
 
 def _treatments_come(db: sqlite3.Connection) -> None:

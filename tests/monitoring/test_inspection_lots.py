@@ -25,10 +25,10 @@ def in_lots(recorded, tmp_path_factory):
     path = shutil.copy(recorded, tmp_path_factory.mktemp("lots") / "season.gpkg")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(schema, "LOT_BITS", 3)
-        patch.setattr(inspection_lots, "_LOT", 8)
         with closing(sqlite3.connect(path)) as db:  # the file's own triggers know the size
             for event in ("insert", "update", "delete"):
                 db.execute(f"DROP TRIGGER inspections_{event}_counted")
+                db.execute(f"DROP TRIGGER IF EXISTS inspections_{event}_replacing")
             schema.count_inspections(db)
             db.commit()
         season = Season(path)
@@ -51,7 +51,6 @@ def in_lots(recorded, tmp_path_factory):
 @pytest.fixture
 def path(in_lots, tmp_path, monkeypatch):
     monkeypatch.setattr(schema, "LOT_BITS", 3)
-    monkeypatch.setattr(inspection_lots, "_LOT", 8)
     return shutil.copy(in_lots, tmp_path / "season.gpkg")
 
 
@@ -121,6 +120,16 @@ def test_a_lot_that_is_not_what_it_was_is_read_row_by_row(path, change):
     with closing(sqlite3.connect(path)) as db:
         db.execute(change)
         db.commit()
+    assert_the_same(as_it_is(path), row_by_row(path))
+
+
+def test_row_numbers_of_another_program_may_be_any(path):
+    with closing(sqlite3.connect(path)) as db:
+        for number, fid in enumerate((-5, 0, 1 << 40)):
+            db.execute("UPDATE inspections SET fid = ? WHERE fid = ?", (fid, 30 + number))
+        inspection_lots.keep(db)
+        db.commit()
+    assert {-1, 0, 3, 4} <= set(lots(path))
     assert_the_same(as_it_is(path), row_by_row(path))
 
 

@@ -53,5 +53,6 @@ def carry_over(before: UnitsInLanguage) -> None:
     now = units()
     if now.length != before.length:
         widget_memory.change(
-            (*LENGTHS, *BLOCK_LENGTHS, "robot_width"), lambda shown: now.shown(before.in_metres(shown))
+            (*LENGTHS, *BLOCK_LENGTHS, "robot_width"),
+            lambda shown: now.shown(before.in_metres(shown)),
         )

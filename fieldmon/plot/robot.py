@@ -63,8 +63,8 @@ class RobotTimes(NamedTuple):
     stop_s: float
 
 
-#: those of the thesis, and those of days driven in a physical simulation (docs/drive); the latter
-#: are of a robot with two driven wheels whose mast looks to both sides: it need not turn in an aisle
+#: those of the thesis, and those of days driven in a physical simulation (docs/drive): of a robot
+#: with two driven wheels whose mast looks to both sides, so that it need not turn in an aisle
 ROBOT_TIMES = {"thesis": RobotTimes(25.0, 23.0, 0.0), "measured": RobotTimes(9.0, 0.0, 1.13)}
 
 

@@ -12,9 +12,10 @@ from . import acting
 if TYPE_CHECKING:
     from ..state.comparison import Comparison
     from ..state.driving import DriveRun
+    from ..state.live_drive import LiveDrive
 
 
-def buttons(work: Comparison | DriveRun, label: str, *, key: str, over: bool) -> None:
+def buttons(work: Comparison | DriveRun | LiveDrive, label: str, *, key: str, over: bool) -> None:
     """Offer to begin and to stop it; `over`: there is nothing left to do."""
     with st.container(horizontal=True):
         pressed = st.button(label, type="primary", key=key, disabled=work.running or over)

@@ -24,7 +24,10 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
 
 #: boxes of the form for what was said of an application, by what they are about
-_TEXTS = ("operator", "reason", "machinery", "crop", "pest", "authorised_by")
+_TEXTS = (
+    *("active_ingredient", "operator", "reason", "machinery", "weather", "crop", "pest"),
+    "authorised_by",
+)
 
 
 def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") -> None:

@@ -155,6 +155,10 @@ MAP_WORDS = {
     "scale": "The scale bar is {bar} long; the arrow points north.",
     "speed": "Speed", "follow": "Follow the robot",
     "driven": "{time} · {stops} stops, {found} found",
+    "live": "live, {seconds} s ago", "paused": "paused, {seconds} s ago",
+    "lost": "connection lost, last heard {seconds} s ago", "waiting": "not heard yet",
+    "failed": "an error, {seconds} s ago", "ended": "not listened to any more",
+    "away": "the server is not reached",
 }  # fmt: skip
 SEASON_INTRO = (
     "A simulated season on this plot. The start is drawn from the chance map; insects spread to "
@@ -517,7 +521,14 @@ DECIDE_BOXES = {
     "days": "Days that it stays infested", "works": "Treating cleans, %",
     "reserve": "Never sprayed, for predators, %",
 }  # fmt: skip
-DECIDE_LEAVES, DECIDE_THRESHOLD = "By leaves that were counted", "Threshold"
+DECIDE_LEAVES, DECIDE_THRESHOLD = "By another threshold, or by leaves counted", "Threshold"
+DECIDE_OWN, DECIDE_OWN_TAKE = "Thresholds of your own (CSV)", "Take these thresholds"
+DECIDE_OWN_HELP = (
+    "Columns name, measure, level and source; the measure is share of plants, share of leaves or "
+    "mean per leaf. They are kept until the page is closed."
+)
+DECIDE_OWN_KEPT = Plural("{n} threshold can be chosen now.", "{n} thresholds can be chosen now.")
+DECIDE_TAKE = "Treat from {share:.1%} of the plants on"
 DECIDE_THRESHOLDS = {
     "almond": "almond", "almond with predators": "almond with predators",
     "strawberry before fruit": "strawberry before fruit",
@@ -663,6 +674,8 @@ TREAT_TEXTS = {
     "crop": "Crop",
     "pest": "Pest",
     "authorised_by": "Authorised by",
+    "active_ingredient": "Active ingredient",
+    "weather": "Weather then",
 }
 TREAT_DOSE_UNSAID = (
     "A dose must have a number and a unit, but one of them is empty. Write both, such as 0.5 and "
@@ -757,7 +770,19 @@ DRIVE_INTRO = (
     "change as it learns. Nothing is recorded."
 )
 DRIVE_SOURCE = "Which day"
-DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day"}
+DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day", "live": "Live"}
+DRIVE_LIVE = (
+    "A robot that speaks VDA 5050, listened to where its messages are exchanged. Nothing is sent "
+    "and nothing is recorded here: `fieldmon drive --robot vda5050` does that."
+)
+DRIVE_BROKER, DRIVE_MANUFACTURER, DRIVE_SERIAL = "MQTT broker", "Manufacturer", "Serial number"
+DRIVE_VDA = "Version of VDA 5050"
+DRIVE_WATCH = "Watch"
+DRIVE_LAG = "Heard {seconds} s ago; what the map shows is up to a second older."
+DRIVE_NOT_HEARD = "The robot was not heard yet. Is it on, and are its names right?"
+DRIVE_LOST = "The robot's connection is lost; it was last heard {seconds} s ago."
+DRIVE_PAUSED = "The robot is paused, or driven by hand."
+DRIVE_FAILED = "The robot reports an error that it cannot mend: {said}"
 DRIVE_ROBOT = "Robot"
 DRIVE_ROBOTS = {"charged": "As charged", "mujoco": "Physical simulation"}
 DRIVE_MADE_UP = (

@@ -91,8 +91,9 @@ def _offer_undo(season: Season) -> None:
 
 
 @notices.reporting
-def use(choices: Choices, strategy: Strategy) -> str:
-    """Work by this strategy from now on (for callbacks)."""
+def use(choices: Choices, box: str) -> str:
+    """Work by the strategy that the box of this key holds from now on (for callbacks)."""
+    strategy: Strategy = st.session_state[box]
     sampler, hours, inspection_s = strategy.sampler, strategy.hours, strategy.inspection_s
     if choices.season is not None:
         settings = choices.season.settings

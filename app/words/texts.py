@@ -110,6 +110,15 @@ CHOOSE_OTHER, CHOOSE_NOWHERE = "Another answer", "leads nowhere"
 LEGEND_ZONE = "border of a time zone"
 ANSWERS_ALT = Plural("Map of {n} place where the plot could lie.",
                      "Map of {n} places where the plot could lie.")  # fmt: skip
+RECORDS_ON_MAP = (
+    "Which of these is right? *Plot & data* shows on the map where the records then lie, with a "
+    "ring round each find. Click it there, or choose here."
+)
+ANSWER_RECORDS = "{near} of {n} on the plot, {found} finds"
+ANSWERS_OF_RECORDS_ALT = Plural(
+    "Map of the plot, and of {n} place where the records could lie.",
+    "Map of the plot, and of {n} places where the records could lie.",
+)
 LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
 UNDO_ANSWER = "Take back: {option} = {value}"
 SEVERITIES = {
@@ -146,6 +155,10 @@ MAP_WORDS = {
     "scale": "The scale bar is {bar} long; the arrow points north.",
     "speed": "Speed", "follow": "Follow the robot",
     "driven": "{time} · {stops} stops, {found} found",
+    "live": "live, {seconds} s ago", "paused": "paused, {seconds} s ago",
+    "lost": "connection lost, last heard {seconds} s ago", "waiting": "not heard yet",
+    "failed": "an error, {seconds} s ago", "ended": "not listened to any more",
+    "away": "the server is not reached",
 }  # fmt: skip
 SEASON_INTRO = (
     "A simulated season on this plot. The start is drawn from the chance map; insects spread to "
@@ -508,7 +521,14 @@ DECIDE_BOXES = {
     "days": "Days that it stays infested", "works": "Treating cleans, %",
     "reserve": "Never sprayed, for predators, %",
 }  # fmt: skip
-DECIDE_LEAVES, DECIDE_THRESHOLD = "By leaves that were counted", "Threshold"
+DECIDE_LEAVES, DECIDE_THRESHOLD = "By another threshold, or by leaves counted", "Threshold"
+DECIDE_OWN, DECIDE_OWN_TAKE = "Thresholds of your own (CSV)", "Take these thresholds"
+DECIDE_OWN_HELP = (
+    "Columns name, measure, level and source; the measure is share of plants, share of leaves or "
+    "mean per leaf. They are kept until the page is closed."
+)
+DECIDE_OWN_KEPT = Plural("{n} threshold can be chosen now.", "{n} thresholds can be chosen now.")
+DECIDE_TAKE = "Treat from {share:.1%} of the plants on"
 DECIDE_THRESHOLDS = {
     "almond": "almond", "almond with predators": "almond with predators",
     "strawberry before fruit": "strawberry before fruit",
@@ -654,6 +674,8 @@ TREAT_TEXTS = {
     "crop": "Crop",
     "pest": "Pest",
     "authorised_by": "Authorised by",
+    "active_ingredient": "Active ingredient",
+    "weather": "Weather then",
 }
 TREAT_DOSE_UNSAID = (
     "A dose must have a number and a unit, but one of them is empty. Write both, such as 0.5 and "
@@ -748,7 +770,19 @@ DRIVE_INTRO = (
     "change as it learns. Nothing is recorded."
 )
 DRIVE_SOURCE = "Which day"
-DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day"}
+DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day", "live": "Live"}
+DRIVE_LIVE = (
+    "A robot that speaks VDA 5050, listened to where its messages are exchanged. Nothing is sent "
+    "and nothing is recorded here: `fieldmon drive --robot vda5050` does that."
+)
+DRIVE_BROKER, DRIVE_MANUFACTURER, DRIVE_SERIAL = "MQTT broker", "Manufacturer", "Serial number"
+DRIVE_VDA = "Version of VDA 5050"
+DRIVE_WATCH = "Watch"
+DRIVE_LAG = "Heard {seconds} s ago; what the map shows is up to a second older."
+DRIVE_NOT_HEARD = "The robot was not heard yet. Is it on, and are its names right?"
+DRIVE_LOST = "The robot's connection is lost; it was last heard {seconds} s ago."
+DRIVE_PAUSED = "The robot is paused, or driven by hand."
+DRIVE_FAILED = "The robot reports an error that it cannot mend: {said}"
 DRIVE_ROBOT = "Robot"
 DRIVE_ROBOTS = {"charged": "As charged", "mujoco": "Physical simulation"}
 DRIVE_MADE_UP = (

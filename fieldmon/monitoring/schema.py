@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 9
+VERSION = 10
 #: files of this version and later have a log
 LOGS_SINCE = 7
 #: the first fieldmon that reads files of this version
@@ -147,6 +147,8 @@ APPLIED = (
     "pest TEXT",
     "authorised_by TEXT",
     "of_plants BLOB",
+    "active_ingredient TEXT",
+    "weather TEXT",
 )
 TREATMENTS = GeoPackageTable(
     "treatments",
@@ -450,7 +452,7 @@ def _photos_are_asked_for(db: sqlite3.Connection) -> None:
 
 
 def _long_seasons_come(db: sqlite3.Connection) -> None:
-    """Version 8 kept inspections once, and of a day's figures not what they follow from."""
+    """Version 9 kept inspections once, and of a day's figures not what they follow from."""
     create(db, INSPECTION_LOTS)
     db.execute("ALTER TABLE days ADD COLUMN causes TEXT")
     count_inspections(db)
@@ -458,14 +460,19 @@ def _long_seasons_come(db: sqlite3.Connection) -> None:
 
 def _records_come(db: sqlite3.Connection) -> None:
     """Version 6 knew of treatments only where, when, how well and the product; it had no log."""
-    there = {row[1] for row in db.execute("PRAGMA table_info(treatments)")}
-    for column in APPLIED:
-        if column.split()[0] not in there:
-            db.execute(f"ALTER TABLE treatments ADD COLUMN {column}")
+    _applications_say_all(db)
     create(db, LABELS)
     create(db, LOG)
     create(db, MORNINGS)
     db.execute(_INDEXES[4])
+
+
+def _applications_say_all(db: sqlite3.Connection) -> None:
+    """Version 8 did not ask for the active ingredient and the weather of a treatment."""
+    there = {row[1] for row in db.execute("PRAGMA table_info(treatments)")}
+    for column in APPLIED:
+        if column.split()[0] not in there:
+            db.execute(f"ALTER TABLE treatments ADD COLUMN {column}")
 
 
 #: what makes a file of version k one of version k + 1; `watch` follows the last
@@ -477,5 +484,6 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     5: _phones_come,
     6: _records_come,
     7: _photos_are_asked_for,
-    8: _long_seasons_come,
+    8: _applications_say_all,
+    9: _long_seasons_come,
 }

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
+    _Int = int | np.int64
 
 _NEVER = -1e300
 _SAME_PLACE_M = 1e-6
@@ -249,7 +250,11 @@ def least_by_kind(
 
 @part
 def _put(
-    room: _Room, k: int, way: int, what: tuple[float, float], cut: tuple[int, int, int, int]
+    room: _Room,
+    k: int,
+    way: np.int64,
+    what: tuple[float, float],
+    cut: tuple[_Int, _Int, _Int, _Int],
 ) -> None:
     """Note a way of driving an aisle if it is worth more than the one known.
 
@@ -336,7 +341,7 @@ def _value_through(
     )
     for side in range(2):
         if gains_of[side] > change:
-            worth, cut = gains_of[side] - change, (end, end, side + 1, np.int64(_NO_SIDE))
+            worth, cut = gains_of[side] - change, (end, end, np.int64(side + 1), np.int64(_NO_SIDE))
             _put(room, k, np.int64(ONCE), (worth - across, held_of[side]), cut)
             _put(room, k, np.int64(TWICE), (worth - 2.0 * across, held_of[side]), cut)
     if turns == 0:
@@ -414,8 +419,8 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
             side = 1 if ladder.upper[i] else 0
             gains_of[side] += reward[i] - stop
             held_of[side] += reward[i]
-    in_left, in_left_held, in_sides, in_cut = _NEVER, 0.0, 0, first
-    end_left, end_left_held, end_sides, end_cut = _NEVER, 0.0, 0, first
+    in_left, in_left_held, in_sides, in_cut = _NEVER, 0.0, np.int64(0), first
+    end_left, end_left_held, end_sides, end_cut = _NEVER, 0.0, np.int64(0), first
     for i in range(first, end):
         if reward[i] <= stop:
             continue
@@ -458,10 +463,10 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
                 gains -= both_sides
             if gains - 2.0 * deep > in_left:
                 in_left, in_left_held = gains - 2.0 * deep, held
-                in_cut, in_sides = i + 1, sides
+                in_cut, in_sides = i + 1, np.int64(sides)
             if gains - deep > end_left:
                 end_left, end_left_held = gains - deep, held
-                end_cut, end_sides = i + 1, sides
+                end_cut, end_sides = i + 1, np.int64(sides)
     if in_cut > first:
         _put(
             room,

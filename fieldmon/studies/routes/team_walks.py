@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations
-from time import monotonic
+from time import process_time
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -23,8 +23,8 @@ _ROUNDS, _TRIES = 5, 12
 # two walks are shaken so often, until so often in vain; what is left counts so much more or less,
 # and at first so much less than before is taken for what may come of it
 _SHAKES, _SHAKES_IN_VAIN, _MORE_OR_LESS, _WORSE = 200, 80, (0.1, 0.3, 0.6), 0.02
-# prices of plants: so many, for so long; a step that gained nothing so often is made shorter, and
-# directions are remembered so far
+# prices of plants: so many, for so many seconds of the processor; a step that gained nothing so
+# often is made shorter, and directions are remembered so far
 _PRICES, _WITHIN_S, _PATIENCE, _MEMORY = 300, 20.0, 8, 0.7
 
 
@@ -185,7 +185,7 @@ def _all_steps(reward: Float, budget: int, n_walks: int) -> float:
 
 def _by_prices(reward: Float, budget: int, n_walks: int, held: float) -> float:
     """Return a bound by prices of plants, as of a team's day: see `fieldmon.planning.team`."""
-    until = monotonic() + _WITHIN_S
+    until = process_time() + _WITHIN_S
     price = direction = np.zeros(reward.shape)
     least, kept, step, in_vain = np.inf, price, 1.0, 0
     for _ in range(_PRICES):
@@ -201,7 +201,7 @@ def _by_prices(reward: Float, budget: int, n_walks: int, held: float) -> float:
         direction = 1.0 - n_walks * visits + _MEMORY * direction
         direction = np.where((price <= 0.0) & (direction > 0.0), 0.0, direction)
         norm = float((direction**2).sum())
-        if norm == 0.0 or value <= held * (1.0 + 1e-6) or monotonic() > until:
+        if norm == 0.0 or value <= held * (1.0 + 1e-6) or process_time() > until:
             break
         price = np.clip(price - step * (value - held) / norm * direction, 0.0, reward)
     return least

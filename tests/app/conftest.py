@@ -21,6 +21,7 @@ from app.words import language
 from fieldmon.monitoring import Season
 from fieldmon.plot import local_clock
 from tests.app.driving import begun, opened
+from tests.app.on_screen import dressed
 from tests.paths import SHARED
 
 SHOTS = Path(__file__).with_name("screenshots")
@@ -151,6 +152,7 @@ def page(visitors, request):
     page.on("request", lambda sent: page.requests.append(sent.url))
     yield page
     SHOTS.mkdir(exist_ok=True)
+    dressed(page)
     page.screenshot(path=SHOTS / f"{request.node.name.replace('/', '_')}.png")
     page.close()
 

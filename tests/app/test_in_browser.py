@@ -5,7 +5,8 @@ import json
 import re
 from contextlib import suppress
 from dataclasses import replace
-from datetime import date
+from datetime import date, time
+from functools import cache
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Thread
 
@@ -28,12 +29,14 @@ from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.plot import Plot
+from fieldmon.plot.robot import scout
 from tests.app.driving import until, zipped
 from tests.app.on_screen import (
     DRAWN,
     IDLE,
     MAP,
     becomes,
+    card,
     click,
     free,
     is_near,
@@ -56,7 +59,7 @@ from tests.paths import SAMPLE_DATA
 PHONE = ((390, 844), "Mozilla/5.0 (Linux; Android 14) Chrome/150.0 Mobile Safari/537.36")
 LAPTOP = ((1440, 900), None)
 ROUTE, HOT = texts.MAP_LAYERS["route"], texts.MAP_LAYERS["hot"]
-BY_STATE = texts.SHADES["state"]
+BY_STATE, BY_CHANCE = texts.SHADES["state"], texts.SHADES["chance"]
 # what a map of the world shows everywhere
 GREY = (77, 99, 55)
 _TILE = io.BytesIO()
@@ -73,6 +76,33 @@ def shown(page, address):
     rest(page)
 
 
+@pytest.fixture(scope="module")
+def first_screen(visitors, address):
+    """Load the app's first screen once for all who only look at it and switch what it shows."""
+    page = visitors((1400, 1000), None).new_page()
+    page.requests = []
+    page.on("request", lambda sent: page.requests.append(sent.url))
+    shown(page, address)
+    page.opaque = card(page).get_by_role("slider", name="Opacity").input_value()
+    yield page
+    page.close()
+
+
+@pytest.fixture
+def screen(first_screen):
+    """Return the first screen as it came: all layers, every plant by its chance, the whole plot."""
+    page = first_screen
+    page.mouse.move(2, 2)
+    for name in (ROUTE, HOT):
+        switch(page, name, on=True)
+    shade(page, BY_CHANCE)
+    opacity(page, page.opaque)
+    page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
+    still(page)
+    return page
+
+
+@cache
 def sample():
     """Plan the sample as the app's first screen does."""
     (field,) = read_plots(SAMPLE_DATA / "paran_estate.zip", PlotOptions(feature="Gate")).value
@@ -82,12 +112,13 @@ def sample():
     return plot, first_day(plot, records, np.datetime64("2026-11-16"), PlanSettings())
 
 
-def season(path, plot):
-    return Season.create(path, plot, Observations.none(), MonitoringSettings(date(2026, 11, 16)))
+def season(path, plot, **settings):
+    settings = MonitoringSettings(date(2026, 11, 16), **settings)
+    return Season.create(path, plot, Observations.none(), settings)
 
 
-def test_plants_and_route_are_drawn_where_they_are(page, address):
-    shown(page, address)
+def test_plants_and_route_are_drawn_where_they_are(screen):
+    page = screen
     for name in (ROUTE, HOT):
         switch(page, name, on=False)
     image = still(page)
@@ -133,8 +164,8 @@ def test_the_map_takes_most_of_the_window_and_the_whole_plot_is_in_its_free_part
     page.locator(".st-key-panel").wait_for(state="visible")
 
 
-def test_a_switch_on_the_map_changes_pixels_and_asks_nothing_of_the_server(page, address):
-    shown(page, address)
+def test_a_switch_on_the_map_changes_pixels_and_asks_nothing_of_the_server(screen):
+    page = screen
     before = still(page)
     lines, asked = [], len(page.requests)
     page.on("websocket", lambda line: lines.append(line))  # noqa: PLW0108 - a builtin is refused
@@ -164,18 +195,33 @@ _COUNT_SENT = """() => {
 }"""
 
 
-def test_nothing_is_asked_of_the_world(page, address):
-    shown(page, address)
-    for name, room in rooms.ROOMS.items():
-        open_room(page, texts.ROOMS[name])
-        for part in room.parts[1:]:
+@pytest.fixture(scope="module")
+def walk(visitors, address):
+    """Load every room, and turn to each of its parts; return what was asked for and complained."""
+    page, asked, complaints = visitors((1400, 1000), None).new_page(), [], []
+    page.on("request", lambda sent: asked.append(sent.url))
+    page.on("console", lambda one: complaints.append(one.text) if one.type == "error" else None)
+    for name in ("study", "prior", *rooms.ROOMS):
+        page.goto(f"{address}/{'' if name == 'today' else name}")
+        page.wait_for_selector(IDLE, timeout=240_000)
+        for part in rooms.ROOMS[name].parts[1:] if name in rooms.ROOMS else ():
             open_part(page, texts.PARTS[part])
             page.wait_for_selector(IDLE, timeout=60_000)
-    open_room(page, texts.ROOMS["today"])
     still(page)
-    assert len(page.requests) > 30
+    page.close()
+    return asked, complaints
+
+
+def test_nothing_is_asked_of_the_world(walk, address):
+    asked, _ = walk
+    assert len(asked) > 30
     own = (address, address.replace("http", "ws"), "data:", "blob:", "about:")
-    assert [url for url in page.requests if not url.startswith(own)] == []
+    assert [url for url in asked if not url.startswith(own)] == []
+
+
+def test_no_page_has_an_error_on_its_console(walk):
+    _, complaints = walk
+    assert complaints == []
 
 
 @pytest.fixture
@@ -268,8 +314,8 @@ def test_rows_are_selected_by_their_numbers_and_the_map_is_driven_by_keys(page, 
         assert page.get_by_role("spinbutton", name=name, exact=True).input_value() == number
 
 
-def test_the_route_is_downloaded_and_read(page, address):
-    shown(page, address)
+def test_the_route_is_downloaded_and_read(screen):
+    page = screen
     route = {"features": route_of(page)}
     _, today = sample()
     line = np.array(route["features"][0]["geometry"]["coordinates"])
@@ -322,8 +368,8 @@ def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address,
     assert share_near(image[::-1], place[found], colours.FOUND, reach=1) < 0.3
 
 
-def test_the_scale_bar_is_as_long_as_it_says_near_and_far(page, address):
-    shown(page, address)
+def test_the_scale_bar_is_as_long_as_it_says_near_and_far(screen):
+    page = screen
     plot, _ = sample()
     far = None
     for _ in range(2):
@@ -367,6 +413,23 @@ def test_the_zoom_stays_over_layers_days_and_rooms(page, address, served_seasons
         assert view(page) == seen, f"the zoom is lost in {name}"
 
 
+def test_pointing_at_a_plant_says_which_it_is_and_its_chance(screen):
+    page = screen
+    switch(page, HOT, on=False)
+    still(page)
+    plot, today = sample()
+    place, box = pixels(view(page), plot.grid.lonlat()), page.locator(MAP).bounding_box()
+    x, y = free(page)
+    plant = int(np.argmin(np.hypot(*(place - [x - box["x"], y - box["y"]]).T)))
+    page.mouse.move(box["x"] + place[plant][0], box["y"] + place[plant][1])
+    label = row_label(plot.grid, np.array([plant]))
+    tip = page.locator(f"{MAP} .tip")
+    tip.wait_for()
+    said = f"row {label.line[0]}, plant {label.number[0]}"
+    assert tip.inner_text().startswith(said)
+    assert f"{100 * today.chance[plant]:.1f} %" in tip.inner_text()
+
+
 def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(page, address):
     shown(page, address)
     for name in (ROUTE, HOT):
@@ -388,23 +451,6 @@ def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(page, ad
     )
     yellow = np.argwhere(np.abs(image - (255, 190, 0)).max(axis=2) < 30)
     assert yellow.mean(axis=0)[::-1] == pytest.approx(place[plant], abs=2)
-
-
-def test_pointing_at_a_plant_says_which_it_is_and_its_chance(page, address):
-    shown(page, address)
-    switch(page, HOT, on=False)
-    still(page)
-    plot, today = sample()
-    place, box = pixels(view(page), plot.grid.lonlat()), page.locator(MAP).bounding_box()
-    x, y = free(page)
-    plant = int(np.argmin(np.hypot(*(place - [x - box["x"], y - box["y"]]).T)))
-    page.mouse.move(box["x"] + place[plant][0], box["y"] + place[plant][1])
-    label = row_label(plot.grid, np.array([plant]))
-    tip = page.locator(f"{MAP} .tip")
-    tip.wait_for()
-    said = f"row {label.line[0]}, plant {label.number[0]}"
-    assert tip.inner_text().startswith(said)
-    assert f"{100 * today.chance[plant]:.1f} %" in tip.inner_text()
 
 
 def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
@@ -436,9 +482,10 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     clicked, drawn_in = drawn_by_clicks(page), view(page)
     open_room(page, texts.ROOMS["today"])
     far = still(page)
-    first = stops(page)
+    features = route_of(page)
+    first = plants_of(features)
     assert len(first) > 10
-    assert gate_of(page) == pytest.approx(clicked[0], abs=1e-6)
+    assert features[0]["geometry"]["coordinates"][0] == pytest.approx(list(clicked[0]), abs=1e-6)
     assert (zoomed(page) != far).any()
     seen = view(page)
     page.get_by_label("Name of the season").fill("עונה 2026")
@@ -572,14 +619,14 @@ def route_of(page):
     return json.loads(download.value.path().read_text(encoding="utf-8"))["features"]
 
 
-def gate_of(page):
-    """Return where the route begins."""
-    return tuple(route_of(page)[0]["geometry"]["coordinates"][0])
+def plants_of(features):
+    """Return the route's plants in order."""
+    return [f["properties"]["plant"] for f in features if f["properties"]["kind"] == "stop"]
 
 
 def stops(page):
-    """Return the route's plants in order."""
-    return [f["properties"]["plant"] for f in route_of(page) if f["properties"]["kind"] == "stop"]
+    """Take the route along; return its plants in order."""
+    return plants_of(route_of(page))
 
 
 def test_three_samplers_are_compared_while_the_page_stays_usable(page, address):
@@ -599,12 +646,9 @@ def test_three_samplers_are_compared_while_the_page_stays_usable(page, address):
 
 def contrast(button):
     """Return the contrast of a button's words with its ground (WCAG's formula)."""
-    shades = button.evaluate(
-        """b => { const words = b.querySelector("p") || b; let ground = b, shade;
-        do { shade = getComputedStyle(ground).backgroundColor; ground = ground.parentElement; }
-        while (ground && /, 0\\)$/.test(shade));
-        return [getComputedStyle(words).color, shade]; }"""
-    )
+    shades = ("",)
+    while not all(shades):  # a button that is drawn anew in this moment has none
+        shades = button.evaluate(_SHADES)
     light = []
     for one in shades:
         parts = np.array([float(n) for n in re.findall(r"[\d.]+", one)[:3]]) / 255
@@ -613,13 +657,10 @@ def contrast(button):
     return max(light) / min(light)
 
 
-def test_no_page_has_an_error_on_its_console(page, address):
-    said = []
-    page.on("console", lambda one: said.append(one.text) if one.type == "error" else None)
-    for name in ("", *(room for room in rooms.ROOMS if room != "today"), "study", "prior"):
-        page.goto(f"{address}/{name}")
-        page.wait_for_selector(IDLE, timeout=240_000)
-    assert said == []
+_SHADES = """b => { const words = b.querySelector("p") || b; let ground = b, shade;
+        do { shade = getComputedStyle(ground).backgroundColor; ground = ground.parentElement; }
+        while (ground && /, 0\\)$/.test(shade));
+        return [getComputedStyle(words).color, shade]; }"""
 
 
 def test_plants_are_there_after_a_plot_that_is_drawn_as_a_picture(page, address, tmp_path):
@@ -659,7 +700,9 @@ def plants_show(page):
 @pytest.mark.parametrize("page", [PHONE], indirect=True)
 def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, served_seasons):
     plot, _ = sample()
-    project = season(served_seasons / "Phone.gpkg", plot)
+    # taps are told the hour, and the server's clock is the real one: the whole day is worked
+    whole = {"starts": time(), "robot": scout().with_hours(24.0)}
+    project = season(served_seasons / "Phone.gpkg", plot, **whole)
     page.goto(f"{address}/?season=Phone")
     rest(page)
     open_part(page, texts.PARTS["scout"])

@@ -111,11 +111,11 @@ def address(browser, served_seasons, tmp_path_factory):  # noqa: ARG001 - no bro
         yield url
     finally:
         os.killpg(server.pid, 15)
-        server.wait(20)
+        server.wait(180)
 
 
 def wait_for(url, server):
-    for _ in range(300):
+    for _ in range(1800):
         assert server.poll() is None, "the app ended"
         try:
             with urllib.request.urlopen(url, timeout=1) as answer:  # noqa: S310 - our own
@@ -123,7 +123,7 @@ def wait_for(url, server):
                     return
         except OSError:
             time.sleep(0.1)
-    pytest.fail("the app did not answer within 30 s")
+    pytest.fail("the app did not answer within 180 s")
 
 
 @pytest.fixture(scope="session")
@@ -137,6 +137,8 @@ def visitors(browser):
                 viewport={"width": size[0], "height": size[1]}, user_agent=agent,
                 accept_downloads=True,
             )  # fmt: skip
+            # another program may have the machine's processors
+            windows[size, agent].set_default_timeout(180_000)
         return windows[size, agent]
 
     yield of

@@ -31,7 +31,7 @@ _BARE = """() => {
 }"""  # noqa: E501
 _DRESSED = """() => [document, ...[...document.querySelectorAll("*")].flatMap((one) => one.shadowRoot ?? [])]
   .forEach((root) => root.querySelector("style.bare")?.remove())"""  # noqa: E501
-_REST_MS = 60_000
+_REST_MS = 180_000
 
 
 def rest(page):

@@ -206,7 +206,7 @@ def walk(visitors, address):
         page.wait_for_selector(IDLE, timeout=240_000)
         for part in rooms.ROOMS[name].parts[1:] if name in rooms.ROOMS else ():
             open_part(page, texts.PARTS[part])
-            page.wait_for_selector(IDLE, timeout=60_000)
+            page.wait_for_selector(IDLE, timeout=180_000)
     still(page)
     page.close()
     return asked, complaints
@@ -259,13 +259,13 @@ def test_a_map_of_the_world_is_asked_only_once_it_is_agreed_to_and_no_longer_tha
         page.get_by_role("combobox", name=texts.WEB_MAP, exact=True).click()
         # the page may be drawn again between the two, and close the list
         with suppress(PlaywrightTimeout):
-            page.get_by_role("option", name=texts.WEB_MAPS["other"]).click(timeout=5_000)
+            page.get_by_role("option", name=texts.WEB_MAPS["other"]).click(timeout=20_000)
             break
     box = page.get_by_role("textbox", name=texts.WEB_MAP_ADDRESS)
     box.fill(f"{url}/{{z}}/{{x}}/{{y}}.png")
     box.press("Enter")
     agree = page.get_by_role("button", name=re.compile("^Agree: show pictures from"))
-    agree.wait_for(timeout=60_000)
+    agree.wait_for(timeout=180_000)
     before = still(page)
     assert asked == [], "nothing is asked before anybody agreed"
     agree.click()
@@ -278,7 +278,7 @@ def test_a_map_of_the_world_is_asked_only_once_it_is_agreed_to_and_no_longer_tha
     zoomed(page)
     assert len(asked) == n, "what is switched off is not asked for"
     page.get_by_role("button", name=re.compile("^Stop asking")).click()
-    agree.or_(page.get_by_role("combobox", name=texts.WEB_MAP)).first.wait_for(timeout=60_000)
+    agree.or_(page.get_by_role("combobox", name=texts.WEB_MAP)).first.wait_for(timeout=180_000)
     page.reload()
     rest(page)
     still(page)
@@ -289,11 +289,11 @@ def test_rows_are_selected_by_their_numbers_and_the_map_is_driven_by_keys(page, 
     shown(page, address)
     still(page)
     page.locator(".label.row", has_text=re.compile("^10$")).click()
-    page.get_by_text("85 plants selected").wait_for(timeout=60_000)
+    page.get_by_text("85 plants selected").wait_for(timeout=180_000)
     page.locator(".label.row", has_text=re.compile("^20$")).click()
-    page.get_by_text("170 plants selected").wait_for(timeout=60_000)
+    page.get_by_text("170 plants selected").wait_for(timeout=180_000)
     page.locator(".label.row", has_text=re.compile("^20$")).click()
-    page.get_by_text("85 plants selected").wait_for(timeout=60_000)
+    page.get_by_text("85 plants selected").wait_for(timeout=180_000)
     page.get_by_role("application").focus()
     middle = view(page)
     page.keyboard.press("ArrowRight")
@@ -309,7 +309,7 @@ def test_rows_are_selected_by_their_numbers_and_the_map_is_driven_by_keys(page, 
         still(page)
     row, plant = re.search(r"row (\d+), plant (\d+)", said.text_content()).groups()
     page.keyboard.press("Enter")
-    page.get_by_text(texts.HISTORY).first.wait_for(timeout=60_000)
+    page.get_by_text(texts.HISTORY).first.wait_for(timeout=180_000)
     for name, number in ((texts.HISTORY_ROW, row), (texts.HISTORY_PLANT, plant)):
         assert page.get_by_role("spinbutton", name=name, exact=True).input_value() == number
 
@@ -464,21 +464,21 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     mites = f"date;lat;lon;count\n14.11.2026;{lat:.6f};{lon:.6f};12\n"
     page.goto(f"{address}/plot?season=My+own+files")
     boxes = page.locator("[data-testid=stFileUploaderDropzoneInput]")
-    boxes.nth(0).wait_for(state="attached", timeout=60_000)
+    boxes.nth(0).wait_for(state="attached", timeout=180_000)
     boxes.nth(0).set_input_files([plot])
-    page.get_by_text(texts.CHOOSE_ON_MAP).wait_for(timeout=60_000)
+    page.get_by_text(texts.CHOOSE_ON_MAP).wait_for(timeout=180_000)
     ask = page.get_by_role("combobox", name=texts.CHOOSE_OTHER)
     ask.click()
     ask.fill("EPSG:25831")
     page.get_by_role("option", name="EPSG:25831").click()
     page.get_by_role("button", name="Use this").click()
-    page.get_by_role("img", name="Map of plot מטע הדרים").wait_for(timeout=60_000)
+    page.get_by_role("img", name="Map of plot מטע הדרים").wait_for(timeout=180_000)
     west, _, east, _ = own.to_crs(4326).total_bounds
     middle = pytest.approx((west + east) / 2, abs=2 * (east - west))
     until(lambda: view(page)["longitude"] == middle)
     box = {"name": "mites.csv", "mimeType": "", "buffer": mites.encode()}
     boxes.nth(1).set_input_files([box])
-    page.get_by_text("1 of 1 records shown").wait_for(timeout=60_000)
+    page.get_by_text("1 of 1 records shown").wait_for(timeout=180_000)
     clicked, drawn_in = drawn_by_clicks(page), view(page)
     open_room(page, texts.ROOMS["today"])
     far = still(page)
@@ -490,7 +490,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     seen = view(page)
     page.get_by_label("Name of the season").fill("עונה 2026")
     page.get_by_role("button", name="Begin the season").click()
-    page.get_by_text("has begun").wait_for(timeout=60_000)
+    page.get_by_text("has begun").wait_for(timeout=180_000)
     still(page)
     assert view(page) == seen, "a season of the same plot is seen from where the plot was"
     assert stops(page) == first
@@ -502,7 +502,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     rest(page)
     open_room(page, texts.ROOMS["today"])
     open_part(page, texts.PARTS["today"])
-    page.get_by_text("8 plants inspected today so far").wait_for(timeout=60_000)
+    page.get_by_text("8 plants inspected today so far").wait_for(timeout=180_000)
     remaining = stops(page)
     # planned anew, the rest may be a stop or two more than it was
     assert len(first) - 20 < len(remaining) <= len(first)
@@ -514,11 +514,11 @@ def record_eight(page):
     open_part(page, texts.PARTS["record"])
     page.get_by_role("tab", name=texts.RECORD_ROUTE).click()
     box = page.get_by_role("spinbutton", name=texts.RECORD_STOPS)
-    box.wait_for(timeout=60_000)
+    box.wait_for(timeout=180_000)
     box.fill("8")
     box.press("Enter")
     page.get_by_role("tabpanel").get_by_role("button", name="Record", exact=True).first.click()
-    page.get_by_text("8 recorded").wait_for(timeout=60_000)
+    page.get_by_text("8 recorded").wait_for(timeout=180_000)
 
 
 def drawn_by_clicks(page):
@@ -530,16 +530,16 @@ def drawn_by_clicks(page):
     for number, corner in enumerate([(0.4, 0.4), (0.6, 0.4), (0.5, 0.65)], start=1):
         at_share(page, corner, says=f"{number} point(s)")
     page.get_by_role("button", name="Finish").click()
-    page.get_by_text("corners of a no-go area: 3").wait_for(timeout=60_000)
+    page.get_by_text("corners of a no-go area: 3").wait_for(timeout=180_000)
     rest(page)
     assert plants.inner_text() != before
     page.get_by_role("button", name="Undo the last one").click()
-    page.get_by_text("corners of a no-go area: 3").wait_for(state="detached", timeout=60_000)
+    page.get_by_text("corners of a no-go area: 3").wait_for(state="detached", timeout=180_000)
     draw_by_click(page, "points of a path")
     path = [at_share(page, share) for share in ((0.2, 0.2), (0.5, 0.25), (0.8, 0.2))]
     page.get_by_text("3 point(s)").wait_for()
     page.get_by_role("button", name="Finish").click()
-    page.get_by_text("points of a path: 3").wait_for(timeout=60_000)
+    page.get_by_text("points of a path: 3").wait_for(timeout=180_000)
     rest(page)
     draw_by_click(page, "the gate")
     gate = at_share(page, (0.3, 0.3), says="the gate: 1")
@@ -556,7 +556,7 @@ def open_drawing(page):
         page.get_by_text("Gate, paths, no-go areas").click()
         # what stands above may still come, and move it from under the pointer
         with suppress(PlaywrightTimeout):
-            page.get_by_role("combobox", name="A click on the map sets").wait_for(timeout=5_000)
+            page.get_by_role("combobox", name="A click on the map sets").wait_for(timeout=20_000)
             return
     pytest.fail("three clicks, and the tools for drawing do not open")
 
@@ -598,12 +598,12 @@ def draw_by_click(page, what):
         page.get_by_role("combobox", name="A click on the map sets").click()
         # a list that opens while the panel still scrolls closes again
         with suppress(PlaywrightTimeout):
-            option.click(timeout=5_000)
+            option.click(timeout=20_000)
             break
     else:
         pytest.fail(f"three clicks, and {what!r} is not offered")
     if what != "nothing":
-        page.locator(f"{MAP}.drawing").wait_for(timeout=60_000)
+        page.locator(f"{MAP}.drawing").wait_for(timeout=180_000)
     still(page)
 
 
@@ -636,10 +636,10 @@ def test_three_samplers_are_compared_while_the_page_stays_usable(page, address):
     seeds.fill("60")
     seeds.press("Enter")
     page.get_by_role("button", name="Compare", exact=True).click()
-    page.get_by_text("seasons simulated").wait_for(timeout=60_000)
+    page.get_by_text("seasons simulated").wait_for(timeout=180_000)
     page.get_by_text(re.compile("is best|comes out best")).wait_for(timeout=240_000)
     page.get_by_role("button", name="Stop").click()
-    page.get_by_role("button", name="Go on").wait_for(timeout=60_000)
+    page.get_by_role("button", name="Go on").wait_for(timeout=180_000)
     done = page.get_by_text("of 180 seasons simulated").inner_text()
     assert 3 <= int(done.split(" ")[0]) < 180
 
@@ -670,7 +670,7 @@ def test_plants_are_there_after_a_plot_that_is_drawn_as_a_picture(page, address,
     file = {"name": "two.zip", "mimeType": "", "buffer": zipped(tmp_path, both)}
     page.goto(f"{address}/plot?season=My+own+files")
     boxes = page.locator("[data-testid=stFileUploaderDropzoneInput]")
-    boxes.nth(0).wait_for(state="attached", timeout=60_000)
+    boxes.nth(0).wait_for(state="attached", timeout=180_000)
     boxes.nth(0).set_input_files([file])
     of_plot(page, "large")
     open_room(page, texts.ROOMS["today"])
@@ -683,7 +683,7 @@ def test_plants_are_there_after_a_plot_that_is_drawn_as_a_picture(page, address,
 
 def of_plot(page, name):
     """Wait until the map is of a plot."""
-    page.get_by_role("img", name=f"Map of plot {name}").wait_for(timeout=60_000)
+    page.get_by_role("img", name=f"Map of plot {name}").wait_for(timeout=180_000)
 
 
 def plants_show(page):
@@ -719,18 +719,18 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
         assert contrast(button) > 4.5, f"{name} cannot be read while it is pointed at"
         button.click()
         page.wait_for_function("t => document.querySelector('h2')?.innerText !== t", arg=before,
-                               timeout=60_000)  # fmt: skip
+                               timeout=180_000)  # fmt: skip
         assert contrast(button) > 4.5, f"{name} cannot be read after it was tapped"
     assert project.history.inspections.result.tolist() == [0, 1, 2]
     here = place.inner_text()
     page.reload()
     rest(page)
     open_part(page, texts.PARTS["scout"])
-    place.wait_for(timeout=60_000)
+    place.wait_for(timeout=180_000)
     assert place.inner_text() == here
     page.get_by_role("button", name="Undo").click()
     page.wait_for_function("t => document.querySelector('h2')?.innerText !== t", arg=here,
-                           timeout=60_000)  # fmt: skip
+                           timeout=180_000)  # fmt: skip
     assert project.history.inspections.result.tolist() == [0, 1]
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
@@ -782,7 +782,7 @@ def test_on_a_phone_two_taps_cut_the_plot_into_blocks(page, address):
     bar, sheet = page.locator(".drawbar").bounding_box(), page.locator(".st-key-panel")
     assert bar["y"] + bar["height"] <= sheet.bounding_box()["y"], "what is asked is under the sheet"
     page.get_by_role("button", name="Finish").click()
-    page.get_by_text("a cut into blocks: 2").wait_for(timeout=60_000)
+    page.get_by_text("a cut into blocks: 2").wait_for(timeout=180_000)
 
 
 @pytest.mark.parametrize("page", [LAPTOP], indirect=True)

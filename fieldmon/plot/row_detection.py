@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -415,7 +415,7 @@ def main_bearing(edges_m: Float) -> float:
     return float((peak + np.average(off[near], weights=length[near])) % 180.0)
 
 
-def _smoothed(values: Float, width: float, mode: str = "reflect") -> Float:
+def _smoothed(values: NDArray[Any], width: float, mode: str = "reflect") -> Float:
     """Return values in a row, each the mean of those about it by a bell of so many places."""
     from scipy.ndimage import gaussian_filter1d  # noqa: PLC0415 - few plots are measured ones
 

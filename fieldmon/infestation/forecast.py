@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.infestation.spread import Spread
     from fieldmon.plot.grid import PlantGrid
 
@@ -86,7 +87,11 @@ class Forecast:
 
 
 def forecast(
-    evening: Belief, grid: PlantGrid, nights: Sequence[Spread], weather: int | None = None
+    evening: Belief,
+    grid: PlantGrid,
+    nights: Sequence[Spread],
+    weather: int | None = None,
+    now: PlotEstimate | None = None,
 ) -> Forecast:
     """Return what is expected after each of some nights, from what is believed in the evening.
 
@@ -100,6 +105,8 @@ def forecast(
         What the insects are taken to do in each night.
     weather
         As `Forecast` has it.
+    now
+        How many are infested this evening, where that was worked out already.
 
     Examples
     --------
@@ -119,15 +126,15 @@ def forecast(
     arrived = expected - _from_inside(evening, nights, expected)
     found = evening.arrivals_found if isinstance(evening, TracedPairs) else 0.0
     # what is more now than believed sends out more: as a share, it stays in doubt
-    now = _spread_of(evening, grid, evening.doubt)
+    tonight = _deviation(now or _estimate(evening, grid, evening.doubt))
     to_come = max(1.0 - expected[0] / max(expected[-1], 1e-9), 0.0)
-    fields = _spread_of(mornings[-1], grid, 0.0)
-    doubts = now, float(np.sqrt(now**2 + (_RATE_DOUBT * to_come) ** 2 + fields**2))
+    fields = _deviation(_estimate(mornings[-1], grid, 0.0))
+    later = float(np.sqrt(tonight**2 + (_RATE_DOUBT * to_come) ** 2 + fields**2))
     known = _ARRIVALS_KNOWN + max(found - 2.0, 0.0)
     ends = [
         _ends((inside, outside), doubt, known)
         for inside, outside, doubt in zip(
-            (expected - arrived)[[0, -1]], arrived[[0, -1]], doubts, strict=True
+            (expected - arrived)[[0, -1]], arrived[[0, -1]], (tonight, later), strict=True
         )
     ]
     # drawn tonight and for the last morning, which takes longest; between them evenly
@@ -149,10 +156,13 @@ def _from_inside(evening: Belief, nights: Sequence[Spread], expected: Floats) ->
     return least
 
 
-def _spread_of(belief: Belief, grid: PlantGrid, doubt: float) -> float:
-    """Return the standard deviation of the number, over the number."""
-    made = estimate_plot(grid, belief.chance, belief.pair_chance, doubt=doubt)
-    return (made.high - made.low) / made.expected / _SIGMAS
+def _estimate(belief: Belief, grid: PlantGrid, doubt: float) -> PlotEstimate:
+    return estimate_plot(grid, belief.chance, belief.pair_chance, doubt=doubt)
+
+
+def _deviation(made: PlotEstimate) -> float:
+    """Return the standard deviation of the number, over the number; never none."""
+    return max((made.high - made.low) / made.expected / _SIGMAS, 0.01)
 
 
 def _ends(parts: tuple[float, float], doubt: float, known: float) -> tuple[float, float]:

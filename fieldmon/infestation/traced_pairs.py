@@ -324,6 +324,26 @@ class TracedPairs:
         shares: NDArray[np.float32] = parts / parts.sum(axis=1, keepdims=True)
         return shares
 
+    @property
+    def arrivals_found(self) -> float:
+        """How many finds came from outside of the plot, as the season's inspections have it."""
+        return float(self.counts.found[[ANYWHERE, BY_EDGE]].sum())
+
+    @property
+    def without_arrivals(self) -> TracedPairs:
+        """The same of what did not come from outside, and nothing will."""
+        expected, found = self.counts.expected.copy(), self.counts.found.copy()
+        expected[[ANYWHERE, BY_EDGE]], found[[ANYWHERE, BY_EDGE]] = 1e12, 0.0
+        shares = self.shares.astype(np.float64)
+        outside = shares[:, [ANYWHERE, BY_EDGE]].sum(axis=1)
+        brought = np.einsum("i,ik->k", self.chance, shares)
+        # what came from the plant beside it came from where that one did
+        arrived = brought[[ANYWHERE, BY_EDGE]].sum() / max(
+            brought.sum() - brought[BESIDE_IT], 1e-12
+        )
+        inside = 1.0 - outside - shares[:, BESIDE_IT] * min(arrived, 1.0)
+        return replace(self.times(inside), counts=OriginCounts(found, expected))
+
     def treated(self, left: Floats) -> TracedPairs:
         """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
         start, other = self.grid.adjacent

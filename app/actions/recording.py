@@ -247,16 +247,17 @@ def show_batches(choices: Choices) -> None:
     for batch in choices.season.batches()[:_MOST]:
         if not batch.rows:
             continue
-        left, right = st.columns([4, 1], vertical_alignment="center")
         at = choices.clock.at(datetime.fromisoformat(batch.at))
         said = texts.BATCHES_SAID[batch.kind].format(
             day=choices.units.day(at.date()), time=f"{at:%H:%M}", n=batch.rows,
             source=texts.isolated(batch.source) if batch.source else "",
         )  # fmt: skip
-        left.markdown(said + (f" ({texts.UNDONE})" if batch.undone else ""))
-        if not batch.undone:
-            right.button(texts.UNDO, key=f"undo {batch.number}", on_click=undo,
-                         args=(choices, batch.number))  # fmt: skip
+        # side by side, not in columns: a button takes what its word needs in each language
+        with st.container(horizontal=True, vertical_alignment="center"):
+            st.markdown(said + (f" ({texts.UNDONE})" if batch.undone else ""), width="stretch")
+            if not batch.undone:
+                st.button(texts.UNDO, key=f"undo {batch.number}", on_click=undo,
+                          args=(choices, batch.number))  # fmt: skip
 
 
 @notices.reporting

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.drive.trace import Trace
-from fieldmon.drive.vda5050.listener import HEARS, WAITING, Heard, Listener
+from fieldmon.drive.vda5050.watcher import HEARS, WAITING, Heard, RobotWatcher
 from fieldmon.drive.vda5050.wire import Wire
 from fieldmon.monitoring.history import BeliefSettings
 
@@ -41,14 +41,14 @@ class LiveDrive(BackgroundWork):
     def __init__(self, broker: Broker, robot: RobotName, scene: Scene) -> None:
         super().__init__()
         self._where, self.scene = (broker, robot), scene
-        self._listener: Listener | None = None
+        self._watcher: RobotWatcher | None = None
         self._believed: list[tuple[float, Float]] = []
         self._lock, self._seen_at = threading.Lock(), time.monotonic()
 
     def start(self) -> None:
         """Begin to listen."""
         if not self.running:
-            self.problem, self._believed, self._listener = None, [], None
+            self.problem, self._believed, self._watcher = None, [], None
             self._seen_at = time.monotonic()
             self.begin()
 
@@ -57,35 +57,35 @@ class LiveDrive(BackgroundWork):
         broker, robot = self._where
         # another name each time: what was missed by one who is gone is of no use
         wire = Wire(broker, f"fieldmon-seen-{secrets.token_hex(4)}", robot, HEARS)
-        listener = Listener(wire, self.scene.grid)
-        self._listener = listener
+        watcher = RobotWatcher(wire, self.scene.grid)
+        self._watcher = watcher
         try:
             while time.monotonic() - self._seen_at < UNSEEN_S and not self._stop.wait(_EVERY_S):
                 with self._lock:
-                    listener.take()
+                    watcher.take()
         finally:
             wire.close()
 
     def heard(self) -> Heard:
         """Return how the robot stands."""
         self._seen_at = time.monotonic()
-        if (listener := self._listener) is None:
+        if (watcher := self._watcher) is None:
             return _NOT_YET
         with self._lock:
-            listener.take()
-            return listener.heard()
+            watcher.take()
+            return watcher.heard()
 
     def seen(self) -> tuple[DayInTime, tuple[Float, int], Heard]:
         """Return the day so far with what is believed, the way ordered, and how it stands."""
         self._seen_at = time.monotonic()
-        listener = self._listener
-        if listener is None:
+        watcher = self._watcher
+        if watcher is None:
             return DayInTime(Trace(np.empty((0, 4)), ()), []), (np.empty((0, 2)), 0), _NOT_YET
         with self._lock:
-            listener.take()
-            trace = listener.trace()
+            watcher.take()
+            trace = watcher.trace()
             self._learn(trace)
-            return DayInTime(trace, [*self._believed]), listener.way, listener.heard()
+            return DayInTime(trace, [*self._believed]), watcher.way, watcher.heard()
 
     def _learn(self, trace: Trace) -> None:
         """Believe what was told since it was looked at last."""

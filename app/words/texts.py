@@ -61,10 +61,26 @@ BEARING = "Row bearing (degrees from north)"
 BEARING_HELP = "Leave empty to have it found from the boundary or the plants."
 ROW_SPACING, PLANT_SPACING = "Row to row ({unit})", "Plant to plant ({unit})"
 HEADLAND = "Headland ({unit})"
+HALF_CANOPY = "Half a canopy ({unit})"
+HALF_CANOPY_HELP = (
+    "How far plants reach to each side of their middle. It counts for a robot whose width is said. "
+    "Leave empty for {usual}."
+)
 SPACING_HELP = "Leave empty for what the file says, or else {rows} and {plants}."
 WHO = "Who inspects"
 ROBOT, SCOUT = "Robot", "Scout on foot"
 HOURS, INSPECTION_S = "Working hours", "Seconds at a plant"
+ROBOT_WIDTH = "Width of the robot ({unit})"
+ROBOT_WIDTH_HELP = (
+    "Ways keep half of it off the canopies of plants, and aisles that are too narrow are not "
+    "entered. Left empty, the robot is a point."
+)
+ROBOT_TIMES_LABEL = "Times charged"
+ROBOT_TIMES_NAMES = {
+    "thesis": "The thesis's: {row} s a row change, {turn} s a turn",
+    "measured": "Measured in simulated drives: {row} s a row change, {stop} s a stop",
+    "own": "As set by command: {row} s a row change, {turn} s a turn, {stop} s a stop",
+}
 SAMPLER = "Who chooses the plants"
 SAMPLERS = {name: f"{kind.title}: {kind.does}" for name, kind in of_equal_times().items()}
 DATE = "Day"
@@ -83,6 +99,7 @@ ASSUMED_WHAT = {
     "half_canopy_m": "plants reach {value} to each side",
     "background_chance": "{value} % of plants infested where nothing is known",
     "speed_m_s": "{value} km/h",
+    "row_change_s": "a row change takes {value} s more",
     "detects": "an inspection finds {value} % of what is there",
     "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
 }

@@ -28,9 +28,7 @@ def today():
     return first_day(PLOT, Observations.none(), DAY, PlanSettings(Robot(hours=0.5)))
 
 
-def test_a_route_is_written_as_geojson_unless_said_otherwise(
-    today, tmp_path, monkeypatch, capsys
-):
+def test_a_route_is_written_as_geojson_unless_said_otherwise(today, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     route = replace(today.route, notes=NOTES)
     write_routes(route, None)

@@ -45,7 +45,7 @@ class Heard(NamedTuple):
     said: str = ""
 
 
-class Listener:
+class RobotWatcher:
     """Follows a day from the messages of both sides; sends nothing.
 
     Parameters
@@ -69,7 +69,7 @@ class Listener:
 
     def __repr__(self) -> str:
         """Say whom it listens to."""
-        return f"<Listener to {self._wire.robot.serial}: {len(self._told)} stops>"
+        return f"<RobotWatcher to {self._wire.robot.serial}: {len(self._told)} stops>"
 
     def take(self) -> bool:
         """Take in what was heard since; return whether there was anything."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fieldmon.drive.errand import Errand
-from fieldmon.drive.vda5050.listener import Listener
+from fieldmon.drive.vda5050.watcher import RobotWatcher
 from fieldmon.drive.vda5050.messages import encoded, header_of, order_of
 from fieldmon.drive.vda5050.wire import RobotName
 from tests.drive.vda5050.bodies import STATE
@@ -46,8 +46,8 @@ def wire(request):
 
 
 @pytest.fixture
-def listener(wire, plot):
-    return Listener(wire, plot.grid)
+def watcher(wire, plot):
+    return RobotWatcher(wire, plot.grid)
 
 
 def ordered(wire, plot):
@@ -58,60 +58,60 @@ def ordered(wire, plot):
     wire.put("order", order_of(errand, places, first, "a1")[0])
 
 
-def test_the_day_is_as_it_is_told(wire, listener, plot):
+def test_the_day_is_as_it_is_told(wire, watcher, plot):
     ordered(wire, plot)
     for at, place in ((1.0, (0.0, 0.0)), (3.0, (4.0, 0.0)), (4.0, (4.0, 3.0))):
         wire.put("state", state(place), at)
     wire.put("state", state((4.0, 3.0), {"found": True}), 9.5)
-    assert listener.take()
-    trace = listener.trace()
+    assert watcher.take()
+    trace = watcher.trace()
     assert [(one.done_s, one.plant, one.found) for one in trace.stops] == [(8.5, STOP.plant, True)]
     frame = plot.grid.frame.turned(90.0)
     np.testing.assert_allclose(frame.xy_m(trace.poses[[0, -1], 1:3]), [(0, 0), (4, 3)], atol=1e-6)
     np.testing.assert_allclose(trace.poses[:, 3], 90.0)  # theta 0 is east
-    way, released = listener.way
+    way, released = watcher.way
     assert (len(way), released) == (3, 2)
-    assert listener.heard().standing == "live"
-    assert listener.heard().lag_s < 5.0
+    assert watcher.heard().standing == "live"
+    assert watcher.heard().lag_s < 5.0
 
 
-def test_what_comes_late_or_twice_changes_nothing(wire, listener, plot):
+def test_what_comes_late_or_twice_changes_nothing(wire, watcher, plot):
     ordered(wire, plot)
     wire.put("state", state((0.0, 0.0)), 1.0)
     wire.put("state", state((4.0, 0.0), {"found": False}), 3.0)
-    listener.take()
-    before = listener.trace()
+    watcher.take()
+    before = watcher.trace()
     wire.put("state", state((4.0, 0.0), {"found": False}), 3.0)
     wire.put("state", state((0.0, 0.0), {"found": True}), 1.0)
     wire.heard.put(("state", b"{"))
-    listener.take()
-    assert listener.trace().stops == before.stops
-    np.testing.assert_array_equal(listener.trace().poses, before.poses)
+    watcher.take()
+    assert watcher.trace().stops == before.stops
+    np.testing.assert_array_equal(watcher.trace().poses, before.poses)
 
 
-def test_a_lost_connection_a_pause_and_an_error_are_told(wire, listener):
-    assert listener.heard() == ("waiting", None, "")
+def test_a_lost_connection_a_pause_and_an_error_are_told(wire, watcher):
+    assert watcher.heard() == ("waiting", None, "")
     wire.put("state", state((0.0, 0.0)))
     wire.put("connection", {"connectionState": "CONNECTIONBROKEN"})
-    listener.take()
-    assert listener.heard().standing == "lost"
+    watcher.take()
+    assert watcher.heard().standing == "lost"
     wire.put("connection", {"connectionState": "ONLINE"})
-    listener.take()
-    assert listener.heard().standing == "live"
+    watcher.take()
+    assert watcher.heard().standing == "live"
     wire.put("state", state((0.0, 0.0), paused=True))
-    listener.take()
-    assert listener.heard().standing == "paused"
+    watcher.take()
+    assert watcher.heard().standing == "paused"
     fatal = {"errorType": "motor", "errorLevel": "FATAL", "errorDescription": "left wheel"}
     wire.put("state", state((0.0, 0.0), errors=[fatal]))
-    listener.take()
-    assert listener.heard()[::2] == ("failed", "left wheel")
+    watcher.take()
+    assert watcher.heard()[::2] == ("failed", "left wheel")
 
 
-def test_a_place_between_states_is_taken_and_one_that_is_not_known_is_not(wire, listener):
+def test_a_place_between_states_is_taken_and_one_that_is_not_known_is_not(wire, watcher):
     pose = state((2.0, 1.0))["agvPosition"]
     wire.put("visualization", {"agvPosition": pose}, 1.0)
     wire.put("visualization", {"agvPosition": pose | {"positionInitialized": False}}, 2.0)
-    listener.take()
-    assert len(listener.trace().poses) == 1
-    assert listener.heard().standing == "waiting"
-    assert listener.heard().lag_s is not None
+    watcher.take()
+    assert len(watcher.trace().poses) == 1
+    assert watcher.heard().standing == "waiting"
+    assert watcher.heard().lag_s is not None

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _EVERY, _IN_FILE = 8, 2
 
 
-class _Kept(NamedTuple):
+class _KeptMorning(NamedTuple):
     """A morning as the file keeps it: a name for what it follows from, and for what it is."""
 
     causes: str
@@ -61,7 +61,7 @@ class Mornings:
 
     history: History
     known: dict[int, Belief] = field(default_factory=dict)
-    kept: dict[int, _Kept] = field(default_factory=dict)
+    kept: dict[int, _KeptMorning] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.known[0] = self.history.first_morning
@@ -90,7 +90,7 @@ class Mornings:
         known = {day: morning for day, morning in self.known.items() if day <= since}
         return Mornings(history, known, {d: kept for d, kept in self.kept.items() if d <= since})
 
-    def _unpacked(self, day: int, kept: _Kept) -> Belief | None:
+    def _unpacked(self, day: int, kept: _KeptMorning) -> Belief | None:
         """Return a morning that the file keeps; None: it is not that of what happened."""
         if kept.causes != _causes(self.history, day) or kept.content != digest(kept.chances):
             return None
@@ -108,7 +108,7 @@ def take(db: sqlite3.Connection, mornings: Mornings) -> None:
     if mornings.history.living is not None:
         return
     for day, *kept in db.execute("SELECT day, causes, content, chances FROM mornings"):
-        mornings.kept[day] = _Kept(*kept)
+        mornings.kept[day] = _KeptMorning(*kept)
     rows = db.execute(
         "SELECT day, expected_left, low, high, chance_clean, causes FROM days "
         "WHERE causes IS NOT NULL"

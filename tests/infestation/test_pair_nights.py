@@ -92,3 +92,14 @@ def test_a_plot_of_one_plant_has_a_night_too():
     belief = PairApproximation.of(grid, np.array([0.3]))
     after = belief.overnight(Spread(0.5, arrivals_per_day=0.1))
     assert after.chance == pytest.approx([1.0 - 0.7 * 0.9])
+
+
+def test_the_density_about_a_plant_is_the_mean_chance_of_its_neighbours_given_that_it_is_infested():
+    chance, both = believed(3)
+    density = np.empty(N)
+    _find_local_density((chance, both), density, GRID.linked)
+    given_it = both / chance[OWN]
+    for i in range(N):
+        assert density[i] == pytest.approx(given_it[i == OWN].mean())
+    _find_local_density((chance, chance[OWN]), density, GRID.linked)  # they share one fate
+    assert density == pytest.approx(1.0)

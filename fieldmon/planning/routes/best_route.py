@@ -38,8 +38,6 @@ _ROUNDED = 1e-9
 _LEG_M = 1e-6
 _BISECTIONS = 40
 _LEAST_PRICE = 1e-7
-# each set of blocks has a price so far from that of all at most
-_REACH = 30.0
 # routes begin with the drives of so many of the least bounds
 _STARTED_FROM = 3
 _TOO_LONG = 1.5
@@ -309,8 +307,8 @@ def upper_bound(below: Priced | Blocks, seconds: float, within_s: float = np.inf
             break
         else:
             high = middle
-    if isinstance(below, Blocks) and monotonic() - began <= within_s:
-        value = min(value, below.bound_by_set(seconds, price, _REACH, began + within_s))
+    if monotonic() - began <= within_s:
+        value = min(value, below.bound_by_kind(seconds, price, began + within_s))
     return PriceBound(value * (1.0 + _ROUNDED), price, below, tuple(met.values()))
 
 

@@ -9,7 +9,6 @@ How that bounds every route is in ``docs/best_routes.md``.
 from __future__ import annotations
 
 from dataclasses import replace
-from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -17,7 +16,7 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
 from fieldmon.planning.routes.binned import proposals
-from fieldmon.planning.routes.priced import Costs, Priced
+from fieldmon.planning.routes.priced import REACH, Costs, Priced, least_by_kind
 from fieldmon.planning.routes.stops import stops_of
 
 if TYPE_CHECKING:
@@ -36,10 +35,10 @@ if TYPE_CHECKING:
 _NEAR_M = 15.0
 # all ways of choosing among more blocks than this would take long
 _MOST_BLOCKS = 9
+# drives through so many blocks at most are told apart by more than their set
+_FEW_BLOCKS = 3
 # drives that fill the hours: through so many of the best sets, with so many prices tried
-_SETS, _HALVINGS, _WIDE = 3, 12, 30.0
-# so many prices are tried for a bound of each set; those of one set so near each other end it
-_PRICES, _CLOSE = 40, 1.01
+_SETS, _HALVINGS = 3, 12
 _HALF = 0.5 * (1.0 - 1e-9)
 
 
@@ -77,6 +76,7 @@ class Blocks:
         self.open = [Priced(ladder, reward, replace(robot, returns=False)) for ladder in own]
         bits = np.arange(1 << n)[:, None] >> np.arange(n)
         self._in = (bits & 1).astype(np.float64)
+        self._held = np.array([float(each.reward.sum()) for each in self.closed])
         self._least: Float | None = None
 
     @property
@@ -103,7 +103,7 @@ class Blocks:
             worths = self._worths(price, *self._each(price))
         for at in np.argsort(worths.max(axis=1))[: -_SETS - 1 : -1].tolist():
             last = int(np.argmax(worths[at]))
-            low, high = price / _WIDE, price * _WIDE
+            low, high = price / REACH, price * REACH
             for _ in range(_HALVINGS):
                 middle = float(np.sqrt(low * high))
                 if self.seconds(self._through(at, last, middle), middle) > seconds:
@@ -114,31 +114,37 @@ class Blocks:
             if short.drives:
                 yield from self._between(short, long, (low, high), seconds)
 
-    def bound_by_set(self, seconds: float, price: float, reach: float, until_s: float) -> float:
-        """Return what no drive in so many seconds can reach: the most of all sets of blocks.
+    def bound_by_kind(self, seconds: float, price: float, until_s: float) -> float:
+        """Return what no drive in so many seconds can reach: the most of all kinds of drives.
 
-        At one price for all, a set that is far too long and one that is too short may seem worth
-        a drive between them, which does not exist. Here each set has the price that is least for
-        it: that with the most is given a better one, until no other helps. Looked for between
-        `price` over `reach` and `price` times `reach`, up to a moment of the clock.
+        A kind is a set of blocks and, of few, what is driven in the one with most reward.
         """
-        shape = (len(self._in), 1 if self.robot.returns else len(self.closed))
-        low, high = np.full(shape, price / reach), np.full(shape, price * reach)
-        least = np.full(shape, np.inf)
-        for _ in range(_PRICES):
-            closed, opened = self._each(price)
-            worths = self._worths(price, closed, opened)
-            rewards = self._rewards(closed, opened)
-            least = np.minimum(least, worths + price * (seconds + self.costs.change_s))
-            too_long = (rewards - worths) / price - self.costs.change_s > seconds
-            low = np.where(too_long, np.maximum(low, price), low)
-            high = np.where(too_long, high, np.minimum(high, price))
-            at = np.unravel_index(np.argmax(least), shape)
-            if high[at] < _CLOSE * low[at] or monotonic() > until_s:
-                break
-            price = float(np.sqrt(low[at] * high[at]))
-        self._least = least
+        least = least_by_kind(self._kinds, seconds + self.costs.change_s, price, until_s)
+        self._least = least.max(axis=2)
         return max(float(least.max()), 0.0)
+
+    def _kinds(self, price: float) -> tuple[Float, Float]:
+        """Return worth and reward of the best drive of each kind at a price, ``(2^m, l, k)``."""
+        closed, opened = self._each(price)
+        worth = self._worths(price, closed, opened)[:, :, None]
+        reward = self._rewards(closed, opened)[:, :, None]
+        if len(self.closed) > _FEW_BLOCKS:
+            return worth, reward
+        own = [each.kinds(price) for each in self.closed]
+        ends = [each.kinds(price) for each in self.open] if opened else []
+        n_kinds = max(one[0].size for one in own)
+        worth, reward = (np.repeat(values, n_kinds, axis=2) for values in (worth, reward))
+        for chosen in range(1, len(worth)):
+            rich = int(np.argmax(self._held * self._in[chosen]))
+            for last in range(worth.shape[1]):
+                at_end = bool(opened) and last == rich
+                best = (opened if at_end else closed)[rich]
+                kinds = [each.ravel() for each in (ends if at_end else own)[rich]]
+                size = len(kinds[0])
+                worth[chosen, last, :size] += kinds[0] - best.worth
+                worth[chosen, last, size:] = -np.inf
+                reward[chosen, last, :size] += kinds[1] - best.reward
+        return worth, reward
 
     def _rewards(self, closed: list[Drawn], opened: list[Drawn]) -> Float:
         """Return what each set of blocks holds, ``(2^m, l)``, by the block it ends in."""

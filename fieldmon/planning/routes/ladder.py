@@ -172,7 +172,8 @@ class _Worth(NamedTuple):
     def at(cls, price: Float, tables: Float) -> _Worth:
         """Work them out at some prices of a half step."""
         shape = len(price), len(tables), _STATES
-        worth = cls(price, *(np.full(shape, _NEVER) for _ in range(4)), np.zeros(shape, np.int64))
+        before, after, arrived, done = np.full((4, *shape), _NEVER)
+        worth = cls(price, before, after, arrived, done, np.zeros(shape, np.int64))
         _fill_worth(tables, worth, (np.empty(_TABLES), np.zeros(_TABLES, np.int64)))
         return worth
 
@@ -262,10 +263,11 @@ class _Search:
         _narrow(worth, (half, least), spans)
         size = np.maximum(spans[:, 1] - spans[:, 0] + 1, 0)
         start = np.cumsum(size[0]).reshape(m, _STATES) - size[0]
-        kept = _Kept(*spans[0], start, np.full(int(size[0].sum()), _NEVER))
-        most = int(size.max())
+        most = np.full(int(size[0].sum()), _NEVER)
+        kept = _Kept(spans[0, 0], spans[0, 1], start, most)
+        widest = int(size.max())
         room = _Room(
-            np.empty((_STATES, most)), np.empty(most + width), np.zeros(width, np.int64),
+            np.empty((_STATES, widest)), np.empty(widest + width), np.zeros(width, np.int64),
             np.empty(width),
         )  # fmt: skip
         end = np.full(1, _NEVER), np.zeros(3, np.int64)
@@ -276,7 +278,8 @@ class _Search:
     def _drives(self, kept: _Kept, end: _End) -> list[Drive]:
         """Trace back what is driven in each row."""
         value, row, half = end.reward, end.row, end.half
-        ends, passes, drives = (end.state,), (0, 0), list[Drive]()
+        ends: tuple[int, ...] = (end.state,)
+        passes, drives = (0, 0), list[Drive]()
         while True:
             before, table, k = self._source(kept, (row, half), ends, value)
             drives.append(Drive(row, *self._driven(row, before, table, k), *passes))

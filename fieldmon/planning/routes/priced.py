@@ -6,6 +6,7 @@ then follows from its plants alone, and the best drive from a sweep up the ladde
 
 from __future__ import annotations
 
+from time import monotonic
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -32,6 +33,8 @@ from fieldmon.planning.routes.frontier import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.planning.routes.relaxation import Ladder
@@ -45,6 +48,12 @@ _NEVER = -1e300
 _SIDES: Any = np.arange(4)
 _NONE, _BOTH = _SIDES[0], _SIDES[3]
 _SAME_PLACE_M = 1e-6
+# drives are told apart by which of so many stretches they begin in, and end in, up the ladder
+_STRETCHES = 16
+#: prices of a kind of drives are looked for so far from that of all at most
+REACH = 30.0
+# so many prices are tried for a bound of each kind of drive; those of one so near each other end it
+_PRICES, _CLOSE = 40, 1.01
 
 
 class Costs(NamedTuple):
@@ -95,12 +104,13 @@ class Drawn(NamedTuple):
 
 
 class _Room(NamedTuple):
-    """Room for a sweep: worth ``(e, 12)``, cuts, rewards, and the best way to every state."""
+    """Room for a sweep: worth ``(e, 12)``, cuts, rewards; the best to every state, its reward."""
 
     worth: Float
     reward: Float
     cut: Int
     best: Float
+    held: Float
     choice: Int
     of_side: Float
 
@@ -120,6 +130,7 @@ class Priced:
             np.empty(ways),
             np.empty(ways),
             np.zeros((*ways, 4), np.int64),
+            np.empty((e + 1, s)),
             np.empty((e + 1, s)),
             np.empty((e, s), np.int64),
             np.empty((4, 2)),
@@ -172,9 +183,70 @@ class Priced:
         """Return what no drive in so many seconds can reach, by the best drive at a price."""
         return max(drawn.worth + price * (seconds + self.costs.change_s), 0.0)
 
+    def bound_by_kind(self, seconds: float, price: float, until_s: float) -> float:
+        """Return what no drive in so many seconds can reach: the most of all kinds of drives."""
+        least = least_by_kind(self.kinds, seconds + self.costs.change_s, price, until_s)
+        return max(float(least.max()), 0.0)
+
+    def kinds(self, price: float) -> tuple[Float, Float]:
+        """Return worth and reward of the best drive of each kind at a price, ``(g, h)``.
+
+        A kind is the stretch of the ladder in which a drive begins, the lowest, and that in which
+        it ends, the highest.
+        """
+        gate, end = self.ladder.gate, len(self.ladder.across_m)
+        low, high = _stretches(0, gate + 1), _stretches(gate, end)
+        worth, reward = np.empty((2, len(low) - 1, len(high) - 1))
+        _value(self.ladder, self.reward, self.costs, (price, False), self._room)
+        self._value_gate(price)
+        metre = price * self.costs.metre_s
+        _sweep_kinds(self.ladder, self.tables, metre, self._room, (low, high, worth, reward))
+        return worth, reward
+
     def seconds(self, drawn: Drawn, price: float) -> float:
         """Return the seconds that a drive takes on the ladder."""
         return (drawn.reward - drawn.worth) / price - self.costs.change_s
+
+
+def _stretches(first: int, end: int) -> Int:
+    """Return where stretches of elements begin, and the end."""
+    return np.unique(np.linspace(first, end, min(_STRETCHES, end - first) + 1).astype(np.int64))
+
+
+def least_by_kind(
+    kinds: Callable[[float], tuple[Float, Float]], seconds: float, price: float, until_s: float
+) -> Float:
+    """Return what no drive of each kind can reach in so many seconds, by a price of its own.
+
+    At one price for all, a kind that is far too long and one that is too short may seem worth a
+    drive between them, which does not exist. Here each has the price that is least for it: the
+    kind with the most is given a better one, until no other helps.
+
+    Parameters
+    ----------
+    kinds
+        Worth and reward of the best drive of each kind at a price.
+    seconds
+        The hours, and what is granted.
+    price
+        Where to begin.
+    until_s
+        Up to which moment of the clock prices are tried.
+    """
+    shape = kinds(price)[0].shape
+    low, high = np.full(shape, price / REACH), np.full(shape, price * REACH)
+    least = np.full(shape, np.inf)
+    for _ in range(_PRICES):
+        worth, reward = kinds(price)
+        least = np.minimum(least, worth + price * seconds)
+        too_long = reward - worth > price * seconds
+        low = np.where(too_long, np.maximum(low, price), low)
+        high = np.where(too_long, high, np.minimum(high, price))
+        at = np.unravel_index(np.argmax(least), shape)
+        if high[at] < _CLOSE * low[at] or monotonic() > until_s:
+            break
+        price = float(np.sqrt(low[at] * high[at]))
+    return least
 
 
 @part
@@ -405,3 +477,54 @@ def _sweep(ladder: Ladder, tables: Tables, metre: float, room: _Room) -> int:
             if worth > room.best[k + 1, after]:
                 room.best[k + 1, after], room.choice[k, after] = worth, t
     return 1
+
+
+@loop
+def _sweep_kinds(
+    ladder: Ladder,
+    tables: Tables,
+    metre: float,
+    room: _Room,
+    kinds: tuple[Int, Int, Float, Float],
+) -> None:
+    """Find worth and reward of the best drive that begins and ends in each pair of stretches."""
+    low, high, worth, reward = kinds
+    worth[:] = _NEVER
+    reward[:] = 0.0
+    for begin in range(low.size - 1):
+        end = 0
+        room.best[:] = _NEVER
+        room.best[0, 0] = 0.0
+        room.held[0, 0] = 0.0
+        for k in range(low[begin], ladder.across_m.size):
+            if k == low[begin]:
+                room.best[k, 0] = room.held[k, 0] = 0.0
+            while end + 1 < high.size - 1 and k >= high[end + 1]:
+                end += 1
+            _take_element(ladder, tables, metre, room, k)
+            if k + 1 == low[begin + 1]:
+                # it has begun by now
+                room.best[k + 1, 0] = _NEVER
+            if room.best[k + 1, 1] > worth[begin, end]:
+                worth[begin, end], reward[begin, end] = room.best[k + 1, 1], room.held[k + 1, 1]
+            # those that end here do not end further up
+            room.best[k + 1, 1] = _NEVER
+
+
+@part
+def _take_element(ladder: Ladder, tables: Tables, metre: float, room: _Room, k: int) -> None:
+    """Find the best way to every state after an element, and its reward."""
+    ways = tables.gate if k == ladder.gate else tables.aisle
+    for t in range(ways.shape[0]):
+        before, way, after = ways[t, 0], ways[t, 1], ways[t, 2]
+        if room.best[k, before] <= _NEVER or (after == 1 and k < ladder.gate):
+            continue
+        worth = room.best[k, before] + room.worth[k, way]
+        if after > 1 and k + 1 == ladder.across_m.size:
+            continue
+        if after > 1:
+            left, right = tables.passes[after, 0], tables.passes[after, 1]
+            worth -= metre * (left * ladder.up_m[k, 0] + right * ladder.up_m[k, 1])
+        if worth > room.best[k + 1, after]:
+            room.best[k + 1, after] = worth
+            room.held[k + 1, after] = room.held[k, before] + room.reward[k, way]

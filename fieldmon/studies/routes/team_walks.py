@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations
-from time import monotonic
+from time import process_time
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -20,9 +20,12 @@ if TYPE_CHECKING:
 
 # each walk is looked for again so often; so often one of two that meet looks elsewhere
 _ROUNDS, _TRIES = 5, 12
-# prices of plants: so many, for so long; a step that gained nothing so often is made shorter, and
-# directions are remembered so far
-_PRICES, _WITHIN_S, _PATIENCE, _MEMORY = 150, 20.0, 8, 0.7
+# two walks are shaken so often, until so often in vain; what is left counts so much more or less,
+# and at first so much less than before is taken for what may come of it
+_SHAKES, _SHAKES_IN_VAIN, _MORE_OR_LESS, _WORSE = 200, 80, (0.1, 0.3, 0.6), 0.02
+# prices of plants: so many, for so many seconds of the processor; a step that gained nothing so
+# often is made shorter, and directions are remembered so far
+_PRICES, _WITHIN_S, _PATIENCE, _MEMORY = 300, 20.0, 8, 0.7
 
 
 class TeamWalks(NamedTuple):
@@ -36,10 +39,12 @@ class TeamWalks(NamedTuple):
 def team_walks(reward: Float, budget: int, n_walks: int) -> TeamWalks:
     """Return walks that hold much together, nobody meeting another in a row, and a bound."""
     search = _Search(reward, budget, n_walks)
+    most = _all_steps(reward, budget, n_walks)
     search.improve()
+    search.shake(most)
     search.keep_apart()
-    held = float(reward[search.taken()].sum())
-    most = min(_all_steps(reward, budget, n_walks), _by_prices(reward, budget, n_walks, held))
+    held = search.held
+    most = min(most, _by_prices(reward, budget, n_walks, held))
     return TeamWalks(search.places, held, max(most, held))
 
 
@@ -69,11 +74,16 @@ class _Search:
         self.places = [np.zeros((1, 2), np.int64) for _ in range(n_walks)]
         self.banned = [np.zeros(len(reward), np.bool_) for _ in range(n_walks)]
 
-    def taken(self, leaving_out: int = -1) -> NDArray[np.bool_]:
-        """Return which plants the walks pass, but for one of them."""
+    @property
+    def held(self) -> float:
+        """Return what the walks hold together."""
+        return float(self.reward[self.taken()].sum())
+
+    def taken(self, *leaving_out: int) -> NDArray[np.bool_]:
+        """Return which plants the walks pass, but for some of them."""
         taken = np.zeros(self.reward.shape, np.bool_)
         for k, walk in enumerate(self.places):
-            if k != leaving_out:
+            if k not in leaving_out:
                 taken |= _passed(walk, self.reward.shape)
         return taken
 
@@ -88,10 +98,47 @@ class _Search:
         for _ in range(_ROUNDS):
             for k in range(len(self.places)):
                 self.look(k)
-            now = float(self.reward[self.taken()].sum())
-            if now <= held:
+            if self.held <= held:
                 break
-            held = now
+            held = self.held
+
+    def shake(self, most: float) -> None:
+        """Give two walks other ways at random, and let them look again; keep the best.
+
+        It ends early where the walks hold the `most` that any can.
+        """
+        rng = np.random.default_rng(0)
+        best, held, in_vain = [*self.places], self.held, 0
+        now = held
+        for worse in np.maximum(_WORSE * np.linspace(1.0, -1.0, _SHAKES), 0.0):
+            if len(self.places) < 2 or held >= most or in_vain >= _SHAKES_IN_VAIN:
+                break
+            if worse == 0.0 and now < held:
+                # from now on nothing is given up any more
+                self.places, now = [*best], held
+            before = [*self.places]
+            self._shake_two(rng)
+            after = self.held
+            if after < now * (1.0 - worse):
+                self.places = before
+            else:
+                now = after
+            in_vain = in_vain + 1 if worse == 0.0 and after <= held else 0
+            if after > held:
+                best, held = [*self.places], after
+        self.places = best
+
+    def _shake_two(self, rng: np.random.Generator) -> None:
+        two = rng.permutation(len(self.places))[:2].tolist()
+        spread = rng.choice(_MORE_OR_LESS)
+        left = np.where(self.taken(*two), 0.0, self.reward)
+        for k in two:
+            # the other's plants count for anything between nothing and all
+            own = np.where(self.taken(k), rng.random(left.shape), 1.0)
+            own = left * own * rng.uniform(1.0 - spread, 1.0 + spread, left.shape)
+            self.places[k] = best_walk(own, self.budget).place
+        for k in two * 2:
+            self.look(k)
 
     def keep_apart(self) -> None:
         """Turn walks round, or let the poorer of two look elsewhere, until nobody meets."""
@@ -138,7 +185,7 @@ def _all_steps(reward: Float, budget: int, n_walks: int) -> float:
 
 def _by_prices(reward: Float, budget: int, n_walks: int, held: float) -> float:
     """Return a bound by prices of plants, as of a team's day: see `fieldmon.planning.team`."""
-    until = monotonic() + _WITHIN_S
+    until = process_time() + _WITHIN_S
     price = direction = np.zeros(reward.shape)
     least, kept, step, in_vain = np.inf, price, 1.0, 0
     for _ in range(_PRICES):
@@ -154,7 +201,7 @@ def _by_prices(reward: Float, budget: int, n_walks: int, held: float) -> float:
         direction = 1.0 - n_walks * visits + _MEMORY * direction
         direction = np.where((price <= 0.0) & (direction > 0.0), 0.0, direction)
         norm = float((direction**2).sum())
-        if norm == 0.0 or value <= held * (1.0 + 1e-6) or monotonic() > until:
+        if norm == 0.0 or value <= held * (1.0 + 1e-6) or process_time() > until:
             break
         price = np.clip(price - step * (value - held) / norm * direction, 0.0, reward)
     return least

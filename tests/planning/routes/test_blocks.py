@@ -92,5 +92,5 @@ def test_a_price_for_each_set_of_parts_bounds_no_less_sharply_than_one_for_all(r
     prices = highest / 1.1 ** np.arange(150)
     at_one = min(parts.bound(parts.best(p), p, robot.day_s) for p in prices)
     middle = float(min(prices, key=lambda p: parts.bound(parts.best(p), p, robot.day_s)))
-    by_set = parts.bound_by_set(robot.day_s, middle, 30.0, np.inf)
+    by_set = parts.bound_by_kind(robot.day_s, middle, np.inf)
     assert best(aisles, reward, robot).reward <= by_set <= at_one * (1 + 1e-3)

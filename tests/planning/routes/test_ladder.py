@@ -37,7 +37,7 @@ def every_walk(reward, budget):
 
 def every_state(reward, budget):
     """Return the most reward at each half of a budget: the five states, and nothing left out."""
-    m, n = reward.shape
+    n = reward.shape[1]
     never, half, n_through = -np.inf, budget // 2, n + 1
     left, right, round_, joined, apart = range(5)
     states, most = np.full((5, half + 1), never), np.full(half + 1, never)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from ..words import texts
+from . import acting
 
 if TYPE_CHECKING:
     from ..state.comparison import Comparison
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 def buttons(work: Comparison | DriveRun | LiveDrive, label: str, *, key: str, over: bool) -> None:
     """Offer to begin and to stop it; `over`: there is nothing left to do."""
     with st.container(horizontal=True):
-        # not by on_click, which knows only what was chosen before the numbers typed just now
-        if st.button(label, type="primary", key=key, disabled=work.running or over):
-            work.start()
-            st.rerun()
+        pressed = st.button(label, type="primary", key=key, disabled=work.running or over)
+        acting.once(pressed, work.start)
         st.button(texts.STOP, key=f"{key}_stop", on_click=work.stop, disabled=not work.running)

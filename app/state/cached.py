@@ -80,6 +80,7 @@ if TYPE_CHECKING:
     from fieldmon.simulation.worker import LaidPlot
 
     from .comparison import ComparisonSettings
+    from .tried_answers import TriedAnswer
 
     Array = NDArray[np.float64]
 
@@ -114,6 +115,15 @@ def records(
     They may name one of `_fields`, or rows and plants, the measured ones by their own labels.
     """
     return prepare.records_on(_plot, _source, lambda: _fields, _measured)
+
+
+@st.cache_resource(max_entries=_MAPS, show_spinner=_WORKING)
+def tried(key: str, _make: Callable[[], TriedAnswer]) -> TriedAnswer:  # noqa: ARG001
+    """Return what an answer to an import's question leads to, be it nowhere.
+
+    `key` stands for the file, what was answered before, and the answer.
+    """
+    return _make()
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)

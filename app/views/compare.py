@@ -63,9 +63,6 @@ def _results(choices: Choices, running: Comparison, *, at_work: bool) -> None:
     if not alone:
         return
     with st.container(horizontal=True, vertical_alignment="bottom"):
-        strategy = st.selectbox(
-            texts.STRATEGY, alone, format_func=verdicts.name, width=340,
-            key=f"use_strategy {running.settings.strategies}",
-        )  # fmt: skip
-        st.button(texts.USE_THIS, key="use_this", on_click=changing.use,
-                  args=(choices, strategy))  # fmt: skip
+        box = f"use_strategy {running.settings.strategies}"
+        st.selectbox(texts.STRATEGY, alone, format_func=verdicts.name, width=340, key=box)
+        st.button(texts.USE_THIS, key="use_this", on_click=changing.use, args=(choices, box))

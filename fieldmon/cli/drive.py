@@ -35,9 +35,11 @@ if TYPE_CHECKING:
 
     from fieldmon.drive.day import DrivenDay
     from fieldmon.drive.errand import DayToDrive, DrivingRobot
+    from fieldmon.drive.mujoco_robot import Physics
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.vda5050.wire import RobotName
     from fieldmon.monitoring import Season
+    from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
 
@@ -45,6 +47,27 @@ BrokerName = Annotated[
     str, typer.Option("--broker", help="MQTT broker: HOST:PORT or mqtts://USER:PASSWORD@HOST:PORT.")
 ]
 Serial = Annotated[str, typer.Option(help="Serial number of the robot, as in its topics.")]
+RobotModel = Annotated[
+    Path | None,
+    typer.Option(
+        "--robot-model",
+        help="Model of a robot to drive with mujoco, URDF or MJCF (docs: drive say which joints).",
+    ),
+]
+SteeringName = Annotated[
+    str,
+    typer.Option(
+        help="Of mujoco's own robot. differential: two driven wheels. ackermann: a steered axle, "
+        "which turns at corners by arcs and shunts."
+    ),
+]
+Rough = Annotated[
+    float,
+    typer.Option(help="Of mujoco: bumps of the ground, metres (standard deviation of heights)."),
+]
+GroundHeights = Annotated[
+    Path | None, typer.Option("--ground", help="Of mujoco: raster of heights (GeoTIFF), metres.")
+]
 Version = Annotated[str, typer.Option("--vda", help="Version of VDA 5050: 2.1 or 3.0.")]
 Maker = Annotated[str, typer.Option("--manufacturer", help="Manufacturer, as in its topics.")]
 
@@ -88,6 +111,10 @@ class DriveOptions:
     gnss: Annotated[
         float, typer.Option(help="Noise of simulated positions, metres (standard deviation).")
     ] = 0.0
+    robot_model: RobotModel = None
+    steering: SteeringName = "differential"
+    rough: Rough = 0.0
+    ground: GroundHeights = None
     made_up: Annotated[
         bool,
         typer.Option("--made-up", help="Record a simulated robot's made-up finds in the season."),
@@ -111,6 +138,7 @@ def drive(options: DriveOptions) -> None:
     drive by VDA 5050 at once, each under its name as serial number.
 
     Example: fieldmon drive estate.zip --feature Gate --rover --hours 1 --robot mujoco -o day.csv
+    Example: fieldmon drive estate.zip --feature Gate --rover --robot mujoco --steering ackermann
     Example: fieldmon drive season.gpkg --robot vda5050 --broker farm.local --serial robot1
     """
     from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
@@ -147,7 +175,7 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     tell_assumed(assumed_by((), prior, worker, plot.grid))
     if told := aisles.told_shut():
         typer.echo(told)
-    with monitor.day() as today, _driver(options, aisles, worker, (chance, on)) as driver:
+    with monitor.day() as today, _driver(options, plot, worker, (chance, on)) as driver:
         begins = local_clock(plot.field).moment(on, time(6))
         return _driven(options, today, aisles, (worker, driver), begins), on
 
@@ -172,7 +200,7 @@ def _season(options: DriveOptions, file: Path) -> tuple[DrivenDay, date]:
         typer.echo(told)
     if today.batch is not None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")
-    with _driver(options, aisles, worker, (season.morning(on), on)) as driver:
+    with _driver(options, season.plot, worker, (season.morning(on), on)) as driver:
         return _driven(options, today, aisles, (worker, driver), _begins(season, on)), on
 
 
@@ -245,12 +273,12 @@ def _write_bag(recording: Recording, begins: datetime, options: DriveOptions) ->
 
 @contextmanager
 def _driver(
-    options: DriveOptions, aisles: Aisles, worker: Robot, believed: tuple[Any, date]
+    options: DriveOptions, plot: Plot, worker: Robot, believed: tuple[Any, date]
 ) -> Iterator[tuple[DrivingRobot, Recording]]:
     """Yield whoever drives, and what it notes."""
     from fieldmon.drive.recording import Recording  # noqa: PLC0415
 
-    recording = Recording(aisles, worker, believed[0])
+    recording = Recording(plot.aisles.for_robot(worker), worker, believed[0])
     if options.robot is Drives.VDA5050:
         from fieldmon.drive.vda5050.fleet import live_robot  # noqa: PLC0415
         from fieldmon.drive.vda5050.wire import Broker  # noqa: PLC0415
@@ -262,9 +290,40 @@ def _driver(
         return
     from fieldmon.drive.simulated import MadeUp, simulated_robot  # noqa: PLC0415
 
-    made_up = MadeUp(options.infested, options.seed, options.gnss)
+    made_up = MadeUp(options.infested, options.seed)
     decides = sampler_of(options.sampler, options.every)
-    yield simulated_robot(options.robot.value, recording, decides, made_up), recording
+    physics = _physics(options, plot, worker)
+    yield simulated_robot(options.robot.value, recording, decides, made_up, physics), recording
+
+
+def _physics(options: DriveOptions, plot: Plot, worker: Robot) -> Physics | None:
+    """Return what a robot is and meets in MuJoCo; refuse what others have no use for."""
+    said = {
+        "--robot-model": options.robot_model is not None,
+        "--steering": options.steering != "differential",
+        "--rough": options.rough != 0.0,
+        "--ground": options.ground is not None,
+        "--gnss": options.gnss != 0.0,
+    }
+    if options.robot is not Drives.MUJOCO:
+        if vain := [option for option, given in said.items() if given]:
+            raise SettingError(f"{vain[0]} goes with --robot mujoco: nobody else drives by it.")
+        return None
+    if options.ground is not None and options.rough:
+        raise SettingError("Give one of --ground and --rough: heights of a raster are as they are.")
+    if options.robot_model is not None and options.steering != "differential":
+        raise SettingError("The joints of a --robot-model say how it steers: give no --steering.")
+    from fieldmon.drive.ground import ground_of_raster, rough_ground  # noqa: PLC0415
+    from fieldmon.drive.mujoco_robot import Physics  # noqa: PLC0415
+    from fieldmon.drive.robot_body import RobotBody  # noqa: PLC0415
+
+    body = RobotBody.of(worker, options.steering, options.robot_model)
+    heights, ground = options.ground, None
+    if heights is not None:
+        ground = ground_of_raster(plot.grid, plot.field, heights)
+    elif options.rough:
+        ground = rough_ground(plot.grid, options.rough, options.seed)
+    return Physics(body, options.gnss, options.seed, ground)
 
 
 def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str) -> None:

@@ -17,7 +17,7 @@ from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.readers.inspection_file.rows import InspectionRows
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import look_up
-from fieldmon.monitoring import inspection_table
+from fieldmon.monitoring import inspection_lots, inspection_table
 from fieldmon.monitoring.geopackage import geometry, touch
 from fieldmon.monitoring.recorded_before import contradictions, said_before
 from fieldmon.monitoring.schema import INSPECTIONS
@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid, RowLabel
 
 SOURCE = "added by another program"
-_DRAFTS = "digest IS NULL AND coalesce(undone, 0) = 0"
+# by the index of digests that count, which is small where nothing waits
+_DRAFTS = "digest IS NULL AND undone = 0"
 _SAID = {"found": PRESENT, "clean": ABSENT, "skipped": UNKNOWN}
 
 
@@ -127,7 +128,7 @@ def _inspection(said: list[object], grid: PlantGrid) -> Inspections:
     if result not in _SAID:
         raise ValueError(f"its result is none of {', '.join(RESULT_NAMES.values())}")
     day = np.datetime64(str(on)[:10], "D")
-    second = np.nan if at in {None, ""} else inspection_table.second_of(str(at))
+    second = np.nan if at in {None, ""} else inspection_lots.second_of(str(at))
     when = np.datetime64("NaT", "s")
     if not np.isnan(second):
         when = day.astype("datetime64[s]") + np.timedelta64(round(second), "s")

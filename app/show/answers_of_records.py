@@ -52,7 +52,7 @@ def content(tried: tuple[TriedAnswer, ...], plot: Plot, *, dark: bool) -> MapCon
     ]  # fmt: skip
     return MapContent(
         f"answers {[one.answer for one in tried]}", answers_map.with_room(bounds).tolist(),
-        texts.ANSWERS_OF_RECORDS_ALT.format(n=len(seen)), made, labels=numbers,
+        texts.ANSWERS_OF_RECORDS_ALT.format(name=plot.field.name, n=len(seen)), made, labels=numbers,
         legend=[legends.part("", [*items, *rings])],
     )  # fmt: skip
 
